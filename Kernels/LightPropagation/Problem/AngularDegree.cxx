@@ -10,15 +10,15 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostMoments = 32;     ///< that are looked at
-constexpr double Negligible = 1e-3; ///< moment of a phase function
+constexpr int MostMoments = 32;     ///< moments of phase functions that are examined
+constexpr double Negligible = 1e-3; ///< magnitude below which a moment of a phase function is neglected
 constexpr int DegreeOfSlabs = 9, DegreeOfThin = 6, DegreeOfOthers = 3;
 constexpr double SomewhatForward = 0.6;
-constexpr double Thick = 8.0; ///< mean free paths through the box: light's first scattering is a small part of it
+constexpr double Thick = 8.0; ///< optical thickness of the box above which singly scattered light is a small part
 constexpr double MuchThinner = 8.0;
-constexpr std::size_t ArraysOfMoments = 4; ///< source, path, what is given, and of uncollided light
+constexpr std::size_t ArraysOfMoments = 4; ///< arrays of moments: source, path, given light, and uncollided light
 
-/// Largest moments, by degree, of all phase functions of the medium.
+/// Largest magnitude of the moments of all phase functions of the medium, by degree.
 std::vector<double> LargestMoments(const Medium& medium)
 {
   std::vector<double> largest(MostMoments + 1, 0.0);
@@ -47,7 +47,8 @@ std::vector<double> LargestMoments(const Medium& medium)
   return largest;
 }
 
-/// Up to `degree`, such that half of the memory is left for all else.
+/// Highest degree, at most `degree`, whose arrays fit in half of the memory; the other half is left for everything
+/// else.
 int HighestThatFits(std::size_t voxels, int degree, const DeviceMemory& memory)
 {
   constexpr std::size_t MostChannels = 3;
@@ -62,7 +63,7 @@ int HighestThatFits(std::size_t voxels, int degree, const DeviceMemory& memory)
   return degree;
 }
 
-/// The last one that is more; 0: none is.
+/// Highest degree whose moment is larger than `negligible`; 0: none.
 int LastAbove(const std::vector<double>& moments, double negligible)
 {
   int last = 0;
@@ -108,7 +109,7 @@ AngularDetail AngularDetailOf(const Medium& medium, int channels)
 int AngularDegreeFor(const AngularDetail& detail, const Grid& grid, const PropagationSettings& settings, bool slab,
   std::size_t voxels, const DeviceMemory& memory)
 {
-  // Of thin media the first scattering counts: there a narrower part of the peak is to go straight on.
+  // In thin media single scattering dominates, so a narrower part of the peak is treated as unscattered.
   const bool thin = detail.moments[1] > SomewhatForward && MeanThickness(grid, detail.extinction[0]) < Thick;
   const int usual = HighestThatFits(voxels, slab ? DegreeOfSlabs : thin ? DegreeOfThin : DegreeOfOthers, memory);
   const int wanted = settings.angularDegree >= 0

@@ -37,7 +37,7 @@ std::array<Value, 3> AxisPermutation::TurnedBack(const std::array<Value, 3>& tur
   return { turned[(3 - this->Along) % 3], turned[(4 - this->Along) % 3], turned[(5 - this->Along) % 3] };
 }
 
-/// What a face of the scene as it stands is called in the turned one.
+/// Index in the permuted scene of a face of the original scene.
 int AxisPermutation::FaceWhenTurned(int face) const
 {
   return (face / 2 + 3 - this->Along) % 3 * 2 + face % 2;
@@ -75,7 +75,7 @@ PropagationSettings AxisPermutation::Of(const PropagationSettings& settings) con
   return turned;
 }
 
-/// Of the cells of the box's faces: those of one face follow each other in the same order.
+/// Moves values by cell of the box's faces back to the original faces; the order of cells within a face is unchanged.
 void AxisPermutation::TurnBackCells(std::vector<float>& values, const Grid& grid) const
 {
   const std::size_t each = values.size() / BoxFaceCellCount(grid);
@@ -91,8 +91,8 @@ void AxisPermutation::TurnBackCells(std::vector<float>& values, const Grid& grid
   }
 }
 
-/// Harmonics of turned directions in harmonics of directions as they stand, degree by degree: integrals of their
-/// products over all directions, by a rule that is exact.
+/// Expresses harmonics of permuted directions in harmonics of original directions, degree by degree. The coefficients
+/// are integrals of their products over all directions, by an exact quadrature.
 void AxisPermutation::TurnBackMoments(LightField& light, const Grid& grid) const
 {
   const std::size_t channels = static_cast<std::size_t>(light.channels);

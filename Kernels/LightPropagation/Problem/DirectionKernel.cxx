@@ -9,12 +9,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FromPerFace = 144;     ///< directions, beside those of the set, that light comes along
-constexpr double LeastPart = 1e-3;   ///< of the mean: what rounding may take away
-constexpr double MostDamping = 16.0; ///< nothing is left of any moment
+/// Directions per face that are tested as incident ones, in addition to those of the set
+constexpr int FromPerFace = 144;
+constexpr double LeastPart = 1e-3;   ///< tolerance for rounding, relative to the mean
+constexpr double MostDamping = 16.0; ///< damping s at which all moments vanish
 
-/// One of the 48 parts of all directions that are each other's images by turns and mirrorings of the cube. A set and
-/// its functions, degree by degree, have that symmetry.
+/// Whether `omega` lies in one of the 48 parts of the sphere that are images of each other under rotations and
+/// reflections of the cube. A quadrature and its functions, degree by degree, have that symmetry.
 bool IsInOnePart(const std::array<double, 3>& omega)
 {
   constexpr double Rounding = 1e-12;
@@ -23,7 +24,7 @@ bool IsInOnePart(const std::array<double, 3>& omega)
 
 std::vector<std::array<double, 3>> ComingFrom(const DirectionSet& set)
 {
-  std::vector<std::array<double, 3>> from = { { 1.0, 0.0, 0.0 } }; // beams often go along an axis
+  std::vector<std::array<double, 3>> from = { { 1.0, 0.0, 0.0 } }; // beams are often parallel to an axis
   for (const DirectionSet& one : { set, EquiangularDirections(FromPerFace) })
   {
     for (const Direction& direction : one.directions)
@@ -84,7 +85,7 @@ DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel)
     return truncated;
   }
   const double g = truncated.forward + (1.0 - truncated.forward) * truncated.moments[1];
-  const double forward = g < 0.0 ? 0.0 : truncated.forward; // without a peak nothing is to be taken off it
+  const double forward = g < 0.0 ? 0.0 : truncated.forward; // there is no forward peak to remove
   const auto damped = [&](double s) {
     std::vector<double> moments = truncated.moments;
     for (std::size_t l = 0; l < moments.size(); ++l)

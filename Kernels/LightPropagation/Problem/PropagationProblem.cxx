@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// So that the first member of a problem is made of what has been looked at.
+/// Checks the scene before the first member of a problem is constructed from it; returns `domain`.
 const Domain& Checked(
   const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
@@ -33,7 +33,7 @@ PropagationProblem::PropagationProblem(const Domain& domain, const Medium& mediu
   this->TakeChannels();
   this->Given = domain.Any(this->SolvedLight.uncollided.IsThere());
   this->Truncate(memory);
-  // The traits know of extinction by the similarity relation alone.
+  // The traits only know the extinction according to the similarity relation.
   this->TheTraits.greyExtinction =
     this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
 }
@@ -51,7 +51,7 @@ void PropagationProblem::TakeChannels()
   }
 }
 
-/// By what all ranks have together.
+/// Truncates the phase functions, based on properties of the whole domain. Collective.
 void PropagationProblem::Truncate(const DeviceMemory& memory)
 {
   const Domain& domain = this->Solving;
@@ -69,7 +69,7 @@ void PropagationProblem::Truncate(const DeviceMemory& memory)
       ? AngularDegreeFor(detail, this->Whole(), this->TheSettings, this->IsSlab(), most, memory)
       : 0;
   });
-  degree = -static_cast<int>(domain.Max(-1.0 * degree)); // that fits all
+  degree = -static_cast<int>(domain.Max(-1.0 * degree)); // the lowest of all ranks
   domain.Collective([&] {
     std::optional<DirectionKernel> kernel;
     if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, this->Whole(), this->ChannelCount, this->TheSettings.periodic))

@@ -9,20 +9,21 @@ namespace tyndall
 {
 namespace
 {
-constexpr double ThickBox = 8.0; ///< mean free paths across, from which on few directions do for scattered light
+/// Optical thickness of a box from which on few directions suffice for scattered light
+constexpr double ThickBox = 8.0;
 
-/// Numbers of one level.
+/// Settings of one quality level.
 struct Level
 {
   int directions, directionsInThickBox;
-  int uncollidedDirections; ///< where light comes in from outside
+  int uncollidedDirections; ///< if light is incident from outside
   double tolerance, emissionError;
 };
 
 constexpr Level Draft = { 9, 9, 0, 1e-2, 0.05 };
 constexpr Level Fine = { 64, 49, 400, 1e-4, 0.01 };
 constexpr Level Reference = { 256, 144, 1600, 1e-5, 0.005 };
-constexpr int Staggered = 144; ///< directions from which on rays of each in a place of their own halve the error
+constexpr int Staggered = 144; ///< directions per face from which on staggered ray starts halve the error
 
 void SetLevel(const Level& level, PropagationSettings& settings, const SceneOfQuality& scene)
 {

@@ -13,15 +13,17 @@ namespace tyndall
 {
 namespace
 {
-/// The default, not the user's: which method is used must not depend on the tolerance.
+/// The default tolerance rather than the user's, so that the choice of method does not depend on it.
 const double UsualTolerance = PropagationSettings().tolerance;
-/// The distance beyond a face at which diffuse light would be zero, mean free paths (numerics.md, Eq. (86)).
+/// Extrapolation distance: distance beyond a face at which the diffuse flux extrapolates to zero, mean free paths
+/// (numerics.md, Eq. (86)).
 constexpr double Extrapolation = 1.42 / 2.0;
-constexpr double ThickVoxel = 10.0; ///< mean free paths along its longest edge, with which diffusion may gain nothing
+/// Optical thickness along a voxel's longest edge above which diffusion may gain nothing
+constexpr double ThickVoxel = 10.0;
 
-/// What an accelerated solve takes, in plain scattering orders of the same scene (`./run bench thick`): to set it up
-/// and to finish it, and of each row a sweep and its correction. UncollidedDirections.cxx has an older figure of its
-/// own.
+/// Time of an accelerated solve, in units of one unaccelerated scattering order of the same scene (`./run bench
+/// thick`): set-up and finish, the number of iterations, and the correction of each, in addition to its sweep.
+/// UncollidedDirections.cxx has its own, older figure.
 struct AcceleratedTime
 {
   double setUp, rows, correction;
@@ -29,26 +31,27 @@ struct AcceleratedTime
 };
 constexpr AcceleratedTime InEvenMedia = { 7.0, 6.0, 3.0 };
 constexpr AcceleratedTime InUnevenMedia = { 7.0, 7.0, 3.0 };
-/// Sweeps are dear in moments, and a slab's diffusion system is small: of these the sums alone were measured.
+/// Sweeps with moments are expensive, and a slab's diffusion system is small. For these, only the totals were measured.
 constexpr AcceleratedTime InMoments = { 5.0, 8.0, 1.0 };
 constexpr AcceleratedTime InMomentsOfThickVoxels = { 8.0, 8.0, 3.0 };
 constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
-/// Rows are as many as CellRows has.
+/// The number of iterations is computed by TimeInCells.
 constexpr AcceleratedTime InCells = { 3.0, 0.0, 0.4 };
-constexpr double CellFall = 0.3;   ///< of what is left, from row to row, times the albedo: 5 rows at 0.5, 7 at 0.9 to 1
-constexpr double CellAtMost = 1.0; ///< optical width where the medium is thickest
+/// Reduction of the error per iteration, times the albedo: 5 iterations at albedo 0.5, 7 at 0.9 to 1
+constexpr double CellFall = 0.3;
+constexpr double CellAtMost = 1.0; ///< optical width of a cell where the medium is thickest
 constexpr int MostHalvings = 3;
-constexpr double PlainSetUp = 0.8; ///< of orders one after the other: measured 0.8 in 100^3 voxels, 2 in 40^3
+constexpr double PlainSetUp = 0.8; ///< set-up of source iteration, in orders: measured 0.8 in 100^3 voxels, 2 in 40^3
 
-/// What leaks out along an axis.
+/// Leakage along an axis.
 double LeakAlong(double longest, double extrapolations)
 {
   const double extrapolated = longest + extrapolations;
   return Pi * Pi / 3.0 / (extrapolated * extrapolated);
 }
 
-/// Of both faces across an axis. A face that reflects sends light back as if the medium went on there, at most as a
-/// mirror image of all that there is.
+/// Sum of the extrapolation distances at both faces across an axis. A reflecting face acts as if the medium continued
+/// there, at most as a mirror image of the whole medium.
 double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel, double longest)
 {
   const auto beyond = [&](int face) {
@@ -59,8 +62,8 @@ double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel,
   return std::min(low, longest + high) + std::min(high, longest + low);
 }
 
-/// Sums along the lines of voxels of the whole domain. Collective.
-/// @param value  of this rank's voxels
+/// Optical thickness of the lines of voxels of the whole domain. Collective.
+/// @param value  value(voxel) for this rank's voxels
 template <class Value>
 ThickLines LinesOf(const Domain& domain, const Value& value)
 {
@@ -84,7 +87,7 @@ ThickLines LinesOf(const Domain& domain, const Value& value)
   return { domain.Whole(), all };
 }
 
-/// Of what is scattered as sweeps carry it, in the mean. Collective.
+/// Mean albedo of scattered light, in the coefficients that the sweeps use. Collective.
 double AlbedoOf(const PropagationProblem& problem, int channel)
 {
   const Medium& medium = problem.TheMedium();
@@ -98,12 +101,11 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
   return sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
 }
 
-/// What leaks out along axes that are not periodic, of the slowest mode, over what is extinguished (numerics.md,
-/// Eq. (86)).
+/// Leakage of the slowest mode along axes that are not periodic, relative to its extinction (numerics.md, Eq. (86)).
 double Leak(const ScatteringOfScene& scene, int channel)
 {
   const std::array<double, 3>& longest = scene.channels[channel].diffusing.along;
-  // Light diffuses as far as transport has it, but is scattered more often: each order does less.
+  // Light diffuses according to the transport extinction but is scattered more often, so each order contributes less.
   const bool inMoments = scene.degree > 0;
   const std::array<double, 3>& scattered = scene.channels[channel].swept.along;
   double leak = 0.0;
@@ -116,7 +118,7 @@ double Leak(const ScatteringOfScene& scene, int channel)
   return leak;
 }
 
-/// As sweeps carry light, 1/length, of all voxels and channels. Collective.
+/// Largest extinction that the sweeps use, over all voxels and channels, 1/length. Collective.
 double ThickestExtinction(const PropagationProblem& problem)
 {
   double largest = 0.0;
@@ -140,15 +142,15 @@ bool Reflects(const ScatteringOfScene& scene)
   return std::any_of(scene.faceAlbedo.begin(), scene.faceAlbedo.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
 }
 
-/// Light is scattered alike into all directions, no voxel is so thick that diffusion has to tell what leaves it, and
-/// nothing comes back through the box's faces, which cells would have to forecast.
+/// Whether coarse-mesh DSA can be used: scattering is isotropic, no voxel is so thick that diffusion must describe the
+/// light leaving it, and no face reflects, which the cells would have to predict.
 bool CanUseCells(const ScatteringOfScene& scene)
 {
   return scene.degree == 0 && !scene.isSlab && !Reflects(scene) &&
     AreThinEnough(scene.grid, CellHalvings(scene.grid, scene.thickest));
 }
 
-/// Rows of diffusion on cells: it corrects what is scattered, so the less that is, the faster it converges.
+/// Time of coarse-mesh DSA. It corrects scattered light, so it converges faster at lower albedo.
 AcceleratedTime TimeInCells(double albedo)
 {
   const double rows = albedo > 0.0 ? std::log(UsualTolerance) / std::log(CellFall * albedo) : 0.0;
@@ -184,7 +186,7 @@ AcceleratedTime AcceleratedTimeOf(const ScatteringOfScene& scene)
   return uneven ? InUnevenMedia : InEvenMedia;
 }
 
-/// The scheme that several ranks have in the place of a serial solve's: cells do not wrap around periodic axes.
+/// Scheme that a distributed solve uses in place of the serial one: cells do not wrap around periodic axes.
 IterationScheme AvailableInBlocks(IterationScheme serial, const PropagationSettings& settings)
 {
   const bool wraps = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MomentsLookedAt = 8; ///< of phase functions, to tell whether they are the same
+constexpr int MomentsLookedAt = 8; ///< moments of phase functions that are compared between ranks
 }
 
 void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,

@@ -13,8 +13,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int UsualExponent = 40;       ///< powers up to 2^40 W, and down to 2^-40 W, are solved about as they are
-constexpr int UsualLengthExponent = 20; ///< spacings up to 2^20, and down to 2^-20, are solved as they are
+constexpr int UsualExponent = 40;       ///< powers between 2^-40 W and 2^40 W are scaled by less than 2
+constexpr int UsualLengthExponent = 20; ///< spacings between 2^-20 and 2^20 are not scaled
 
 double Largest(const Rgb& values)
 {
@@ -44,7 +44,7 @@ void Divide(Rgb& values, double unit)
 void Multiply(std::vector<float>& values, double unit, const char* name)
 {
   const auto isBeyond = [=](float value) { return std::abs(value * unit) > std::numeric_limits<float>::max(); };
-  if (std::count_if(values.begin(), values.end(), isBeyond) > 0) // counts in vectors, where any_of would not
+  if (std::count_if(values.begin(), values.end(), isBeyond) > 0) // vectorises, unlike any_of
   {
     const double watts = *std::max_element(values.begin(), values.end()) * unit;
     throw InvalidInput("The " + std::string(name) + " would be " + Text("%.5g", watts) +
@@ -54,7 +54,7 @@ void Multiply(std::vector<float>& values, double unit, const char* name)
     values.begin(), values.end(), values.begin(), [=](float value) { return static_cast<float>(value * unit); });
 }
 
-/// W that a light sends into the box, or around it if it stands outside; the sum of its channels.
+/// Upper bound of the power that a light sends into the box, W; sum of its channels.
 double PowerInto(const Grid& grid, const Light& light)
 {
   if (light.type != LightType::Directional)
@@ -97,7 +97,7 @@ AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illuminati
     2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
   if (illumination.uncollided.IsThere())
   {
-    all.first = 0.0; // it stays as it is given, bit for bit
+    all.first = 0.0; // given light is not scaled by its digits and stays as given, bit for bit
     for (int c = 0; c < 3; ++c)
     {
       all.power += PowerLost(illumination.uncollided, medium, c);
@@ -114,7 +114,7 @@ double PowerUnitFor(const AllThatShines& all)
     return 1.0;
   }
   const int exponent = std::ilogb(all.power);
-  // All light together is then 2^40: next to what shines most, something else may shine 1e-36 times as much.
+  // The total power is then about 2^40, so that a source 1e-36 times as strong as the strongest is still represented.
   return std::abs(exponent) <= UsualExponent ? digits : std::scalbn(digits, exponent - UsualExponent);
 }
 
@@ -150,7 +150,7 @@ void SceneInUnits::TakeUncollided(double unit)
 {
   UncollidedImage& image = this->illumination.uncollided;
   const std::size_t count = this->medium.grid.VoxelCount() * static_cast<std::size_t>(image.fluence.components);
-  if (!image.IsThere() || count == 0) // what a rank without voxels is given stays there, without values
+  if (!image.IsThere() || count == 0) // on a rank without voxels the image is there, but without values
   {
     return;
   }
@@ -199,13 +199,13 @@ SceneInLengths::SceneInLengths(const Medium& inLengths, const Illumination& shin
   scale(this->medium.emission, this->emission);
   if (grid.VoxelCount() > 0)
   {
-    Check(this->medium); // they may be beyond floats now
+    Check(this->medium); // scaled values may overflow floats
   }
   for (Light& light : this->illumination.lights)
   {
     std::for_each(light.position.begin(), light.position.end(), [=](double& length) { length /= unit; });
     std::for_each(light.size.begin(), light.size.end(), [=](double& length) { length /= unit; });
-    if (light.type != LightType::Directional) // whose power is that of an area already
+    if (light.type != LightType::Directional) // the power of directional lights is per area already
     {
       Divide(light.power, unit * unit);
     }

@@ -8,8 +8,9 @@
 namespace tyndall
 {
 /// Units of power and length chosen by the solver (numerics.md, Eq. (85)). Light is linear in its power, but floats
-/// overflow at 3e38 (rays carry W, path integrals W length) and round. The unit of power is proportional to the power
-/// of the sources, so that a scene with scaled power is rounded alike and solved by the same steps.
+/// overflow at 3e38 (rays carry W, path integrals W length) and round. The unit of power is proportional, up to a power
+/// of two, to the power of the sources, so that a scene with scaled power is rounded alike and solved by the same
+/// steps.
 
 /// Quantities from which the unit of power is computed. Ranks take the maximum of each, since only emission and given
 /// uncollided light differ between them.

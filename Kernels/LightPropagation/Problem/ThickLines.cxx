@@ -7,7 +7,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Uneven = 1.5; ///< the thickest line over the mean of all, each as much as lies in it
+constexpr double Uneven = 1.5; ///< ratio of the thickest line to the mean of all lines, weighted by thickness
 }
 
 ThickLines::ThickLines(const Grid& grid, const LineSums& sigma_t)

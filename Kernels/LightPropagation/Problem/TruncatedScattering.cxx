@@ -9,8 +9,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Thickest = 1.0; ///< mean free paths through a voxel, of a degree above 0
-constexpr int Columns = 1024;    ///< of mean cosines; between them moments are taken as linear
+constexpr double Thickest = 1.0; ///< optical thickness of a voxel up to which its degree is above 0
+constexpr int Columns = 1024;    ///< tabulated mean cosines; moments are interpolated linearly between them
 
 std::vector<DeltaM> TruncationsOf(const PhaseFunction& function, int degree, const DirectionKernel* nowhereNegative)
 {
@@ -43,7 +43,7 @@ TruncatedScattering::TruncatedScattering(
   {
     this->OfChannel[c] = TruncationsOf(medium.phase.OfChannel(c), degree, nowhereNegative);
   }
-  // Angular detail is worth following along the shortest edge first.
+  // The shortest edge decides: angular detail is resolved along it first.
   const double shortest = *std::min_element(medium.grid.spacing.begin(), medium.grid.spacing.end());
   this->Degrees.resize(medium.grid.VoxelCount() * channels);
   this->MostDegree = 0;
@@ -79,7 +79,7 @@ std::vector<std::string> TruncatedScattering::LeftOut() const
   return words;
 }
 
-/// The highest degree at which the voxel is not thick.
+/// Highest degree at which the voxel is not optically thick.
 int TruncatedScattering::FittingDegree(std::size_t voxel, int channel, double shortest) const
 {
   const double absorbs = this->TheMedium.sigma_a.At(voxel, channel);

@@ -8,14 +8,15 @@ namespace tyndall
 {
 namespace
 {
-constexpr double More = 0.25; ///< time, of a solve along the usual directions
-/// What a solve takes beside its sweeps, in orders along all usual directions: measured 0.8 in 100^3 voxels, 2 in 40^3.
+constexpr double More = 0.25; ///< additional time, relative to a solve with the usual directions
+/// Time of a solve besides its sweeps, in units of a scattering order along all usual directions: measured 0.8 in 100^3
+/// voxels, 2 in 40^3.
 constexpr double SetUp = 0.8;
 /// An accelerated solve in such orders: one to set up three, and five sweeps with their corrections.
 constexpr double AcceleratedOrders = 18.0;
-constexpr double OrdersByCells = 12.0; ///< the same with cells: measured 9 in 128^3 voxels, 14 in 64^3
-constexpr double LeastOrders = 3.0;    ///< that are swept however few are needed
-constexpr double Lit = 0.5;            ///< of all directions those that one face shines along
+constexpr double OrdersByCells = 12.0; ///< time with coarse-mesh DSA: measured 9 in 128^3 voxels, 14 in 64^3
+constexpr double LeastOrders = 3.0;    ///< orders that are always swept
+constexpr double Lit = 0.5;            ///< fraction of all directions that carry light of one face
 constexpr int Choices[] = { 36, 49, 64, 100 };
 
 bool FacesShine(const Illumination& light)
@@ -23,7 +24,7 @@ bool FacesShine(const Illumination& light)
   return std::any_of(light.faces.begin(), light.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
 }
 
-/// In orders along all usual directions: a solve's, but for its first sweep.
+/// Time of a solve except its first sweep, in orders along all usual directions.
 double TimeOfLaterOrders(const PropagationProblem& problem, IterationScheme how)
 {
   const int most = problem.Settings().maximumOrders;
@@ -41,7 +42,7 @@ double TimeOfLaterOrders(const PropagationProblem& problem, IterationScheme how)
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
 {
-  const bool besideUsual = how == IterationScheme::Dsa; // else the finer directions take the place of the usual ones
+  const bool besideUsual = how == IterationScheme::Dsa; // otherwise finer directions replace the usual ones
   const PropagationSettings& settings = problem.Settings();
   const Illumination& shining = problem.Shining();
   const bool scatters = problem.Traits().scatters;
@@ -57,7 +58,7 @@ UncollidedDirections UncollidedDirectionsFor(
   }
   if (besideUsual && problem.Scattering().Degree() > 0)
   {
-    return {}; // all moments of four lights would be kept at once: hundreds of bytes a voxel
+    return {}; // all moments of four lights would be stored at once: hundreds of bytes per voxel
   }
   const double before = settings.directionsPerFace;
   const double affordable = More * (TimeOfLaterOrders(problem, how) + Lit) * before;

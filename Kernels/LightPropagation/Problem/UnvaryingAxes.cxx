@@ -8,9 +8,10 @@ namespace tyndall
 namespace
 {
 constexpr double Width =
-  10.0; ///< in edges across: wider gains little, and flat voxels make the diffusion system slower
+  10.0; ///< width in edges of the other axes; larger ones gain little, and flat voxels slow down the diffusion solve
 constexpr int EdgeInSlabs = 12;
-constexpr int EdgeWithCosineZero = 10; ///< of even ones: light along its axes' planes would go round for ever
+/// An even number of rows with directions of cosine 0, whose light would wrap around forever
+constexpr int EdgeWithCosineZero = 10;
 
 bool AnyIsNear(const std::vector<Light>& lights)
 {
