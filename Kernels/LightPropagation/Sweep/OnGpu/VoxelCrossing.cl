@@ -324,7 +324,7 @@ static void count_currents(
 }
 #endif
 
-// Of what shines besides in a voxel itself, see put_down.
+// Power of the additional octant source that is not lost in the voxel itself, see put_down.
 static colours not_lost_of(const plane_state* state, const member_state* member, long voxel)
 {
   colours more = { { 0.0f } };
