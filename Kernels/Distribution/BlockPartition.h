@@ -8,41 +8,41 @@
 
 namespace tyndall
 {
-/// A grid that is cut into boxes, one a rank, some of which may be empty.
+/// A partition of a grid into blocks, one per rank; blocks may be empty.
 struct BlockPartition
 {
   Grid whole;
   std::vector<VoxelBox> blocks; ///< by rank, in voxels of the whole grid
 
-  /// @throws InvalidInput where a block reaches beyond the grid, two have a voxel in common, or a voxel is in none
+  /// @throws InvalidInput if a block reaches beyond the grid, two blocks overlap, or a voxel is in no block
   void Check() const;
 
-  /// The grid of a rank's own voxels; of an empty block one of no voxels.
+  /// The grid of a rank's block; without voxels if the block is empty.
   Grid OwnGrid(int rank) const;
 
-  /// The same grid cut again and again across its longest edge, as evenly as voxels allow; into fewer blocks where
-  /// there are fewer voxels than ranks, and the last ones are empty.
+  /// Recursive bisection of the grid across its longest edge, as evenly as whole voxels allow. If there are fewer
+  /// voxels than ranks, the last blocks are empty.
   static BlockPartition Even(const Grid& whole, int ranks);
 };
 
-/// Past the last voxel of a box along an axis.
+/// One past the last voxel of a box along an axis.
 inline int EndOf(const VoxelBox& box, int axis)
 {
   return box.first[axis] + box.size[axis];
 }
 
-/// Whether a voxel, three numbers, is in a box.
+/// Whether a voxel (three indices) is in a box.
 bool Holds(const VoxelBox& box, const int* voxel);
 
-/// A box and so many voxels round it, as far as the grid goes.
+/// The box grown by `by` voxels on each side, clipped to the grid.
 VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole);
 
-/// The ranks whose blocks touch that of one, at a face, an edge or a corner.
-/// @param reach  voxels: those too that are fewer than so many apart from it
-/// @param periodic  axes whose two ends touch
+/// The ranks whose blocks touch a rank's block at a face, an edge or a corner.
+/// @param reach voxels; blocks less than this distance away count too
+/// @param periodic periodic axes, whose ends touch
 std::vector<int> NeighboursOf(
   const BlockPartition& partition, int rank, int reach = 1, const std::array<bool, 3>& periodic = {});
 
-/// The voxels that two boxes share; without any its size is 0 along some axis.
+/// The intersection of two boxes; if it is empty, its size is 0 along some axis.
 VoxelBox Common(const VoxelBox& a, const VoxelBox& b);
 }

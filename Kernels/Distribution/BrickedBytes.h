@@ -10,9 +10,8 @@
 
 namespace tyndall
 {
-/// A number from 0 to 255 for each voxel of a grid, kept in bricks of 8^3 voxels: a brick of one number takes four
-/// bytes, another one 516. For what is even but for some surfaces, as an octree's levels, so that a rank may have that
-/// of all of a grid, of which it has a block.
+/// One byte per voxel of a grid, stored in bricks of 8^3 voxels: a uniform brick takes 4 bytes, any other 516. Meant
+/// for data that are piecewise constant, such as octree levels, so that every rank can hold those of the whole grid.
 class BrickedBytes
 {
 public:
@@ -21,7 +20,7 @@ public:
 
   explicit BrickedBytes(const std::array<int, 3>& size);
 
-  /// Numbers of a box, x fastest. Each voxel is to be in one box that is put in, in any order.
+  /// Stores the bytes of a box, x fastest. Each voxel must be stored once; the order of boxes does not matter.
   void Put(const VoxelBox& box, const std::vector<std::uint8_t>& numbers);
 
   std::uint8_t At(const std::array<int, 3>& voxel) const
@@ -30,9 +29,9 @@ public:
     return static_cast<std::uint8_t>(brick >= 0 ? brick : this->Uneven[Begin(brick) + Within(voxel)]);
   }
 
-  /// Of each brick, x fastest, its number; or, less than 0: -1 less than that of its part of Dense().
+  /// Per brick, x fastest: its byte if it is uniform; else -1 - n, where n is the index of the brick in Dense().
   const std::vector<std::int32_t>& Table() const { return this->Bricks; }
-  /// Numbers of bricks that have several, Voxels each, x fastest.
+  /// Bytes of the bricks that are not uniform, Voxels per brick, x fastest.
   const std::vector<std::uint8_t>& Dense() const { return this->Uneven; }
 
 private:
@@ -48,19 +47,19 @@ private:
   }
   void PutInBrick(const VoxelBox& part, const VoxelBox& box, const std::vector<std::uint8_t>& numbers);
 
-  std::array<std::size_t, 3> Count; ///< of bricks
+  std::array<std::size_t, 3> Count; ///< bricks per axis
   std::vector<std::int32_t> Bricks;
   std::vector<std::uint8_t> Uneven;
 };
 
-/// Numbers of the voxels of a box that each rank wants, which may reach into the blocks of others, in a table of all of
-/// the grid; outside nothing is put in. Runs of one number are sent as one. All ranks call it.
-/// @param own  of this rank's block, x fastest
-/// @param wanted  by rank, within the grid; of no voxels where a rank wants none
+/// Gathers the bytes of the box that each rank wants, which may reach into other ranks' blocks; voxels outside the box
+/// stay unset. Runs of equal bytes are sent once. Collective.
+/// @param own bytes of this rank's block, x fastest
+/// @param wanted the box that each rank wants, within the grid; may be empty
 BrickedBytes BytesOfBoxes(Communicator& communicator, const BlockPartition& partition,
   const std::vector<std::uint8_t>& own, const std::vector<VoxelBox>& wanted);
 
-/// The same of all voxels, on each rank.
+/// The same for all voxels of the grid, on every rank.
 BrickedBytes BytesOfAll(
   Communicator& communicator, const BlockPartition& partition, const std::vector<std::uint8_t>& own);
 }

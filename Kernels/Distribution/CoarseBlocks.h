@@ -9,16 +9,16 @@
 
 namespace tyndall
 {
-/// A grid in blocks, one a rank, and a coarser grid (Coarsening.h) in blocks of its own: a rank
-/// has the coarse voxels whose centres lie in its block. Where blocks end amid coarse voxels these need fine voxels of
-/// neighbours. Of a rank that has none, or thin blocks, there may be no coarse voxels. One rank has both grids whole.
+/// A distributed grid and a coarser grid over the same box (Coarsening.h), which is distributed too: a rank owns the
+/// coarse voxels whose centres lie in its block. A coarse voxel that straddles two blocks needs fine voxels of the
+/// neighbour. A rank with a thin or empty block may own no coarse voxels. On one rank both grids are whole.
 class CoarseBlocks
 {
 public:
-  /// @param communicator  must stay
-  /// @param coarse  over the same box, nowhere finer
+  /// @param communicator must outlive this
+  /// @param coarse grid over the same box, nowhere finer
   CoarseBlocks(Communicator& communicator, const BlockPartition& fine, const Grid& coarse);
-  /// Of half the voxels an axis.
+  /// Coarsens by two along each axis.
   CoarseBlocks(Communicator& communicator, const BlockPartition& fine)
     : CoarseBlocks(communicator, fine, Coarsening(fine.whole).Coarse())
   {
@@ -27,25 +27,26 @@ public:
   Communicator& Comm() const { return this->TheCommunicator; }
   const BlockPartition& Fine() const { return this->FinePartition; }
   const BlockPartition& Coarse() const { return this->CoarsePartition; }
-  /// Of the whole grids.
+  /// The coarsening ratio of the whole grids.
   double Ratio() const { return this->Whole.Ratio(); }
-  /// Of all the fine voxels that this rank's coarse ones are in part, which may be those of other ranks, to these.
+  /// The coarsening from the fine voxels that overlap this rank's coarse voxels, some of which other ranks may own, to
+  /// these coarse voxels.
   const Coarsening& Own() const { return this->OwnPart; }
   bool HasOwn() const { return this->OwnBox().VoxelCount() > 0; } ///< coarse voxels
 
-  /// Whether some coarse voxel lies in the blocks of two ranks. The same on all.
+  /// Whether some coarse voxel straddles two ranks' blocks; the same on all ranks.
   bool Straddle() const { return this->AnyStraddles; }
-  /// Values of the fine voxels that Own() averages over. All ranks call it.
-  /// @param values  `components` for each voxel of this rank's block
+  /// Values of the fine voxels that Own() averages over. Collective.
+  /// @param values `components` per voxel of this rank's block
   std::vector<float> Around(const std::vector<float>& values, int components) const;
-  /// Means over this rank's coarse voxels. All ranks call it.
+  /// Means over this rank's coarse voxels. Collective.
   std::vector<float> Average(const std::vector<float>& values, int components) const;
 
-  /// From this rank's fine voxels to the coarse ones in which they lie (Parent) and a layer of voxels round these,
-  /// between which it refines.
+  /// The coarsening from this rank's fine voxels to the coarse voxels that contain them (Parent) and one layer of
+  /// coarse voxels around these, between which refinement interpolates.
   const Coarsening& Seen() const { return this->SeenPart; }
-  /// Values of the latter. All ranks call it.
-  /// @param values  `components` for each of this rank's coarse voxels
+  /// Values of the coarse voxels of Seen(). Collective.
+  /// @param values `components` per coarse voxel of this rank
   std::vector<float> SeenOf(const std::vector<float>& values, int components) const;
 
 private:

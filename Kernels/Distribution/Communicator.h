@@ -10,12 +10,12 @@
 
 namespace tyndall
 {
-/// What ranks that share one computation say to each other. Each rank has one of its own and calls it from one thread.
-/// Messages from one rank to another with the same tag arrive in the order they were sent in.
+/// Message passing among the ranks of one solve. Each rank owns one Communicator and calls it from one thread.
+/// Messages from one rank to another with the same tag arrive in the order in which they were sent.
 class Communicator
 {
 public:
-  /// Sent by this rank, sums and agreements among them.
+  /// What this rank has sent, reductions and error agreements included.
   struct Traffic
   {
     std::size_t messages = 0;
@@ -26,26 +26,26 @@ public:
   virtual int Rank() const = 0;
   virtual int Ranks() const = 0;
 
-  /// Does not wait for the other rank. A rank may send to itself: light comes round a periodic axis.
-  /// @param tag  one of MessageTags.h, or a number from 0 on, less than those
+  /// Sends without waiting for the receiver. A rank may send to itself, because light wraps around a periodic axis.
+  /// @param tag one of MessageTags.h, or a non-negative number smaller than those
   template <class T>
   void Send(int to, int tag, const std::vector<T>& values)
   {
     this->CountAndSend(to, tag, BytesOf(values));
   }
-  /// Waits for it.
+  /// Waits until the message has arrived and returns its values.
   template <class T>
   std::vector<T> Receive(int from, int tag)
   {
     return ValuesOf<T>(from == this->Rank() ? this->TakeOwn(tag) : this->Take(from, tag));
   }
 
-  /// To each of some ranks a parcel of values, and from each of them one; parcels may be empty. All ranks call it,
-  /// those that have nobody to exchange with as well; a rank names all that name it.
+  /// Exchanges one parcel of values with each rank of `with`; parcels may be empty. Collective: ranks without partners
+  /// call it too, and if rank a names rank b, then b must name a.
   /// @param with  different ranks; this one may be among them
-  /// @param pack  makes the parcels, one for each of `with`. Where it throws on one rank, it does on all (Collective),
+  /// @param pack makes the parcels, one for each rank of `with`. If it throws on one rank, all ranks throw (Collective)
   ///   and nothing is sent
-  /// @return by the ranks of `with`, whatever comes first
+  /// @return the received parcels, in the order of `with` whatever the order of arrival
   template <class T>
   std::vector<std::vector<T>> Exchange(
     const std::vector<int>& with, const std::function<std::vector<std::vector<T>>()>& pack)
@@ -70,16 +70,15 @@ public:
     return arrived;
   }
 
-  /// Added up over the ranks in their order, and the largest of all ranks: the same on each, value by value. All ranks
-  /// call it.
-  /// @throws InvalidInput  on all ranks, where one has more values than another
+  /// Element-wise sum and maximum over the ranks, identical on every rank; sums are added in rank order. Collective.
+  /// @throws InvalidInput on all ranks, if the numbers of values differ
   std::vector<double> Sum(const std::vector<double>& values);
   std::vector<double> Largest(const std::vector<double>& values);
 
-  /// Runs `work` on every rank. Where it throws on one, it does on all, with the same words: those of the first rank
-  /// where the worst went wrong (an abort is no error), with its number where it is not the same on all. All ranks call
-  /// it; what they send each other in `work` they must send although something has gone wrong (SweepInBlocks.cxx does).
-  /// @throws Aborted where a rank was, InvalidInput, DeviceError and others likewise
+  /// Runs `work` on every rank. If any rank throws, all throw the most severe error, that of the lowest such rank;
+  /// aborts rank below errors. The text names the rank unless all ranks failed alike. Collective. Messages that ranks
+  /// exchange within `work` must be sent even after an error (SweepInBlocks.cxx does so).
+  /// @throws Aborted, InvalidInput, DeviceError or another error, as the failed rank threw it
   void Collective(const std::function<void()>& work);
 
   const Traffic& Sent() const { return this->Counted; }
@@ -88,9 +87,9 @@ protected:
   virtual void Give(int to, int tag, std::vector<char> bytes) = 0;
   virtual std::vector<char> Take(int from, int tag) = 0;
 
-  /// An exchange with others: all ranks call it at once, just after they agreed that nothing has gone wrong. Here it is
-  /// done by messages.
-  /// @param with  none of them this rank
+  /// Exchanges parcels with other ranks. Collective; called just after all ranks have agreed that none has failed. This
+  /// default implementation sends messages.
+  /// @param with ranks to exchange with, this rank not among them
   virtual std::vector<std::vector<char>> Swap(const std::vector<int>& with, std::vector<std::vector<char>> parcels);
 
 private:
@@ -127,13 +126,13 @@ private:
   std::map<int, std::deque<std::vector<char>>> ToItself; ///< by tag
 };
 
-/// The words of the first rank that has any, on each; empty: none has. All ranks call it.
+/// The text of the lowest rank whose `own` is not empty, the same on every rank; empty if there is none. Collective.
 std::string WordsOfAny(Communicator& communicator, const std::string& own);
 
-/// Whether it is so on any rank. All ranks call it.
+/// Whether `own` is true on any rank. Collective.
 bool OnAnyRank(Communicator& communicator, bool own);
 
-/// A computation's only rank.
+/// The communicator of a serial solve: a single rank.
 class SingleRank : public Communicator
 {
 public:

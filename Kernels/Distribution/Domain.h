@@ -10,15 +10,16 @@
 
 namespace tyndall
 {
-/// A grid that is divided among ranks, as one rank sees it: its own block, the whole grid, and reductions. On one rank
-/// the block is the whole grid, a reduction returns its argument and a collective step is a plain call, so that a
-/// solver need not know how many ranks there are. A block may have no voxels.
+/// A distributed grid as one rank sees it: its own block, the whole grid, and reductions. On one rank the block is the
+/// whole grid, a reduction returns its argument and a collective step is a plain call, so that a solver need not know
+/// how many ranks there are. A block may have no voxels.
 class Domain
 {
 public:
-  /// All of a grid on one rank.
+  /// The whole grid on one rank.
   explicit Domain(const Grid& grid);
-  /// One block a rank. @param communicator  must outlive the domain
+  /// One block per rank.
+  /// @param communicator  must outlive the domain
   Domain(Communicator& communicator, BlockPartition partition);
 
   /// The same blocks of the same voxels, with another origin and spacing.
@@ -34,7 +35,7 @@ public:
   bool IsSerial() const { return this->Ranks->Ranks() == 1; }
   Communicator& Comm() const { return *this->Ranks; }
 
-  // Collective: all ranks call these, with as many values.
+  // Collective: all ranks call these with the same number of values.
   double Sum(double own) const;
   Rgb Sum(const Rgb& own) const;
   std::vector<double> Sum(const std::vector<double>& own) const;

@@ -11,26 +11,30 @@
 
 namespace tyndall
 {
-/// A rank's block with some layers of its neighbours' voxels, as far as the grid goes, and values of these. Round a
-/// periodic axis the grid goes on: voxels beyond its end are those of its other side, the block's own ones as well.
+/// A rank's block with a halo of `layers` layers of ghost voxels, clipped at the ends of the grid, and the exchange of
+/// their values. Along a periodic axis the halo wraps around; ghost voxels may then be images of the block's own
+/// voxels.
 class Halo
 {
 public:
   Halo(Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers);
 
-  /// In voxels of the whole grid, beyond its ends too; without any where the block is empty.
+  /// The block, and the block with its halo, in voxels of the whole grid; the halo may reach beyond the grid's ends.
+  /// Empty if the block is empty.
   const VoxelBox& Own() const { return this->Partition.blocks[this->Comm.Rank()]; }
   const VoxelBox& Known() const { return this->Boxes[this->Comm.Rank()]; }
-  Grid KnownGrid() const; ///< of no voxels where the block is empty
+  Grid KnownGrid() const; ///< without voxels if the block is empty
   const std::array<bool, 3>& Periodic() const { return this->Around; }
   const Grid& Whole() const { return this->Partition.whole; }
 
-  /// Of values of each own voxel those of all known ones. All ranks call it.
+  /// Extends values of the own voxels to the halo. Collective.
+  /// @param own  `components` per own voxel, x fastest
+  /// @return the same for all known voxels
   std::vector<float> Spread(const std::vector<float>& own, int components) const;
-  /// The same of a field, which is `own` where it has no values.
+  /// The same for a field, whose values go to `values`; returns `own` if it has no values.
   Field Spread(const Field& own, std::vector<float>& values) const;
-  /// The other way round: of what each rank has found for its known voxels the sums for this rank's own ones, in whole
-  /// numbers, so that the order of ranks does not matter. All ranks call it.
+  /// The transpose of Spread: for each own voxel, the sum over ranks of what they found for it. The numbers are
+  /// integers, so the order of ranks does not matter. Collective.
   std::vector<std::int64_t> Gather(const std::vector<std::int64_t>& known) const;
 
 private:
@@ -40,8 +44,9 @@ private:
 
   Communicator& Comm;
   const BlockPartition& Partition;
-  const std::array<bool, 3> Around;        ///< the periodic axes
-  std::vector<VoxelBox> Boxes;             ///< by rank
-  std::vector<std::array<int, 3>> Periods; ///< so many of which away from the grid some box has voxels, along each axis
+  const std::array<bool, 3> Around; ///< periodic axes
+  std::vector<VoxelBox> Boxes;      ///< by rank
+  std::vector<std::array<int, 3>>
+    Periods; ///< shifts, in whole grid periods along each axis, at which some rank's box has voxels
 };
 }

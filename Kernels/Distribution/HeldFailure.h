@@ -6,7 +6,8 @@
 
 namespace tyndall
 {
-/// A rank was sent less than it waits for. Communicator::Collective tells what went wrong elsewhere before it.
+/// A rank received a shorter message than it expected. Communicator::Collective reports the error that caused it if
+/// another rank threw one.
 struct MissingMessage : std::runtime_error
 {
   MissingMessage()
@@ -16,11 +17,11 @@ struct MissingMessage : std::runtime_error
   }
 };
 
-/// What has gone wrong on a rank while others wait for what it sends: it goes on, sends nothing in each message, and
-/// throws in the end.
+/// Holds the first error of a rank while others still wait for its messages: the rank continues, sends empty messages,
+/// and throws at the end.
 struct HeldFailure
 {
-  /// Nothing any more once something has gone wrong.
+  /// Runs `work` and holds what it throws; does nothing after an earlier failure.
   void Attempt(const std::function<void()>& work)
   {
     try
@@ -37,7 +38,7 @@ struct HeldFailure
     }
   }
 
-  /// In the end, within Communicator::Collective.
+  /// Throws the held error. Call it at the end, within Communicator::Collective.
   void Throw() const
   {
     if (this->error)
@@ -50,7 +51,7 @@ struct HeldFailure
     }
   }
 
-  bool broken = false; ///< something has gone wrong here, or on a rank before here
+  bool broken = false; ///< this rank has failed, or one upstream of it
   std::exception_ptr error;
 };
 }

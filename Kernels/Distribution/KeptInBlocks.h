@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Of a grid that is spread over ranks by blocks, each of which keeps the light of its own: why they cannot begin from
-/// it, the same clause on all. Where one cannot, none does. All ranks call it.
-/// @param whyNot  of this rank, as WhyNotBegun has it
+/// Why a distributed solve cannot start from kept light, the same clause on all ranks; empty if it can. Each rank keeps
+/// the light of its block; if one cannot start from it, none does. Collective.
+/// @param whyNot the reason on this rank, from WhyNotBegun
 std::string WhyNotBegunOnAny(Communicator& communicator, const KeptLight& kept, const std::string& whyNot);
 }

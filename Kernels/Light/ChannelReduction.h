@@ -6,44 +6,44 @@
 
 namespace tyndall
 {
-/// Channels of a scene: those that its light has as data, and those that have to be solved for.
+/// Colour channels of a scene: how many its light has as data, and how many have to be solved for.
 struct SceneChannels
 {
-  int given = 1; ///< 3 where medium or light has colour, as data; so many does the light of a solve have
-  /// One channel is enough: the medium's coefficients are grey, and all that shines has one colour.
+  int given = 1; ///< channels of the solve's result: 3 if medium or lights have coloured data, else 1
+  /// Whether one channel is enough: the medium's coefficients are grey, and all light sources have the same colour.
   bool one = true;
   CommonColour colour;
 
   SceneChannels(const Medium& medium, const MediumTraits& traits, const Illumination& illumination);
-  /// How many are solved for: one where that is enough and what is not needed is left out, else three.
+  /// Number of channels to solve for: 1 if that is enough and `leaveOut` is true, else 3.
   int Solved(bool leaveOut) const { return leaveOut && this->one ? 1 : 3; }
-  /// The light of `solved` channels as that of as many as are given; says in leftOut what one stood for.
+  /// Expands light of `solved` channels to `given` channels, and notes in leftOut that one channel stood for all.
   void Undo(LightField& light, int solved) const;
 
 private:
   const char* LeftOut() const;
 };
 
-/// A scene whose three channels are multiples of each other, as its brightest sees it: medium and lights are grey.
+/// The grey scene that stands for one whose three channels are multiples of each other: its brightest channel.
 struct OneChannelScene
 {
   OneChannelScene(const Medium& medium, const Illumination& illumination, const SceneChannels& channels);
 
-  Medium medium; ///< the given one's arrays
+  Medium medium; ///< refers to the arrays of the given medium
   Illumination light;
 };
 
-/// Solve a scene in as many channels as it needs, or in three where nothing is to be left out; the light has as many as
-/// are given, either way.
-/// @param solve  takes a medium, its illumination and the number of channels
+/// Solves a scene in as many channels as it needs, or in three if `leaveOut` is false. The result has `given` channels
+/// either way.
+/// @param solve called as solve(medium, illumination, channels); returns the LightField
 template <class Solve>
 LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Medium& medium,
   const Illumination& illumination, const Solve& solve);
 
-/// The light of one channel as that of three, which are multiples of it.
+/// Expands light of one channel to three channels, its multiples by `colour`.
 void Spread(LightField& light, const Rgb& colour);
 
-/// Of three channels that are the same the first.
+/// Keeps the first of three equal channels.
 void KeepOneChannel(LightField& light);
 void KeepOneChannel(std::vector<float>& interleaved);
 

@@ -9,51 +9,52 @@
 
 namespace tyndall
 {
-/// What has to be the same for the light of one solve to be the first guess of another. What the medium and the lights
-/// are like is not among it: a guess that is far off costs sweeps, and is not part of the answer.
+/// What must be the same in two solves for the light of one to be the initial guess of the other. Medium and lights
+/// need not be: a poor guess costs sweeps, but does not change the result.
 struct LightKind
 {
-  std::string method; ///< of light propagation, and how its orders are added up
+  std::string method; ///< of light propagation, and its iteration scheme
   std::array<int, 3> size = {};
   std::array<double, 3> spacing = {};
   int channels = 0;
-  int degree = 0; ///< of angular moments
+  int degree = 0; ///< degree of the angular moments
   int directions = 0;
   std::array<bool, 3> periodic = {};
-  VoxelBox block = {}; ///< of the grid, whose light it is; of one that is not spread over ranks: none
+  VoxelBox block = {}; ///< this rank's block of the grid; empty in a serial solve
 
-  /// What is not as in `last`, as a clause: "the grid has changed". Empty: nothing.
+  /// What differs from `last`, as a clause, e.g. "the grid has changed"; empty if nothing does.
   std::string WhatChangedSince(const LightKind& last) const;
 };
 
-/// Light of the last solve, the first guess of the next one (WarmStart; numerics.md, section 6.4). Empty before the
-/// first. Of a grid that is spread over ranks by blocks each rank keeps that of its own, but powers and rows are of the
-/// whole. A solve that is given one begins from it where it can, and leaves its own in it when it ends well. The user
-/// owns it, and drops it to begin in the dark.
+/// Light of the last solve, the initial guess of the next one (WarmStart; numerics.md, section 6.4); empty before the
+/// first solve. In a distributed solve each rank keeps the light of its block, while powers and convergence rows are
+/// those of the domain. A solve that is given a KeptLight starts from it if it can, and stores its own result in it on
+/// success. The user owns it, and discards it to start without a guess.
 struct KeptLight
 {
   LightKind kind;
-  /// Scattered light, in the units and the layout of the solver: unscattered light is found anew each time.
+  /// Scattered light, in the units and the layout of the solver; uncollided light is recomputed in each solve.
   std::vector<float> scattered;
-  Rgb firstScattered = {};                  ///< W, of unscattered light; the guess is scaled by how it changed
-  Rgb rate = {};                            ///< by which the last iterations fell, each over the one before
-  std::vector<ConvergenceRow> fromDarkness; ///< rows of the last solve that began in the dark
+  Rgb firstScattered = {}; ///< W; power of the first-collision source. The guess is scaled by its change
+  Rgb rate = {};           ///< ratio of successive iterations' light at the end of the solve
+  std::vector<ConvergenceRow> fromDarkness; ///< convergence rows of the last solve without an initial guess
 
   bool Empty() const { return this->scattered.empty() || Sum(this->firstScattered) == 0.0; }
 };
 
-/// Why a solve cannot begin from kept light, as a clause. Empty: it can.
-/// @param maximumOrders  iterations that the user counts; 0: they are not counted
+/// Why a solve cannot start from kept light, as a clause; empty if it can.
+/// @param maximumOrders number of iterations that the user asked for; 0: until convergence
 std::string WhyNotBegun(const KeptLight& kept, const LightKind& kind, int maximumOrders);
 
-/// Puts what a solve left in the place of what was kept, and sets sweepsSaved of its light (LightField.h).
-/// @param warm  the solve began from kept light; else it is what the next ones are measured by
+/// Replaces `kept` by what a solve left, and sets LightField::sweepsSaved of its light.
+/// @param warm the solve started from kept light; if false, its rows become the reference for sweepsSaved of later
+///   solves
 void Keep(KeptLight&& left, bool warm, LightField& light, KeptLight& kept);
 
-/// Such a clause: no paper starts from a guess.
+/// Clause returned by WhyNotBegun for published methods, which do not start from a guess.
 constexpr const char* const NotBegunAsPublished = "orders as published begin in the dark";
 
-/// Words of `left_out` for a solve that was to begin from kept light.
-/// @param whyNot  a clause; empty: it did
+/// Entry of LightField::leftOut for a solve that was asked to start from kept light.
+/// @param whyNot a clause from WhyNotBegun; empty if it did start from kept light
 std::string WordsOfWarmStart(const std::string& whyNot);
 }

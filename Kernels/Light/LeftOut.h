@@ -7,35 +7,37 @@
 
 namespace tyndall
 {
-/// What a scene did not need, in the words of `left_out`, the same in every solver.
+/// Texts of LightField::leftOut: parts of the computation that a scene did not need. All solvers use the same texts.
 namespace left_out
 {
-extern const char* const Grey;           ///< neither medium nor light has colour
-extern const char* const OneColour;      ///< the medium is grey, and light has one colour
+extern const char* const Grey;           ///< neither medium nor lights are coloured
+extern const char* const OneColour;      ///< the medium is grey, and all lights have the same colour
 extern const char* const GreyExtinction; ///< one transmittance for three channels
 extern const char* const NoScattering;
 extern const char* const NoAbsorption;
 extern const char* const NoEmission;
-extern const char* const OneOrder; ///< nothing is scattered though the medium could
+extern const char* const
+  OneOrder; ///< there is only one scattering order: no light is scattered, though the medium could scatter
 extern const char* const NetFlux;
-extern const char* const MomentsForPictures; ///< what is scattered, by direction
+extern const char* const MomentsForPictures; ///< angular moments of scattered light
 extern const char* const Isotropic;
 extern const char* const ConstantIndex;
 extern const char* const EmptyBricks;
 extern const char* const NoLights;
 extern const char* const OwnUncollided;   ///< uncollided light was found by another solver
-extern const char* const NoEmissionPeaks; ///< what the medium emits needs no rays of its own
-extern const char* const BlackFaces;      ///< no face of the box gives back light
-extern const char* const DefaultSky;      ///< nothing was given that shines: light of the filter's own
-extern const char* const DarkOutside;     ///< neither environment nor sky nor faces shine
-extern const char* const EvenOutside;     ///< they shine evenly: directions of its own are not needed
-extern const char* const ThinVoxels;      ///< it does not matter where in voxels light is scattered
-extern const char* const NotByOctant;     ///< Source By octant was asked for, but does not go with the scene
-extern const char* const NotSideBySide;   ///< what was queued side by side was done one after the other
+extern const char* const NoEmissionPeaks; ///< emission needs no extra rays
+extern const char* const BlackFaces;      ///< no face of the box reflects
+extern const char* const DefaultSky;      ///< no light was given: the filter used its own
+extern const char* const DarkOutside;     ///< neither environment nor sky nor faces emit light
+extern const char* const EvenOutside;     ///< boundary light is isotropic: it needs no separate quadrature
+extern const char* const
+  ThinVoxels; ///< all voxels are optically thin: the place of scattering within a voxel does not matter
+extern const char* const NotByOctant;   ///< Source By octant was asked for but cannot be used in this scene
+extern const char* const NotSideBySide; ///< the device ran concurrent queues one after the other
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
-std::string DarkDirections(double lit); ///< part of the rays
+std::string DarkDirections(double lit); ///< @param lit  fraction of the rays
 std::string MirrorImages(int classes, int directions);
-std::string TwoAxes(int polarNodes);          ///< nothing varies along them
-std::string DirectionsAlongSlab(int perFace); ///< solved with instead
+std::string TwoAxes(int polarNodes);          ///< the scene is uniform along two axes
+std::string DirectionsAlongSlab(int perFace); ///< the number of directions used instead
 }
 }

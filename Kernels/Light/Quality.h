@@ -2,18 +2,18 @@
 
 namespace tyndall
 {
-/// How exact a result is to be, over how long it takes: one word for the numbers that set both. Every solver says in a
-/// function of its own which numbers that are, from what the scene is like.
+/// Trade-off between accuracy and run time: one choice for the settings that determine both. Each solver has a function
+/// that maps it to its own settings, depending on the scene.
 enum class Quality
 {
-  Draft = 0,   ///< to look at while settings are chosen
-  Default = 1, ///< the numbers as they stand
+  Draft = 0,   ///< for previews while settings are chosen
+  Default = 1, ///< the settings' default values
   Fine = 2,
-  Reference = 3 ///< to compare others with
+  Reference = 3 ///< for references in comparisons
 };
 
-/// A number is as the quality has it where nobody set it: where it still has its default value. Any other value was
-/// chosen and stays. With Quality::Default every number is taken as it stands, so no choice is out of reach.
+/// Sets `number` to the quality's value if it still has its default value; any other value was chosen by the user and
+/// stays. Quality::Default changes no number, so every value can be chosen.
 template <class Number>
 void SetUnlessChosen(Number& number, const Number& byDefault, const Number& ofQuality)
 {
