@@ -38,8 +38,8 @@ bool Holds(const VoxelBox& box, const int* voxel);
 VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole);
 
 /// The ranks whose blocks touch a rank's block at a face, an edge or a corner.
-/// @param reach voxels; blocks less than this distance away count too
-/// @param periodic periodic axes, whose ends touch
+/// @param reach  voxels; blocks less than this distance away count too
+/// @param periodic  periodic axes, whose ends touch
 std::vector<int> NeighboursOf(
   const BlockPartition& partition, int rank, int reach = 1, const std::array<bool, 3>& periodic = {});
 

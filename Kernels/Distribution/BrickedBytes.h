@@ -54,8 +54,8 @@ private:
 
 /// Gathers the bytes of the box that each rank wants, which may reach into other ranks' blocks; voxels outside the box
 /// stay unset. Runs of equal bytes are sent once. Collective.
-/// @param own bytes of this rank's block, x fastest
-/// @param wanted the box that each rank wants, within the grid; may be empty
+/// @param own  bytes of this rank's block, x fastest
+/// @param wanted  the box that each rank wants, within the grid; may be empty
 BrickedBytes BytesOfBoxes(Communicator& communicator, const BlockPartition& partition,
   const std::vector<std::uint8_t>& own, const std::vector<VoxelBox>& wanted);
 

@@ -15,8 +15,8 @@ namespace tyndall
 class CoarseBlocks
 {
 public:
-  /// @param communicator must outlive this
-  /// @param coarse grid over the same box, nowhere finer
+  /// @param communicator  must outlive this
+  /// @param coarse  grid over the same box, nowhere finer
   CoarseBlocks(Communicator& communicator, const BlockPartition& fine, const Grid& coarse);
   /// Coarsens by two along each axis.
   CoarseBlocks(Communicator& communicator, const BlockPartition& fine)
@@ -37,7 +37,7 @@ public:
   /// Whether some coarse voxel straddles two ranks' blocks; the same on all ranks.
   bool Straddle() const { return this->AnyStraddles; }
   /// Values of the fine voxels that Own() averages over. Collective.
-  /// @param values `components` per voxel of this rank's block
+  /// @param values  `components` per voxel of this rank's block
   std::vector<float> Around(const std::vector<float>& values, int components) const;
   /// Means over this rank's coarse voxels. Collective.
   std::vector<float> Average(const std::vector<float>& values, int components) const;
@@ -46,7 +46,7 @@ public:
   /// coarse voxels around these, between which refinement interpolates.
   const Coarsening& Seen() const { return this->SeenPart; }
   /// Values of the coarse voxels of Seen(). Collective.
-  /// @param values `components` per coarse voxel of this rank
+  /// @param values  `components` per coarse voxel of this rank
   std::vector<float> SeenOf(const std::vector<float>& values, int components) const;
 
 private:

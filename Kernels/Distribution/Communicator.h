@@ -27,7 +27,7 @@ public:
   virtual int Ranks() const = 0;
 
   /// Sends without waiting for the receiver. A rank may send to itself, because light wraps around a periodic axis.
-  /// @param tag one of MessageTags.h, or a non-negative number smaller than those
+  /// @param tag  one of MessageTags.h, or a non-negative number smaller than those
   template <class T>
   void Send(int to, int tag, const std::vector<T>& values)
   {
@@ -43,7 +43,7 @@ public:
   /// Exchanges one parcel of values with each rank of `with`; parcels may be empty. Collective: ranks without partners
   /// call it too, and if rank a names rank b, then b must name a.
   /// @param with  different ranks; this one may be among them
-  /// @param pack makes the parcels, one for each rank of `with`. If it throws on one rank, all ranks throw (Collective)
+  /// @param pack  makes the parcels, one for each rank of `with`. If it throws on one rank, all ranks throw (Collective)
   ///   and nothing is sent
   /// @return the received parcels, in the order of `with` whatever the order of arrival
   template <class T>
@@ -89,7 +89,7 @@ protected:
 
   /// Exchanges parcels with other ranks. Collective; called just after all ranks have agreed that none has failed. This
   /// default implementation sends messages.
-  /// @param with ranks to exchange with, this rank not among them
+  /// @param with  ranks to exchange with, this rank not among them
   virtual std::vector<std::vector<char>> Swap(const std::vector<int>& with, std::vector<std::vector<char>> parcels);
 
 private:

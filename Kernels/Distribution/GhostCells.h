@@ -12,18 +12,18 @@ namespace tyndall
 class GhostCells
 {
 public:
-  /// @param communicator must outlive this
-  /// @param own the box that each rank owns, disjoint; a box may be empty
-  /// @param ghosts the boxes of each rank's ghost cells, which other ranks own
-  /// @param held a box that contains this rank's own cells and its ghost cells; arrays cover it, x fastest
-  /// @param gridSize cells along each axis; ghost cells beyond an end of the grid wrap around. Zeros: no ghost cells
+  /// @param communicator  must outlive this
+  /// @param own  the box that each rank owns, disjoint; a box may be empty
+  /// @param ghosts  the boxes of each rank's ghost cells, which other ranks own
+  /// @param held  a box that contains this rank's own cells and its ghost cells; arrays cover it, x fastest
+  /// @param gridSize  cells along each axis; ghost cells beyond an end of the grid wrap around. Zeros: no ghost cells
   ///   lie beyond the grid
   GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
     const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held,
     const std::array<int, 3>& gridSize = { 0, 0, 0 });
 
   /// Copies the owners' values to the ghost cells. Collective, with the same number of arrays on all ranks.
-  /// @param values `arrays` arrays over the held box, `stride` values apart
+  /// @param values  `arrays` arrays over the held box, `stride` values apart
   void Fill(std::vector<double>& values) const { this->Exchange(values.data(), 1, 0); }
   void Fill(float* values, int arrays, std::size_t stride) const { this->Exchange(values, arrays, stride); }
 

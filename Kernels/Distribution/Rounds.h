@@ -11,35 +11,36 @@
 
 namespace tyndall
 {
-/// What ranks handed to each other.
+/// Traffic of travellers between ranks.
 struct RoundsTraffic
 {
-  std::size_t handed = 0; ///< travellers, by this rank; one counts each time that it goes into another block
+  std::size_t handed = 0; ///< travellers sent by this rank; one counts each time it enters another block
   std::size_t bytes = 0;  ///< of them
-  int rounds = 0;         ///< of following and handing on, until none was left anywhere
+  int rounds = 0;         ///< rounds of tracing and exchange, until no traveller was left
 };
 
-/// Photons, or beams of a lamp, go from rank to rank in rounds: each rank follows those that it has as far as its block
-/// goes, and hands them on to the ranks whose blocks touch it, or are as near as it may go beyond.
+/// Traces travellers (photons, or beams of a lamp) through a distributed grid in rounds: each rank follows its
+/// travellers to the end of its block, then sends them to the neighbouring ranks whose blocks they enter.
 ///
-/// A type of traveller has a function `const int* WhereIs(const Traveller&)` beside it: the voxel of the whole grid in
-/// which it goes on.
+/// A traveller type needs a free function `const int* WhereIs(const Traveller&)`: the voxel of the whole grid in which
+/// it continues.
 class Rounds
 {
 public:
-  /// @param communicator, partition  must stay; as many blocks as ranks
-  /// @param reach  voxels beyond its block that a traveller goes before it is handed on, the same on all ranks
-  /// @param periodic  axes whose two ends touch
+  /// @param communicator, partition  must outlive this; one block per rank
+  /// @param reach  voxels that a traveller may go beyond its block before it is sent on; the same on all ranks
+  /// @param periodic  periodic axes, whose ends touch
   Rounds(Communicator& communicator, const BlockPartition& partition, int reach = 1,
     const std::array<bool, 3>& periodic = {});
 
-  /// Follows those that have come (in the first round: that set off here), and gives back those that go on elsewhere.
+  /// Traces the travellers that arrived (in the first round: those that start here), and returns those that continue in
+  /// other blocks.
   template <class OnItsWay>
   using Follow =
     std::function<std::vector<OnItsWay>(int round, std::vector<OnItsWay>&& arrived, const Monitor& monitor)>;
 
-  /// Until none is left anywhere. All ranks call it.
-  /// @throws  on every rank, what `follow` throws on one of them
+  /// Repeats rounds until no traveller is left on any rank. Collective.
+  /// @throws on every rank, what `follow` throws on one rank
   template <class OnItsWay>
   void UntilAllEnd(const Follow<OnItsWay>& follow, const Monitor& monitor)
   {
@@ -49,7 +50,8 @@ public:
     for (bool left = true; left; ++round)
     {
       const std::vector<std::vector<OnItsWay>> parcels = this->Comm.Exchange<OnItsWay>(this->Neighbours, [&] {
-        const double next = this->Neighbours.empty() ? 1.0 : 0.5 * (1.0 + done); // how far the round goes
+        const double next =
+          this->Neighbours.empty() ? 1.0 : 0.5 * (1.0 + done); // estimated progress at the end of this round
         const Monitor ofRound = OfPart(monitor, done, next);
         std::vector<std::vector<OnItsWay>> gone = this->Sorted(follow(round, std::move(arrived), ofRound));
         Report(monitor, done = next);
@@ -68,7 +70,7 @@ public:
   const RoundsTraffic& Traffic() const { return this->Handed; }
 
 private:
-  /// By the neighbours whose blocks they go into.
+  /// Sorts travellers by the neighbour whose block they enter.
   template <class OnItsWay>
   std::vector<std::vector<OnItsWay>> Sorted(const std::vector<OnItsWay>& gone)
   {

@@ -5,9 +5,9 @@
 
 namespace tyndall
 {
-/// What is told of light that one rank found, to all: channels, numbers of directions, balance, powers through faces,
-/// half-range flux, convergence, sweeps saved, device and what was left out. No arrays, and no doubts: a preview is not
-/// judged. All ranks call it.
-/// @param found  on the one rank that has it
+/// Broadcasts the scalar results of a solve on one rank to all ranks: channels, numbers of directions, energy balance,
+/// face powers, half-range flux, convergence, saved sweeps, device and leftOut. Arrays are not sent, nor are doubts,
+/// since a preview is not judged. Collective.
+/// @param found  true on the one rank that has the result
 void ShareFigures(Communicator& communicator, bool found, LightField& light);
 }

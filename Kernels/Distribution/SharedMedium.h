@@ -11,31 +11,32 @@
 
 namespace tyndall
 {
-// What ranks that share a medium by blocks must have alike, and what they have together. All ranks call these.
+// Properties of a distributed medium that must agree on all ranks, and global properties. All functions but
+// IsFirstThatHas are collective.
 
-/// @param what  these numbers are, for the message
-/// @param has   numbers; those of a rank that has none are not looked at, but are as many
+/// @param what  what the numbers are, for the message
+/// @param has  whether this rank has numbers; if not, its values are ignored but must be as many
 /// @throws InvalidInput  on each, where they differ
 void RequireSame(Communicator& communicator, const char* what, bool has, std::vector<double> values);
 
-/// @throws InvalidInput  on each, where they differ in the grid and who has which part of it
+/// @throws InvalidInput on all ranks, if the ranks disagree about the grid or its partition
 void RequireSame(Communicator& communicator, const BlockPartition& partition);
 
-/// Whether a rank is the first that has voxels: who counts what all know but ranks without voxels. No message is sent.
+/// Whether this rank is the lowest one that has voxels, which counts what all ranks with voxels know. Sends no message.
 bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& partition);
 
-/// How a medium whose g is given by voxel scatters: each rank has g by voxel where it varies among the voxels of all
-/// ranks that scatter, else the same phase function as the others. Collective.
+/// Phase function of a distributed medium with g by voxel: if g varies among the scattering voxels of all ranks, each
+/// rank keeps g by voxel; else all get the same phase function. Collective.
 /// @param has     voxels
-/// @param g       of the rank's voxels; without values the rank has none, and its medium stays as it is
-/// @param medium  of the rank, whose phase function is of the kind wanted
+/// @param g  g by voxel of this rank; without values, its medium stays as it is
+/// @param medium  medium of this rank, whose phase function is of the wanted kind
 void AgreeOnMeanCosine(Communicator& communicator, bool has, const Field& g, Medium& medium);
 
-/// Of the medium of all ranks, as far as solvers leave things out: absorbs, scatters, emits, grey and greyExtinction.
-/// @param ofBlock  the others of it are kept
+/// Traits of the whole distributed medium: absorbs, scatters, emits, grey and greyExtinction.
+/// @param ofBlock  traits of this rank's block; those not named above are kept
 MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits ofBlock);
 
-/// The channels of a scene of which each rank has a block.
+/// The channels of a distributed scene.
 /// @param here  of this rank's block
 SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here);
 }

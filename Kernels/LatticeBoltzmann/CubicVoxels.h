@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// Whether voxels are cubes as the lattice needs them: to 0.1%.
+/// Whether voxels are cubes to 0.1%, as the lattice requires.
 inline bool HasCubicVoxels(const Grid& grid)
 {
   const auto [least, most] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());

@@ -8,13 +8,13 @@
 
 namespace tyndall
 {
-/// Uncollided light by known voxel: that of another solver if any is given, or else that of lamps and environment, by
-/// light propagation maps. Diffuse light of sky and faces is incident on the lattice itself. Collective.
+/// Uncollided light by known voxel: that of another solver if given, else that of lamps and environment by light
+/// propagation maps. Diffuse sky and face light is excluded; it is incident on the lattice itself. Collective.
 Uncollided FindUncollided(
   Device& device, const LatticeProblem& problem, const LatticeSettings& settings, const Monitor& monitor);
 
-/// Adds net flux and first moments, as far as they are asked for, to an image by known voxel with its mean directions.
-/// @param firstMoments  are asked for
+/// Adds net flux and first moments, if asked for, to uncollided light that is given as an image with mean directions.
+/// @param firstMoments  whether first moments are asked for
 void AddMomentsOfImage(
   Uncollided& found, const LatticeProblem& problem, const LatticeSettings& settings, bool firstMoments);
 }

@@ -12,11 +12,11 @@
 
 namespace tyndall
 {
-/// Fluence, flux and energy balance of one channel of a lattice, from its densities: of the own voxels.
+/// Fluence, flux and energy balance of one channel, computed from the lattice densities of this rank's own voxels.
 class LatticeAccount
 {
 public:
-  /// All must outlive it.
+  /// All arguments must outlive this.
   /// @param direct, voxels  by known voxel
   LatticeAccount(const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct,
     const LatticeVoxels& voxels, Lattice& lattice, int channel)
@@ -30,8 +30,8 @@ public:
   {
   }
 
-  /// Adds scattered and uncollided light, face powers, and all of the balance but what is left over.
-  /// @param fluence  of the lattice, by own voxel
+  /// Adds scattered and uncollided light, face powers, and all terms of the energy balance but leftOver.
+  /// @param fluence  lattice fluence by own voxel
   void AddTo(LightField& light, const std::vector<float>& fluence) const;
 
 private:

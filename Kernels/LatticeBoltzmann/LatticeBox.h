@@ -11,18 +11,18 @@ namespace tyndall
 {
 constexpr auto Outside = static_cast<std::size_t>(-1); ///< no voxel
 
-/// The voxels of a lattice among those whose coefficients are known: a whole grid, or a block and its ghost voxels,
-/// which continue beyond the ends of periodic axes.
+/// The own voxels of a lattice within the known voxels, those whose coefficients this rank has: the whole grid, or a
+/// block and its ghost voxels, which wrap around periodic axes.
 struct LatticeBox
 {
-  /// Of a whole grid, whose periodic axes wrap around.
+  /// For a whole grid, whose periodic axes wrap around.
   LatticeBox(const Grid& whole, const std::array<bool, 3>& periodicAxes)
     : known(whole)
     , own({ { 0, 0, 0 }, whole.size })
     , periodic(periodicAxes)
   {
   }
-  /// Of a rank's block with its ghost voxels.
+  /// For a rank's block with its ghost voxels.
   explicit LatticeBox(const Halo& halo)
     : known(halo.KnownGrid())
     , own(halo.Own())
@@ -40,7 +40,7 @@ struct LatticeBox
   std::size_t Count() const { return this->own.VoxelCount(); }
   bool IsAll() const { return this->Count() == this->known.VoxelCount(); }
 
-  /// Number, among the known voxels, of an own voxel.
+  /// Index, among the known voxels, of an own voxel.
   std::size_t Known(std::size_t voxel) const
   {
     if (this->IsAll())
@@ -51,7 +51,7 @@ struct LatticeBox
     grid.size = this->own.size;
     return this->Known(grid.VoxelAt(voxel));
   }
-  /// @param at  from the first own voxel; ghost voxels included
+  /// @param at  indices relative to the first own voxel; may be a ghost voxel
   std::size_t Known(std::array<int, 3> at) const
   {
     for (int axis = 0; axis < 3; ++axis)

@@ -14,25 +14,26 @@
 
 namespace tyndall
 {
-/// One channel of a lattice: this rank's block of it is solved, and added to the light of all channels. Collective.
+/// Solve of one colour channel on this rank's block, whose result is added to the LightField of all channels.
+/// Collective.
 class LatticeChannel
 {
 public:
-  /// All that is given must outlive it.
+  /// All arguments must outlive this.
   LatticeChannel(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
     const Uncollided& direct, int channel);
 
-  double Thickest() const { return this->Voxels.thickest; } ///< sigma_t h, of all ranks
-  Lattice& TheLattice() { return *this->Densities; }        ///< of a block that has voxels
+  double Thickest() const { return this->Voxels.thickest; } ///< largest sigma_t h of all ranks
+  Lattice& TheLattice() { return *this->Densities; }        ///< requires a block that has voxels
   const LatticeVoxels& TheVoxels() const { return this->Voxels; }
 
-  /// The steady state, or steps, as the settings say.
+  /// Solves for the steady state or takes steps, depending on the settings.
   void Solve(const Monitor& monitor);
-  /// Takes uncollided light that has changed.
+  /// Recomputes the sources after the uncollided light has changed.
   void UpdateSources();
-  /// Continues to step, from the densities that earlier steps left. On one rank.
+  /// Continues stepping from the current densities. On one rank only.
   void Settle(const StepsBefore& before, const Monitor& monitor);
-  /// Adds fluence, flux, powers of this rank's voxels and the rows of convergence.
+  /// Adds this rank's fluence, flux and powers, and the convergence rows.
   void AddTo(LightField& light);
 
 private:
@@ -42,7 +43,7 @@ private:
   const Uncollided& Direct;
   const int Channel;
   LatticeVoxels Voxels;
-  std::optional<Lattice> Densities; ///< of the block; none where it has no voxels
+  std::optional<Lattice> Densities; ///< of the block; none if it has no voxels
   std::vector<float> Fluence;
   std::vector<ConvergenceRow> Rows;
 };

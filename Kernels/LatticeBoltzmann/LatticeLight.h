@@ -16,33 +16,35 @@
 namespace tyndall
 {
 /// Collective.
-/// @throws InvalidInput what SolveLatticeBoltzmann says of its arguments
+/// @throws InvalidInput under the conditions listed at SolveLatticeBoltzmann
 void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, const Illumination& illumination,
   const LatticeSettings& settings);
 
-/// Whether a voxel is so thick that it matters where in it light is first scattered, and the scheme resolves that.
+/// Whether some voxel is so optically thick that the place of first scattering within it matters, and the scheme
+/// resolves it.
 bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings);
 
 /// @throws InvalidInput if an axis is periodic
 void RequireOpenAxes(const LatticeSettings& settings);
 
-/// W escaped through each face, in three channels; those of grey light are equal.
+/// Power escaped through each face, W, in three channels, which are equal for grey light.
 std::array<Rgb, 6> EscapedByChannel(const LightField& light);
 
-/// Photons' light as uncollided light; it refers to their arrays.
+/// The light of photons as an image of uncollided light, which refers to their arrays.
 UncollidedImage ImageOf(const PhotonLight& photons);
 
-/// Passes on warnings of the march, and warns of photons that miss the medium.
-/// @param all  number of photons, of all ranks
+/// Adds the warnings of the photon march, and a warning about photons that miss the medium, to light.doubts.
+/// @param all  number of photons on all ranks
 void DoubtPhotons(const PhotonLight& photons, std::size_t all, LightField& light);
 
-/// Dark light of the problem's voxels and channels.
+/// A LightField of zeros for the problem's voxels and channels.
 LightField BeginLight(const LatticeProblem& problem, const LatticeSettings& settings);
 
-/// Sums powers over ranks, checks the balance, returns to the user's units and adds `leftOut` and `doubts`. Collective.
-/// @param illumination  as given
+/// Sums powers over ranks, checks the energy balance, converts to the user's units and adds `leftOut` and `doubts`.
+/// Collective.
+/// @param illumination  as the user gave it
 /// @param thickest  sigma_t h of the thickest voxel of all ranks
-/// @param lost  W of uncollided light, on this rank, that entered and was deposited nowhere
+/// @param lost  uncollided power on this rank that entered and was not deposited anywhere, W
 void FinishLight(LightField& light, const Device& device, const LatticeProblem& problem,
   const Illumination& illumination, const LatticeSettings& settings, double thickest, const Rgb& lost = {});
 }

@@ -14,14 +14,14 @@
 
 namespace tyndall
 {
-/// A scene as a lattice solves it: in units that floats hold well, in as many channels as it needs, and of this rank's
-/// block with two layers of ghost voxels, for what a lamp's light does in a voxel depends on its neighbours'
-/// neighbours. On one rank the block is the grid, without ghost voxels.
+/// A scene prepared for a lattice solve: rescaled to units suited to floats, reduced to the channels it needs, and
+/// restricted to this rank's block with a halo of two layers, since first moments in a voxel depend on its neighbours'
+/// neighbours. On one rank the block is the grid, without a halo.
 class LatticeProblem
 {
 public:
-  /// Collective. All that is given must outlive it.
-  /// @param medium, ior, illumination  of the rank's block, checked (CheckLattice); not read where that has no voxels
+  /// Collective. All arguments must outlive this.
+  /// @param medium, ior, illumination  of the rank's block, checked (CheckLattice); not read if the block has no voxels
   LatticeProblem(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
     const Illumination& illumination, const LatticeSettings& settings);
   ~LatticeProblem();
@@ -30,26 +30,26 @@ public:
 
   const Domain& TheDomain() const { return *this->Solved; } ///< in the problem's unit of length
   const LatticeBox& Box() const { return *this->OwnBox; }
-  // Of the known voxels.
+  // Fields over the known voxels:
   const Medium& TheMedium() const;
   const Field& Index() const; ///< refractive index; null values: 1
   const Illumination& TheIllumination() const;
   int Channels() const; ///< 1 or 3
-  /// Whether the medium, of all ranks, scatters unevenly. Collective.
+  /// Whether the medium scatters anisotropically on any rank. Collective.
   bool IsAnisotropic() const;
 
-  /// Values of the block's voxels with those of its ghost voxels. Collective.
+  /// Extends values of the block's voxels to its ghost voxels. Collective.
   std::vector<float> WithGhosts(std::vector<float> own, int components) const;
 
-  /// To the user's units and channels; adds to leftOut.
+  /// Converts light to the user's units and channels; adds to leftOut.
   void Undo(LightField& light) const;
 
 private:
   struct Serial;
   struct Block;
 
-  std::unique_ptr<const Serial> OfGrid; ///< on one rank
-  std::unique_ptr<const Block> OfBlock; ///< on several
+  std::unique_ptr<const Serial> OfGrid; ///< set on one rank
+  std::unique_ptr<const Block> OfBlock; ///< set on several ranks
   std::unique_ptr<const Domain> Solved;
   std::unique_ptr<const LatticeBox> OwnBox;
 };

@@ -9,38 +9,40 @@
 
 namespace tyndall
 {
-/// How light collides in a voxel.
+/// Collision scheme of a voxel.
 enum class LatticeScheme
 {
   Published = 0,   ///< explicit, as printed: positive only up to sigma_t h = 1 (Bernabei et al., Eq. (5))
-  Conservative = 1 ///< positive, and power is kept, for voxels of any optical thickness (numerics.md, Eqs. (L2), (L3))
+  Conservative = 1 ///< positive and energy-conserving for any optical thickness (numerics.md, Eqs. (L2), (L3))
 };
 
-/// How light diffuses on a lattice.
+/// Settings of the lattice-Boltzmann solver.
 struct LatticeSettings
 {
   /// Neighbours that a voxel exchanges light with: 18 (Geist et al. 2004), or 6 along the axes.
   int directions = 18;
   LatticeScheme scheme = LatticeScheme::Conservative;
-  /// Edge of blocks, voxels, 2 to 8, that step apart from each other as published; 0: all voxels step together.
+  /// Edge of blocks that take several steps between exchanges, as published, 2 to 8 voxels; 0: all voxels step
+  /// together.
   int blockSize = 0;
   int stepsPerExchange =
     8;                     ///< steps in a block before it exchanges light with its neighbours, and of a turn of photons
-  int maximumSteps = 0;    ///< number of steps; 0: until the tolerance is met
-  double tolerance = 1e-4; ///< relative error of fluence at which to stop, estimated
+  int maximumSteps = 0;    ///< number of steps; 0: step until the tolerance is met
+  double tolerance = 1e-4; ///< estimated relative error of the fluence at which to stop
   /// Solve for the steady state, if the scheme is conservative, there are no blocks and maximumSteps is 0; false: step
   /// until the tolerance is met.
   bool solvesSteady = true;
-  /// Number of evenly spread voxels at which changes are measured; 0: all. Reading all costs about a step.
+  /// Number of evenly spread voxels at which the change of fluence is measured; 0: all voxels. Reading all costs about
+  /// one step.
   int probes = 4096;
-  /// Photons (if any are given) march while the light that they have deposited diffuses in steps;
-  /// stepsPerExchange of these to `stretches` of a photon's way from voxel wall to voxel wall (0: to its end). False:
-  /// they march to their ends first.
+  /// March photons, if any are given, interleaved with lattice steps on the light they have deposited: stepsPerExchange
+  /// steps per `stretches` segments of a photon's path, from voxel wall to voxel wall (0: the whole path). False:
+  /// photons march to their ends first.
   bool interleaves = false;
   int stretches = 16;
   bool sideBySide = true; ///< if interleaved; false: photons and lattice take turns on the device
   std::array<bool, 3> periodic = {};
-  bool netFlux = false; ///< compute net_flux too
+  bool netFlux = false; ///< also compute net_flux
 
   bool Solves() const
   {
@@ -49,22 +51,21 @@ struct LatticeSettings
   }
 };
 
-/// @throws InvalidInput where there are not 6 or 18 directions, a number is out of its range or the tolerance is not
-///   positive
+/// @throws InvalidInput if `directions` is not 6 or 18, a number is out of its range or the tolerance is not positive
 void Check(const LatticeSettings& settings);
 
-/// The setting that takes steps instead of solving for the steady state, which is done on one rank only, in words for
-/// an error; empty: none does.
+/// The setting that makes the solver take steps instead of solving for the steady state, as text for an error; empty if
+/// there is none. Steps are taken on one rank only.
 std::string NotInBlocks(const LatticeSettings& settings);
 
-/// Settings for the parts of light propagation maps that serve the lattice.
-/// @param angularDegree  as PropagationSettings has it
+/// Settings for the light propagation maps that compute the lattice's uncollided light.
+/// @param angularDegree  as in PropagationSettings
 PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDegree = -1);
 
-/// Settings of a quality: directions and tolerance, as far as `settings` has them at their default values. No quality
-/// removes the error of diffusion itself.
+/// Sets directions and tolerance for a quality, unless they differ from their defaults. No quality removes the error of
+/// the diffusion approximation.
 LatticeSettings AtQuality(Quality quality, LatticeSettings settings);
 
-/// "Name = value" of each setting that a quality may choose.
+/// "Name = value" for each setting that a quality may choose.
 std::vector<std::string> Words(const LatticeSettings& settings);
 }

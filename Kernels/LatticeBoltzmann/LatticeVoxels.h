@@ -14,62 +14,64 @@
 
 namespace tyndall
 {
-/// Uncollided light by known voxel, as an image and with its arrays.
+/// Uncollided light by known voxel: an image and the arrays it refers to.
 struct Uncollided
 {
   std::vector<float> fluence, netFlux;
-  std::vector<float> firstMoments; ///< as LightField has them, of the image's channels; empty: not known
-  UncollidedImage image;           ///< `escaped` on the first rank that has voxels, 0 on the others
-  Rgb lost = {};                   ///< W that entered and was deposited nowhere, likewise
+  std::vector<float> firstMoments; ///< LightField::firstMoments, for the image's channels; empty: not known
+  UncollidedImage image;           ///< `escaped` is set on the lowest rank that has voxels, 0 on others
+  Rgb lost = {};                   ///< power that entered and was not deposited anywhere, W; set on the same rank
 
-  /// Distance in voxels, 0 to 1/2, of the mean place where a voxel's light collides from its middle towards a face.
+  /// Distance, 0 to 1/2 voxel, from a voxel's centre towards a face to the mean place where its light collides.
   double Nearer(std::size_t voxel, int channel, std::size_t face) const;
 };
 
-/// Weight of a direction in even light; those of all directions add up to 1.
+/// Weight of a lattice direction in isotropic light; the weights add up to 1.
 double LatticeWeight(int directions, int i);
 
-/// Second moment of the links' directions along an axis: sum of w c c.
+/// Second moment of the lattice directions along an axis: the sum of w c c.
 double LatticeSquares(int directions);
 
-/// What each voxel of one channel does to the light of a step (numerics.md, Eqs. (L2) to (L6)), by known voxel.
+/// Coefficients of the lattice step for one channel, by known voxel (numerics.md, Eqs. (L2) to (L6)).
 struct LatticeVoxels
 {
-  std::vector<float> turning; ///< part of the density that collisions make even; published: that is scattered
-  std::vector<float> lost;    ///< part that is absorbed
-  std::vector<float> kept;    ///< part that is not, or as published neither absorbed nor scattered
-  std::vector<float> passes;  ///< part that links let through
+  std::vector<float>
+    turning; ///< fraction of the density that collisions make isotropic; published scheme: that is scattered
+  std::vector<float> lost;    ///< fraction that is absorbed
+  std::vector<float> kept;    ///< fraction that is not absorbed; published scheme: neither absorbed nor scattered
+  std::vector<float> passes;  ///< fraction that links transmit
   std::vector<float> squared; ///< n^2
-  std::vector<float> source;  ///< W / length^2 a step, even in all directions
-  /// W / length^2 of uncollided light, by voxel and face, that is first scattered so near to the face that its source
-  /// lies on the other side (Eq. (L13)). Empty: none.
+  std::vector<float> source;  ///< isotropic source, W / length^2 per step
+  /// First-collision source of uncollided light that is scattered so near to a face that the source lies on the other
+  /// side (Eq. (L13)), W / length^2, by voxel and face. Empty: none.
   std::vector<float> crossing;
-  /// By voxel, a whole number whose bit k stands for directions 2 k and 2 k + 1: along these its line of links wraps
-  /// around periodic axes and meets next to nothing, so that light on it would never end. No light is sent along such a
-  /// line; what begins in its voxels is sent along the others. Empty: there is none.
+  /// By voxel, an integer whose bit k is set if the line of links along directions 2 k and 2 k + 1 wraps around
+  /// periodic axes and has almost no extinction, so that light on it would never end. No light is sent along such a
+  /// line; sources in its voxels emit along the other lines. Empty: there is none.
   std::vector<float> endless;
-  std::vector<double> begins;       ///< part of the source that is not absorbed in its first step, Eq. (L4a)
+  std::vector<double> begins;       ///< fraction of the source that is not absorbed in its first step, Eq. (L4a)
   bool bends = false;               ///< n^2 varies
-  bool passesAll = true;            ///< no link gives back light
-  double thickest = 0.0;            ///< sigma_t h, by the transport extinction
-  std::array<double, 6> incoming{}; ///< W / length^2: fluence of the diffuse light outside -x, +x, ... +z, over n^2
-  std::array<double, 6> albedo{};   ///< of the faces
+  bool passesAll = true;            ///< no link reflects light
+  double thickest = 0.0;            ///< largest sigma_t h, with the transport extinction
+  std::array<double, 6> incoming{}; ///< fluence / n^2 of the diffuse light outside -x, +x, ... +z, W / length^2
+  std::array<double, 6> albedo{};   ///< albedo of the faces -x, +x, ... +z
 
   /// Collective. @param problem  must outlive it
-  /// @throws InvalidInput where light begins in a voxel all of whose lines are endless (names the first known one)
+  /// @throws InvalidInput if a voxel with a source has endless lines only (names the first such known voxel)
   LatticeVoxels(const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct, int channel);
 
-  /// Sets the sources, of uncollided light and of emission.
+  /// Sets the sources: first-collision source and emission.
   void LoadSources(const Uncollided& direct);
-  /// Weight of the directions along which light is sent; 1 but on endless lines.
+  /// Total weight of the directions along which a voxel sends light; 1 unless some of its lines are endless.
   double OpenWeight(std::size_t voxel) const;
 
-  bool Reflects() const; ///< a face has an albedo above 0
-  double Given() const;  ///< above 0: there is a source, in a voxel or outside a face
+  bool Reflects() const; ///< whether a face has an albedo above 0
+  double Given() const;  ///< above 0 if there is a source, in a voxel or outside a face
 
-  /// Fluence over n^2 that drives 1 W / length^2: from a voxel's centre to its faces, to the centre of the next voxel,
-  /// and out of the box through a face (Eq. (L12)). Infinite at a face of albedo 1.
-  /// @param least  part of the light that a step turns or absorbs, as which less counts
+  /// Diffusive resistances: the difference of fluence / n^2 that drives a flux of 1 W / length^2 from a voxel's centre
+  /// to its faces, to the centre of the next voxel, and out of the box through a face (Eq. (L12)). Infinite at a face
+  /// of albedo 1.
+  /// @param least  lower bound for the fraction of light that a step turns or absorbs
   double ResistanceWithin(std::size_t voxel, double least = 0.0) const;
   double ResistanceBetween(std::size_t a, std::size_t b, double least = 0.0) const;
   double ResistanceOfFace(std::size_t voxel, std::size_t face, double least = 0.0) const;

@@ -8,23 +8,23 @@
 
 namespace tyndall
 {
-/// Steps that were done already, which count.
+/// Steps that were taken before and count towards the limits.
 struct StepsBefore
 {
   int steps = 0;
   double seconds = 0.0;
 };
 
-/// Steps a lattice until fluence changes by less than the tolerance, or as often as was asked for.
+/// Steps a lattice until the estimated error of the fluence is below the tolerance, or for a given number of steps.
 class Settling
 {
 public:
-  /// @param lattice  of all voxels of `grid`; all must outlive this
+  /// @param lattice  covers all voxels of `grid`; all arguments must outlive this
   Settling(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings);
 
-  /// @param rows  of convergence, one for each look at the probes
-  /// @return fluence of the last step
-  /// @throws InvalidInput where densities have overflowed (explicit collisions of optically thick voxels)
+  /// @param rows  receives one convergence row per check of the probes
+  /// @return fluence after the last step
+  /// @throws InvalidInput if densities have overflowed (explicit collisions in optically thick voxels)
   std::vector<float> Run(const StepsBefore& before, const Monitor& monitor, std::vector<ConvergenceRow>& rows);
 
 private:
@@ -35,7 +35,7 @@ private:
   Device& TheDevice;
   Lattice& TheLattice;
   const LatticeSettings& Settings;
-  Buffer<cl_int> Probes;   ///< voxels whose fluence is compared; empty: all
+  Buffer<cl_int> Probes;   ///< voxels whose fluence is compared between checks; empty: all voxels
   std::vector<float> Last; ///< fluence at the probes when they were last read
   double LastChange = 0.0;
 };

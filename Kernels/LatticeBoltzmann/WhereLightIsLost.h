@@ -9,12 +9,12 @@
 
 namespace tyndall
 {
-/// Distance, 0 to 1/2 voxel, of the mean place where a beam along an axis collides from the voxel's middle, upstream
+/// Distance, 0 to 1/2 voxel, from the voxel's centre upstream to the mean collision place of a beam along an axis
 /// (numerics.md, Eq. (L14), k = sigma_t h).
 double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel);
 
-/// First moments (LightField::firstMoments) of collisions of light that is known by voxel only: along its mean
-/// direction it falls off as exp(-k x), and k follows from the fluence of the next voxel downstream (numerics.md, Eq.
-/// (L14)). Empty if the image has no mean direction.
+/// Estimate of the first moments of collisions (LightField::firstMoments) for uncollided light that is known by voxel
+/// only: along its mean direction it decays as exp(-k x), where k follows from the fluence of the next voxel downstream
+/// (numerics.md, Eq. (L14)). Empty if the image has no mean direction.
 std::vector<float> EstimatedFirstMoments(const UncollidedImage& image, const Medium& medium, const LatticeBox& box);
 }

@@ -35,7 +35,7 @@ struct OneChannelScene
 
 /// Solves a scene in as many channels as it needs, or in three if `leaveOut` is false. The result has `given` channels
 /// either way.
-/// @param solve called as solve(medium, illumination, channels); returns the LightField
+/// @param solve  called as solve(medium, illumination, channels); returns the LightField
 template <class Solve>
 LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Medium& medium,
   const Illumination& illumination, const Solve& solve);

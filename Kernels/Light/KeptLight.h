@@ -43,11 +43,11 @@ struct KeptLight
 };
 
 /// Why a solve cannot start from kept light, as a clause; empty if it can.
-/// @param maximumOrders number of iterations that the user asked for; 0: until convergence
+/// @param maximumOrders  number of iterations that the user asked for; 0: until convergence
 std::string WhyNotBegun(const KeptLight& kept, const LightKind& kind, int maximumOrders);
 
 /// Replaces `kept` by what a solve left, and sets LightField::sweepsSaved of its light.
-/// @param warm the solve started from kept light; if false, its rows become the reference for sweepsSaved of later
+/// @param warm  the solve started from kept light; if false, its rows become the reference for sweepsSaved of later
 ///   solves
 void Keep(KeptLight&& left, bool warm, LightField& light, KeptLight& kept);
 
@@ -55,6 +55,6 @@ void Keep(KeptLight&& left, bool warm, LightField& light, KeptLight& kept);
 constexpr const char* const NotBegunAsPublished = "orders as published begin in the dark";
 
 /// Entry of LightField::leftOut for a solve that was asked to start from kept light.
-/// @param whyNot a clause from WhyNotBegun; empty if it did start from kept light
+/// @param whyNot  a clause from WhyNotBegun; empty if it did start from kept light
 std::string WordsOfWarmStart(const std::string& whyNot);
 }

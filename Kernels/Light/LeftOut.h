@@ -35,7 +35,7 @@ extern const char* const
 extern const char* const NotByOctant;   ///< Source By octant was asked for but cannot be used in this scene
 extern const char* const NotSideBySide; ///< the device ran concurrent queues one after the other
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
-std::string DarkDirections(double lit); ///< @param lit  fraction of the rays
+std::string DarkDirections(double lit); ///< lit: fraction of the rays that carry incident light
 std::string MirrorImages(int classes, int directions);
 std::string TwoAxes(int polarNodes);          ///< the scene is uniform along two axes
 std::string DirectionsAlongSlab(int perFace); ///< the number of directions used instead

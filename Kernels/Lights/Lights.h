@@ -12,39 +12,39 @@ struct Grid;
 
 enum class LightType
 {
-  Directional = 0, ///< parallel light through all of space
+  Directional = 0, ///< parallel beam that fills all of space
   Point = 1,
-  Spot = 2,      ///< a point that shines evenly into a cone
-  Rectangle = 3, ///< shines from one side, Lambertian
+  Spot = 2,      ///< point source that emits uniformly into a cone
+  Rectangle = 3, ///< emits from one side, Lambertian
 };
 
 /// One light, as a row of the LightRig's polydata.
 struct Light
 {
   LightType type = LightType::Directional;
-  std::array<double, 3> position = { 0.0, 0.0, 0.0 };   ///< of the point, or the rectangle's centre
-  std::array<double, 3> direction = { 0.0, 0.0, -1.0 }; ///< in which the light travels; any length but 0
-  Rgb power = { 1.0, 1.0, 1.0 }; ///< W; for a directional light W/length^2 through a plane across `direction`
-  std::array<double, 2> size = { 0.0, 0.0 }; ///< edges of a rectangle
-  double angle = 0.0; ///< full opening angle of a spot; of a rectangle, by which its edges are turned; degrees
-  /// Of a rectangle, how finely solvers on a grid divide it, 0.7 to 3; at 1 uncollided light is within 2% (root mean
-  /// square) in voxels of a third of a mean free path (numerics.md, section 5.3).
+  std::array<double, 3> position = { 0.0, 0.0, 0.0 };   ///< position of the point, or centre of the rectangle
+  std::array<double, 3> direction = { 0.0, 0.0, -1.0 }; ///< direction of travel; any length but 0
+  Rgb power = { 1.0, 1.0, 1.0 }; ///< W; for a directional light: W / length^2 through a plane normal to `direction`
+  std::array<double, 2> size = { 0.0, 0.0 }; ///< edge lengths of a rectangle
+  double angle = 0.0; ///< degrees; spot: full opening angle; rectangle: rotation of its edges about `direction`
+  /// How finely grid solvers subdivide a rectangle, 0.7 to 3. At 1 the uncollided light is within 2% (root mean square)
+  /// in voxels of a third of a mean free path (numerics.md, section 5.3).
   double fineness = 1.0;
 };
 
-/// A rotation, mirrored or not: rows of an orthogonal matrix.
+/// A rotation or rotoreflection: the rows of an orthogonal matrix.
 using Rotation = std::array<std::array<double, 3>, 3>;
 
-/// Radiance that comes from infinitely far away, W / (length^2 sr): a picture in latitude-longitude layout, and how it
-/// stands in the scene. In the picture's own axes z is up: pixel (i, j) of width x height looks along azimuth
-/// 2 pi (i + 1/2) / width about +z from +x, polar angle pi (1 - (j + 1/2) / height) from +z; so row 0 is the nadir.
-/// Pixels stay as they are however it stands, so that none loses power.
+/// Environment map: radiance incident from infinity, W / (length^2 sr), as a latitude-longitude picture with an
+/// orientation in the scene. In the picture's own axes z is up: pixel (i, j) of width x height is seen along azimuth 2
+/// pi (i + 1/2) / width about +z from +x, polar angle pi (1 - (j + 1/2) / height) from +z; so row 0 is the nadir. A
+/// rotation changes the orientation only; pixels are not resampled, so that no power is lost.
 struct Environment
 {
   int width = 0; ///< 0: there is no environment
   int height = 0;
   std::vector<float> radiance; ///< 3 * width * height, RGB interleaved
-  /// What is seen along d in the scene is in the picture along toPicture * d.
+  /// Maps a direction of the scene to the picture's axes.
   Rotation toPicture = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
 
   bool Empty() const { return this->width == 0; }
@@ -52,68 +52,68 @@ struct Environment
   std::array<double, 3> ToScene(const std::array<double, 3>& inPicture) const;
 };
 
-/// Everything that shines on a medium from outside (and the lights inside it).
+/// All light sources: boundary sources (environment, sky, faces) and lights outside or inside the box.
 struct Illumination
 {
   std::vector<Light> lights;
   Environment environment;
-  Rgb sky = { 0.0, 0.0, 0.0 }; ///< radiance from every direction alike, W / (length^2 sr), added to the environment
-  /// Diffuse radiance entering through -x, +x, -y, +y, -z, +z, W / (length^2 sr), added to the others.
+  Rgb sky = { 0.0, 0.0, 0.0 }; ///< isotropic incident radiance, W / (length^2 sr), added to the environment
+  /// Diffuse incident radiance at the faces -x, +x, -y, +y, -z, +z, W / (length^2 sr), added to environment and sky.
   std::array<Rgb, 6> faces = {};
-  /// Part, 0 to 1, of what leaves through each face that comes back where it left, spread as by a matt surface
-  /// (Lambert), beside what shines in through the face.
+  /// Albedo of each face, 0 to 1: the fraction of the outgoing partial current that is reflected diffusely
+  /// (Lambertian), where it leaves, in addition to the face's boundary source.
   std::array<Rgb, 6> faceAlbedo = {};
-  UncollidedImage uncollided; ///< light that was found already as far as it is not scattered, beside the others
+  UncollidedImage uncollided; ///< uncollided light that another solver has computed, in addition to the other sources
 };
 
-/// The unit vector along which a light shines, whatever the length of its `direction`; 0 where that is 0.
+/// The light's `direction` normalised; 0 if it is 0.
 std::array<double, 3> DirectionOf(const Light& light);
 
-/// Divides rectangles as finely as a quality asks for.
+/// Sets the fineness of rectangular lights for a quality.
 void SetFineness(std::vector<Light>& lights, Quality quality);
 
-/// W per steradian of a lamp of 1 W along its axis; 0 of a directional light, which has none.
+/// Radiant intensity on the axis, W / sr, of a lamp of 1 W; 0 for a directional light.
 double AxialIntensity(const Light& lamp);
 
-/// The angle between a light's direction and `way`, which may have any length.
+/// Angle between a light's direction and `way`, which may have any length.
 double AngleFromAxis(const Light& light, const std::array<double, 3>& way);
-/// Half of the opening angle of a spot, radians.
+/// Half the opening angle of a spot, radians.
 double HalfAngle(const Light& spot);
 
-/// The lights as they shine on a box: a lamp further away than 1e5 of its longest edges is a directional light of the
-/// irradiance that it has in the middle of the box (0 where it shines elsewhere). A spot the border of whose cone
-/// crosses the box stays what it is, and so does a rectangle that is large for its distance.
-/// @throws InvalidInput where such a spot is so far away that it cannot be aimed
+/// The lights as seen from a box: a lamp further away than 1e5 of the box's longest edges becomes a directional light
+/// with the lamp's irradiance at the box's centre (0 if the lamp does not illuminate it). A spot whose cone boundary
+/// crosses the box is kept as it is, and so is a rectangle that is large for its distance.
+/// @throws InvalidInput if such a spot is too far away to be aimed at the box
 std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights);
 
 /// The edges of a rectangular light as vectors: the first is horizontal (across z and the direction; along x where the
 /// direction is vertical), then turned by `angle`; the second is the direction x the first.
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light);
 
-/// Mean radiance the environment has where it is looked at along `direction` of the scene (from the viewer outwards;
-/// the light travels the other way), bilinear between pixels.
+/// Radiance of the environment seen along `direction` of the scene (from the viewer outwards; light travels the
+/// opposite way), interpolated bilinearly between pixels.
 Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction);
 
-/// The same environment standing otherwise: its up (+z) along axis `up` of the scene (0, 1, 2: x, y, z; the other axes
-/// follow in their cyclic order), then turned by `degrees` about that axis.
+/// Reorients an environment: its up direction (+z) becomes axis `up` of the scene (0, 1, 2: x, y, z; the other axes
+/// follow in cyclic order), then it is rotated by `degrees` about that axis.
 Environment Turned(const Environment& environment, int up, double degrees);
-/// The same turned, or mirrored: what was seen along d is seen along rotation * d.
-/// @throws InvalidInput where that is no orthogonal matrix
+/// Rotates or mirrors an environment: what was seen along d is then seen along rotation * d.
+/// @throws InvalidInput if `rotation` is not orthogonal
 Environment Turned(const Environment& environment, const Rotation& rotation);
 
-/// Whether anything of it shines: has a power or a radiance above 0.
+/// Whether any light source has a power or radiance above 0.
 bool Shines(const Illumination& illumination);
-/// Whether a face, the sky or an environment lets light in that comes from everywhere, not from lamps.
+/// Whether there is a boundary source: faces, sky or environment, as opposed to lamps.
 bool ShinesThroughFaces(const Illumination& illumination);
 
-/// Whether some face gives back light.
+/// Whether any face reflects (has an albedo above 0).
 bool Reflects(const Illumination& illumination);
 
-/// @throws InvalidInput where a face that gives back light lies across a periodic axis, which has none
+/// @throws InvalidInput if a reflecting face lies across a periodic axis, which has no faces
 void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>& periodic);
 
-/// @throws InvalidInput where a light has a zero direction, an angle out of range, a power that is negative or beyond
-///   float, no size; an environment has a negative or infinite pixel (names the first); a sky or a face a radiance that
-///   is negative or beyond float, a face an albedo that is not from 0 to 1
+/// @throws InvalidInput if a light has a zero direction, an angle out of range, no size, or a power that is negative or
+///   beyond float; if an environment has a negative or infinite pixel (names the first); if the radiance of the sky or
+///   a face is negative or beyond float; if a face's albedo is outside [0, 1]
 void Check(const Illumination& illumination);
 }

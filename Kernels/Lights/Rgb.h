@@ -23,7 +23,7 @@ inline bool IsBlack(const Rgb& rgb)
   return rgb == Rgb{};
 }
 
-/// Whether it can be power or radiance: light is worked with as floats.
+/// Whether the value can be a power or radiance: not negative, and within the range of floats, which kernels use.
 inline bool IsUsable(double value)
 {
   return value >= 0.0 && value <= std::numeric_limits<float>::max();

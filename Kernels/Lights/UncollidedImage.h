@@ -9,24 +9,23 @@ namespace tyndall
 {
 struct Medium;
 
-/// Light that no medium has scattered yet, as another solver found it by voxel: that of photons along bent rays, say. A
-/// solver takes it as the uncollided light of lamps of its own, and carries what is scattered of it (numerics.md,
-/// section 5.7).
+/// Uncollided light by voxel, computed by another solver, e.g. from photons along bent rays. A solver uses it in place
+/// of its own lamps' uncollided light and transports what is scattered from it (numerics.md, section 5.7).
 struct UncollidedImage
 {
-  Field fluence; ///< W / length^2, of the medium's grid; null: there is none
-  /// Mean direction, power-weighted, 3 components a voxel: its length, 0 to 1, is the anisotropy. Null: light goes
-  /// every way alike.
+  Field fluence; ///< W / length^2, on the medium's grid; null: there is no image
+  /// Power-weighted mean direction, 3 components per voxel; its length, 0 to 1, is the anisotropy. Null: isotropic
+  /// light.
   Field meanDirection;
-  std::array<Rgb, 6> escaped = {}; ///< W, that left through -x, +x, -y, +y, -z, +z without having been scattered
+  std::array<Rgb, 6> escaped = {}; ///< uncollided power escaped through -x, +x, -y, +y, -z, +z, W
 
   bool IsThere() const { return this->fluence.values != nullptr; }
 };
 
-/// W that a medium takes out of the image's light in the channel, absorbed and scattered.
+/// Power that the medium absorbs and scatters from the image's light in one channel, W.
 double PowerLost(const UncollidedImage& image, const Medium& medium, int channel);
 
-/// @throws InvalidInput where a fluence is negative or beyond float, a mean direction not finite or longer than 1
-///   (names the first such voxel), or the power through a face is not a number that floats hold
+/// @throws InvalidInput if a fluence is negative or beyond float, a mean direction is not finite or longer than 1
+///   (names the first such voxel), or an escaped power is not representable as float
 void Check(const UncollidedImage& image, const Medium& medium);
 }

@@ -7,26 +7,27 @@
 
 namespace tyndall
 {
-/// The face, of -x, +x, -y, +y, -z, +z, that light comes in through which goes up or down an axis.
+/// The face (0 to 5: -x, +x, -y, +y, -z, +z) through which light enters that travels up or down an axis.
 inline int EntryFace(int axis, bool up)
 {
   return 2 * axis + (up ? 0 : 1);
 }
 
-/// A voxel's face on a face of the box.
+/// A boundary cell: the face of a voxel that lies on a face of the box.
 struct BoxFaceCell
 {
-  std::size_t number; ///< among all: faces -x, +x, -y, +y, -z, +z, of each row by row, the lower axis first
-  int face, u, v;     ///< u along the lower of the two axes across
+  std::size_t
+    number; ///< index among all cells: faces in the order -x, +x, -y, +y, -z, +z, in each the lower axis varies fastest
+  int face, u, v; ///< u runs along the lower of the two axes in the face
   std::size_t voxel;
-  std::size_t inward; ///< the voxel behind it; itself where there is none
+  std::size_t inward; ///< the next voxel inwards; the voxel itself if there is none
 };
 
-/// How the cells of a face of the box are numbered among those of all.
+/// Numbering of the cells of one face of the box among those of all faces.
 struct BoxFaceLayout
 {
   std::size_t first;
-  std::array<std::size_t, 3> step; ///< from a cell to the next along each axis; 0 across the face
+  std::array<std::size_t, 3> step; ///< stride between neighbouring cells along each axis; 0 along the face's normal
 };
 
 inline BoxFaceLayout LayoutOfFace(const Grid& grid, int face)
@@ -74,11 +75,11 @@ inline std::size_t BoxFaceCellCount(const Grid& grid)
       static_cast<std::size_t>(n[2]) * n[0]);
 }
 
-/// Cosines to the outward normal at which the radiance that leaves a cell is given; a cubic through them is within 0.5%
-/// of Chandrasekhar's H from 0.03 on.
+/// Cosines to the outward normal at which the outgoing radiance of a cell is tabulated; cubic interpolation between
+/// them is within 0.5% of Chandrasekhar's H for cosines from 0.03 on.
 constexpr std::array<double, 4> SurfaceCosines = { 0.05, 0.25, 0.6, 1.0 };
 
-/// Mean free paths of a voxel across a face of the box from which on the light at its surface is not that at its
-/// centre.
+/// Optical thickness of a boundary voxel along the face's normal above which the light at its surface must be
+/// distinguished from that at its centre.
 constexpr double ThickAtSurface = 0.5;
 }

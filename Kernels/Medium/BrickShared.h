@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels that go by bricks of voxels.
+// Shared by C++ and the kernels that process bricks of voxels.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -6,7 +6,7 @@
 SHARED_BEGIN
 enum
 {
-  BrickBits = 3,    ///< of a voxel's number along an axis, those within its brick
+  BrickBits = 3,    ///< bits of a voxel's index along an axis that give its place within the brick
   BrickEdge = 8,    ///< voxels per edge of a brick; the same as of OpenVDB's leaves
   BrickVoxels = 512 ///< of a brick
 };

@@ -4,12 +4,12 @@
 
 namespace tyndall
 {
-/// One quantity over a grid's voxels, seen, not owned: `components` floats per voxel (1, or 3 for RGB interleaved).
+/// A non-owning view of one quantity on a grid: `components` floats per voxel (1, or 3 for interleaved RGB), x fastest.
 struct Field
 {
   const float* values = nullptr; ///< null: the quantity is zero everywhere
   int components = 1;
-  int standsForAll = -1; ///< the component of three that is seen in every channel; -1: each in its own
+  int standsForAll = -1; ///< component (of three) that is used for every channel; -1: each channel uses its own
 
   bool HasColour() const { return this->components == 3 && this->standsForAll < 0; }
   float At(std::size_t voxel, int channel) const

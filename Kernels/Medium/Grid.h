@@ -5,8 +5,8 @@
 
 namespace tyndall
 {
-/// A box of voxels. Voxel (i, j, k) covers [origin + (i, j, k) spacing, origin + (i+1, j+1, k+1) spacing]; arrays over
-/// it have x fastest. Lengths in the dataset's own unit.
+/// A uniform grid of voxels. Voxel (i, j, k) covers [origin + (i, j, k) spacing, origin + (i+1, j+1, k+1) spacing];
+/// arrays over it have x fastest. Lengths are in the dataset's own unit.
 struct Grid
 {
   std::array<int, 3> size = { 1, 1, 1 };             ///< voxels per axis, at least 1
@@ -18,13 +18,13 @@ struct Grid
     return static_cast<std::size_t>(this->size[0]) * static_cast<std::size_t>(this->size[1]) *
       static_cast<std::size_t>(this->size[2]);
   }
-  /// From a voxel to the next along each axis, in an array over the grid.
+  /// Array strides: from a voxel to the next along each axis.
   std::array<std::size_t, 3> Strides() const
   {
     const std::size_t x = static_cast<std::size_t>(this->size[0]);
     return { 1, x, x * static_cast<std::size_t>(this->size[1]) };
   }
-  /// The place of voxel (i, j, k) in an array, and the voxel at a place.
+  /// Array index of voxel (i, j, k), and the inverse.
   std::size_t IndexOf(const std::array<int, 3>& voxel) const
   {
     const std::array<std::size_t, 3> stride = this->Strides();
@@ -40,7 +40,7 @@ struct Grid
   double Length(int axis) const { return this->size[axis] * this->spacing[axis]; }
 };
 
-/// The axes of a plane across `axis`: u is the lower of both, and runs along rows in memory.
+/// The two axes of a plane normal to `axis`: u is the lower one, and varies faster in memory.
 struct PlaneAxes
 {
   int axis, u, v;

@@ -5,7 +5,7 @@
 
 namespace tyndall
 {
-/// A box of a grid's voxels as a grid by itself, where it lies.
+/// The grid formed by a box of voxels of `whole`, at the same position in space.
 inline Grid GridOfBox(const VoxelBox& box, const Grid& whole)
 {
   Grid grid = whole;

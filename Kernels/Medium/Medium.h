@@ -8,7 +8,7 @@
 
 namespace tyndall
 {
-constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of more is not a normal float
+constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of a larger value is not a normal float
 
 /// A participating medium: what pbrt calls sigma_a, sigma_s, Le and the phase function, constant in each voxel.
 struct Medium
@@ -19,8 +19,8 @@ struct Medium
   Field emission; ///< emitted radiance per unit length, W / (length^3 sr)
   PhaseOfMedium phase;
 
-  /// Scattering and extinction of the isotropic medium that stands for this one by the similarity relation
-  /// (numerics.md, Eq. (8)): same diffusion, same absorption. 1/length
+  /// Scattering and extinction coefficient of the isotropic medium with the same diffusion and absorption, by the
+  /// similarity relation (numerics.md, Eq. (8)), 1/length.
   float TransportSigmaS(std::size_t voxel, int channel) const
   {
     return static_cast<float>(this->sigma_s.At(voxel, channel) * (1.0 - this->phase.MeanCosine(voxel, channel)));
@@ -30,7 +30,7 @@ struct Medium
     return this->sigma_a.At(voxel, channel) + this->TransportSigmaS(voxel, channel);
   }
 
-  /// 3 where any quantity is coloured, else 1.
+  /// 3 if any coefficient is coloured, else 1.
   int Channels() const
   {
     const bool colour =
@@ -39,21 +39,19 @@ struct Medium
   }
 };
 
-/// Whether any voxel is thicker than `meanFreePaths` along the grid's longest spacing, by TransportSigmaT.
+/// Whether any voxel is optically thicker than `meanFreePaths` along the grid's longest spacing, by TransportSigmaT.
 bool AnyVoxelIsThickerThan(double meanFreePaths, const Medium& medium);
 
-/// "(i, j, k)" of the voxel that is `voxel`th in an array.
+/// "(i, j, k)" of the voxel with array index `voxel`.
 std::string VoxelName(const Grid& grid, std::size_t voxel);
 
-/// @throws InvalidInput where a field has neither 1 nor 3 components
+/// @throws InvalidInput if the field has neither 1 nor 3 components
 void CheckComponents(const Field& field, const char* name);
 
-/// @throws InvalidInput where the grid is empty, has a spacing that is not from 1e-30 to 1e30, or one that is more than
-///   1e9 times another
+/// @throws InvalidInput if the grid is empty, or a spacing is outside [1e-30, 1e30] or more than 1e9 times another
 void Check(const Grid& grid);
 
-/// @throws InvalidInput where the grid is not as above, where a coefficient is
-///   negative or not finite, or sigma_a and sigma_s add up to more than LargestExtinction, or where a voxel's mean
-///   cosine g is outside (-1, 1) (names the first such voxel)
+/// @throws InvalidInput if the grid is invalid as above, a coefficient is negative or not finite, sigma_a + sigma_s
+///   exceeds LargestExtinction, or a mean cosine g is outside (-1, 1) (names the first such voxel)
 void Check(const Medium& medium);
 }

@@ -6,17 +6,17 @@
 
 namespace tyndall
 {
-/// A real medium at density 1, by measured or computed coefficients.
+/// Measured or computed coefficients of a real medium at density 1.
 struct MediumPreset
 {
   const char* name;
   const char* densityOne; ///< what density 1 means
   Rgb sigma_s;            ///< 1/mm
   Rgb sigma_a;            ///< 1/mm
-  Rgb g;                  ///< mean cosine of the phase function; 0 where sigma_s is a reduced one, sigma_s (1 - g)
+  Rgb g; ///< mean cosine of the phase function; 0 if sigma_s is the reduced coefficient, sigma_s (1 - g)
   const char* source;
 };
 
-/// The real media there are. Red, green, blue stand for 650, 550 and 450 nm where the source has wavelengths.
+/// All presets. Red, green and blue stand for 650, 550 and 450 nm if the source gives wavelengths.
 const std::vector<MediumPreset>& MediumPresets();
 }

@@ -5,7 +5,7 @@
 
 namespace tyndall
 {
-/// Calls term(voxel) for each voxel, on all of the host's cores; the sum of what it returns, always in the same order.
+/// Sum of term(voxel) over all voxels, on all of the host's cores; the order of addition is always the same.
 template <class Term>
 double SumOverVoxels(const Grid& grid, const Term& term)
 {

@@ -5,8 +5,8 @@
 
 namespace tyndall
 {
-/// `count` different numbers from 0 to size - 1, ascending, one from each of `count` equal stretches. Its place in the
-/// stretch follows the golden ratio: with equal steps, which are in phase with the powers of two that photons' starting
-/// places are made of, all chosen photons would start along one line.
+/// `count` distinct numbers in [0, size), ascending, one from each of `count` equal intervals. The place within an
+/// interval follows the golden ratio: constant steps would be in phase with the powers of two that photons' starting
+/// points are built from, and all chosen photons would start along one line.
 std::vector<std::size_t> ChooseEvenly(std::size_t size, std::size_t count);
 }

@@ -4,11 +4,11 @@
 
 namespace tyndall
 {
-/// P_0(x) to P_degree(x), by recurrence; |x| <= 1.
+/// P_0(x) to P_degree(x), by recurrence, for |x| <= 1.
 std::vector<double> LegendrePolynomials(int degree, double x);
 
-/// sum_l scale[l] factors[l][k] P_l(x[k]) of all x at once, which compilers turn into vectors; |x| <= 1.
-/// @param factors  as many rows as `scale` has numbers, of at least as many as `x`
+/// sum_l scale[l] factors[l][k] P_l(x[k]) for all k at once, so that compilers vectorise it; |x| <= 1.
+/// @param factors  one row per element of `scale`, each at least as long as `x`
 std::vector<double> LegendreSums(
   const std::vector<double>& x, const std::vector<double>& scale, const std::vector<std::vector<double>>& factors);
 

@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// A number for users, files and kernels.
-/// @param format  as of printf, for one double: "%g", "%.3g", "%.0f", "%.8e"
+/// A number as text, for users, files and kernels.
+/// @param format  printf format for one double: "%g", "%.3g", "%.0f", "%.8e"
 inline std::string Text(const char* format, double value)
 {
   const char kind = format[std::strlen(format) - 1];
@@ -30,14 +30,13 @@ inline std::string Text(const char* format, double value)
   return { text, written.ptr };
 }
 
-/// A float as C++ and OpenCL C write it, with all of its digits.
+/// A float literal of C++ and OpenCL C, with all of its digits.
 inline std::string FloatLiteral(float value)
 {
   return Text("%.8e", value) + "f";
 }
 
-/// The floating-point number that a text begins with, after blanks; none where it begins with something else or one
-/// beyond doubles.
+/// The floating-point number at the start of a text, after blanks; none if there is no number or it is beyond doubles.
 inline std::optional<double> NumberIn(std::string_view text)
 {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");

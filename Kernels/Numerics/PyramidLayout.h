@@ -8,22 +8,22 @@
 
 namespace tyndall
 {
-/// How the levels of a pyramid over a grid lie one after the other in a buffer. Node (i, j, k) of level l covers the
-/// voxels [2^l (i, j, k), 2^l (i+1, j+1, k+1)), as far as the grid has them; x fastest.
+/// Memory layout of a pyramid over a grid, its levels stored one after the other. Node (i, j, k) of level l covers the
+/// voxels [2^l (i, j, k), 2^l (i+1, j+1, k+1)), clipped to the grid; x fastest.
 struct PyramidLayout
 {
-  explicit PyramidLayout(const std::array<int, 3>& size); ///< of the grid
+  explicit PyramidLayout(const std::array<int, 3>& size); ///< size of the grid, voxels
 
   int LevelCount() const { return static_cast<int>(this->sizes.size()); } ///< 1 + ceil(log2(longest edge))
-  int Top() const { return this->LevelCount() - 1; }                      ///< the level of the one node over all
+  int Top() const { return this->LevelCount() - 1; }                      ///< the level with a single node
 
   std::vector<std::array<int, 3>> sizes; ///< nodes per axis of each level; level 0 is the grid itself
-  std::vector<std::size_t> offsets;      ///< where a level from 1 on begins, nodes; level 0 is in no pyramid's buffer
-  std::size_t nodeCount = 0;             ///< nodes of the levels from 1 on: a seventh of a large cube's voxels
+  std::vector<std::size_t> offsets;      ///< first node of each level from 1 on; level 0 is not stored in the buffer
+  std::size_t nodeCount = 0;             ///< nodes of the levels from 1 on: for a large cube, a seventh of its voxels
 };
 
-/// How the kernels of the pyramids run: a work-item per node, rows of nodes in groups of one size for every level, so
-/// that each kernel is compiled once.
+/// Work-group size of the pyramid kernels, one work-item per node. It is the same for every level, so that each kernel
+/// is compiled once.
 inline cl::NDRange PyramidGroup()
 {
   return cl::NDRange(32, 8, 1);

@@ -5,10 +5,10 @@
 
 namespace tyndall
 {
-/// The real spherical harmonics of a direction, (degree + 1)^2 numbers: degree 0, 1, 2, ..., in each the orders
-/// -l to l. Orthonormal: the integral of the product of two over all directions is 1 or 0.
+/// The real spherical harmonics of a direction, (degree + 1)^2 values: for each degree l = 0, 1, 2, ... the orders -l
+/// to l. Orthonormal over the unit sphere.
 std::vector<double> SphericalHarmonics(int degree, const std::array<double, 3>& omega);
 
-/// The degree that the `term`th of them has, counted from 0.
+/// Degree of the harmonic with index `term`, counted from 0.
 int DegreeOfTerm(int term);
 }

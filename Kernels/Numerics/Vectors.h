@@ -15,7 +15,7 @@ inline glm::dvec3 Vector(const std::array<double, 3>& v)
   return { v[0], v[1], v[2] };
 }
 
-/// The part of a convex polygon in which depth(point), linear in the point, is not below 0.
+/// Clips a convex polygon to the half-space depth(point) >= 0, where depth is linear in the point.
 template <class Point, class Depth>
 std::vector<Point> Clipped(const std::vector<Point>& polygon, const Depth& depth)
 {
@@ -36,7 +36,7 @@ std::vector<Point> Clipped(const std::vector<Point>& polygon, const Depth& depth
   return clipped;
 }
 
-/// As kernels take them.
+/// Vectors as kernel arguments.
 inline cl_float4 Float4(const glm::dvec3& v, double w = 0.0)
 {
   return { { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w) } };

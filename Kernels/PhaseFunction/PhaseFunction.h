@@ -5,11 +5,11 @@
 
 namespace tyndall
 {
-/// What part of scattered light goes which way, by the cosine of the angle between its direction before and after: 1
-/// straight on, -1 straight back. The same both ways (reciprocity). One description for all solvers, the photons and
-/// the ray caster; numerics.md, section 2.1.
+/// Phase function: the angular distribution of scattered light, by the cosine between its directions before and after
+/// scattering (1 forward, -1 backward). Symmetric in both directions (reciprocity). All solvers, the photons and the
+/// ray caster use this description; numerics.md, section 2.1.
 ///
-/// A value: copies are cheap, a table is shared.
+/// A value type: copies are cheap, since they share the table.
 class PhaseFunction
 {
 public:
@@ -25,43 +25,43 @@ public:
 
   PhaseFunction() = default; ///< isotropic
   /// Henyey and Greenstein 1941.
-  /// @param g  mean cosine, in (-1, 1), else InvalidInput; 0: isotropic
+  /// @param g  mean cosine in (-1, 1), else InvalidInput is thrown; 0: isotropic
   static PhaseFunction HenyeyGreenstein(double g);
-  /// `part` of the light by one, the rest by another (Kattawar 1975): a forward and a backward lobe.
-  /// @param part  of the first, in [0, 1]
+  /// Sum of two Henyey-Greenstein functions (Kattawar 1975), e.g. a forward and a backward lobe.
+  /// @param part  weight of the first function, in [0, 1]; the second has the rest
   static PhaseFunction DoubleHenyeyGreenstein(double g, double secondG, double part);
-  /// (1 - k^2) / (4 pi (1 - k cosine)^2), Blasi et al. 1993, with the k whose mean cosine is g exactly.
+  /// (1 - k^2) / (4 pi (1 - k cosine)^2), Blasi et al. 1993, with k chosen so that the mean cosine is exactly g.
   static PhaseFunction Schlick(double g);
   /// 3 / (16 pi) (1 + cosine^2)
   static PhaseFunction Rayleigh();
-  /// Linear between the rows of a table, as Mie codes print them; scaled such that its integral is 1.
-  /// @param cosines  from -1 to 1 (to 1e-3), rising or falling
+  /// Piecewise linear between the rows of a table, e.g. from a Mie code; normalised to an integral of 1.
+  /// @param cosines  from -1 to 1 (to 1e-3), ascending or descending
   /// @param values   in any unit, not negative
-  /// @throws InvalidInput naming the first row that is not a number, negative or out of order; where there are fewer
-  /// than two, or their integral is zero
+  /// @throws InvalidInput if a row is not a number, negative or out of order (names the first), there are fewer than
+  ///   two rows, or the integral is zero
   static PhaseFunction Tabulated(std::vector<double> cosines, std::vector<double> values);
 
   Kind TheKind() const { return this->Which; }
-  bool IsIsotropic() const; ///< whatever kind it was made as
+  bool IsIsotropic() const; ///< whether it scatters isotropically, whatever its kind
 
-  /// 1/sr; its integral over all directions is 1.
+  /// Value in 1/sr; its integral over all directions is 1.
   /// @param cosine  in [-1, 1]
   double Value(double cosine) const;
   double MeanCosine() const; ///< in (-1, 1)
   /// Legendre moments 2 pi integral p(c) P_l(c) dc for l = 0 to `degree`: 1, the mean cosine, ...
   std::vector<double> Moments(int degree) const;
-  /// The cosine below which a part u of the light is scattered, 0 <= u <= 1: the inverse of the distribution.
+  /// The cosine below which a fraction u of the light is scattered, 0 <= u <= 1: the inverse cumulative distribution.
   double CosineAt(double u) const;
 
-  /// Part of the light that is scattered below a cosine, in [-1, 1]: what CosineAt inverts.
+  /// Fraction of the light scattered below a cosine in [-1, 1]: the cumulative distribution, which CosineAt inverts.
   double Below(double cosine) const;
 
-  /// Of the two kinds that have one parameter: the function of the same kind with another mean cosine. Of an isotropic
-  /// one Henyey and Greenstein's.
-  /// @throws InvalidInput for the other kinds, or g outside (-1, 1)
+  /// The same kind of function with another mean cosine, for the two kinds that have one parameter; for an isotropic
+  /// function, Henyey-Greenstein.
+  /// @throws InvalidInput for other kinds, or if g is outside (-1, 1)
   PhaseFunction WithMeanCosine(double g) const;
 
-  /// g, second g and part of Henyey and Greenstein's, k of Schlick's; for kernels.
+  /// Parameters for kernels: Henyey-Greenstein's g, second g and weight of the first; for Schlick, k.
   struct Parameters
   {
     double first = 0.0, second = 0.0, part = 1.0;
@@ -69,11 +69,11 @@ public:
   const Parameters& Shape() const { return this->The; }
   struct Table
   {
-    std::vector<double> cosines, values, below; ///< rising; 1/sr; part of the light that goes below each cosine
+    std::vector<double> cosines, values, below; ///< ascending; values, 1/sr; cumulative distribution at each cosine
   };
-  const Table* TheTable() const { return this->Rows.get(); } ///< null but for Tabulated
+  const Table* TheTable() const { return this->Rows.get(); } ///< null unless Tabulated
 
-  /// Whether both scatter alike as they are; isotropic ones do, of whatever kind.
+  /// Whether both are the same function; isotropic ones are equal, whatever their kind.
   bool operator==(const PhaseFunction& other) const;
   bool operator!=(const PhaseFunction& other) const { return !(*this == other); }
 

@@ -13,11 +13,11 @@
 
 namespace tyndall
 {
-// Mean cosines by voxel count where something scatters, and there alone: elsewhere they have no meaning, and may be any
-// number, or none.
+// Mean cosines by voxel are used only in voxels that scatter; elsewhere they are meaningless, and may be any number or
+// NaN.
 
-/// Least and greatest mean cosine of the voxels that scatter, by channel; of a channel in which none does the least is
-/// infinite and the greatest minus infinity.
+/// Smallest and largest mean cosine of the voxels that scatter, by channel; infinity and minus infinity for a channel
+/// in which none scatters.
 struct MeanCosineRange
 {
   MeanCosineRange()
@@ -25,7 +25,7 @@ struct MeanCosineRange
     this->least.fill(std::numeric_limits<double>::infinity());
     this->greatest.fill(-std::numeric_limits<double>::infinity());
   }
-  /// @param g, sigma_s  of `voxels` voxels
+  /// @param g, sigma_s  by voxel, for `voxels` voxels
   MeanCosineRange(const Field& g, const Field& sigma_s, std::size_t voxels)
     : MeanCosineRange()
   {
@@ -42,7 +42,7 @@ struct MeanCosineRange
     }
   }
 
-  bool IsEven() const ///< in each channel
+  bool IsEven() const ///< whether g is uniform in each channel
   {
     bool even = true;
     for (std::size_t c = 0; c < 3; ++c)
@@ -55,10 +55,10 @@ struct MeanCosineRange
   std::array<double, 3> least, greatest;
 };
 
-/// How a medium scatters whose g is given by voxel: a function for each channel, where all voxels that scatter have the
-/// same g. A channel in which none does is like another one.
-/// @param kind   of one mean cosine (PhaseFunction::WithMeanCosine), else InvalidInput
-/// @param range  of g in the whole medium, of which `g` may be a part
+/// Phase function of a medium with g by voxel: one function per channel if all voxels that scatter have the same g,
+/// else by voxel. A channel in which no voxel scatters gets the g of another channel.
+/// @param kind  a kind with one mean cosine (PhaseFunction::WithMeanCosine), else InvalidInput is thrown
+/// @param range  range of g in the whole medium, of which `g` may cover a part
 inline PhaseOfMedium PhaseByVoxel(const PhaseFunction& kind, const Field& g, const MeanCosineRange& range)
 {
   if (!range.IsEven())
@@ -76,7 +76,8 @@ inline PhaseOfMedium PhaseByVoxel(const PhaseFunction& kind, const Field& g, con
   return PhaseOfMedium(functions);
 }
 
-/// @return g with 0 in place of values outside (-1, 1) where nothing scatters; empty where there are none
+/// @return g with values outside (-1, 1) replaced by 0 in voxels that do not scatter; empty if there are none to
+///   replace
 inline std::vector<float> WithoutUnusedCosines(const Field& g, const Field& sigma_s, std::size_t voxels)
 {
   const auto components = static_cast<std::size_t>(g.components);

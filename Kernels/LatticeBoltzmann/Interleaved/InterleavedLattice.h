@@ -19,18 +19,18 @@
 
 namespace tyndall
 {
-/// Photons that march while the light that they have deposited so far diffuses in steps (Bernabei et al., section III;
-/// numerics.md, section 10 c). Steps continue after the last photon has ended, so that the light is that of the lattice
-/// under all photons' light, to the tolerance.
+/// Marches photons while lattice steps diffuse the light deposited so far (Bernabei et al., section III; numerics.md,
+/// section 10 c). Stepping continues after the last photon has ended, so that the result is, to the tolerance, the
+/// lattice solution for the light of all photons.
 class InterleavedLattice
 {
 public:
-  /// All must outlive it.
-  /// @param domain  serial
+  /// All arguments must outlive this.
+  /// @param domain  must be serial (one rank)
   InterleavedLattice(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
     const Illumination& illumination, const LatticeSettings& settings);
 
-  /// @param marcher  of the same medium, of one order and without batches
+  /// @param marcher  set up for the same medium, one scattering order and no batches
   LightField Solve(PhotonMarcher& marcher, const std::vector<Photon>& photons, const Monitor& monitor);
 
 private:
@@ -39,7 +39,7 @@ private:
   void Take(const cl::CommandQueue& queue, const Buffer<float>& fluence);
   void TakeAll(const PhotonLight& photons);
 
-  /// A channel, and its part of the photons' light.
+  /// A lattice channel and its share of the photons' light.
   struct Channel
   {
     std::unique_ptr<LatticeChannel> lattice;
@@ -56,7 +56,7 @@ private:
 
   std::optional<PhotonsToCome> ToCome;
   std::optional<LatticeProblem> Problem;
-  Uncollided Light; ///< in the problem's units
+  Uncollided Light; ///< photons' light in the problem's units
   std::vector<Channel> Channels;
   int Steps = 0;
 };

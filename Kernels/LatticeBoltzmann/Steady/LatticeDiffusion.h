@@ -13,22 +13,24 @@
 
 namespace tyndall
 {
-/// The diffusion of a lattice, of fluence over n^2 (numerics.md, Eq. (L12)): symmetric, positive definite, a
-/// seven-point stencil. It is solved by multigrid on cells, which on one rank are the voxels.
+/// Diffusion limit of a lattice for fluence / n^2 (numerics.md, Eq. (L12)), the preconditioner of SteadyLattice: a
+/// symmetric positive definite seven-point stencil, solved by multigrid on cells. On one rank the cells are the voxels.
 ///
-/// On several ranks cells are of 2 x 2 x 2 or more voxels, and solved by the first rank. Around that go conjugate
-/// gradients over all voxels, preconditioned by damped Jacobi before and after the solve on cells.
+/// On several ranks a cell has 2 x 2 x 2 or more voxels, and the first rank solves on the cells. This coarse solve,
+/// with damped Jacobi before and after it, preconditions conjugate gradients on all voxels.
 class LatticeDiffusion
 {
 public:
   using Values = std::vector<double>;
 
-  /// Collective. All must outlive it.
+  /// Collective. All arguments must outlive this.
   LatticeDiffusion(
     Device& device, const LatticeProblem& problem, const LatticeSettings& settings, const LatticeVoxels& voxels);
 
-  /// Of the rank's own voxels, to a tenth of the residual. Collective.
-  /// @param unit  root mean square of `residual` over all ranks, above 0
+  /// Reduces the residual to a tenth. Collective.
+  /// @param residual  by own voxel
+  /// @return the correction by own voxel
+  /// @param unit  root mean square of `residual` over all ranks, > 0
   Values Solve(const Values& residual, double unit);
 
 private:
@@ -50,12 +52,12 @@ private:
   const Domain& TheDomain;
   const LatticeBox& Box;
   const std::array<bool, 3> Periodic;
-  const Halo Ghosts; ///< one layer
-  /// By own voxel, to the voxel across each face; 0: there is none. On one rank of -x, -y and -z alone.
+  const Halo Ghosts; ///< halo of one layer
+  /// By own voxel, to the neighbour across each face; 0: no neighbour. On one rank only -x, -y and -z are set.
   std::vector<std::array<float, 6>> Conductance;
   std::vector<float> Loss;
   std::array<int, 3> Halvings;             ///< cells have 2^halvings voxels along each axis
-  Grid Cells;                              ///< their number alone
+  Grid Cells;                              ///< only its size is used
   std::unique_ptr<MultigridSolver> Solver; ///< on the first rank
   ExactValues Found;
 };

@@ -17,34 +17,35 @@
 
 namespace tyndall
 {
-/// Light that moves along lines of links between collisions (numerics.md, Eqs. (L7) to (L10)). Each line is solved
-/// directly, up and down. A line that blocks cut is solved in pieces: each rank follows its own up, the rank at which a
-/// line begins joins its pieces, and each rank follows its own down; the sums are those of one rank, to rounding.
+/// Streaming between collisions: light moves along lines of links (numerics.md, Eqs. (L7) to (L10)). Each line is
+/// solved directly, by a pass up and a pass down. A line cut by blocks is solved in pieces: each rank runs the upward
+/// pass of its pieces, the rank where a line begins joins them, and each rank runs the downward pass. The results are
+/// those of one rank, to rounding.
 class LinesOfLinks
 {
 public:
   using Values = std::vector<double>;
 
-  /// Collective. All must outlive it.
-  /// @param lattice  of the block, whose densities are written; null where the block has no voxels
+  /// Collective. All arguments must outlive this.
+  /// @param lattice  lattice of the block, whose densities are written; null if the block has no voxels
   LinesOfLinks(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
     const LatticeVoxels& voxels, const Lattice* lattice);
 
   /// Collective.
-  /// @param even    W / length^2 that collisions and sources send evenly, by own voxel
-  /// @param incident  1, or 0: no incident light
-  /// @param writes  densities are written, those beyond the block's faces too
-  /// @return what arrives in each own voxel, W / length^2
+  /// @param even  W / length^2 that collisions and sources emit isotropically, by own voxel
+  /// @param incident  factor of the incident light, 1 or 0
+  /// @param writes  whether densities are written, including those beyond the block's faces
+  /// @return light that arrives in each own voxel, W / length^2
   Values Sweep(const Values& even, double incident, bool writes, const Monitor& monitor);
 
 private:
-  /// Pieces about which this rank and another exchange numbers, in an order that both know.
+  /// Pieces whose values this rank exchanges with another, in an order that both know.
   struct Shared
   {
     int rank = 0;
     std::vector<std::size_t> pieces;
   };
-  /// A line that this rank joins: the place of each of its pieces among all that this rank receives.
+  /// A line that this rank joins: the index of each of its pieces among all pieces that this rank receives.
   struct Line
   {
     std::vector<std::size_t> places;
@@ -52,19 +53,19 @@ private:
   };
   struct Pair
   {
-    std::array<std::size_t, 2> range = {}; ///< of work-items
+    std::array<std::size_t, 2> range = {}; ///< of the work-item range
     std::vector<Shared> sentTo;            ///< this rank's pieces, by the rank that joins their lines
-    std::vector<Shared> receivedFrom;      ///< pieces of the lines that this rank joins, by the rank that has them
+    std::vector<Shared> receivedFrom;      ///< pieces of the lines that this rank joins, by the rank that owns them
     std::vector<Line> lines;
-    std::vector<PieceOfLine> parts; ///< of the pieces received, side by side
+    std::vector<PieceOfLine> parts; ///< responses of the received pieces, in one array
     ExactValues below;
   };
-  /// A range of each piece's numbers.
+  /// A range of each piece's values.
   struct Part
   {
     std::size_t first = 0, count = 0, of = 0;
   };
-  struct Slot ///< scratch of a pair in progress, as LatticeLines.cl and CutLines.cl have it
+  struct Slot ///< scratch arrays of LatticeLines.cl and CutLines.cl for one pair in progress
   {
     ExactValues behind, share, sent, joined;
   };
@@ -92,12 +93,12 @@ private:
   const LatticeSettings& Settings;
   const LatticeVoxels& Voxels;
   const Lattice* Densities;
-  std::vector<Pair> Pairs; ///< none where the block has no voxels
+  std::vector<Pair> Pairs; ///< empty if the block has no voxels
   std::vector<Slot> Slots;
   std::size_t MostPieces = 1;
   ExactValues Straight, Even, Arriving;
   Buffer<float> Passes, Squared, Endless;
-  HeldFailure Failure; ///< of a sweep
+  HeldFailure Failure; ///< held during a sweep
   double Work = 0.0;
 };
 }

@@ -8,15 +8,17 @@
 
 namespace tyndall
 {
-/// Work-items that follow the lines of a pair of directions through a box, two numbers; some have none.
+/// Two-dimensional range of work-items that trace the lines of a pair of directions through a box; some items have no
+/// line.
 std::array<std::size_t, 2> LinesOfPair(const std::array<int, 3>& size, int pair);
 
-/// Lines of links of one pair of directions through a grid in blocks: each block has pieces of them, numbered as the
-/// work-items of CutLines.cl. With periodic axes a line may pass through a block several times, and close.
+/// Lines of links along one pair of directions through a distributed grid. Each block holds pieces of the lines,
+/// numbered by the work-items of CutLines.cl. With periodic axes a line may pass through a block several times, and be
+/// closed.
 class PiecesOfLines
 {
 public:
-  /// A piece, by the block's rank and its number there.
+  /// A piece: the rank of its block and its number there.
   struct Piece
   {
     int rank = 0;
@@ -24,24 +26,24 @@ public:
   };
   struct Line
   {
-    std::vector<Piece> pieces; ///< on the way up
+    std::vector<Piece> pieces; ///< in upward order
     bool closed = false;
   };
 
-  /// @param partition  must outlive it
+  /// @param partition  must outlive this
   PiecesOfLines(const BlockPartition& partition, const std::array<bool, 3>& periodic, int pair);
 
-  /// Lines of several pieces, or closed ones, that begin in the block of a rank.
+  /// The lines with several pieces, or closed, that begin in a rank's block.
   std::vector<Line> LinesFrom(int rank) const;
 
   std::array<std::size_t, 2> Range(int rank) const; ///< of work-items
-  /// visit(piece, its first voxel in the whole grid) for each piece of a rank's block.
+  /// Calls visit(piece number, its first voxel in the whole grid) for each piece of a rank's block.
   template <class Visit>
   void ForPieces(int rank, const Visit& visit) const;
 
 private:
   using Voxel = std::array<int, 3>;
-  /// Coordinate, along an axis that lines move along, at which they enter a box.
+  /// Coordinate at which lines enter a box, along an axis that they move along.
   int Entry(const VoxelBox& box, int axis) const
   {
     return this->Way[axis] > 0 ? box.first[axis] : EndOf(box, axis) - 1;

@@ -14,29 +14,30 @@
 
 namespace tyndall
 {
-/// The steady densities of one channel's lattice, where the scheme is conservative (numerics.md, Eqs. (L7) to (L12)).
+/// Steady-state solver for one channel of a lattice with the conservative scheme (numerics.md, Eqs. (L7) to (L12)).
 ///
-/// The unknown is fluence over n^2, by voxel. Between collisions light moves along lines of links, which are solved
-/// directly (LinesOfLinks); what is left is symmetric and positive definite, and solved by conjugate gradients that the
-/// diffusion of the same lattice preconditions (LatticeDiffusion). So the number of iterations hardly depends on
-/// thickness, albedo or the number of voxels.
+/// The unknown is fluence / n^2 by voxel. Streaming between collisions is solved directly along lines of links
+/// (LinesOfLinks); the remaining system is symmetric positive definite, and solved by conjugate gradients,
+/// preconditioned by the diffusion limit of the same lattice (LatticeDiffusion). The number of iterations therefore
+/// hardly depends on optical thickness, albedo or the number of voxels.
 class SteadyLattice
 {
 public:
-  /// Collective. All must outlive it.
-  /// @param densities  of the block, written by Solve(); null where the block has no voxels
+  /// Collective. All arguments must outlive this.
+  /// @param densities  densities of the block, written by Solve(); null if the block has no voxels
   SteadyLattice(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
     const LatticeVoxels& voxels, const Lattice* densities);
 
   /// Collective.
-  /// @param rows  of convergence, one an iteration
-  /// @return fluence of the steady lattice, W / length^2 by own voxel, never negative
+  /// @param rows  receives one convergence row per iteration
+  /// @return steady fluence, W / length^2, by own voxel, never negative
   std::vector<float> Solve(const Monitor& monitor, std::vector<ConvergenceRow>& rows);
 
 private:
   using Values = std::vector<double>;
 
-  /// Part of a density that is made even and not absorbed, over the weight of the directions that it is sent along.
+  /// Fraction of a density that a collision redistributes isotropically without absorption, over the total weight of
+  /// the open directions.
   double Turns(std::size_t known) const;
   double Dot(const Values& a, const Values& b) const;
   Values EvenOf(const Values& scaled, bool withSources) const;
