@@ -43,8 +43,8 @@ public:
   /// Exchanges one parcel of values with each rank of `with`; parcels may be empty. Collective: ranks without partners
   /// call it too, and if rank a names rank b, then b must name a.
   /// @param with  different ranks; this one may be among them
-  /// @param pack  makes the parcels, one for each rank of `with`. If it throws on one rank, all ranks throw (Collective)
-  ///   and nothing is sent
+  /// @param pack  makes the parcels, one per rank of `with`. If it throws on one rank, all ranks throw (Collective) and
+  ///   nothing is sent
   /// @return the received parcels, in the order of `with` whatever the order of arrival
   template <class T>
   std::vector<std::vector<T>> Exchange(

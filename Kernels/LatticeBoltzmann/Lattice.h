@@ -30,7 +30,7 @@ public:
   void StepOn(const cl::CommandQueue& queue) { this->Queue = queue; }
   void SetSource(const std::vector<float>& source); ///< LatticeVoxels::source, by known voxel
   /// Sets the source to light scattered from a fluence on the device, plus emission. Queued.
-  /// @param scatters  by lattice place: fraction of the fluence that is scattered in a step through the voxel, times the
+  /// @param scatters  by lattice place: fraction of the fluence that is scattered in a step through a voxel, times the
   ///   conversion from the fluence's unit to the lattice's
   /// @param emits  by lattice place: the source without that scattered light
   /// @param fluence  [voxel][channels]; only `channel` is used

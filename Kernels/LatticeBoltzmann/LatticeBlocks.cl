@@ -1,4 +1,5 @@
-// Steps of blocks of voxels that exchange light after several of them (Bernabei et al., section III-C). The host gives
+// Steps in blocks of voxels that exchange light only after several steps (Bernabei et al., section III-C). The host
+// defines
 //   BLOCK  voxels along a block's edge
 #include "LatticeBoltzmann/LatticeLink.cl"
 
@@ -8,7 +9,7 @@ DEFINE_COLLIDED(collided, float)
 DEFINE_OPEN(open_weight, float, int)
 DEFINE_SENT(sent_weight, float, int)
 
-// Voxel of the block that lies `sign` ways of direction i from this one, -1 where that is another block's or outside.
+// Index within the block of the neighbour at `sign` times direction i; -1 if it is in another block or outside.
 static int neighbour_in_block(LatticeInfo lattice, int i, int sign)
 {
   int index = 0, step = 1;
@@ -25,10 +26,10 @@ static int neighbour_in_block(LatticeInfo lattice, int i, int sign)
   return index;
 }
 
-// A work-group a block, a work-item a voxel. Arrays are those of step_lattice, and
+// One work-group per block, one work-item per voxel. Arrays are those of step_lattice, and
 //   came       densities that other blocks, or the boundary, send along each link in each of these steps: the mean over
-//              their last steps
-//   goes       the same from this block, for the next exchange; other links are left as they are
+//              the last exchange interval
+//   goes       the same from this block, for the next exchange; values of other links are not changed
 //   densities  of all voxels, before and after
 __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_blocks(LatticeInfo lattice,
   const __global float* resistance, const __global float* squared, const __global float* albedo,

@@ -1,20 +1,20 @@
-// What the kernels of the lattice share. The host gives
+// Functions shared by the lattice kernels. The host defines
 //   DIRECTIONS  18 or 6
-//   PASSES_ALL  1: no link gives back light, but at reflecting faces
+//   PASSES_ALL  1: no link reflects light, except at reflecting faces
 //   BENDS       1: the refractive index varies
-//   REFLECTS    1: a face of the box gives back light
-//   PUBLISHED   1: collisions as printed
-//   ENDLESS     1: along some lines no light is sent
+//   REFLECTS    1: a face of the box reflects light
+//   PUBLISHED   1: collisions as in the paper
+//   ENDLESS     1: some lines of links are endless; no light is sent along them
 //
-// Densities are what leaves a voxel along each of its links, [direction][stride]. Their sum is fluence, W / length^2.
-// The layer of voxels around the box holds incident light.
+// The density of a direction is the light that leaves a voxel along that link, W / length^2, [direction][stride]. The
+// sum over directions is the fluence. The halo around the box holds incident light.
 #pragma once
 #include "LatticeBoltzmann/LatticeShared.h"
 
 #define WEIGHT(i) (DIRECTIONS == 6 ? 1.0f / 6.0f : (i) < 6 ? 1.0f / 12.0f : 1.0f / 24.0f)
 #define FOR_DIRECTIONS(i) _Pragma("unroll") for (int i = 0; i < DIRECTIONS; ++i)
 
-// Links pass what is sent, and add nothing.
+// All links transmit everything and reflect nothing.
 #if PASSES_ALL && !BENDS && !REFLECTS
 #define PLAIN 1
 #else
@@ -23,12 +23,14 @@
 
 __constant char Ways[18][3] = LATTICE_WAYS;
 
-// What arrives along a link in voxels: what the neighbour sends, as far as the link lets it through, and what the link
-// gives back (numerics.md, Eqs. (L3), (L5)).
-//   sent, back  densities of the neighbour along the link, and of the voxel itself against it
-//   own, other  resistance of both: inverse of the part that a link lets through between two like them
-//   here, there n^2 of both; there 0: outside, where n^2 is the voxel's, times which `sent` is incident
-//   albedo      of the face between; 0 inside
+// Light that arrives along a link: what the link transmits of the neighbour's density, plus what it reflects of the
+// voxel's own (numerics.md, Eqs. (L3), (L5)).
+//   sent, back  densities: the neighbour's along the link, and the voxel's own in the opposite direction
+//   own, other  resistance of voxel and neighbour: inverse of the fraction that a link between two such voxels
+//               transmits
+//   here, there n^2 of voxel and neighbour. there = 0: outside the box; n^2 is then the voxel's, and the incident
+//               light is `sent` times n^2
+//   albedo      albedo of the face between them; 0 inside the box
 #define DEFINE_ARRIVING(name, type)                                                                                \
   static type name(type sent, type back, type own, type other, type here, type there, type albedo)                 \
   {                                                                                                                \
@@ -50,8 +52,9 @@ __constant char Ways[18][3] = LATTICE_WAYS;
     return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                                   \
   }
 
-// Voxels send none of their even light along endless lines (LatticeVoxels.h), and all of it along the other lines.
-//   closed  bits of the pairs of directions of endless lines
+// Weights of the open directions: voxels emit no isotropic light along endless lines (LatticeVoxels.h), and all of it
+// along the other lines.
+//   closed  bit mask of the direction pairs whose line is endless
 #define DEFINE_OPEN(name, type, whole)                                                    \
   static type name(whole closed)                                                          \
   {                                                                                       \
@@ -69,9 +72,9 @@ __constant char Ways[18][3] = LATTICE_WAYS;
   }
 
 // Density along a direction after a collision (Eqs. (L1), (L6)).
-//   weight  of the direction, among those that light is sent along
-//   before  what arrived, with half of the source of a step
-//   sum     of those of all directions
+//   weight  of the direction, relative to the open directions
+//   before  light that arrived, plus half the source of a step
+//   sum     of `before` over all directions
 #define DEFINE_COLLIDED(name, type)                                                                                \
   static type name(type weight, type before, type sum, type even, type stays)                                      \
   {                                                                                                                \

@@ -1,5 +1,5 @@
-// A step of photon density on a lattice (numerics.md, section 10 c), all voxels together. The host also gives
-//   STREAMS  1: densities are far more than caches hold, and are written past them where the compiler can
+// One lattice step of the photon densities (numerics.md, section 10 c), for all voxels together. The host also defines
+//   STREAMS  1: densities exceed the caches; use streaming stores if the compiler has them
 #include "LatticeBoltzmann/LatticeLink.cl"
 
 #if STREAMS && defined(__has_builtin)
@@ -14,7 +14,7 @@ DEFINE_COLLIDED(collided, float16)
 DEFINE_OPEN(open_weight, float16, int16)
 DEFINE_SENT(sent_weight, float16, int16)
 
-// Stores sixteen values from `at` on, up to the row's last voxel.
+// Stores sixteen values at `at`, clipped to the end of the row.
 static void store_some(float16 values, __global float* to, ulong at, int voxels)
 {
   if (voxels >= WIDTH)
@@ -30,7 +30,7 @@ static void store_some(float16 values, __global float* to, ulong at, int voxels)
   }
 }
 
-// The same for densities, whose rows are aligned. A streaming store saves reading the lines that it overwrites.
+// The same for densities, whose rows are aligned. A streaming store avoids reading the cache lines that it overwrites.
 static void store_densities(float16 values, __global float* to, ulong at, int voxels)
 {
 #ifdef STORE_PAST_CACHES
@@ -43,13 +43,13 @@ static void store_densities(float16 values, __global float* to, ulong at, int vo
   store_some(values, to, at, voxels);
 }
 
-// What the medium does in each place of the lattice:
-//   resistance  inverse of the part that links let through, as if the neighbour were alike; 1 outside
+// Properties of the medium at each place of the lattice:
+//   resistance  inverse of the fraction that a link between two such voxels transmits; 1 outside
 //   squared     n^2; 0 outside
-//   albedo      of faces, outside; 0 inside
+//   albedo      albedo of the face, outside the box; 0 inside
 #define LINKS const __global float *resistance, const __global float *squared, const __global float *albedo
 
-// What arrives along direction i in sixteen voxels beginning at `at`.
+// Light that arrives along direction i in the sixteen voxels from `at` on.
 static float16 arriving_along(LatticeInfo lattice, LINKS, const __global float* from, int i, ulong at)
 {
   const ulong other = at - lattice.offset[i];
@@ -61,11 +61,11 @@ static float16 arriving_along(LatticeInfo lattice, LINKS, const __global float* 
     BENDS ? vload16(0, squared + other) : one, REFLECTS ? vload16(0, albedo + other) : zero);
 }
 
-// A work-item a row of voxels. Arrays are of the lattice but for fluence:
-//   turning   part of the density that collisions make even
-//   kept      part that is not absorbed in a step; published: neither absorbed nor scattered
-//   source    W / length^2 a step, that begins evenly in all directions
-//   endless   with ENDLESS: bits of the pairs of directions along which nothing is sent
+// One step. One work-item per row of voxels. Arrays have the layout of the lattice, except fluence:
+//   turning   fraction of the density that collisions make isotropic
+//   kept      fraction that is not absorbed in a step; published scheme: neither absorbed nor scattered
+//   source    isotropic source, W / length^2 per step
+//   endless   with ENDLESS: bit mask of the direction pairs along which nothing is sent
 //   from, to  densities before and after
 //   fluence   [voxel], written with `writes`
 __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* turning, const __global float* kept,
@@ -99,8 +99,8 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
   }
 }
 
-// The source from a fluence ([voxel][channels], of which one channel is used) and emission; arguments are described at
-// Lattice::SetSourceOf. A work-item a row of voxels.
+// Sets the source from one channel of a fluence, [voxel][channels], and from emission; arguments as described at
+// Lattice::SetSourceOf. One work-item per row of voxels.
 __kernel void source_of_fluence(LatticeInfo lattice, const __global float* scatters, const __global float* emits,
   const __global float* fluence, int channels, int channel, __global float* source)
 {
@@ -113,14 +113,14 @@ __kernel void source_of_fluence(LatticeInfo lattice, const __global float* scatt
   }
 }
 
-// Fluence at some voxels.
+// Copies the fluence at the given voxels.
 __kernel void look_at_lattice(const __global float* fluence, const __global int* voxels, __global float* seen)
 {
   const int i = get_global_id(0);
   seen[i] = fluence[voxels[i]];
 }
 
-// Net flux, W / length^2, [x, y, z][voxel]: the mean of what arrives and what leaves. A work-item a row of voxels.
+// Net flux, W / length^2, [x, y, z][voxel]: the mean of arriving and leaving flux. One work-item per row of voxels.
 __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* from, __global float* flux)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
@@ -146,8 +146,8 @@ __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* fro
   }
 }
 
-// Fills the layer around the box across a periodic axis. A work-item a value of a plane, by direction.
-//   u, v  steps in memory along the plane, and `along` the axis; n: voxels along it
+// Fills the halo across a periodic axis. One work-item per value of a plane and direction.
+//   u, v  strides within the plane; `along`: stride along the periodic axis; n: voxels along it
 __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v, int along, int n)
 {
   __global float* at = densities + LatticeFirst - 1 + get_global_id(2) * stride + (ulong)get_global_id(0) * u +
@@ -156,8 +156,8 @@ __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v
   at[(ulong)(n + 1) * along] = at[along];
 }
 
-// W / length^2 that each voxel sends through the box's faces in the next step, [face][voxel]; a corner's light goes
-// through both of its faces, half each. Periodic axes have no faces.
+// Light that each voxel sends through the box's faces in the next step, W / length^2, [face][voxel]. Light that leaves
+// across an edge is split equally between both faces. Periodic axes have no faces.
 __kernel void leave_lattice(
   LatticeInfo lattice, const __global float* resistance, const __global float* densities, __global float* leaving)
 {

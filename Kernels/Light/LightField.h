@@ -83,7 +83,7 @@ struct LightField
   std::vector<int> sweepsSaved;
   bool converged = true; ///< the last residual is at most the tolerance, or all orders that were asked for are done
   std::vector<std::string> doubts; ///< warnings about the result, one sentence each
-  /// Polar quadrature nodes of a plane-parallel solve (PropagationSettings::polarNodes); 0: rays were traced through the
+  /// Polar quadrature nodes of a plane-parallel solve (PropagationSettings::polarNodes); 0: rays were traced through
   /// voxels.
   int polarNodes = 0;
   /// Directions per face that were used, if the solver chooses (PropagationSettings::adaptDirections).

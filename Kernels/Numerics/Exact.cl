@@ -1,5 +1,5 @@
-// Numbers as Device/ExactValues.h holds them. The host gives
-//   DOUBLES  1 where the device has double precision
+// The type `exact` of Device/ExactValues.h: double, or float if the device has no double. The host defines
+//   DOUBLES  1 if the device has double precision
 
 #pragma once
 

@@ -1,5 +1,7 @@
-// Sums in 64-bit fixed point, which do not depend on the order of their terms (numerics.md, Eq. (35)). The host gives
-//   ATOMICS  1: many work-items add to one sum; 0: one at a time does (the device has no 64-bit atomics, or needs none)
+// Sums in 64-bit fixed point, which do not depend on the order of their terms (numerics.md, Eq. (35)). The host
+// defines
+//   ATOMICS  1: several work-items may add to one sum at once; 0: only one at a time does (the device has no 64-bit
+//            atomics, or needs none)
 
 #pragma once
 

@@ -1,10 +1,10 @@
-// Sums over work-groups. The host gives
-//   GROUP  work-items of a group, a power of 2; 1: a work-item is one, as kernels are organised for a CPU
+// Sums over work-groups. The host defines
+//   GROUP  work-items per group, a power of 2; 1: each work-item sums alone, as on a CPU
 
 #pragma once
 
-// Writes the sum of what the work-items of a group have to `place`. At the end of a kernel's outermost scope, to which
-// all of them come.
+// Writes the sum of the values of a group's work-items to `place`. Must stand at the end of a kernel's outermost scope,
+// which all work-items reach.
 #if GROUP == 1
 #define PUT_SUM_OF_GROUP(type, value, place) place = value;
 #else
@@ -25,7 +25,7 @@
   }
 #endif
 
-// Where the values of a chunk are added up by one group, side by side: the first vector of this work-item, and from
-// one to its next.
+// For a chunk of values summed by one group with adjacent work-items reading adjacent vectors: the first vector of this
+// work-item, and the stride to its next.
 #define FIRST_IN_CHUNK(width) (get_local_id(0) * (GROUP == 1 ? 0 : (width)))
 #define STEP_IN_CHUNK(width) (GROUP * (width))

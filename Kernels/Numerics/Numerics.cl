@@ -1,5 +1,5 @@
-// Numerics shared by every kernel that follows light through a medium. Define REAL_WIDTH as 1, 4, 8 or 16 before:
-// `real` is then a float or a float vector, on which all of this works alike.
+// Numerics shared by all kernels that trace light through a medium. Define REAL_WIDTH as 1, 4, 8 or 16 first: `real` is
+// then a float or a float vector; all functions work on either.
 
 #pragma once
 
@@ -22,21 +22,21 @@ typedef TYNDALL_JOIN(int, REAL_WIDTH) integer;
 #define as_real TYNDALL_JOIN(as_float, REAL_WIDTH)
 #define to_integer TYNDALL_JOIN(convert_int, REAL_WIDTH)
 #define to_real TYNDALL_JOIN(convert_float, REAL_WIDTH)
-// Not vload and vstore: PoCL takes a vstore to pieces of four floats.
+// Used instead of vload and vstore, since PoCL splits a vstore into pieces of four floats.
 typedef real __attribute__((aligned(4))) real_anywhere;
 #define load_real(index, pointer) (*(const __global real_anywhere*)((pointer) + (index)))
 #define store_real(value, index, pointer) (*(__global real_anywhere*)((pointer) + (index)) = (value))
 #endif
 
-// a b + c in one instruction where there is one: PoCL's mad is two.
+// a b + c in one instruction if the device has one; PoCL's mad takes two.
 #if defined(FP_FAST_FMAF) || defined(__FMA__)
 #define multiply_add fma
 #else
 #define multiply_add mad
 #endif
 
-// To the nearest whole number, for |x| < 2^22: adding 1.5 * 2^23 leaves no room for a fraction. PoCL's rint is fifteen
-// instructions.
+// Rounds to the nearest integer, for |x| < 2^22: adding 1.5 * 2^23 leaves no mantissa bits for a fraction. PoCL's rint
+// takes fifteen instructions.
 inline real nearest_whole(real x)
 {
   return (x + (real)12582912.0f) - (real)12582912.0f;
@@ -59,12 +59,12 @@ inline float sum_of(real values)
 }
 
 // Fraction extinguished over an optical length, 1 - exp(-tau), to a few units in the last place for every tau >= 0, and
-// the fraction that is left, exp(-tau).
+// the fraction transmitted, exp(-tau).
 //   exp(-tau) = 2^n (1 + q), q = expm1(r), r = -tau - n ln 2 in [-ln 2 / 2, ln 2 / 2]
-// so that small tau lose nothing to cancellation. PoCL's exp is scalar and costs five times this.
+// so that there is no cancellation for small tau. PoCL's exp is scalar and costs five times this.
 inline real extinguished(real tau, real* left)
 {
-  const real t = fmin(tau, (real)87.0f); // 2^-126 is the smallest normal number; beyond it nothing is left
+  const real t = fmin(tau, (real)87.0f); // 2^-126 is the smallest normal number; beyond it the transmittance is 0
   const real n = nearest_whole(t * (real)-1.44269504f);
   const real r = multiply_add(n, (real)2.12194440e-4f, multiply_add(n, (real)-0.693359375f, -t));
   real p = multiply_add(r, (real)1.98412698e-4f, (real)1.38888889e-3f);

@@ -1,5 +1,6 @@
-// Random numbers by counter: Philox 4x32 of ten rounds (Salmon, Moraes, Dror and Shaw 2011, "Parallel random numbers:
-// as easy as 1, 2, 3", section 3.2). A block is a function of key and counter alone: who asks when makes no difference.
+// Counter-based random numbers: Philox 4x32 with ten rounds (Salmon, Moraes, Dror and Shaw 2011, "Parallel random
+// numbers: as easy as 1, 2, 3", section 3.2). A block is a function of key and counter alone, so the order of
+// evaluation does not matter.
 
 #pragma once
 
@@ -15,14 +16,14 @@ static uint4 philox(uint4 counter, uint2 key)
   return counter;
 }
 
-// The numbers of one photon, one after the other.
+// Sequence of random numbers of one photon.
 typedef struct
 {
   uint2 key;      // the seed
-  ulong stream;   // of the photon
-  uint block;     // the next one
-  int left;       // numbers of the last block that are left
-  uint values[4]; // of that
+  ulong stream;   // index of the photon
+  uint block;     // index of the next block
+  int left;       // unused numbers of the current block
+  uint values[4]; // the current block
 } random_numbers;
 
 static random_numbers random_of(ulong seed, ulong stream)
@@ -31,7 +32,7 @@ static random_numbers random_of(ulong seed, ulong stream)
   return random;
 }
 
-// Of a photon that has drawn from so many blocks, of whose last one so many are left.
+// State of a photon that has used `blocks` blocks, with `left` numbers of the last one unused.
 static random_numbers random_after(ulong seed, ulong stream, uint blocks, int left)
 {
   random_numbers random = random_of(seed, stream);
@@ -44,7 +45,7 @@ static random_numbers random_after(ulong seed, ulong stream, uint blocks, int le
   return random;
 }
 
-// In (0, 1), multiples of 2^-24 and a half of that.
+// Next number in (0, 1): (k + 1/2) 2^-24.
 static float draw(random_numbers* random)
 {
   if (random->left == 0)

@@ -1,8 +1,7 @@
-// PREFETCH asks for a line of memory before it is read (write: 0) or written (1), into a cache as near as `locality`
-// says (0 to 3, as GCC's builtin has it). On GPUs it does nothing: NVIDIA's compiler has that builtin, but not for
-// pointers of OpenCL.
+// PREFETCH loads a cache line before it is read (write: 0) or written (1); `locality`, 0 to 3, selects the cache level
+// as in GCC's builtin. On GPUs it does nothing: NVIDIA's compiler has the builtin, but not for OpenCL pointers.
 //
-// The host gives FOR_CPU with every kernel (Device.cxx).
+// The host defines FOR_CPU with every kernel (Device.cxx).
 
 #pragma once
 

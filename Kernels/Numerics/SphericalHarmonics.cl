@@ -1,5 +1,5 @@
-// The real spherical harmonics of a unit vector, as Numerics/SphericalHarmonics.h has them, so scaled that their
-// squares average to 1. The host gives DEGREE, the highest.
+// The real spherical harmonics of a unit vector, ordered as in Numerics/SphericalHarmonics.h and scaled so
+// that the mean of their squares is 1. The host defines DEGREE, the highest degree.
 
 #pragma once
 

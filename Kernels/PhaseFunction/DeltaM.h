@@ -12,7 +12,7 @@ namespace tyndall
 struct DeltaM
 {
   double forward = 0.0;        ///< fraction of scattered light treated as unscattered; negative for degree 0 and g < 0
-  std::vector<double> moments; ///< Legendre moments 0 to degree of the rest; the first
+  std::vector<double> moments; ///< Legendre moments 0 to degree of the rest; the first is 1
 
   DeltaM() = default;
   /// @param moments  Legendre moments 0 to degree + 1 of the phase function

@@ -18,7 +18,7 @@ enum class PhaseFactorisation
 enum class PhaseSampling
 {
   PointValues, ///< its value between the two directions, as published
-  CellMeans ///< its mean over both directions' cells, approximated by caps of their solid angles (numerics.md, Eq. (D3))
+  CellMeans    ///< its mean over both directions' cells, taken as caps of their solid angles (numerics.md, Eq. (D3))
 };
 
 struct SeparableSettings

@@ -1,6 +1,6 @@
-// Pieces of lines of links in a rank's block; their other pieces lie in other blocks, or across a periodic axis in this
-// one. On the way up a piece's response to light at its ends, and what it sends without any, are found; when all pieces
-// of a line have been joined (JoinedLine.h), densities follow on the way down.
+// Pieces of lines of links in a rank's block; the other pieces of a line lie in other blocks, or across a periodic axis
+// in this one. The upward pass finds a piece's response to light at its ends, and what it sends without such light.
+// When all pieces of a line have been joined (JoinedLine.h), the downward pass finds the densities.
 #include "LatticeBoltzmann/Steady/LatticeLine.cl"
 
 #define PIECE (get_global_id(1) * get_global_size(0) + get_global_id(0))
@@ -8,12 +8,12 @@
 typedef struct
 {
   Place place; // the first voxel
-  bool is_cut; // before it lies another piece
-  Link link;   // to that
-  Border low;  // or else the grid's face
+  bool is_cut; // another piece precedes it
+  Link link;   // to that piece
+  Border low;  // the grid's face, if no piece precedes it
 } Piece;
 
-// below    [piece][2], of the voxel before it: part that links let through, n^2
+// below    [piece][2], for the voxel before the piece: fraction that links transmit, n^2
 // endless  as in sweep_lines
 // @return false: no piece begins here, or its line is endless
 static bool begin_piece(LatticeInfo lattice, MEDIUM, int pair, exact incident, const __global exact* below,
@@ -62,9 +62,10 @@ static Top last_of_piece(LatticeInfo lattice, Place place, int i)
   return top;
 }
 
-// Up the pieces of a pair of directions. A work-item a piece; arrays as in sweep_lines, and
-//   sent  [piece][8], with x sent up the cut before it and B sent down to its last voxel (PieceOfLine): the last voxel
-//         sends up 0 + 2 x + 3 B, the first one sends down 1 + 4 x + 5 B; the link before it lets 6 up and 7 down
+// Upward pass of the pieces along a pair of directions. One work-item per piece; arrays as in sweep_lines, and
+//   sent  [piece][8], for x sent up the cut before it and B sent down to its last voxel (PieceOfLine). With s[k] for
+//         the eight values: the last voxel sends up s[0] + s[2] x + s[3] B, the first one sends down s[1] + s[4] x +
+//         s[5] B; the link before the piece transmits the fractions s[6] upwards and s[7] downwards
 __kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact incident, const __global exact* below,
   const __global float* endless, __global exact* behind, __global exact* share, __global exact* sent)
 {
@@ -102,9 +103,9 @@ __kernel void pieces_up(LatticeInfo lattice, MEDIUM, int pair, exact incident, c
   of[7] = piece.link.down;
 }
 
-// Down the pieces, after pieces_up.
+// Downward pass of the pieces, after pieces_up.
 //   joined  [piece][3]: x, B, and what the first voxel of the next piece sends down
-//   densities  also those that the voxels before and beyond send into the piece
+//   densities  also those that the voxels before and after the piece send into it
 __kernel void pieces_down(LatticeInfo lattice, MEDIUM, int pair, exact incident, const __global exact* below,
   const __global float* endless, const __global exact* behind, const __global exact* share,
   const __global exact* joined, __global exact* sum, __global float* densities, int writes)

@@ -1,14 +1,15 @@
-// One line of links (numerics.md, Eqs. (L7) to (L10)), for LatticeLines.cl and CutLines.cl. The host gives what
-// LatticeLink.cl and Numerics/Exact.cl require.
+// Solve along one line of links (numerics.md, Eqs. (L7) to (L10)), for LatticeLines.cl and CutLines.cl. The host
+// defines what LatticeLink.cl and Numerics/Exact.cl require.
 #pragma once
 #include "LatticeBoltzmann/LatticeLink.cl"
 #include "Numerics/Exact.cl"
 
-// In float weights add up to 1 only to 1e-8, and thick voxels would gain or lose as much in every collision.
+// In single precision the weights add up to 1 only to 1e-8, and thick voxels would gain or lose that much in every
+// collision.
 #define EXACT_WEIGHT(i) (DIRECTIONS == 6 ? (exact)1 / 6 : (i) < 6 ? (exact)1 / 12 : (exact)1 / 24)
 
-// By voxel: part of the density that goes straight on, part that links let through, n^2, and W / length^2 that each
-// collision makes even.
+// Arrays by voxel: fraction of the density that continues straight, fraction that links transmit, n^2, and light that
+// collisions redistribute isotropically, W / length^2.
 #define MEDIUM                                                                                 \
   const __global exact *straight, const __global float *passes, const __global float *squared, \
     const __global exact *even
@@ -20,7 +21,7 @@ typedef struct
   int other; // of a corner the second one, else the same
 } Place;
 
-// Parts of light that pass a link up the line and down it.
+// Fractions of light that a link transmits up the line and down it.
 typedef struct
 {
   exact up, down;
@@ -60,7 +61,7 @@ static Place next_along(LatticeInfo lattice, Place place, int i)
   return next;
 }
 
-// Of two voxels: what links let through, and n^2.
+// The link between two voxels, from the fraction that links of each transmit (passes) and n^2 of each (squared).
 static Link link_of(exact passes_a, exact passes_b, exact squared_a, exact squared_b)
 {
   const exact own = 1 / passes_a, other = 1 / passes_b;
@@ -75,8 +76,8 @@ static Link link_between(MEDIUM, ulong a, ulong b)
   return link_of(passes[a], passes[b], BENDS ? squared[a] : 1, BENDS ? squared[b] : 1);
 }
 
-// A face of the grid, or the mean of two at an edge: incident light that it lets in, and the part of what meets it from
-// inside that it reflects.
+// A face of the grid, or the mean of two at an edge: incident light, and the fraction of outgoing light that it
+// reflects.
 typedef struct
 {
   exact in, back;
@@ -92,8 +93,8 @@ static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, Place past, ex
   return border;
 }
 
-// Where the work-item's line begins, and whether there is one: of an axis' links by the two other coordinates, of
-// diagonal ones by the coordinate along the third axis and a number along the first rows of the plane.
+// Finds where the work-item's line begins, and whether there is one. Lines along an axis are numbered by the two other
+// coordinates; diagonal lines by the coordinate along the third axis and an index along the first rows of the plane.
 static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
 {
   const int u = get_global_id(0), v = get_global_id(1);
@@ -141,20 +142,20 @@ static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
   return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
 }
 
-// U and R of a voxel, from the way up.
+// U and R of a voxel, found in the upward pass.
 typedef struct
 {
   exact sends, returns;
 } Behind;
 
-// One voxel up: what arrives there from behind is arrived + back times what it sends down.
+// Updates U and R across one voxel: light that arrives from behind is arrived + back * (what the voxel sends down).
 static Behind pass_voxel(exact straight, exact source, exact arrived, exact back)
 {
   const Behind behind = { straight * (arrived + back * source) + source, straight * straight * back };
   return behind;
 }
 
-// What comes to the next voxel up: what arrives there, and the part of what it sends down that comes back.
+// Light incident on the next voxel up: what arrives there, and the fraction of what it sends down that returns.
 static Behind cross_up(Link link, Behind here)
 {
   const exact again = 1 / (1 - here.returns * (1 - link.up));
@@ -162,13 +163,13 @@ static Behind cross_up(Link link, Behind here)
   return next;
 }
 
-// A link, where what is sent down it is known: what arrives above and below it, and what is sent up.
+// Light at a link for known light sent down it: what arrives above and below the link, and what is sent up.
 typedef struct
 {
   exact up_arrives, lower, up;
 } Crossed;
 
-// @param below  of the voxel below: what it sends up, and gives back of what comes down
+// @param below  U and R of the voxel below: what it sends up, and the fraction of incident light that it returns
 static Crossed cross_down(Link link, Behind below, exact down)
 {
   const exact up = (below.sends + below.returns * link.down * down) / (1 - below.returns * (1 - link.up));
@@ -176,14 +177,14 @@ static Crossed cross_down(Link link, Behind below, exact down)
   return crossed;
 }
 
-// Where a line or a piece of one begins: what arrives in its first voxel from behind, the part of what that sends down
-// that comes back, and the part of what goes up the cut behind it, of one that is cut there.
+// Beginning of a line or piece: light that arrives in its first voxel from behind, the fraction of what that voxel
+// sends down that returns, and, if it is cut there, the fraction transmitted of what is sent up the cut.
 typedef struct
 {
   exact arrived, back, part;
 } Beginning;
 
-// At a face of the grid; and at a cut, where what is sent up is not known yet.
+// Beginnings at a face of the grid, and at a cut, where the light sent up is not known yet.
 static Beginning begin_at_border(Border low)
 {
   const Beginning begin = { low.in, low.back, 0 };
@@ -195,14 +196,14 @@ static Beginning begin_at_cut(Link link)
   return begin;
 }
 
-// What is sent down to the cut of a line, with x sent up there and B sent down to the last voxel: sent + round x +
-// gives_back B.
+// Light sent down to the cut of a line, if x is sent up there and B is sent down to the last voxel:
+// sent + round x + gives_back B.
 typedef struct
 {
   exact sent, round, gives_back;
 } Cut;
 
-// The last voxel of a line, and its response to what is sent up the cut.
+// The last voxel of a line, and its response to light sent up the cut.
 typedef struct
 {
   Place place;
@@ -212,10 +213,10 @@ typedef struct
   Cut cut;
 } Top;
 
-// The way up.
-//   is_cut  1: behind the first voxel
+// The upward pass.
+//   is_cut  true: the line is cut behind the first voxel
 //   behind  [voxel][2], U and R
-//   share   [voxel], if the line is cut: T, a voxel's response to what is sent up the cut
+//   share   [voxel], if the line is cut: T, the voxel's response to light sent up the cut
 static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begin, bool is_cut, __global exact* behind,
   __global exact* share)
 {
@@ -258,18 +259,18 @@ static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begi
   }
 }
 
-// Densities of a voxel along a line's two directions, as step_lattice has them, [direction][stride].
+// Index of a voxel in the densities of one direction, in the layout of step_lattice.
 static ulong density_at(LatticeInfo lattice, const int* at)
 {
   return (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + LatticeFirst;
 }
 
-// The way down.
-//   comes     sent down to the last voxel
-//   round     sent up the cut, if the line is cut; else 0
-//   first     what arrives in the first voxel from before it, and the part of what it sends down that is returned
-//   sum       [voxel], W / length^2: what arrives is added
-//   writes    1: densities are written, too, as step_lattice has them
+// The downward pass.
+//   comes     light sent down to the last voxel
+//   round     light sent up the cut, if the line is cut; else 0
+//   first     light that arrives in the first voxel from before it, and the fraction of what it sends down that returns
+//   sum       [voxel], W / length^2: arriving light is added
+//   writes    1: also write densities, in the layout of step_lattice
 static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, exact round, Border first, bool is_cut,
   const __global exact* behind, const __global exact* share, __global exact* sum, __global float* densities, int writes)
 {

@@ -1,18 +1,19 @@
-// Light that moves along lines of links until it collides, for given collisions (numerics.md, Eqs. (L7) to (L10)). The
-// host gives what LatticeLink.cl and Numerics/Exact.cl require.
+// Streaming along lines of links between collisions, for given collisions (numerics.md, Eqs. (L7) to (L10)). The host
+// defines what LatticeLink.cl and Numerics/Exact.cl require.
 //
-// Along a line light moves both ways, for links give back a part. The voxels up to one of them are described by what
-// they send without light from ahead, U, and the part of light from ahead that they return, R: two numbers a voxel,
-// found on the way up; densities follow on the way down. All terms are positive, so that no digit is lost.
+// Light moves both ways along a line, because links reflect a part. The voxels up to a given one are described by U,
+// what they send up without light from ahead, and R, the fraction of light from ahead that they return. The upward pass
+// finds U and R of every voxel, the downward pass the densities. All terms are positive, so that there is no
+// cancellation.
 #include "LatticeBoltzmann/Steady/LatticeLine.cl"
 
-// Lines of a pair of directions, 2 pair and 2 pair + 1. A work-item a line.
-//   incident  1, or 0: no incident light
+// Solves all lines of the directions 2 pair and 2 pair + 1. One work-item per line.
+//   incident  factor of the incident light, 1 or 0
 //   behind    [voxel][2], scratch
-//   share     [voxel], scratch: T of closed lines, a voxel's response to what wraps around
-//   sum       [voxel], W / length^2: what arrives is added
-//   endless   [voxel], with ENDLESS: bits of the pairs along which its lines are endless, which stay dark
-//   writes    1: densities are written, too, as step_lattice has them
+//   share     [voxel], scratch: T of closed lines, the voxel's response to light that wraps around
+//   sum       [voxel], W / length^2: arriving light is added
+//   endless   [voxel], with ENDLESS: bit mask of the direction pairs whose line is endless; such lines carry no light
+//   writes    1: also write densities, in the layout of step_lattice
 __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact incident, __global exact* behind,
   __global exact* share, __global exact* sum, __global float* densities, const __global float* endless, int writes)
 {
@@ -42,7 +43,7 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact incident,
   const Beginning begin = closed ? begin_at_cut(closing) : begin_at_border(low);
   const Top top = go_up(lattice, straight, passes, squared, even, place, i, begin, closed, behind, share);
 
-  // What is sent down to the last voxel, and what wraps around a closed line.
+  // Light sent down to the last voxel, and light that wraps around a closed line.
   const exact sends = behind[2 * top.voxel], returns = behind[2 * top.voxel + 1];
   exact comes, round = 0;
   if (closed)
