@@ -11,24 +11,24 @@
 
 namespace tyndall
 {
-/// What every solver is given. Seen, not owned.
+/// The scene that all solvers are given. Refers to arrays that it does not own.
 struct ComparedScene
 {
   Medium medium;
   Illumination illumination;
   Field ior;                            ///< null values: 1 everywhere
-  const std::uint8_t* levels = nullptr; ///< of an octree, for photons; null: none
+  const std::uint8_t* levels = nullptr; ///< octree levels by voxel, for photons; null: none
   std::array<bool, 3> periodic = { false, false, false };
 
-  bool BendsLight() const; ///< whether the index is not the same everywhere
+  bool BendsLight() const; ///< whether the refractive index varies
   bool Emits() const;      ///< whether any voxel emits
-  /// Why photons cannot make the light of this scene; empty: they can.
-  /// @param all  scattered light, too
+  /// Why photons cannot simulate this scene; empty if they can.
+  /// @param all  including scattered light
   std::string WhyNotByPhotons(bool all) const;
 };
 
-/// The same scene on a coarser or a finer grid: coefficients are means over the voxels, or repeated; the mean cosine is
-/// weighted by sigma_s.
+/// A scene on a coarser or finer grid: coefficients are averaged over voxels, or repeated; the mean cosine is averaged
+/// with weight sigma_s.
 class RescaledScene
 {
 public:

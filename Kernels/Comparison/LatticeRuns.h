@@ -4,6 +4,6 @@
 
 namespace tyndall
 {
-/// The runs of RunsOf on lattices; none where no grid that is tried has voxels that are cubes.
+/// The lattice runs of RunsOf; empty if no compared grid has cubic voxels.
 std::vector<ComparedRun> LatticeRunsOf(Device& device, const ComparedScene& scene, const ComparedSettings& settings);
 }

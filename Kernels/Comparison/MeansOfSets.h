@@ -4,25 +4,25 @@
 
 namespace tyndall
 {
-/// Means of independent sets of photons, and how far chance puts them off.
+/// Means over independent sets of photons, and their standard errors.
 class MeansOfSets
 {
 public:
-  /// @param channels  1 or 3; light of one channel stands for all
+  /// @param channels  1 or 3; light of one channel is used for all channels
   void Add(const std::vector<float>& values, int channels);
 
   int Count() const { return this->Sets; }
-  int Channels() const { return this->OfVoxel; } ///< the most of all sets
+  int Channels() const { return this->OfVoxel; } ///< largest number of channels of any set
   std::vector<float> Values() const;
 
-  /// Sum of the squares of the standard errors; needs two sets.
+  /// Sum of the squared standard errors; needs at least two sets.
   double Variance() const;
   double SumOfSquares() const; ///< of the means
-  /// Root of the mean square of the standard errors, over that of the means.
+  /// Root mean square of the standard errors over that of the means.
   double RelativeError() const;
 
-  /// How far other light of the same voxels is off by at least, squared: its distance from the means, less what chance
-  /// makes of that and twice the standard deviation of it.
+  /// Lower estimate of the squared error of other light on the same voxels: its squared distance from the means, less
+  /// the expected statistical part and twice the standard deviation of that.
   double SquaredErrorOf(const std::vector<float>& other, int channels) const;
 
 private:

@@ -4,7 +4,7 @@
 
 namespace tyndall
 {
-/// The runs of RunsOf, of one kind.
+/// The photon runs of RunsOf.
 std::vector<ComparedRun> PhotonRunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
 }

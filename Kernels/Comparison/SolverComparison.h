@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// Error against run time: solvers side by side on one scene.
+/// Error against run time of several solvers on one scene.
 namespace tyndall
 {
 struct ComparisonSettings
@@ -15,25 +15,26 @@ struct ComparisonSettings
   std::vector<ComparedMethod> methods = { ComparedMethod::LightPropagationMaps, ComparedMethod::ConstantSource,
     ComparedMethod::Published, ComparedMethod::Photons };
   ComparedSettings tried;
-  int repeats = 3; ///< runs that count, after any that compiles; fewer where the budget does not allow them
-  /// Seconds for all: half of them for a reference that is not given, the others shared by the methods. A run that does
-  /// not fit is not begun, or stopped. What is compared does not depend on the clock else.
+  int repeats =
+    3; ///< timed runs per setting, after a run that compiles kernels; fewer if the time budget does not allow them
+  /// Total time budget, seconds: half for the reference, unless it is given; the methods share the rest. A run that
+  /// does not fit is not started, or is stopped. Otherwise the clock does not influence what is compared.
   double timeBudget = 300.0;
-  bool estimates = true; ///< let solvers estimate their errors, by a run whose time does not count
+  bool estimates = true; ///< let solvers estimate their errors, in an extra run that is not timed
 };
 
 struct Comparison
 {
   std::vector<ComparisonRow> rows;
   ReferenceLight reference;
-  std::vector<std::string> leftOut;  ///< what was not compared, and why
-  std::vector<std::string> warnings; ///< what the time did not allow
+  std::vector<std::string> leftOut;  ///< settings that were not compared, and why
+  std::vector<std::string> warnings; ///< what the time budget did not allow
   std::string device;
 };
 
-/// Runs all methods at all settings.
-/// @param reference  null: ConvergedLight
-/// @throws InvalidInput for a scene, settings or a reference without meaning; DeviceError; Aborted
+/// Runs all methods with all settings.
+/// @param reference  reference light; null: computed by ConvergedLight
+/// @throws InvalidInput if the scene, the settings or the reference are invalid; DeviceError; Aborted
 Comparison CompareSolvers(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,
   const ReferenceLight* reference = nullptr, const Monitor& monitor = {});
 }

@@ -7,12 +7,12 @@
 
 namespace tyndall
 {
-/// Thrown out of a computation that took longer than it was given.
+/// Thrown out of a computation that exceeds its time limit.
 struct TimeIsUp
 {
 };
 
-/// Progress of the part [from, to] of the work; throws TimeIsUp when the device's clock is past `end`.
+/// Monitor for the part [from, to] of the work; throws TimeIsUp once the device's clock is past `end`.
 inline Monitor PartUntil(const Device& device, double end, const Monitor& monitor, double from, double to)
 {
   return [=, &device](double done) {
@@ -24,13 +24,13 @@ inline Monitor PartUntil(const Device& device, double end, const Monitor& monito
   };
 }
 
-/// What work takes on two slow cores, seconds. What the reference is made of is decided by these and never by a clock,
-/// so that it is the same however busy the machine is; a clock only stops what takes too long all the same.
+/// Nominal run times on two slow cores, seconds. They, not a clock, determine how the reference is computed, so that it
+/// does not depend on the machine's load; a clock only stops work that takes too long nevertheless.
 struct NominalSeconds
 {
-  static constexpr double OfRayVoxel = 5e-9;   ///< a sweep along one ray through one voxel, of one channel
-  static constexpr double OfPhoton = 3e-6;     ///< besides its way
-  static constexpr double OfCrossing = 1e-7;   ///< of a voxel, by a photon
-  static constexpr double OfScattering = 1e-6; ///< of a photon
+  static constexpr double OfRayVoxel = 5e-9;   ///< sweep of one ray through one voxel, one channel
+  static constexpr double OfPhoton = 3e-6;     ///< per photon, without its path
+  static constexpr double OfCrossing = 1e-7;   ///< per voxel crossed by a photon
+  static constexpr double OfScattering = 1e-6; ///< per scattering of a photon
 };
 }
