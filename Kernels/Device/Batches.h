@@ -8,19 +8,20 @@
 
 namespace tyndall
 {
-/// A long computation in parts, so that it can report and be stopped about ten times a second by the device's clock.
+/// A long computation split into batches, so that it reports progress and can be aborted about ten times a second, by
+/// the device's clock.
 struct Batches
 {
-  std::size_t count = 0; ///< of what is to be computed
-  std::size_t first = 1; ///< of it in the first part; how long that takes says how large the next ones are
-  std::size_t whole = 1; ///< parts are multiples of this
-  double seconds = 0.05; ///< that a part is to take
-  double growth = 4.0;   ///< of a part over the last one, at most
-  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< in a part, however soon the last one was done
-  double from = 0.0, to = 1.0;                                ///< fractions done that are reported
+  std::size_t count = 0; ///< number of items to compute
+  std::size_t first = 1; ///< items in the first batch; its run time determines the size of the next
+  std::size_t whole = 1; ///< batch sizes are multiples of this
+  double seconds = 0.05; ///< target run time of a batch
+  double growth = 4.0;   ///< largest ratio of successive batch sizes
+  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< upper limit of the batch size
+  double from = 0.0, to = 1.0;                                ///< range of the reported progress
 };
 
-/// Queues each part, queue(begin, size), waits for it and reports. @throws Aborted
+/// Calls queue(begin, size) for each batch, waits for it and reports progress. @throws Aborted
 template <class Queue>
 void InBatches(Device& device, const Batches& batches, const Monitor& monitor, const Queue& queue)
 {

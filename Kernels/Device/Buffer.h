@@ -8,7 +8,7 @@
 
 namespace tyndall
 {
-/// An array of T on a device. Moves, does not copy; gives its memory back when it goes.
+/// An array of T on a device. Movable, not copyable; the destructor frees the memory.
 template <class T>
 class Buffer
 {
@@ -57,7 +57,7 @@ public:
   std::size_t Size() const { return this->Count; }
   const cl::Buffer& Handle() const { return this->Memory.memory; }
 
-  /// Wait for the device and copy `Size()` values there or back.
+  /// Waits for the device and copies `Size()` values to or from it.
   void Write(const T* values) { this->Write(values, this->Count); }
   void Write(const T* values, std::size_t count) ///< the first `count` values
   {
@@ -68,8 +68,8 @@ public:
       this->Owner->Queue().enqueueWriteBuffer(this->Memory.memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
-  /// Wait for the device; set(T* values) sets all `Size()` values: in place on a CPU, without a copy. What is queued
-  /// after it sees them; another queue must wait for this one.
+  /// Waits for the device, then calls set(T* values), which must set all `Size()` values; in place on a CPU, without a
+  /// copy. Work queued afterwards sees the values; other queues must wait for this one.
   template <class Set>
   void WriteInPlace(const Set& set)
   {
@@ -81,7 +81,8 @@ public:
       mapping.GiveBack();
     }
   }
-  /// Wait for the device; look(const T* values) sees all `Size()` values: in place on a CPU, without a copy.
+  /// Waits for the device, then calls look(const T* values) with all `Size()` values; in place on a CPU, without a
+  /// copy.
   template <class Look>
   void ReadInPlace(const Look& look) const
   {
@@ -92,7 +93,7 @@ public:
       mapping.GiveBack();
     }
   }
-  /// The same part of another.
+  /// Copies the same range of values from another buffer.
   void CopyFrom(const Buffer& other, std::size_t first, std::size_t count) const
   {
     const std::size_t begin = first * sizeof(T);
@@ -133,7 +134,7 @@ public:
   }
 
 private:
-  /// The whole of an array that is not empty, for the host to use meanwhile.
+  /// Maps a buffer that is not empty to host memory during its lifetime.
   struct Mapping
   {
     Mapping(const Buffer& of, cl_map_flags how)
@@ -146,7 +147,7 @@ private:
     void GiveBack() { this->owner.Queue().enqueueUnmapMemObject(this->memory, std::exchange(this->values, nullptr)); }
     ~Mapping()
     {
-      if (this->values) // what was thrown meanwhile tells of the failure
+      if (this->values) // an exception in flight already reports the failure
       {
         clEnqueueUnmapMemObject(this->owner.Queue()(), this->memory(), this->values, 0, nullptr, nullptr);
       }
@@ -159,7 +160,7 @@ private:
     T* values;
   };
 
-  /// The first time that all of it is written.
+  /// Called the first time that the whole buffer is written.
   void TakePages(std::size_t first, std::size_t count)
   {
     if (!this->HasPages && first == 0 && count == this->Count)
@@ -169,13 +170,13 @@ private:
     }
   }
 
-  /// OpenCL has no empty buffers; an empty array takes one value, so that it can still be passed to a kernel.
+  /// OpenCL has no empty buffers; an empty array allocates one value, so that it can still be passed to a kernel.
   std::size_t Bytes() const { return (this->Count > 0 ? this->Count : 1) * sizeof(T); }
 
   Device* Owner = nullptr;
   std::size_t Count = 0;
   Device::Allocation Memory;
-  bool HasPages = false; ///< tyndall::TakePages was asked for all of it
+  bool HasPages = false; ///< tyndall::TakePages was called for the whole buffer
 };
 
 namespace detail
@@ -192,14 +193,14 @@ void SetArgument(cl::Kernel& kernel, cl_uint index, const Buffer<T>& buffer)
 }
 }
 
-/// Set arguments of a kernel in order, from number `first` on; a Buffer stands for its memory.
+/// Sets kernel arguments in order, from index `first` on; a Buffer is passed as its memory object.
 template <class... Arguments>
 void SetFrom(cl::Kernel& kernel, cl_uint first, const Arguments&... arguments)
 {
   (detail::SetArgument(kernel, first++, arguments), ...);
 }
 
-/// Set all arguments of a kernel.
+/// Sets all arguments of a kernel.
 template <class... Arguments>
 cl::Kernel& With(cl::Kernel& kernel, const Arguments&... arguments)
 {

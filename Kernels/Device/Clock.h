@@ -5,11 +5,11 @@
 
 namespace tyndall
 {
-/// Tells seconds since some beginning, and never goes back. Work that is measured to be shared out takes its clock from
-/// outside, so that tests can say how fast the machine is.
+/// A monotonic clock: seconds since an arbitrary start. Work that is distributed by measured run times takes its clock
+/// as a parameter, so that tests can control it.
 using Clock = std::function<double()>;
 
-/// The machine's.
+/// The machine's clock.
 inline double ClockSeconds()
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

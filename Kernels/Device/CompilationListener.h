@@ -6,16 +6,16 @@
 
 namespace tyndall
 {
-/// Kernels that devices of this process have made for the first time. Each is compiled, or read from a cache, when it
-/// first runs: work during which this number stays is measured without that.
+/// Number of kernels that this process's devices have created for the first time. Each is compiled, or read from a
+/// cache, at its first run; a timing during which this number does not change includes no compilation.
 std::size_t KernelsMade();
-/// For devices: of a program, which must stay, one was made.
+/// Called by devices when a kernel of a program, which must not be destroyed, is created.
 void NoteKernel(const void* program, const char* name);
 
-/// ClockSeconds without those in which kernels were compiled: this process's clock of work.
+/// ClockSeconds less the time spent compiling kernels: this process's work clock.
 double WorkSeconds();
 
-/// While one lives, WorkSeconds stands still.
+/// WorkSeconds stands still during the lifetime of such an object.
 class WhileCompiling
 {
 public:
@@ -25,9 +25,9 @@ public:
   WhileCompiling& operator=(const WhileCompiling&) = delete;
 };
 
-/// While one lives, it is called about ten times a second in the thread that made it whenever that thread waits for a
-/// device's compiler, which takes seconds where nobody has compiled the kernels before. Of several in a thread the last
-/// one is called.
+/// During its lifetime, `call` runs about ten times a second in the thread that created it, whenever that thread waits
+/// for a device's compiler (seconds, if the kernels are not cached). If a thread has several listeners, the latest one
+/// is called.
 class CompilationListener
 {
 public:
@@ -38,11 +38,11 @@ public:
   CompilationListener(const CompilationListener&) = delete;
   CompilationListener& operator=(const CompilationListener&) = delete;
 
-  /// That of this thread, or null.
+  /// The listener of this thread, or null.
   static const CompilationListener* OfThisThread();
 
-  /// Waits until isDone(for so long) says so; calls after each of these times that it did not.
-  /// @return whether it called
+  /// Waits until isDone(duration) returns true, and calls the listener each time it returns false.
+  /// @return whether the listener was called
   template <class IsDone>
   bool Wait(const IsDone& isDone) const
   {
@@ -56,7 +56,7 @@ public:
   }
 
 private:
-  /// What is read from the compiler's cache is there sooner.
+  /// Reading from the compiler's cache takes less than this.
   static constexpr std::chrono::milliseconds Patience{ 150 };
 
   Call TheCall;

@@ -4,7 +4,7 @@
 
 namespace tyndall
 {
-/// A definition among the options that a kernel is compiled with.
+/// A compiler option that defines a macro for a kernel.
 inline std::string Define(const char* name, int value)
 {
   return std::string(" -D") + name + "=" + std::to_string(value);

@@ -19,105 +19,107 @@
 
 namespace tyndall
 {
-/// One OpenCL device: its context, one in-order queue, the programs built for it, and a count of the memory taken on
-/// it.
+/// One OpenCL device: its context, one in-order queue, the programs built for it, and a count of the allocated memory.
 ///
-/// Safe for several threads at once, each with buffers and kernels of its own: what they queue is done in some order,
-/// one after the other. A thread that waits may wait for the work of others too, and PeakBytes is of all of them.
+/// Thread-safe if each thread has its own buffers and kernels: commands of all threads run in some order, one after the
+/// other. A thread that waits may also wait for other threads' work, and PeakBytes covers all threads.
 class Device
 {
 public:
-  /// The device whose name or platform contains `name` (any case); with an empty name the one that the variable
-  /// TYNDALL_DEVICE names; without either PoCL's CPU device, or else the first device there is.
-  /// The same device is handed out again on the next call, so that programs are built once a process.
-  /// @throws DeviceError if there is no such device; the text lists those there are
+  /// The device whose name or platform contains `name` (case-insensitive). If `name` is empty: the one that the
+  /// environment variable TYNDALL_DEVICE names, else PoCL's CPU device, else the first device. Later calls return the
+  /// same object, so that programs are built once per process.
+  /// @throws DeviceError if there is no such device; the text lists the available ones
   static std::shared_ptr<Device> Find(const std::string& name = {});
 
-  /// What users should know of how devices were opened, e.g. that programs are kept elsewhere than they said. Each is
-  /// given out once.
+  /// Warnings about how devices were opened, e.g. that compiled programs are cached elsewhere than the user asked. Each
+  /// is returned once.
   static std::vector<std::string> TakeWarnings();
 
-  /// @param cacheFolder  where the platform writes what it compiles, if that is known: checked for room before it does
+  /// @param cacheFolder  folder to which the platform writes compiled programs, if known; checked for free space before
+  ///   a build
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
-  /// The same device as a solve sees it: what it takes is part of what `whole`, which must stay, has, and within its
-  /// budget.
+  /// A view of a device for one solve: its allocations count towards those of `whole`, which must outlive this, and are
+  /// limited by `budget`.
   Device(Device& whole, const MemoryBudget& budget);
 
   const std::string& Name() const { return this->DeviceName; }
   bool IsCpu() const { return this->Cpu; }
   int ComputeUnits() const { return this->Units; }
   int FloatVectorWidth() const { return this->VectorWidth; } ///< 1 on GPUs, 4 to 16 on CPUs
-  /// Floats that a work-item is to handle at once: on a CPU as many as its registers hold, but from `least` to `most`,
-  /// for which a kernel is written; on a GPU, which makes its own vectors, as few as the kernel can do.
+  /// Number of floats that a work-item should process at once. On a CPU: as many as a register holds, within the range
+  /// from `least` to `most` for which the kernel is written. On a GPU, which vectorises across work-items:
+  /// `leastOnGpu`.
   int KernelWidth(int least = 4, int most = 16, int leastOnGpu = 1) const
   {
     return this->Cpu ? std::clamp(this->VectorWidth, least, most) : leastOnGpu;
   }
-  /// Not those that the environment variable TYNDALL_WITHOUT names (with blanks between): to try what devices without
-  /// them get.
+  /// False for extensions named in the environment variable TYNDALL_WITHOUT (separated by blanks), which serves to test
+  /// the code for devices without them.
   bool HasExtension(const std::string& name) const;
 
-  /// Bytes that buffers on this device may take together. What OpenCL reports, on a CPU at least three quarters of the
-  /// machine's memory (PoCL reports only a part of what can be had).
+  /// Bytes that all buffers on this device may take together: what OpenCL reports, but on a CPU at least three quarters
+  /// of the machine's memory (PoCL reports only a part of what is available).
   std::size_t MemoryLimit() const { return this->Memory.Limit(); }
   std::size_t AllocationLimit() const { return this->LargestAllocation; } ///< largest single buffer, bytes
-  /// Large arrays lie in host memory: sweeps are to stream them.
+  /// Whether large arrays lie in host memory, so that sweeps must stream them.
   bool Streams() const { return this->Budget.hostFrom != MemoryBudget::NoLimit; }
-  /// Kernels work on host memory in place, so that copies would gain nothing. What TYNDALL_WITHOUT calls `host_memory`
-  /// is left out, as extensions are.
+  /// Whether kernels use host memory in place, so that copies would gain nothing. False if TYNDALL_WITHOUT names
+  /// `host_memory`.
   bool SharesHostMemory() const { return this->Cpu && !IsHidden("host_memory"); }
-  /// Of a core, about: what its own caches hold, and its part of those that all share. None where TYNDALL_WITHOUT names
-  /// `cache`.
+  /// Approximate cache size per core, bytes: its own caches and its share of the common ones. 0 if TYNDALL_WITHOUT
+  /// names `cache`.
   std::size_t CacheBytes() const { return IsHidden("cache") ? 0 : std::size_t{ 2 } << 20; }
-  std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< of arrays in host memory
-  std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest of them
+  std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< arrays in host memory
+  std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest HostBytes
   std::size_t BytesInUse() const { return this->Memory.InUse(); }
   std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest BytesInUse since ResetPeak
   void ResetPeak() { this->Memory.ResetPeak(); }
 
-  /// A kernel of the program that `source` makes. Programs are kept, so that asking again with the same source and
-  /// options costs nothing. The kernel is the caller's own: two threads that ask for one get two, for OpenCL does not
-  /// let them set arguments of the same.
-  /// @param source  the text of a .cl file with what it includes (kernel_source::...)
+  /// A kernel of the program `source`. Programs are cached, so that a second call with the same source and options
+  /// costs nothing. The kernel belongs to the caller: two threads get two objects, since OpenCL does not let them set
+  /// arguments of the same one.
+  /// @param source  text of a .cl file with its includes expanded (kernel_source::...)
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
   /// @throws DeviceError with the build log
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options = {});
 
-  /// Memory of a buffer.
+  /// The memory of a buffer.
   struct Allocation
   {
     cl::Buffer memory;
-    bool onHost = false; ///< in host memory, which no budget counts
+    bool onHost = false; ///< in host memory, which does not count towards a budget
   };
-  /// @throws DeviceError if `bytes` more do not fit; `what` says what they are for
+  /// @throws DeviceError if `bytes` more do not fit; `what` describes their use in the message
   Allocation Allocate(
     std::size_t bytes, cl_mem_flags flags, const char* what, Residence residence = Residence::AsBudgetSays);
   void Release(std::size_t bytes, bool onHost);
 
   const cl::Context& Context() const { return this->TheContext; }
   cl::CommandQueue& Queue() { return this->TheQueue; }
-  /// Another in-order queue, whose events know when they began and ended. What is on both may be done side by side.
+  /// Another in-order queue, with profiling events. Commands on both queues may run concurrently.
   cl::CommandQueue AnotherQueue() const { return { this->TheContext, this->TheDevice, CL_QUEUE_PROFILING_ENABLE }; }
   void Finish();
-  /// To be called before other waits for what was queued, e.g. a blocking read: where a program was compiled since the
-  /// last one this waits itself, and this thread's CompilationListener hears of it. PoCL compiles the rest of a kernel
-  /// when it first runs.
+  /// Call this before any other wait for queued commands, e.g. a blocking read. If a program was compiled since the
+  /// last wait, it waits itself and notifies this thread's CompilationListener. PoCL compiles the rest of a kernel at
+  /// its first run.
   void AwaitFirstRuns();
 
-  /// tyndall::TakePages of a buffer of `bytes` that will be written all over. Nothing where the device has memory of
-  /// its own, nor of a few pages.
+  /// Calls tyndall::TakePages for a buffer of `bytes` bytes that will be written completely. Does nothing if the device
+  /// has its own memory, or for a few pages.
   void TakePages(const cl::Buffer& memory, std::size_t bytes) const;
 
-  /// Note that work of about so many seconds was queued, and wait for all of it once that is a tenth of a second:
-  /// progress is reported and an abort noticed that often, while short kernels follow each other without the host.
+  /// Notes that work of about `seconds` seconds was queued, and waits for all queued work once that amounts to a tenth
+  /// of a second: progress is then reported and aborts are noticed that often, while short kernels follow each other
+  /// without the host.
   void Queued(double seconds);
 
-  /// Seconds by the clock that work is shared out by: WorkSeconds, or that of a test, set before work begins.
+  /// Seconds of the clock by which work is distributed: WorkSeconds, or a test's clock, set before work begins.
   double Now() const { return this->TheClock(); }
   void SetClock(Clock clock) { this->TheClock = std::move(clock); }
 
 private:
-  /// A program, built by whichever thread needs it first. Only threads that need the same one wait.
+  /// A program, built by the thread that needs it first. Only threads that need the same program wait.
   struct KeptProgram
   {
     std::timed_mutex Building;
@@ -125,12 +127,12 @@ private:
     bool IsBuilt = false;
   };
 
-  /// What was built for the device, for all who see it.
+  /// Programs built for the device, shared by all views of it.
   struct KeptPrograms
   {
-    std::mutex Guard; ///< of the map, not of what is in it
+    std::mutex Guard; ///< protects the map, not its elements
     std::map<std::string, std::shared_ptr<KeptProgram>> All;
-    std::atomic<bool> CompiledSince{ false }; ///< the last wait for what was queued
+    std::atomic<bool> CompiledSince{ false }; ///< a program was compiled since the last wait for the queue
   };
 
   static bool IsHidden(const std::string& name);
@@ -149,8 +151,8 @@ private:
   int Units = 1;
   int VectorWidth = 1;
   std::size_t LargestAllocation = 0;
-  Device* Whole = nullptr; ///< null: this is the whole
-  MemoryBudget Budget;     ///< of a part
+  Device* Whole = nullptr; ///< the device that this is a view of; null: none
+  MemoryBudget Budget;     ///< budget of a view
   MemoryCount Memory;
   MemoryCount OnHost;
   std::atomic<double> SecondsQueued{ 0.0 };

@@ -6,7 +6,8 @@
 
 namespace tyndall
 {
-/// The device's name for the user, and how much of a solve lay on it and how much in host memory, where any did.
+/// The device's name for the user, followed, if a solve used host memory, by how much lay on the device and how much in
+/// host memory.
 /// @param ofSolve  the device with the solve's budget
 std::string NameWithStreaming(const Device& ofSolve);
 }

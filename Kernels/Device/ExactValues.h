@@ -7,7 +7,7 @@
 
 namespace tyndall
 {
-/// Values in double on the device, or in float where it has no double.
+/// An array on the device, in double precision if the device has it, else in float.
 class ExactValues
 {
 public:
@@ -18,7 +18,7 @@ public:
   const cl::Buffer& Handle() const { return this->InDouble() ? this->Doubles.Handle() : this->Floats.Handle(); }
   void Fill(double value);
   std::vector<double> Read() const;
-  void Write(const std::vector<double>& values); ///< as many as there are
+  void Write(const std::vector<double>& values); ///< values must have the size of the array
 
 private:
   Buffer<double> Doubles;
@@ -28,6 +28,6 @@ private:
 /// Sets an argument that a kernel declares as `exact`.
 void SetExact(const Device& device, cl::Kernel& kernel, cl_uint index, double value);
 
-/// DOUBLES, as kernels are compiled with: 1 where the device has double precision.
+/// Compiler option that defines DOUBLES: 1 if the device has double precision.
 std::string ExactOption(const Device& device);
 }

@@ -7,9 +7,9 @@
 
 namespace tyndall
 {
-/// The work-group size for work-items that each do much alone, a row or more: on a CPU one, so that all its threads
-/// have some; on a GPU the driver's choice, for groups of one would leave most of its lanes idle.
-/// @param dimensions  of the range, 1 to 3
+/// Work-group size for work-items that each process much data, a row or more. CPU: 1, so that all threads get some.
+/// GPU: the driver's choice, since groups of one would leave most lanes idle.
+/// @param dimensions  dimensions of the range, 1 to 3
 inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
 {
   return !device.IsCpu() ? cl::NullRange
@@ -18,19 +18,19 @@ inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
                          : cl::NDRange(1, 1, 1);
 }
 
-/// Work-items of a group that add up together (Numerics/GroupSum.cl), side by side in memory: on a CPU each for itself.
+/// Work-items per group in sums by groups (Numerics/GroupSum.cl); 1 on a CPU.
 inline int SummingGroup(const Device& device)
 {
   return device.IsCpu() ? 1 : 128;
 }
 
-/// GROUP, as kernels that sum up by groups are compiled with.
+/// Compiler option that defines GROUP for kernels that sum by groups.
 inline std::string SummingOption(const Device& device)
 {
   return Define("GROUP", SummingGroup(device));
 }
 
-/// Runs so many groups, of each of several channels.
+/// Runs a summing kernel with `groups` groups per channel.
 inline void RunSummingGroups(Device& device, const cl::Kernel& kernel, std::size_t groups, std::size_t channels = 1)
 {
   const auto items = static_cast<std::size_t>(SummingGroup(device));

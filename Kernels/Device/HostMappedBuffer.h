@@ -4,8 +4,8 @@
 
 namespace tyndall
 {
-/// The caller's own array as kernels see it: the same memory on a CPU, elsewhere a copy on the device. The array must
-/// outlive it, and is not to be touched between a kernel's start and the device's next Finish (or Fetch).
+/// The caller's array for use by kernels: the same memory on a CPU, elsewhere a copy on the device. The array must
+/// outlive this, and must not be accessed between a kernel's start and the device's next Finish (or Fetch).
 template <class T>
 class HostMappedBuffer
 {
@@ -20,7 +20,7 @@ public:
     }
   }
 
-  /// An array that kernels write, whole; Fetch() when they are done.
+  /// An array that kernels write completely; call Fetch() when they are done.
   HostMappedBuffer(Device& device, T* values, std::size_t count, const char* what)
     : HostMappedBuffer(device, values, count, what, CL_MEM_READ_WRITE)
   {
@@ -29,8 +29,8 @@ public:
   HostMappedBuffer(const HostMappedBuffer&) = delete;
   HostMappedBuffer& operator=(const HostMappedBuffer&) = delete;
 
-  /// Waits: where work failed halfway, kernels that were queued before may still be at the array, which is the caller's
-  /// again now.
+  /// Waits for the device: after a failure, kernels queued before may still access the array, which now belongs to the
+  /// caller again.
   ~HostMappedBuffer()
   {
     if (this->Count > 0 && this->Copy.Size() == 0)
@@ -39,7 +39,7 @@ public:
       {
         this->Owner->Finish();
       }
-      catch (const cl::Error&) // it will fail again where it can be reported
+      catch (const cl::Error&) // the error will occur again where it can be reported
       {
       }
     }
@@ -47,7 +47,7 @@ public:
 
   const cl::Buffer& Handle() const { return this->Copy.Size() > 0 ? this->Copy.Handle() : this->Memory; }
 
-  /// Wait for the device; then the array holds what kernels wrote.
+  /// Waits for the device; afterwards the array holds what the kernels wrote.
   void Fetch() const
   {
     if (this->Copy.Size() > 0)

@@ -6,23 +6,23 @@
 
 namespace tyndall
 {
-/// Passes over large arrays on all of the host's cores: one core alone moves a part of what the memory can.
+/// Parallel loop over a large array on all of the host's cores; a single core cannot use the full memory bandwidth.
 ///
-/// Calls work(begin, end), at the same time, for parts that together are [0, count), and waits for all of them. What a
-/// part finds must not depend on where it begins, so that results are the same on any number of cores.
-/// @param least  elements of a part, at least: below some hundred kilobytes a thread costs more than it saves
-/// What a part throws is thrown when all have ended; of several the first part's.
+/// Calls work(begin, end) concurrently for parts that together are [0, count), and waits for all of them. Results must
+/// not depend on where a part begins, so that they are the same on any number of cores.
+/// @param least  smallest number of elements per part; below some hundred kilobytes a thread costs more than it saves
+///   What a part throws is thrown when all have ended; of several the first part's.
 void InThreads(
   std::size_t count, std::size_t least, const std::function<void(std::size_t begin, std::size_t end)>& work);
 
-/// The sum of term(begin, end) over pieces that together are [0, count), found at the same time and added in turn: the
-/// same on any number of cores.
-/// @param piece  elements of a piece, but perhaps of the last
+/// The sum of term(begin, end) over pieces that together are [0, count). The terms are evaluated concurrently and added
+/// in order, so that the sum is the same on any number of cores.
+/// @param piece  elements per piece; the last may have fewer
 double SumInThreads(
   std::size_t count, std::size_t piece, const std::function<double(std::size_t begin, std::size_t end)>& term);
 
-/// Whether is(i) for any i of [0, count): quick where none is, as a rule. To find which one takes another pass.
-/// @param is  no branches, so that many are asked at a time
+/// Whether is(i) is true for any i in [0, count). Optimised for the case that none is; does not tell which.
+/// @param is  predicate without branches, so that it is vectorised
 template <class Is>
 bool AnyInThreads(std::size_t count, const Is& is)
 {

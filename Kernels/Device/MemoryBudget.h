@@ -5,18 +5,18 @@
 
 namespace tyndall
 {
-/// What a solve may take of a device's memory.
+/// Limits for a solve's use of a device's memory.
 struct MemoryBudget
 {
   static constexpr std::size_t NoLimit = std::numeric_limits<std::size_t>::max();
 
-  std::size_t bytes = NoLimit; ///< on the device, of all its buffers together
-  /// What does not fit lies in host memory, from which the device reads it; false: it is an error.
+  std::size_t bytes = NoLimit; ///< limit for all buffers on the device together
+  /// Whether buffers that do not fit are placed in host memory, from which the device reads them; false: an error.
   bool spills = false;
-  std::size_t hostFrom = NoLimit; ///< arrays of so many bytes and more lie in host memory anyhow: they are streamed
+  std::size_t hostFrom = NoLimit; ///< arrays of at least this many bytes are always placed in host memory and streamed
 };
 
-/// Where an array is to lie.
+/// Where an array should be placed.
 enum class Residence
 {
   AsBudgetSays,

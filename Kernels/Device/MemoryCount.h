@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// Bytes that are taken of a limit. Safe for threads, without locks: what one takes, no other can take as well.
+/// Lock-free, thread-safe count of the bytes allocated out of a limit.
 class MemoryCount
 {
 public:
@@ -21,7 +21,7 @@ public:
   std::size_t Peak() const { return this->Largest; } ///< largest InUse since ResetPeak
   void ResetPeak() { this->Largest = this->InUse(); }
 
-  /// @return whether they were left; nothing is taken where not
+  /// @return whether enough bytes were left; if not, none are taken
   bool Take(std::size_t bytes)
   {
     std::size_t before = this->Taken;
@@ -39,7 +39,7 @@ public:
     return true;
   }
 
-  /// Of what Take gave.
+  /// Returns bytes obtained by Take.
   void GiveBack(std::size_t bytes) { this->Taken -= bytes; }
 
 private:

@@ -9,16 +9,16 @@
 
 namespace tyndall
 {
-/// An array on a device that is zero where nothing was written. On a CPU what is never written takes no memory: a
-/// system's new pages are one page of zeros until then. So only the part that is written need fit.
+/// An array on a device that is zero where nothing was written. On a CPU, parts that are never written take no memory,
+/// since the system maps new pages to a single page of zeros; only the written part must fit.
 template <class T>
 class ZeroedBuffer
 {
 public:
   ZeroedBuffer() = default;
 
-  /// @param everywhere  kernels write all of it before it is read: it is as any other array
-  /// @throws DeviceError where it does not fit
+  /// @param everywhere  kernels write the whole array before it is read, so that no zeros are needed
+  /// @throws DeviceError if it does not fit
   ZeroedBuffer(Device& device, std::size_t count, bool everywhere, const char* what)
   {
     if (count == 0 || everywhere || !device.IsCpu())
@@ -47,7 +47,7 @@ private:
     void operator()(T* pages) const { std::free(pages); }
   };
   std::unique_ptr<T, Free> Pages;
-  std::unique_ptr<HostMappedBuffer<T>> Mapped; // goes before its pages
+  std::unique_ptr<HostMappedBuffer<T>> Mapped; // destroyed before its pages
   Buffer<T> Whole;
 };
 }
