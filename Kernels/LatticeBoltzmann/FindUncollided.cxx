@@ -23,7 +23,8 @@ namespace tyndall
 {
 namespace
 {
-/// For one sweep of the maps' rays: axes along which nothing varies are wide, and directions are adapted to them.
+/// Settings for a single sweep: voxels are made wide along axes on which nothing varies, and the quadrature is adapted
+/// to them.
 PropagationSettings AsSweep(const LatticeSettings& settings)
 {
   PropagationSettings of = AsPropagation(settings);
@@ -31,7 +32,7 @@ PropagationSettings AsSweep(const LatticeSettings& settings)
   return of;
 }
 
-/// Nothing passes the face of a periodic axis of one voxel: beyond it lies the voxel itself.
+/// Clears moments towards faces across a periodic axis of one voxel: the voxel is its own neighbour there.
 void ClearAcrossSingleVoxels(const Grid& whole, const LatticeSettings& settings, std::vector<float>& moments)
 {
   for (std::size_t i = 0; i < moments.size(); ++i)
@@ -42,13 +43,13 @@ void ClearAcrossSingleVoxels(const Grid& whole, const LatticeSettings& settings,
   }
 }
 
-/// On one rank: the first sweep of light propagation maps.
+/// Serial: the first sweep of light propagation maps.
 Uncollided BySweepOfGrid(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
   bool firstMoments, const Monitor& monitor)
 {
   const std::size_t voxels = problem.Box().Count();
   const int channels = problem.Channels();
-  Medium dark = problem.TheMedium(); // scatters evenly: nothing is truncated
+  Medium dark = problem.TheMedium(); // isotropic scattering: no delta-M truncation
   dark.emission = {};
   dark.phase = PhaseFunction();
   PropagationSettings once = AsSweep(settings);
@@ -88,11 +89,11 @@ Uncollided BySweepOfGrid(Device& device, const LatticeProblem& problem, const La
   return found;
 }
 
-/// On several ranks: the same rays, through the whole grid, each rank's part of them deposited in its block.
+/// Distributed: the same rays through the whole grid; each rank deposits their light in its block.
 class SweepOfBlocks
 {
 public:
-  /// Collective; all must outlive it.
+  /// Collective; all arguments must outlive this.
   SweepOfBlocks(Device& device, const LatticeProblem& problem, const LatticeSettings& settings, bool firstMoments);
 
   Uncollided Find(const Monitor& monitor); ///< collective
@@ -113,11 +114,11 @@ private:
   const LatticeSettings& Settings;
   Communicator& Comm;
   const BlockPartition Partition; ///< wide along axes on which nothing varies
-  const double Narrowing;         ///< volume of a voxel over that
+  const double Narrowing;         ///< volume of a voxel of the scene over that of a wide voxel
   const VolumeLayout Layout;
   AcrossFaces Across;
-  Buffer<float> SigmaT, Path, Flux, FirstMoments; ///< the latter two empty: not asked for
-  std::unique_ptr<LampsInBlocks> NearLamps;       ///< null until there is one
+  Buffer<float> SigmaT, Path, Flux, FirstMoments; ///< Flux and FirstMoments are empty unless asked for
+  std::unique_ptr<LampsInBlocks> NearLamps;       ///< null until a lamp needs it
   BlockWorkspace Workspace;
   std::vector<Light> Lamps;
   Deposit To;
@@ -186,7 +187,7 @@ Buffer<float> SweepOfBlocks::Zeros(int parts, const char* what) const
   return values;
 }
 
-/// Values by known voxel, interleaved, times `scale`.
+/// Converts planar device values to values by known voxel, interleaved and multiplied by `scale`.
 std::vector<float> SweepOfBlocks::Known(const Buffer<float>& planar, double scale, int components) const
 {
   const bool has = this->Problem.Box().Count() > 0;
@@ -204,7 +205,7 @@ std::unique_ptr<SweepOperator> SweepOfBlocks::MakeSweep(const SweepRequest& requ
   return sweep;
 }
 
-/// Its peaks become lamps.
+/// Adds the environment; its bright peaks become lamps.
 void SweepOfBlocks::AddEnvironment(const Monitor& monitor)
 {
   const Environment& environment = this->Problem.TheIllumination().environment;
@@ -253,7 +254,8 @@ void SweepOfBlocks::AddLamp(const Light& lamp, const Monitor& monitor)
   Add(this->Tally, UncollidedLamp(lamp).AddTo(volume, monitor));
 }
 
-/// W, of all ranks, that entered and neither escaped, nor collided, nor still wraps around a periodic axis. Collective.
+/// Power, over all ranks, that entered and neither escaped, nor collided, nor still wraps around a periodic axis, W.
+/// Collective.
 Rgb SweepOfBlocks::Lost() const
 {
   const std::vector<float> path = this->Path.Read(), sigma_t = this->SigmaT.Read();
@@ -311,7 +313,7 @@ Uncollided SweepOfBlocks::Find(const Monitor& monitor)
   return found;
 }
 
-/// Mean directions times fluence, as LightField::netFlux has it.
+/// Net flux in the layout of LightField::netFlux: mean directions times fluence.
 std::vector<float> NetFluxOf(const UncollidedImage& image, std::size_t voxels, int channels)
 {
   std::vector<float> flux;
@@ -357,7 +359,7 @@ Uncollided FindUncollided(
     found.image = given;
     if (!IsFirstThatHas(domain.Comm(), domain.Partition()))
     {
-      found.image.escaped = {}; // all ranks are given that of the grid
+      found.image.escaped = {}; // every rank has the powers of the whole grid
     }
     AddMomentsOfImage(found, problem, settings, moments);
     return found;

@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Width = 16; ///< of the vectors of LatticeStep.cl
+constexpr int Width = 16; ///< vector width of LatticeStep.cl
 constexpr std::size_t Cached = std::size_t{ 48 }
   << 20; ///< bytes of densities that fit a cache; beyond that stores bypass it
 
@@ -46,7 +46,7 @@ Lattice::Lattice(Device& device, const LatticeBox& box, const LatticeSettings& s
 void Lattice::LayOut(const LatticeVoxels& voxels)
 {
   std::copy(this->Size.begin(), this->Size.end(), this->TheInfo.size);
-  this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst; // the place behind it may be the next row's first
+  this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst; // the place after a row may be the next row's first
   this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
   for (int i = 0; i < 18; ++i)
   {
@@ -58,7 +58,7 @@ void Lattice::LayOut(const LatticeVoxels& voxels)
   this->TheInfo.inner = this->Box.innerFaces;
   std::copy(voxels.albedo.begin(), voxels.albedo.end(), this->TheInfo.albedo);
   std::copy(voxels.incoming.begin(), voxels.incoming.end(), this->TheInfo.incoming);
-  // Vectors that begin in the last row may be read whole.
+  // Padding, so that vectors that begin in the last row can be read completely.
   this->TheInfo.stride = static_cast<cl_ulong>(this->TheInfo.layer) * (this->Size[2] + 2) + Width;
 }
 
@@ -130,7 +130,7 @@ void Lattice::Load(const LatticeVoxels& voxels)
   }
 }
 
-/// Darkness, but for incident light.
+/// Sets densities to zero, except for incident light.
 void Lattice::FillDensities()
 {
   const std::vector<float> incoming =
@@ -155,7 +155,7 @@ cl::Kernel Lattice::Kernel(const char* name) const
   return this->TheDevice.Kernel(name, kernel_source::LatticeStep, this->Options);
 }
 
-/// Fills the layer around the box across periodic axes.
+/// Fills the halo across periodic axes.
 void Lattice::Wrap(const Buffer<float>& densities)
 {
   const int steps[3] = { 1, this->TheInfo.row, this->TheInfo.layer };

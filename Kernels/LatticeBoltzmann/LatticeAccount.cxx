@@ -7,7 +7,7 @@
 
 namespace tyndall
 {
-/// Fluence, absorbed and emitted power. @return W of uncollided light that collides in voxels
+/// Adds fluence, absorbed and emitted power. @return power of uncollided light that collides in voxels, W
 double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& fluence) const
 {
   const Medium& medium = this->TheMedium;
@@ -19,10 +19,10 @@ double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& 
     const std::size_t known = this->Box.Known(i);
     const double tau = edge * medium.sigma_a.At(known, channel);
     const double direct = this->Direct.image.fluence.At(known, channel), lost = this->Voxels.lost[known];
-    // Part of the source that is absorbed within its first step, before it is in the lattice's fluence.
+    // Part of the source that is absorbed in its first step, before it enters the lattice's fluence.
     const double own = this->Voxels.source[known] * (1.0 / this->Voxels.begins[known] - 1.0);
     const double absorbed = lost * fluence[i] + own;
-    // Where much is absorbed in a step, fluence is the mean over the step.
+    // If much is absorbed in a step, the fluence is the mean over the step.
     const double scattered = tau > 1e-6 ? absorbed / tau : fluence[i];
     light.fluence[this->Place(light, i)] = static_cast<float>(direct + scattered);
     light.fluenceDirect[this->Place(light, i)] = static_cast<float>(direct);
@@ -33,13 +33,14 @@ double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& 
   return entered;
 }
 
-/// Escaped power. @return W incident through the faces, or escaped uncollided
+/// Adds escaped power. @return power incident through the faces, or escaped uncollided, W
 double LatticeAccount::CountFaces(LightField& light) const
 {
   const std::size_t voxels = this->Box.Count();
   const double area = this->Edge() * this->Edge();
   const std::vector<float> through = this->Photons.Leaving();
-  const std::vector<float> inwards = this->Photons.LeavingOfOne(); // as much of fluence 1 outside enters
+  const std::vector<float> inwards =
+    this->Photons.LeavingOfOne(); // by symmetry, as much enters from a fluence of 1 outside
   double entered = 0.0;
   for (std::size_t face = 0; face < 6; ++face)
   {
@@ -48,7 +49,7 @@ double LatticeAccount::CountFaces(LightField& light) const
     for (std::size_t i = 0; i < voxels; ++i)
     {
       const std::size_t known = this->Box.Known(i);
-      // Links that give back a part reflect some incident light at once.
+      // Links that reflect return some incident light immediately.
       const double squared = this->Voxels.bends ? this->Voxels.squared[known] : 1.0;
       const double entering = area * this->Voxels.incoming[face] * squared * inwards[face * voxels + i];
       const double passed = 2.0 * this->Voxels.passes[known] / (this->Voxels.passes[known] + 1.0);
@@ -86,8 +87,8 @@ void LatticeAccount::AddFlux(LightField& light) const
   }
 }
 
-/// Flux of light that crosses a face at once, from where it is first scattered to the face, and on to the middle of the
-/// next voxel: in a voxel that sends it or receives it.
+/// Flux of the crossing source (Eq. (L13)) in the voxel that sends or receives it: from the place of first scattering
+/// to the face, and from there to the centre of the next voxel.
 double LatticeAccount::FluxOfCrossing(std::size_t known, std::size_t face) const
 {
   const std::size_t beyond = this->Box.Beyond(known, face);

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// Rows of one channel to those of all.
+/// Adds the convergence rows of one channel to those of all channels.
 void AddRows(const std::vector<ConvergenceRow>& rows, LightField& light)
 {
   light.convergence.resize(std::max(light.convergence.size(), rows.size()));

@@ -30,7 +30,7 @@ void CheckCubes(const Grid& grid)
   }
 }
 
-/// Double precision resolves only so many collisions in a voxel that absorbs nothing.
+/// Double precision limits the number of collisions that can be resolved in a voxel without absorption.
 void CheckThickness(const Medium& medium)
 {
   constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // of doubles 1e-16 are left
@@ -71,7 +71,7 @@ void CheckOwnBlock(const Domain& domain, const Medium& medium, const Field& ior,
     "The medium of rank " + std::to_string(domain.Rank()) + " does not have the size of its block.");
 }
 
-/// Of settings that the maps do not have.
+/// Compares, over ranks, the settings that light propagation maps do not have.
 void RequireSameLattice(
   const Domain& domain, const Field& ior, const Illumination& illumination, const LatticeSettings& settings)
 {
@@ -157,7 +157,7 @@ LightField BeginLight(const LatticeProblem& problem, const LatticeSettings& sett
 
 namespace
 {
-/// Adds what follows from fluence, and what was left out, in the units of the solve.
+/// Adds quantities derived from fluence, and leftOut, in the units of the solve.
 void DescribeLight(
   LightField& light, const Device& device, bool anisotropic, const LatticeSettings& settings, double thickest)
 {
@@ -184,7 +184,7 @@ void DescribeLight(
   }
 }
 
-/// Sums powers over ranks. What densities still gain in a step is left over.
+/// Sums powers over ranks. The power that densities still gain per step becomes leftOver.
 void SumPowers(const Domain& domain, LightField& light)
 {
   EnergyBalance& balance = light.balance;
@@ -209,7 +209,7 @@ void SumPowers(const Domain& domain, LightField& light)
   }
 }
 
-/// Sets `converged`, and adds warnings, of light in the user's units.
+/// Sets `converged` and adds warnings; light is in the user's units.
 void JudgeLight(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
 {
   PropagationSettings judged = AsPropagation(settings);

@@ -27,7 +27,7 @@ Illumination WithUncollided(Illumination illumination, const UncollidedImage& un
 }
 }
 
-/// The coefficients, and uncollided light if any is given, of a block and its ghost voxels. Collective.
+/// Coefficients of a block and its ghost voxels, and the given uncollided light, if any. Collective.
 struct CoefficientsWithGhosts
 {
   CoefficientsWithGhosts(const Halo& halo, const Medium& own, const Field& ior, const UncollidedImage& image)
@@ -46,7 +46,7 @@ struct CoefficientsWithGhosts
     this->uncollided.fluence = halo.Spread(image.fluence, this->Fluence);
     this->uncollided.meanDirection = halo.Spread(image.meanDirection, this->Directions);
   }
-  CoefficientsWithGhosts(const CoefficientsWithGhosts&) = delete; // fields refer to the arrays
+  CoefficientsWithGhosts(const CoefficientsWithGhosts&) = delete; // fields refer to this object's arrays
   CoefficientsWithGhosts& operator=(const CoefficientsWithGhosts&) = delete;
 
   Medium medium;

@@ -72,7 +72,7 @@ PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDe
   of.maximumOrders = settings.maximumSteps;
   of.netFlux = settings.netFlux;
   of.angularDegree = angularDegree;
-  of.source = PropagationSource::Constant; // voxels of slabs stay cubes, too
+  of.source = PropagationSource::Constant; // voxels of slabs stay cubes as well
   return of;
 }
 

@@ -14,13 +14,14 @@ namespace tyndall
 {
 namespace
 {
-/// A closed line on which a voxel ends less than this part of the light, in the mean, is endless. Where no axis is open
-/// all lines close, and thin media end light in many laps.
+/// A closed line is endless if its voxels remove, on average, less than this fraction of the light. If no axis is open,
+/// all lines are closed, and thin media remove light over many laps.
 constexpr double LeastEnding = 1e-3, LeastEndingInClosedBox = 1e-12;
 
-/// Part of light from between two places that reaches the farther one before the nearer, and is not absorbed.
-/// @param way     from the nearer one, of all resistance between them
-/// @param decays  how many e-folds diffuse light falls by from one to the other
+/// Probability that diffuse light starting between two places reaches the farther one before the nearer, and is not
+/// absorbed.
+/// @param way  diffusive resistance to the nearer place, as a fraction of that between both
+/// @param decays  e-folds by which diffuse light decays between both
 double PartThatCrosses(double way, double decays)
 {
   if (decays < 1e-3)
@@ -30,14 +31,14 @@ double PartThatCrosses(double way, double decays)
   return std::exp((way - 1.0) * decays) * std::expm1(-2.0 * way * decays) / std::expm1(-2.0 * decays);
 }
 
-/// How many e-folds diffuse light falls by across a voxel.
+/// Number of e-folds by which diffuse light decays across a voxel.
 double DecaysAcross(const Medium& medium, std::size_t voxel, int channel)
 {
   const double absorbs = medium.sigma_a.At(voxel, channel);
   return medium.grid.spacing[0] * std::sqrt(3.0 * absorbs * medium.TransportSigmaT(voxel, channel));
 }
 
-/// Lines of links of a pair of directions that close round periodic axes, through a whole grid.
+/// Lines of links of a pair of directions that wrap around periodic axes and close, in the whole grid.
 class ClosedLines
 {
 public:
@@ -55,17 +56,17 @@ public:
     this->IsDiagonal = std::count(this->Ways.begin(), this->Ways.end(), 0) == 1;
   }
 
-  /// 0: lines of the pair do not close.
+  /// Number of closed lines; 0 if lines of the pair do not close.
   std::size_t Count() const
   {
     return this->Close ? this->Across * (this->IsDiagonal ? static_cast<std::size_t>(this->Common) : 1) : 0;
   }
 
-  /// Number of the line through a voxel, which may lie beyond the grid's periodic ends.
+  /// Index of the line through a voxel, which may lie beyond the grid's periodic ends.
   std::size_t Through(const std::array<int, 3>& voxel) const
   {
     std::size_t line = 0;
-    int along = 0; // of a diagonal: the same, but for whole periods, in all of its voxels
+    int along = 0; // constant along a diagonal, modulo whole periods
     int sign = 1;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -136,7 +137,8 @@ void LatticeVoxels::Load(const LatticeSettings& settings)
   const Field& ior = this->Problem.Index();
   const double edge = medium.grid.spacing[0];
   const bool published = settings.scheme == LatticeScheme::Published;
-  // Thickness at which a collision makes all of the density even, and up to which links let all light through.
+  // Optical thickness at which a collision makes all of the density isotropic, and up to which links transmit all
+  // light.
   const double most = 2.0 / (3.0 * LatticeSquares(settings.directions));
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
@@ -155,7 +157,7 @@ void LatticeVoxels::Load(const LatticeSettings& settings)
   }
 }
 
-/// Kernels omit only what no voxel of any rank needs.
+/// Reduces flags over ranks, so that kernels omit only what no voxel of any rank needs.
 void LatticeVoxels::ReduceGlobals()
 {
   const bool has = !this->squared.empty();
@@ -168,7 +170,7 @@ void LatticeVoxels::ReduceGlobals()
   this->thickest = all[3];
 }
 
-/// Marks closed lines on which light would hardly end. Collective.
+/// Marks closed lines that remove almost no light as endless. Collective.
 void LatticeVoxels::FindEndless(const std::array<bool, 3>& periodic)
 {
   const Domain& domain = this->Problem.TheDomain();
@@ -232,10 +234,10 @@ double LatticeVoxels::OpenWeight(std::size_t voxel) const
   {
     open -= bits >> pair & 1 ? 2.0 * LatticeWeight(this->Directions, 2 * pair) : 0.0;
   }
-  return std::max(open, LatticeWeight(this->Directions, this->Directions - 1)); // above 0 where all lines are endless
+  return std::max(open, LatticeWeight(this->Directions, this->Directions - 1)); // above 0 even if all lines are endless
 }
 
-/// Incident light, and the faces' albedo.
+/// Sets incident light and the faces' albedo.
 void LatticeVoxels::LoadBoundary()
 {
   const Illumination& shining = this->Problem.TheIllumination();
@@ -271,9 +273,10 @@ void LatticeVoxels::LoadSources(const Uncollided& direct)
   }
 }
 
-/// Moves a part of the first-collision source across the face that it is nearer to, Eq. (L13), in proportion to how
-/// near it is, so that lights add up. Forward scattering does not turn light back at once: its source stays.
-/// @param begin  W / length^2 that are first scattered in each voxel
+/// Moves a part of the first-collision source across the face that it is nearer to, Eq. (L13). The part is linear in
+/// the distance, so that lights superpose. With forward scattering light does not turn back at once, and its source
+/// stays.
+/// @param begin  light first scattered in each voxel, W / length^2
 void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& begin)
 {
   const Medium& medium = this->Problem.TheMedium();
@@ -287,7 +290,7 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
       continue;
     }
     std::array<double, 6> parts = {};
-    const double decays = 0.5 * DecaysAcross(medium, i, channel); // from the middle to a face
+    const double decays = 0.5 * DecaysAcross(medium, i, channel); // from the centre to a face
     const double normal = NearerOfNormalBeam(medium, i, channel);
     for (std::size_t face = 0; face < 6; ++face)
     {
@@ -295,7 +298,7 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
       const double part = nearer > 0.0 ? this->PartWithin(i, face) : 0.0;
       parts[face] = part > 0.0 ? nearer / normal * PartThatCrosses(2.0 * normal * part, decays / part) : 0.0;
     }
-    // In a corner no more can cross than there is.
+    // In a corner, limit the total that crosses to the available light.
     const double all = std::max(std::accumulate(parts.begin(), parts.end(), 0.0), 1.0);
     for (std::size_t face = 0; face < 6; ++face)
     {
@@ -311,7 +314,7 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
   }
 }
 
-/// Of the resistance from a voxel's centre to the next one's, or out of the box, the part that lies within it.
+/// Fraction within the voxel of the resistance from its centre to the next voxel's centre, or out of the box.
 double LatticeVoxels::PartWithin(std::size_t voxel, std::size_t face) const
 {
   const std::size_t beyond = this->Problem.Box().Beyond(voxel, face);

@@ -12,9 +12,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int StepsPerLook = 16;   ///< between two readings of the probes, at least
-constexpr int MostSteps = 200000;  ///< where the tolerance is not met
-constexpr double Slowest = 0.9999; ///< ratio of successive changes: above it the error is not known
+constexpr int StepsPerLook = 16;   ///< least number of steps between two readings of the probes
+constexpr int MostSteps = 200000;  ///< limit if the tolerance is not met
+constexpr double Slowest = 0.9999; ///< largest ratio of successive changes from which an error can be estimated
 }
 
 Settling::Settling(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings)
@@ -30,7 +30,7 @@ Settling::Settling(Device& device, Lattice& lattice, const Grid& grid, const Lat
   }
 }
 
-/// Queued in batches of about 50 ms.
+/// Queues steps in batches of about 50 ms.
 void Settling::Step(int steps, double done, const Monitor& monitor)
 {
   Batches batches;
@@ -65,7 +65,7 @@ double Settling::Change()
   return all > 0.0 ? changed / all : 0.0;
 }
 
-/// Estimated relative error, from the rate at which changes fall.
+/// Estimated relative error, from the rate at which changes decrease.
 double Settling::Estimate(double change)
 {
   const double ratio = this->LastChange > 0.0 ? std::min(change / this->LastChange, Slowest) : 1.0;
@@ -85,7 +85,7 @@ std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monit
   double residual = 1.0, done = 0.0;
   if (before.steps > 0)
   {
-    this->Change(); // the next change is measured from here, not from darkness
+    this->Change(); // the next change is measured from here, not from zero
   }
   for (int step = before.steps; step < most && (asked || residual > this->Settings.tolerance);)
   {

@@ -7,8 +7,8 @@ namespace tyndall
 {
 namespace
 {
-/// A smaller component of the mean direction along an axis is ignored, for shadows' edges fall off, too. From the first
-/// to the second its weight grows linearly, so that rounding decides nothing.
+/// Smaller components of the mean direction along an axis are ignored, since light also decreases at shadow edges. The
+/// weight grows linearly from the first to the second value, so that rounding does not decide.
 constexpr double SaysNothing = 0.15, SaysAll = 0.25;
 
 /// Mean of exp(-k x) over x from 0 to 1.
@@ -23,14 +23,14 @@ double ThicknessOf(const Medium& medium, std::size_t voxel, std::size_t axis, in
   return medium.grid.spacing[axis] * (medium.sigma_a.At(voxel, channel) + medium.sigma_s.At(voxel, channel));
 }
 
-/// Distance of the mean place where exp(-k x) is lost from the middle, towards where it comes from.
+/// Distance from the voxel's centre, upstream, of the mean place at which light exp(-k x) is lost.
 double NearerBy(double k)
 {
   return k > 1e-2 ? std::min(0.5 - 1.0 / k + 1.0 / std::expm1(k), 0.5) : k / 12.0;
 }
 
-/// k of a voxel, at most `most`, where the next voxel on the way, `ratio` times as thick, has the part `passes` of its
-/// fluence: exp(-k) MeanOf(ratio k) / MeanOf(k) falls as k grows.
+/// Solves exp(-k) MeanOf(ratio k) / MeanOf(k) = passes for k, at most `most`: the next voxel downstream is `ratio`
+/// times as thick and has the fraction `passes` of this voxel's fluence. The left side decreases with k.
 double FallOff(double passes, double ratio, double most)
 {
   double low = 0.0, high = most;
@@ -42,7 +42,7 @@ double FallOff(double passes, double ratio, double most)
   return low;
 }
 
-/// One channel of an image in its medium.
+/// One channel of an uncollided image in its medium.
 class LostLight
 {
 public:
@@ -54,7 +54,7 @@ public:
   {
   }
 
-  /// Distance of the mean place from the middle along the axis, against the way of the light.
+  /// Distance of the mean collision place from the voxel's centre along the axis, upstream.
   double Nearer(std::size_t voxel, std::size_t axis) const
   {
     const double along = this->Image.meanDirection.At(voxel, static_cast<int>(axis));
@@ -65,13 +65,13 @@ public:
   double Fluence(std::size_t voxel) const { return this->Image.fluence.At(voxel, this->Channel); }
 
 private:
-  /// The same from how light falls off.
-  /// @param along  of its direction, along the axis
+  /// The same, from the decay of the light.
+  /// @param along  component of the mean direction along the axis
   double NearerBySlope(std::size_t voxel, std::size_t axis, double along) const
   {
     const double thickness = this->Thickness(voxel, axis);
     const double most = thickness / std::abs(along);
-    const std::size_t ahead = along > 0.0 ? 1 : 0; // of the two faces across the axis
+    const std::size_t ahead = along > 0.0 ? 1 : 0; // the downstream one of the two faces across the axis
     const std::size_t next = this->Box.Beyond(voxel, 2 * axis + ahead);
     if (next != Outside)
     {
@@ -81,10 +81,10 @@ private:
     const std::size_t last = this->Box.Beyond(voxel, 2 * axis + 1 - ahead);
     if (last != Outside)
     {
-      // From the preceding voxel, in whose thickness k is measured.
+      // From the preceding voxel, in units of whose thickness k is measured.
       const double before = this->Thickness(last, axis), there = this->Fluence(last);
       const double ratio = before > 0.0 ? thickness / before : 0.0;
-      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0; // no light passed there
+      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0; // no light came from there
       return before > 0.0 ? NearerBy(std::min(ratio * FallOff(passes, ratio, before / std::abs(along)), most))
                           : NearerBy(most);
     }

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// An axis of both grids, and the parts of it that an array has.
+/// One axis of both grids, and the ranges of it that an array covers.
 struct CoarsenedAxis
 {
   CoarsenedAxis(int fineOfAll, int coarseOfAll)
@@ -17,12 +17,12 @@ struct CoarsenedAxis
     , width(static_cast<double>(fineOfAll) / coarseOfAll)
   {
   }
-  /// Where a coarse voxel begins, in fine ones; it ends a width further.
+  /// Start of a coarse voxel in units of fine voxels; it ends `width` further.
   double BeginOf(std::size_t coarse) const { return static_cast<double>(coarse) * this->width; }
   bool Reaches(std::size_t fine, double end) const { return fine < this->count && fine < end - 1e-9; }
 
-  std::size_t count; ///< fine voxels of all
-  double width;      ///< of a coarse voxel, in fine ones
+  std::size_t count; ///< fine voxels of the whole axis
+  double width;      ///< width of a coarse voxel in fine voxels
 };
 
 struct Part
@@ -132,7 +132,7 @@ VoxelBox Coarsening::CoarseBox(const VoxelBox& fine) const
   for (int axis = 0; axis < 3; ++axis)
   {
     const long all = this->FineOfAll[axis], fewer = this->CoarseOfAll[axis];
-    // The first coarse voxel c whose centre, (2 c + 1) all / (2 fewer), is not below a fine voxel's lower side.
+    // First coarse voxel c whose centre, (2 c + 1) all / (2 fewer), is not below the lower side of a fine voxel.
     const auto firstFrom = [=](long side) {
       return static_cast<int>((2 * fewer * side - all + 2 * all - 1) / (2 * all));
     };
@@ -215,8 +215,8 @@ std::vector<float> Coarsening::Average(const Field& values, const Field& weights
   return means;
 }
 
-/// Of a fine voxel along an axis: its value is (1 - part) of the coarse voxel `first`, of those that an array has, and
-/// part of `second`.
+/// Interpolation weights of a fine voxel along an axis: (1 - part) of the coarse voxel `first`, as indexed in the
+/// array, and `part` of `second`.
 struct Coarsening::Between
 {
   std::size_t first, second;
@@ -238,7 +238,7 @@ std::vector<Coarsening::Between> Coarsening::BetweenAlong(int axis) const
   return places;
 }
 
-/// The coarse values of a row along x, between those of four coarse rows.
+/// Interpolates a row of coarse values along x between four coarse rows.
 void Coarsening::MixRows(
   const std::vector<float>& values, const Between& y, const Between& z, std::vector<float>& row) const
 {

@@ -19,9 +19,8 @@ std::int32_t BitsOf(float value)
   return bits;
 }
 
-/// One field in a layer of bricks along z, whose voxels stand one after the other in memory. Floats as integers: bits
-/// of those that are not negative are in the order of their values, with all that is not finite above, and integers
-/// take no branch a value.
+/// One field in a layer of bricks along z, which is contiguous in memory. Floats are compared as integers: non-negative
+/// floats have the order of their bits, all non-finite values compare larger, and integer operations need no branches.
 class LayerOfBricks
 {
 public:
@@ -34,7 +33,7 @@ public:
   {
   }
 
-  /// Marks bricks in which any value is not zero, and widens what is known of all values.
+  /// Marks bricks with any non-zero value, and updates the summary of all values.
   void Mark(unsigned char* bricks, FilledBricks::Values& all)
   {
     this->Collect();
@@ -56,12 +55,12 @@ public:
     }
     float value;
     std::memcpy(&value, &largest, sizeof(value));
-    all.sound = all.sound && signs >= 0 && value <= std::numeric_limits<float>::max(); // NaN is not
+    all.sound = all.sound && signs >= 0 && value <= std::numeric_limits<float>::max(); // false for NaN
     all.largest = std::max(all.largest, value);
   }
 
 private:
-  static constexpr std::size_t Lanes = 8; ///< as many bits a brick as a vector instruction takes at once
+  static constexpr std::size_t Lanes = 8; ///< lanes per brick, as many as a vector instruction has
 
   /// Calls act(row, y) for the rows of voxels from y0 to y1, in the order of memory.
   template <class Act>
@@ -76,7 +75,7 @@ private:
     }
   }
 
-  /// All bits of each brick's values. From end to end: jumps from row to row of bricks would take twice as long.
+  /// ORs the bits of each brick's values. Reads memory sequentially; going brick by brick would take twice as long.
   void Collect()
   {
     const std::size_t each = Count(this->Of.components), ofBrick = BrickEdge * each;
@@ -119,7 +118,7 @@ private:
   const Grid& TheGrid;
   const std::array<int, 3> BrickCount;
   const int Layer;
-  std::vector<std::int32_t> Bits; ///< of each brick, in lanes
+  std::vector<std::int32_t> Bits; ///< per brick, in lanes
 };
 static_assert(BrickEdge == 8, "a row of a brick is whole lanes");
 
@@ -129,7 +128,7 @@ void Widen(FilledBricks::Values& all, const FilledBricks::Values& part)
   all.sound = all.sound && part.sound;
 }
 
-/// What a layer of bricks along z has of one field.
+/// Marks the filled bricks of a layer along z for one field.
 void MarkLayer(const Field& field, const Grid& grid, int layer, FilledBricks& bricks, FilledBricks::Values& values)
 {
   if (field.values)

@@ -45,10 +45,11 @@ void CheckComponents(const Field& field, const char* name)
 
 namespace
 {
-constexpr double LongestSpacing = 1e30; ///< and the shortest is its inverse: products of several areas stay doubles
-constexpr double MostUnequal = 1e9;     ///< longest spacing over shortest
+constexpr double LongestSpacing =
+  1e30; ///< the shortest is its inverse, so that products of several areas stay within doubles
+constexpr double MostUnequal = 1e9; ///< longest spacing over shortest
 
-/// Which value is not sound, where any is.
+/// Finds the first invalid value and reports it, if there is any.
 void CheckField(const Field& field, const FilledBricks::Values& found, const char* name, const Grid& grid)
 {
   const std::size_t count = found.sound ? 0 : grid.VoxelCount() * static_cast<std::size_t>(field.components);
@@ -68,7 +69,7 @@ void CheckMeanCosines(const Medium& medium)
   const Field& g = medium.phase.G();
   if (!g.values)
   {
-    return; // a phase function has looked at its own
+    return; // the phase function has checked its own parameters
   }
   CheckComponents(g, "g");
   const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(g.components);
@@ -87,12 +88,12 @@ void CheckMeanCosines(const Medium& medium)
   }
 }
 
-/// Their sum is what dims light; floats end at 3.4e38.
+/// Checks sigma_a + sigma_s, the extinction; floats end at 3.4e38.
 void CheckExtinction(const Medium& medium, const FilledBricks& bricks)
 {
   if (!medium.sigma_a.values && !medium.sigma_s.values)
   {
-    return; // also a box that is only asked about, of more voxels than could be counted
+    return; // also for a box without values, which may have more voxels than can be counted
   }
   const int channels = medium.phase.HasColour() ? 3 : std::max(medium.sigma_a.components, medium.sigma_s.components);
   const auto extinctionOf = [&](std::size_t i, int c) {
@@ -146,7 +147,7 @@ void Check(const Grid& grid)
 
 namespace
 {
-/// Its shape: what is needed to look at its values.
+/// Checks grid and components, which must be valid before values are read.
 void CheckShape(const Medium& medium)
 {
   Check(medium.grid);
@@ -174,8 +175,8 @@ void Check(const Medium& medium)
 {
   CheckShape(medium);
   const bool values = medium.sigma_a.values || medium.sigma_s.values || medium.emission.values;
-  CheckValues(
-    medium, values ? FindFilledBricks(medium) : FilledBricks()); // none: voxels may be more than can be counted
+  CheckValues(medium,
+    values ? FindFilledBricks(medium) : FilledBricks()); // no bricks: there may be more voxels than can be counted
 }
 
 FilledBricks CheckedBricks(const Medium& medium)

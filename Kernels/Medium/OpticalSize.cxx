@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// The largest sum of a row of voxels along an axis.
+/// Largest sum of the density along a row of voxels parallel to an axis.
 double LargestRow(const float* density, const Grid& grid, int axis)
 {
   const PlaneAxes plane = AcrossAxis(axis);

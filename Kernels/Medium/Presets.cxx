@@ -8,14 +8,14 @@ const char* const AsMeasured = "the medium as it was measured";
 const char* const Jensen = "Jensen, Marschner, Levoy, Hanrahan: A practical model for subsurface light transport, "
                            "SIGGRAPH 2001, figure 5 (reduced scattering)";
 
-/// Coefficients that the source gives per kilometre or metre.
+/// Converts coefficients given per kilometre or metre to 1/mm.
 constexpr Rgb PerMillimetre(const Rgb& coefficients, double lengthInMillimetres)
 {
   return { coefficients[0] / lengthInMillimetres, coefficients[1] / lengthInMillimetres,
     coefficients[2] / lengthInMillimetres };
 }
 
-/// Where no g was measured; what a reduced scattering coefficient, sigma_s (1 - g), goes with.
+/// g if none was measured, or with a reduced scattering coefficient, sigma_s (1 - g).
 constexpr Rgb Isotropic = { 0.0, 0.0, 0.0 };
 
 constexpr Rgb OfAllColours(double g)

@@ -17,7 +17,7 @@ struct Row
   std::size_t first;
   int size;
 
-  /// Whether any value of a field is not zero, in any component; fields are not negative.
+  /// Whether a field has a non-zero value in any component; fields are not negative.
   bool Has(const Field& field) const
   {
     const float* begin = field.values + this->first * field.components;
@@ -78,7 +78,7 @@ void ForFilledRows(const Medium& medium, const FilledBricks& bricks, bool simila
   }
 }
 
-/// The box of what is not empty.
+/// Bounding box of the voxels that are not empty.
 class FilledBox
 {
 public:
@@ -89,7 +89,7 @@ public:
   {
   }
 
-  /// Only bricks at its sides tell where they are: what is in the others is between them.
+  /// Only the outermost filled bricks need a voxel-by-voxel search.
   void Find(const FilledBricks& bricks)
   {
     const FilledBox ofBricks = this->BoxOf(bricks);

@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestForMoments = 16; ///< nine moments are given, and no weight may become negative
+constexpr int FewestForMoments = 16; ///< nine moments are prescribed, and no weight may become negative
 constexpr int MostDirections = 65536;
 
 void CheckCount(int count, int fewest)
@@ -43,7 +43,7 @@ std::vector<Direction> WeightedSpiralDirections(int count)
 {
   CheckCount(count, FewestForMoments);
   std::vector<Direction> directions = SpiralDirections(count);
-  // Of 1, omega and the five independent products of its components: what the weights must give of each.
+  // Prescribed integrals of 1, omega and the five independent products of its components.
   Eigen::MatrixXd moments(9, count);
   for (int i = 0; i < count; ++i)
   {

@@ -10,7 +10,7 @@ std::vector<double> SphericalHarmonics(int degree, const std::array<double, 3>& 
 {
   std::vector<double> values((degree + 1) * (degree + 1));
   const double z = omega[2];
-  // (x + i y)^m stands for sin^m times cosine and sine of m times the azimuth: no pole is special.
+  // (x + i y)^m gives sin^m times cosine and sine of m times the azimuth, so that the poles need no special case.
   double real = 1.0, imaginary = 0.0;
   double sectoral = std::sqrt(1.0 / (4.0 * Pi)); // of order m in degree m, but sin^m
   for (int m = 0; m <= degree; ++m)

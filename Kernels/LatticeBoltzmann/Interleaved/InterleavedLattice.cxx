@@ -12,9 +12,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Overlap = 0.05; ///< of the shorter part's time: with less, the device does one after the other
+constexpr double Overlap =
+  0.05; ///< fraction of the shorter part's time; with less overlap the device runs the queues one after the other
 
-/// Steps of a turn of photons, after `done` steps. The last one that is asked for is done when all photons have ended.
+/// Number of lattice steps during the next turn of photons, after `done` steps. The last step is reserved for when all
+/// photons have ended.
 int StepsOfTurn(const LatticeSettings& settings, int done)
 {
   const int most = settings.stepsPerExchange, asked = settings.maximumSteps;
@@ -85,7 +87,7 @@ void InterleavedLattice::Take(const cl::CommandQueue& queue, const Buffer<float>
   }
 }
 
-/// The light of all photons, in the problem's units and channels.
+/// Takes over the light of all photons, in the problem's units and channels.
 void InterleavedLattice::TakeAll(const PhotonLight& photons)
 {
   const auto all = static_cast<std::size_t>(this->Problem->Channels());
@@ -132,7 +134,8 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   TurnTimes times;
   const PhotonLight found = marcher.MarchByTurns(photons, turns, times, OfPart(monitor, 0.0, 0.3));
   this->TakeAll(found);
-  const double marched = (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // rows add them up
+  const double marched =
+    (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // rows sum over channels
   LightField light = BeginLight(*this->Problem, this->Settings);
   double thickest = 0.0;
   for (std::size_t c = 0; c < this->Channels.size(); ++c)

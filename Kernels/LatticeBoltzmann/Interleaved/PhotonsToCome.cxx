@@ -6,7 +6,7 @@ namespace tyndall
 {
 namespace
 {
-/// Order of magnitude of the fluence, W / length^2, of light of so much power.
+/// Order of magnitude of the fluence, W / length^2, of light with the given power.
 double UsualFluence(const Rgb& power, const Grid& grid)
 {
   const double x = grid.Length(0), y = grid.Length(1), z = grid.Length(2), area = x * y + y * z + z * x;

@@ -6,7 +6,7 @@ namespace tyndall
 {
 namespace
 {
-/// A number that is linear in what wraps around a closed line, `round`, and in what is sent from ahead.
+/// A linear function of the light that wraps around a closed line, `round`, and of the light sent from ahead.
 struct Linear
 {
   double own = 0.0, ofRound = 0.0, ofAhead = 0.0;
@@ -25,8 +25,8 @@ double Inverse(double rest)
   return rest > 0.0 ? 1.0 / rest : 0.0;
 }
 
-/// The pieces joined so far: what the last one sends up and the first one sends down, as functions of what is sent down
-/// to the last.
+/// The pieces joined so far: light that the last one sends up and the first one sends down, as functions of the light
+/// sent down to the last piece.
 struct WayUp
 {
   WayUp(const PieceOfLine& piece, const SentByPiece& sent, bool closed)
@@ -35,10 +35,11 @@ struct WayUp
   {
   }
 
-  /// @return what is sent up into the next piece, as a function of what is sent down to its last voxel
+  /// @return light sent up into the next piece, as a function of the light sent down to that piece's last voxel
   Linear Add(const PieceOfLine& piece, const SentByPiece& sent)
   {
-    // To the last piece so far `down` times what the next sends down is sent, and what the link returns.
+    // The last piece so far receives `down` times the light that the next piece sends down, plus what the link
+    // reflects.
     const double again = piece.down * piece.givesBack + 1.0 - piece.up;
     const double inverse = Inverse(1.0 - this->sends.ofAhead * again);
     const Linear down = { piece.down * sent.down, 0.0, piece.down * piece.comesDown };
@@ -53,7 +54,7 @@ struct WayUp
   Linear sends, cut;
 };
 
-/// What is sent up the cut of a closed line, and down to it.
+/// Light sent up the cut of a closed line, and down to it.
 SentByPiece RoundOf(const WayUp& way, const PieceOfLine& first)
 {
   const double inverse = Inverse(1.0 - first.down * way.cut.ofAhead);
@@ -85,7 +86,7 @@ std::vector<ComesToPiece> JoinLine(
     beyond = sent[k].down + piece.givesBack * comes[k].up + piece.comesDown * down;
     down = piece.down * beyond + (1.0 - piece.up) * comes[k].up;
   }
-  comes.back().sentBeyond = beyond; // beyond the last piece of a closed line is the first
+  comes.back().sentBeyond = beyond; // the first piece follows the last piece of a closed line
   return comes;
 }
 }

@@ -11,15 +11,16 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Reduction = 0.1;     ///< of the residual over all voxels, in the norm of the preconditioner
-constexpr double CellReduction = 0.1; ///< of that on cells
+constexpr double Reduction = 0.1;     ///< reduction of the residual on all voxels, in the preconditioner's norm
+constexpr double CellReduction = 0.1; ///< reduction of the residual on cells
 constexpr int MostCorrections = 20;
-constexpr double Damping = 0.7;                           ///< of Jacobi's method
-constexpr double Thinnest = 0.05;                         ///< sigma_t h as which thinner voxels count
-constexpr std::size_t MostCells = std::size_t{ 1 } << 18; ///< over ranks
-constexpr int LeastVoxels = 8;                            ///< of a cell, likewise, where there are as many
+constexpr double Damping = 0.7;   ///< damping factor of Jacobi's method
+constexpr double Thinnest = 0.05; ///< lower limit of sigma_t h; thinner voxels are treated as this thick
+constexpr std::size_t MostCells = std::size_t{ 1 } << 18; ///< most cells in a distributed solve
+constexpr int LeastVoxels = 8; ///< least voxels per cell in a distributed solve, if the grid has as many
 
-/// Over ranks: each axis of more than one voxel, and the longest ones until cells are few enough.
+/// Halvings of each axis in a distributed solve: one for each axis with more than one voxel, then the longest axes
+/// until there are few enough cells.
 std::array<int, 3> HalvingsFor(const Grid& grid)
 {
   std::array<int, 3> halvings = {}, cells = grid.size;
@@ -99,7 +100,7 @@ void LatticeDiffusion::LoadVoxels(const LatticeSettings& settings, const Lattice
     {
       if (this->Periodic[face / 2] && this->TheDomain.Whole().size[face / 2] == 1)
       {
-        continue; // beyond it lies the voxel itself
+        continue; // the voxel is its own neighbour
       }
       const std::size_t beyond = this->Box.Beyond(at, face);
       if (beyond == Outside)
@@ -116,7 +117,8 @@ void LatticeDiffusion::LoadVoxels(const LatticeSettings& settings, const Lattice
   }
 }
 
-/// As a coarser level of multigrid: centres of cells are farther apart by as much as axes are halved.
+/// Assembles the cells as a coarser level of multigrid: the spacing of cell centres doubles with each halving of an
+/// axis.
 void LatticeDiffusion::LoadCells()
 {
   const Grid& whole = this->TheDomain.Whole();
@@ -127,7 +129,7 @@ void LatticeDiffusion::LoadCells()
     edges[axis] = whole.spacing[axis] * (1 << this->Halvings[axis]);
   }
   const std::size_t cells = this->Cells.VoxelCount();
-  Values sums(4 * cells, 0.0); // conductance of the faces -x, -y, -z, then losses
+  Values sums(4 * cells, 0.0); // conductances of the faces -x, -y, -z, then losses
   for (std::size_t i = 0; i < this->Box.Count(); ++i)
   {
     const std::array<int, 3> at = this->InWhole(i);
@@ -156,7 +158,7 @@ void LatticeDiffusion::LoadCells()
     this->Solver->Coarsen();
     this->Found = ExactValues(this->TheDevice, cells, "diffusion on cells");
   });
-  if (this->TheDomain.IsSerial()) // the solver has them
+  if (this->TheDomain.IsSerial()) // the solver already has them
   {
     this->Conductance = {};
     this->Loss = {};
@@ -168,7 +170,7 @@ LatticeDiffusion::Values LatticeDiffusion::Solve(const Values& residual, double 
   return this->TheDomain.IsSerial() ? this->SolveCells(residual, unit) : this->SolveVoxels(residual);
 }
 
-/// On this rank. @param residual  by cell
+/// Solves on the cells on this rank. @param residual by cell
 LatticeDiffusion::Values LatticeDiffusion::SolveCells(const Values& residual, double unit)
 {
   this->Solver->Right().Write(InRows(this->Solver->Rows(), residual).data());
@@ -177,7 +179,7 @@ LatticeDiffusion::Values LatticeDiffusion::SolveCells(const Values& residual, do
   return this->Found.Read();
 }
 
-/// The matrix times values of the voxels and their ghost voxels.
+/// Product of the matrix with values of the voxels and their ghost voxels.
 LatticeDiffusion::Values LatticeDiffusion::Applied(const std::vector<float>& withGhosts) const
 {
   const LatticeBox box(this->Ghosts);
@@ -206,7 +208,7 @@ double LatticeDiffusion::Diagonal(std::size_t voxel) const
   return std::accumulate(conductance.begin(), conductance.end(), 0.0) + this->Loss[voxel];
 }
 
-/// The solution on cells for a residual by voxel: by cell, the same on all ranks.
+/// Solution on cells for a residual by voxel; returned by cell, the same on all ranks.
 LatticeDiffusion::Values LatticeDiffusion::ByCells(const Values& residual)
 {
   Values sums(this->Cells.VoxelCount(), 0.0);
@@ -226,7 +228,8 @@ LatticeDiffusion::Values LatticeDiffusion::ByCells(const Values& residual)
   return this->TheDomain.Sum(found); // the other ranks have zeros
 }
 
-/// In float, as ghost voxels are exchanged, so that it does not depend on which rank has which voxel.
+/// Applies the preconditioner. In single precision, in which ghost voxels are exchanged, so that the result does not
+/// depend on the partition.
 std::vector<float> LatticeDiffusion::Preconditioned(const Values& residual)
 {
   std::vector<float> own;
@@ -271,7 +274,7 @@ void LatticeDiffusion::AddCells(const Values& byCells, std::vector<float>& withG
   }
 }
 
-/// Over all ranks.
+/// Scalar product over all ranks.
 double LatticeDiffusion::Dot(const Values& a, const std::vector<float>& b) const
 {
   return this->TheDomain.Sum(std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
@@ -306,7 +309,7 @@ LatticeDiffusion::Values LatticeDiffusion::SolveVoxels(const Values& residual)
       left[i] -= length * applied[i];
     }
     better = this->Preconditioned(left);
-    // Flexible conjugate gradients: the solve on cells is itself an iteration.
+    // Flexible conjugate gradients, since the solve on cells is itself iterative.
     const double part = -length * this->Dot(applied, better) / norm;
     norm = this->Dot(left, better);
     std::transform(better.begin(), better.end(), direction.begin(), direction.begin(),

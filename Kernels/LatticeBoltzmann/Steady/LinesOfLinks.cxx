@@ -14,11 +14,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr int PairsAtOnce = 3; ///< of cut lines
+constexpr int PairsAtOnce = 3; ///< pairs of directions of cut lines swept together
 constexpr std::size_t PieceValues = 8, JoinedValues = 3,
                       SweepValues = 2; ///< numbers of a piece, as CutLines.cl has them
 
-/// Values of the box's own voxels.
+/// Extracts the values of the box's own voxels.
 std::vector<float> OwnOf(const LatticeBox& box, const std::vector<float>& known)
 {
   if (box.IsAll() || known.empty())
@@ -33,7 +33,7 @@ std::vector<float> OwnOf(const LatticeBox& box, const std::vector<float>& known)
   return own;
 }
 
-/// Part of a density that continues straight on in each own voxel, Eq. (L7).
+/// Fraction of a density that continues straight in each own voxel, Eq. (L7).
 std::vector<double> GoesStraight(const LatticeBox& box, const LatticeVoxels& voxels)
 {
   std::vector<double> straight;
@@ -113,7 +113,7 @@ void LinesOfLinks::LoadCutLines()
   }
 }
 
-/// Those that this rank joins, and all its pieces.
+/// The lines that this rank joins, and all of its pieces.
 LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
 {
   Pair pair;
@@ -127,7 +127,7 @@ LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
       byRank[piece.rank].pieces.push_back(piece.number);
     }
   }
-  std::vector<std::size_t> next; // place of the first piece of a rank that is not placed yet
+  std::vector<std::size_t> next; // by rank, index of its first piece that has no place yet
   std::size_t all = 0;
   for (std::size_t rank = 0; rank < byRank.size(); ++rank)
   {
@@ -149,7 +149,7 @@ LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
   return pair;
 }
 
-/// Tells each rank which of its pieces this rank joins: for each pair how many, and which.
+/// Sends each rank the pieces of its block that this rank joins: for each pair their number, and which.
 void LinesOfLinks::ExchangeJoins()
 {
   if (this->Box.Count() == 0)
@@ -187,7 +187,7 @@ void LinesOfLinks::ExchangeJoins()
   }
 }
 
-/// `below` of CutLines.cl; 1 where a piece begins at a face of the grid.
+/// The array `below` of CutLines.cl; 1 for pieces that begin at a face of the grid.
 LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) const
 {
   const VoxelBox& block = this->TheDomain.Own();
@@ -211,7 +211,7 @@ LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) 
   return below;
 }
 
-/// Sends what pieces do to light to the ranks that join them. It does not change from sweep to sweep.
+/// Sends the responses of pieces (PieceOfLine) to the ranks that join them. They are the same in all sweeps.
 void LinesOfLinks::ExchangeParts()
 {
   this->Failure = {};
@@ -234,8 +234,9 @@ void LinesOfLinks::ExchangeParts()
   this->TheDomain.Collective([&] { this->Failure.Throw(); });
 }
 
-/// Sends numbers of pieces to the ranks that wait for them; empty messages after a failure.
-/// @param values  of all of this rank's pieces, by number; or, if `part.of` is 0, of the pieces sent, in that order
+/// Sends values of pieces to the ranks that wait for them; sends empty messages after a failure.
+/// @param values  values of all of this rank's pieces, by number; or, if `part.of` is 0, of the pieces sent, in their
+///   order
 void LinesOfLinks::Send(const std::vector<Shared>& to, int tag, Part part, const Values& values)
 {
   auto next = values.begin();
@@ -255,7 +256,7 @@ void LinesOfLinks::Send(const std::vector<Shared>& to, int tag, Part part, const
   }
 }
 
-/// @return `width` numbers of each piece, side by side; undefined after a failure
+/// @return `width` values per piece, one piece after the other; undefined after a failure
 LinesOfLinks::Values LinesOfLinks::Receive(const std::vector<Shared>& from, int tag, std::size_t width)
 {
   Values all;
@@ -276,7 +277,7 @@ std::string LinesOfLinks::Options() const
     Define("PUBLISHED", 0) + Define("ENDLESS", !voxels.endless.empty());
 }
 
-/// One of CutLines.cl with its first arguments, up to `endless`.
+/// A kernel of CutLines.cl with its arguments up to `endless` set.
 cl::Kernel LinesOfLinks::Kernel(const char* name, int pair, double incident) const
 {
   cl::Kernel lines = this->TheDevice.Kernel(name, kernel_source::CutLines, this->Options());
@@ -360,7 +361,7 @@ void LinesOfLinks::GoDown(int pair, Slot& slot, double incident, bool writes)
   });
 }
 
-/// Up and down lines that no block cuts.
+/// Upward and downward pass of lines that no block cuts.
 void LinesOfLinks::SweepWhole(int pair, double incident, bool writes)
 {
   cl::Kernel lines = this->TheDevice.Kernel("sweep_lines", kernel_source::LatticeLines, this->Options());
@@ -373,7 +374,7 @@ void LinesOfLinks::SweepWhole(int pair, double incident, bool writes)
   this->Run(lines, pair);
 }
 
-/// Some pairs at once, so that a rank need not wait for each.
+/// Sweeps several pairs at once, so that a rank need not wait for each.
 void LinesOfLinks::SweepCut(int begin, int end, double incident, bool writes)
 {
   for (int pair = begin; pair < end; ++pair)
@@ -416,7 +417,7 @@ LinesOfLinks::Values LinesOfLinks::Sweep(const Values& even, double incident, bo
         this->SweepWhole(begin, incident, writes);
       }
       this->Work += end - begin;
-      Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work)); // how many sweeps it takes is not known
+      Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work)); // the number of sweeps is not known in advance
     });
   }
   Values arrives;

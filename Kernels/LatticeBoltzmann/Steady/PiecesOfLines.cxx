@@ -59,8 +59,8 @@ PiecesOfLines::Piece PiecesOfLines::PieceAt(int rank, const Voxel& first) const
   return { rank, at(this->Still[0]) * range + (first[b] == this->Entry(block, b) ? at(a) : size + at(b)) };
 }
 
-/// From the first voxel of a piece to that of the next one.
-/// @return whether there is one
+/// Moves from the first voxel of a piece to that of the next piece.
+/// @return whether there is a next piece
 bool PiecesOfLines::MoveOn(int rank, Voxel& voxel) const
 {
   const VoxelBox& block = this->Partition.blocks[rank];
@@ -103,13 +103,14 @@ bool PiecesOfLines::Closes() const
   return std::all_of(this->Moving.begin(), this->Moving.end(), [&](int axis) { return this->Periodic[axis]; });
 }
 
-/// First voxels of lines through a box, as begin_line has them; closed lines begin in a plane that they all cross.
+/// First voxels of lines through a box, in the order of begin_line; closed lines begin in a plane that all of them
+/// cross.
 std::vector<PiecesOfLines::Voxel> PiecesOfLines::FirstVoxels(
   const VoxelBox& box, const std::array<bool, 3>& periodic) const
 {
   const int a = this->Moving.front(), b = this->Moving.back();
   std::vector<Voxel> found;
-  // In the plane in which lines enter along an axis, the voxels in which they begin.
+  // Adds the voxels in which lines begin, in the plane in which they enter along an axis.
   const auto addFrom = [&](int axis, const auto& begins) {
     VoxelBox plane = box;
     plane.first[axis] = this->Entry(box, axis);

@@ -10,9 +10,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Imbalance = 1e-6; ///< of all power, that may be missing
+constexpr double Imbalance = 1e-6; ///< largest relative error of the energy balance
 constexpr int MostIterations = 400;
-constexpr int Patience = 40; ///< iterations without a better estimate, after which rounding limits it
+constexpr int Patience =
+  40; ///< iterations without a better estimate, after which rounding is taken to limit the accuracy
 
 /// a += factor b
 void Add(std::vector<double>& a, double factor, const std::vector<double>& b)
@@ -45,13 +46,13 @@ double SteadyLattice::Turns(std::size_t known) const
   return (1.0 - this->Voxels.lost[known]) * this->Voxels.turning[known] / this->Voxels.OpenWeight(known);
 }
 
-/// Over all ranks.
+/// Scalar product over all ranks.
 double SteadyLattice::Dot(const Values& a, const Values& b) const
 {
   return this->TheDomain.Sum(std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
 }
 
-/// What collisions of this fluence over n^2 send evenly, with or without sources.
+/// Light that collisions emit isotropically for a given fluence / n^2, with or without sources.
 std::vector<double> SteadyLattice::EvenOf(const Values& scaled, bool withSources) const
 {
   Values even(this->Count);
@@ -59,13 +60,14 @@ std::vector<double> SteadyLattice::EvenOf(const Values& scaled, bool withSources
   {
     const std::size_t known = this->Box.Known(i);
     const double half = withSources ? 0.5 * this->Voxels.source[known] : 0.0, kept = 1.0 - this->Voxels.lost[known];
-    const double own = half * (1.0 + kept * (1.0 - this->Voxels.turning[known])); // of the half before the collision
+    const double own =
+      half * (1.0 + kept * (1.0 - this->Voxels.turning[known])); // from the half of the source before the collision
     even[i] = this->Turns(known) * this->Voxels.squared[known] * scaled[i] + own / this->Voxels.OpenWeight(known);
   }
   return even;
 }
 
-/// What a sweep brings to each voxel, with or without sources and incident light.
+/// Light that arrives in each voxel in a sweep, with or without sources and incident light.
 std::vector<double> SteadyLattice::Arriving(const Values& scaled, bool withSources, bool writes, const Monitor& monitor)
 {
   Values even;
@@ -86,7 +88,7 @@ std::vector<double> SteadyLattice::Residual(const Values& scaled, const Monitor&
   return residual;
 }
 
-/// The system's matrix times fluence over n^2, Eq. (L9).
+/// Product of the system matrix with fluence / n^2, Eq. (L9).
 std::vector<double> SteadyLattice::Applied(const Values& scaled, const Monitor& monitor)
 {
   Values applied = this->Arriving(scaled, false, false, monitor);
@@ -98,7 +100,7 @@ std::vector<double> SteadyLattice::Applied(const Values& scaled, const Monitor& 
   return applied;
 }
 
-/// Eq. (L11).
+/// Applies the preconditioner, Eq. (L11).
 std::vector<double> SteadyLattice::Preconditioned(const Values& residual)
 {
   const double unit = std::sqrt(this->Dot(residual, residual) / this->CountOfAll);
@@ -163,7 +165,7 @@ std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<Conv
     {
       break;
     }
-    // Flexible conjugate gradients: the preconditioner is itself an iteration.
+    // Flexible conjugate gradients, since the preconditioner is itself iterative.
     const double part = -length * this->Dot(better, applied) / rz;
     rz = this->Dot(residual, better);
     std::transform(better.begin(), better.end(), direction.begin(), direction.begin(),
@@ -178,7 +180,7 @@ std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<Conv
       fluence.push_back(static_cast<float>(arrives[i] + 0.5 * this->Voxels.source[this->Box.Known(i)]));
     }
   });
-  if (rows.empty()) // nothing collides: one sweep is all
+  if (rows.empty()) // no light collides: one sweep is enough
   {
     this->Note(0.0, power > 0.0 ? change : 0.0, 1, rows);
   }
