@@ -60,7 +60,7 @@ RescaledScene::RescaledScene(const ComparedScene& scene, To to, const Factors& f
   rescale(medium.sigma_s, this->SigmaS);
   rescale(medium.emission, this->Emission);
   medium.grid = to == To::Coarser ? Coarsened(from, factors) : Refined(from, factors);
-  this->TheScene.ior = {}; // photons march through the scene's own voxels only
+  this->TheScene.ior = {}; // photons are marched only through the scene's own voxels
   this->TheScene.levels = nullptr;
 }
 }

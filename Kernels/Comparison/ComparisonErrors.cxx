@@ -1,6 +1,6 @@
 #include "Comparison/ComparisonErrors.h"
 
-// What rows of a comparison are made of: see SolverComparison.h.
+// Error measures of the rows of a comparison; see SolverComparison.h.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float
       relative += std::pow(difference / reference[i], 2.0);
       ++lit;
     }
-    // Not std::max: light that is not a number must show.
+    // Not std::max, so that NaN propagates.
     farthest = difference <= farthest ? farthest : difference;
     largest = std::max(largest, static_cast<double>(reference[i]));
   }

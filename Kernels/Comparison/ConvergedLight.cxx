@@ -1,6 +1,6 @@
 #include "Comparison/ConvergedLight.h"
 
-// The reference that a comparison makes itself: see SolverComparison.h.
+// The reference that a comparison computes if none is given; see SolverComparison.h.
 
 #include "Comparison/PhotonReference.h"
 #include "Comparison/TimeLimit.h"
@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Settings to converge with, best first.
+/// Settings for a converged run; the list is ordered best first.
 struct Rung
 {
   int refinement, directions, map;
@@ -73,7 +73,7 @@ ReferenceLight Climb(Device& device, const ComparedScene& scene, const Rung& run
   return reference;
 }
 
-/// Seconds that settings take, by NominalSeconds: as many sweeps as along few directions.
+/// Run time of settings, by NominalSeconds, assuming as many sweeps as with few directions.
 class Forecast
 {
 public:
@@ -112,7 +112,7 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
     {
       return Climb(device, scene, rung, OfPart(monitor, 0.2, 1.0));
     }
-    catch (const DeviceError&) // too large; a lower rung may do
+    catch (const DeviceError&) // does not fit; a cheaper rung may
     {
       if (last)
       {
@@ -144,7 +144,7 @@ ReferenceLight ByWhatIsBetter(
     reference.text += "; not photons: " + whyNot;
     return reference;
   }
-  constexpr double toForecast = 0.3; // of the progress
+  constexpr double toForecast = 0.3; // fraction of the progress
   const PhotonForecast forecast = ForecastOfPhotons(device, scene, settings, seconds, OfPart(monitor, 0.0, toForecast));
   const LightField* const maps = forecast.maps ? &*forecast.maps : nullptr;
   const Monitor rest = OfPart(monitor, toForecast, 1.0);

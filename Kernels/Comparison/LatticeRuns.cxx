@@ -11,7 +11,7 @@ namespace
 {
 constexpr int Lattices[] = { 18, 6 }; ///< directions
 
-/// Uncollided light of photons, and what is scattered of it on the lattice: all that a user waits for.
+/// Uncollided light by photons, and the lattice solve of its scattered light: the whole time that a user waits for.
 LightField SolveWithPhotons(
   Device& device, const ComparedScene& scene, int photons, const LatticeSettings& settings, const Monitor& monitor)
 {
@@ -60,7 +60,7 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     ComparedRun run = RunOf(directions, solved->medium.grid);
     run.setting += coarse ? ", voxels x " + std::to_string(coarsening) : "";
     run.solve = [=, &device](bool, const Monitor& monitor) {
-      (void)scaled; // which owns what is solved
+      (void)scaled; // captured to keep the scene's arrays alive
       return SolveLatticeBoltzmann(
         device, Domain(solved->medium.grid), solved->medium, solved->ior, solved->illumination, of, monitor);
     };

@@ -8,14 +8,14 @@ namespace tyndall
 {
 namespace
 {
-/// Where a channel of light of `has` channels lies that is asked for as one of `wanted`.
+/// Index, in an array with `has` channels, of the value with this index in an array with `wanted` channels.
 std::size_t PlaceOf(std::size_t index, int has, int wanted)
 {
   return has == wanted ? index : index / static_cast<std::size_t>(wanted);
 }
 }
 
-/// What was added with one channel counts in each.
+/// Expands sums of one channel to all channels.
 void MeansOfSets::Widen(int channels)
 {
   const auto widened = [channels](const std::vector<double>& values) {

@@ -16,12 +16,12 @@ constexpr int FewestSets = 16, MostSets = 64;
 constexpr int FewestToForecast = 4, MostToForecast = 64;           ///< sets
 constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000; ///< photons of a set
 constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;         ///< a hundred megabytes
-constexpr double Beats = 1.0 / 3.0; ///< error of the reference over that of the best method compared
-constexpr double Enough = 0.1;      ///< the same, of sixteen sets
+constexpr double Beats = 1.0 / 3.0; ///< largest acceptable error of the reference over that of the best compared method
+constexpr double Enough = 0.1;      ///< target for the same ratio, with sixteen sets
 
 constexpr double TypicalSweeps = 20.0;
 
-/// Light of few directions and, where that is found, of the finest maps that are tried.
+/// Maps with few directions and, if those could be computed, the finest maps that are compared.
 struct ForecastMaps
 {
   std::optional<LightField> coarse, finest;
@@ -29,7 +29,7 @@ struct ForecastMaps
   std::optional<LightField>& Best() { return this->finest ? this->finest : this->coarse; }
 };
 
-/// By NominalSeconds.
+/// Run time by NominalSeconds.
 double SecondsOf(const PropagationSettings& settings, const ComparedScene& scene, double sweeps)
 {
   const int channels =
@@ -38,7 +38,7 @@ double SecondsOf(const PropagationSettings& settings, const ComparedScene& scene
     settings.mapResolution * static_cast<double>(scene.medium.grid.VoxelCount());
 }
 
-/// Those that take no more than `seconds` together, and fit the device.
+/// Computes the maps that fit the device and take at most `seconds` together.
 ForecastMaps FindMaps(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
@@ -75,7 +75,7 @@ ForecastMaps FindMaps(
   return maps;
 }
 
-/// Seconds of a photon by NominalSeconds, of the light that photons are to find: its fluence is their way.
+/// Run time per photon by NominalSeconds, from an estimate of the light: fluence is path length per volume.
 double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
 {
   const Grid& grid = scene.medium.grid;
@@ -92,14 +92,15 @@ double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
     power += light.balance.entered[static_cast<std::size_t>(channel)];
   }
   const double edge = std::min({ grid.spacing[0], grid.spacing[1], grid.spacing[2] });
-  constexpr double wallsOfEdge = 1.5; // that a straight line of a voxel's edge goes through, in the mean
+  constexpr double wallsOfEdge =
+    1.5; // mean number of voxel walls crossed by a straight segment as long as a voxel edge
   return NominalSeconds::OfPhoton +
     (power > 0.0
         ? (NominalSeconds::OfCrossing * wallsOfEdge * way / edge + NominalSeconds::OfScattering * scatterings) / power
         : 0.0);
 }
 
-/// A few photons, to forecast by.
+/// A pilot run with a few photons for the forecast.
 struct Pilot
 {
   MeansOfSets means;
@@ -107,8 +108,8 @@ struct Pilot
   double seconds = 0.0;    ///< of a photon
 };
 
-/// @param maps  null: none are there
-/// @return nothing where four sets take longer than `seconds`
+/// @param maps  estimate of the light; null: there is none
+/// @return nothing if four sets take longer than `seconds`
 std::optional<Pilot> FewPhotons(Device& device, const ComparedScene& scene, std::size_t largest, double seconds,
   const LightField* maps, const Monitor& monitor)
 {
@@ -185,7 +186,7 @@ ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, co
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  const double part = 0.5 * PhotonForecast::PartOfTime * seconds; // for maps, and for photons
+  const double part = 0.5 * PhotonForecast::PartOfTime * seconds; // the same for maps and for photons
   PhotonForecast forecast;
   ForecastMaps maps = FindMaps(device, scene, settings, part, OfPart(monitor, 0.0, 0.5));
   const int largest = *std::max_element(settings.photonCounts.begin(), settings.photonCounts.end());

@@ -35,7 +35,7 @@ double RootOfSquares(const std::vector<float>& values)
   return std::sqrt(sum);
 }
 
-/// Photons that are scattered until they end.
+/// Monte Carlo run: photons scattered until they end.
 LightField TraceAllOrders(
   Device& device, const ComparedScene& scene, const EmissionSettings& emission, bool estimate, const Monitor& monitor)
 {
@@ -75,7 +75,7 @@ LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, cons
   return light;
 }
 
-/// Photons of the method, from lights to light: all that a user waits for.
+/// A complete photon run of a method, from lights to the LightField: the whole time that a user waits for.
 LightField Trace(
   Device& device, const ComparedScene& scene, ComparedMethod method, EmissionSettings emission, const Monitor& monitor)
 {
@@ -97,7 +97,7 @@ LightField Trace(
     settings.pilotCount = std::min(settings.pilotCount, std::max<std::size_t>(emission.photonCount / 10, 1));
     importance = FindImportance(marcher, grid, scene.illumination, settings, OfPart(monitor, 0.0, 0.1));
     const std::size_t pilots = importance.map.Cells() * importance.map.lights.size();
-    emission.photonCount -= std::min(emission.photonCount - 1, pilots); // they count as photons, too
+    emission.photonCount -= std::min(emission.photonCount - 1, pilots); // pilot photons count as photons too
     emission.map = importance.even ? nullptr : &importance.map;
   }
   emission.batches = 2;

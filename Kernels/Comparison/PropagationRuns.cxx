@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// What is changed from run to run.
+/// The settings that vary between runs.
 struct Setting
 {
   int directions = 25, map = 1, coarsening = 1, orders = 0;
@@ -55,7 +55,7 @@ std::vector<Setting> SettingsToTry(const ComparedSettings& settings)
   return all;
 }
 
-/// The same settings for discrete ordinates, with as many terms as the directions are enough for.
+/// The same settings for discrete ordinates, with as many terms as the quadrature supports.
 OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
 {
   OrdinatesSettings as;
@@ -70,8 +70,8 @@ OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
   return as;
 }
 
-/// The solver of a method, in the scene's light.
-/// @param device, scene  must stay
+/// The solver of a method.
+/// @param device, scene  must outlive the solver
 PropagationSolver SolverOf(ComparedMethod method, Device& device)
 {
   return [method, &device](const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,

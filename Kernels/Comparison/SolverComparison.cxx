@@ -28,7 +28,7 @@ double Median(std::vector<double> values)
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-/// Grey values in three channels, where the others have three.
+/// Copies grey values to three channels if `wanted` is three.
 std::vector<float> InChannels(std::vector<float> values, int has, int wanted)
 {
   if (has == wanted)
@@ -43,7 +43,7 @@ std::vector<float> InChannels(std::vector<float> values, int has, int wanted)
   return inAll;
 }
 
-/// Brings light to the coarser of the scene's grid and the reference's, and compares it there.
+/// Transfers results to the coarser of the scene's and the reference's grid, and computes their errors there.
 class Comparator
 {
 public:
@@ -64,10 +64,10 @@ public:
     this->FluenceDirect = this->AsCompared(reference.fluenceDirect, fromReference);
   }
 
-  /// Whether runs of a method are to be compared: with no reference at all they are measured alone.
+  /// Whether runs of a method can be compared. Without any reference they are only timed.
   bool Has(ComparedMethod method) const { return !this->IsThere || !this->For(method).empty(); }
 
-  /// Unknown where there is no reference.
+  /// Errors of a run; unknown without a reference.
   RelativeErrors ErrorsOf(const LightField& light, const ComparedRun& run) const
   {
     if (!this->IsThere)
@@ -100,12 +100,12 @@ private:
 
   Grid SceneGrid;
   const ReferenceLight& Reference;
-  std::optional<Factors> ToReference; ///< where the reference is as coarse as the scene or coarser
+  std::optional<Factors> ToReference; ///< set if the reference is at least as coarse as the scene
   bool IsThere = false;
   std::vector<float> Fluence, FluenceDirect;
 };
 
-/// Why a method is not compared on a scene; empty: it is.
+/// Why a method is not compared on a scene; empty if it is.
 std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comparator& comparator)
 {
   const bool lattice = method == ComparedMethod::LatticeBoltzmann;
@@ -113,7 +113,7 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
   {
     return "its voxels have to be cubes";
   }
-  if (IsOfPhotons(method) || (lattice && scene.BendsLight())) // whose uncollided light is of photons then
+  if (IsOfPhotons(method) || (lattice && scene.BendsLight())) // a lattice then takes its uncollided light from photons
   {
     const std::string why = scene.WhyNotByPhotons(!IsDirectOnly(method));
     return !why.empty()        ? why
@@ -128,17 +128,17 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
                               : "";
 }
 
-/// The runs of one method, cheap ones first, and how long they take.
+/// The runs of one method, cheapest first, and their run times.
 struct Lane
 {
   std::vector<ComparedRun> runs;
   std::size_t next = 0;
-  double secondsOfCost = 0.0; ///< of the last one with all orders
+  double secondsOfCost = 0.0; ///< seconds per unit cost, from the last run with all orders
 
   bool Done() const { return this->next == this->runs.size(); }
 };
 
-/// Runs, measures and compares.
+/// Executes, times and compares runs.
 class Runner
 {
 public:
@@ -150,8 +150,8 @@ public:
   {
   }
 
-  /// The next run of a method.
-  /// @param left  seconds that it may take
+  /// Executes the next run of a method.
+  /// @param left  time that it may take, seconds
   void RunNext(Lane& lane, double left, const Monitor& monitor)
   {
     const ComparedRun& run = lane.runs[lane.next++];
@@ -194,7 +194,7 @@ private:
     return this->TheDevice.Now() - start;
   }
 
-  /// Seconds of runs in which nothing was compiled; none where the time does not allow one.
+  /// Run times of repeats without compilation; empty if the time does not allow one.
   std::vector<double> TimesOf(const ComparedRun& run, double left, LightField& light, const Monitor& monitor)
   {
     constexpr double partForRepeats = 0.2;
@@ -219,7 +219,7 @@ private:
         seconds.push_back(this->Timed(run, light, monitor));
       }
     }
-    catch (const TimeIsUp&) // one was made
+    catch (const TimeIsUp&) // at least one run is complete
     {
     }
     if (seconds.empty())
@@ -230,7 +230,7 @@ private:
     return seconds;
   }
 
-  /// @return its seconds
+  /// @return its run time, seconds
   double Run(const ComparedRun& run, double left, const Monitor& monitor)
   {
     this->TheDevice.ResetPeak();
@@ -270,7 +270,7 @@ private:
       {
         light = run.solve(true, monitor);
       }
-      catch (const TimeIsUp&) // the row is there all the same
+      catch (const TimeIsUp&) // the row stays, without an estimate
       {
         return;
       }
@@ -285,7 +285,7 @@ private:
   int Late = 0;
 };
 
-/// The runs of the methods that the scene allows; what the others lack is left out.
+/// The runs of all methods that the scene allows; adds the reasons for the others to leftOut.
 std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,
   const Comparator& comparator, Comparison& result)
 {
@@ -305,9 +305,9 @@ std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const Comp
   return lanes;
 }
 
-/// A run of each method in turn, so that what else the machine does falls on all alike, and time that one does not need
-/// is left for the others.
-/// @return how many there were
+/// Executes one run of each method in turn, so that other load on the machine affects all methods alike, and time that
+/// one method does not need is left for the others.
+/// @return number of runs
 std::size_t RunInTurns(
   const Device& device, std::vector<Lane>& lanes, Runner& runner, double end, const Monitor& monitor)
 {
@@ -332,7 +332,7 @@ std::size_t RunInTurns(
   return count;
 }
 
-/// The converged light, within half of the budget; empty, with a warning, where the machine is too slow for any.
+/// ConvergedLight within half of the budget; empty, with a warning, if the machine is too slow for any.
 ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const ComparedSettings& tried, double budget,
   std::vector<std::string>& warnings, const Monitor& monitor)
 {
@@ -373,14 +373,14 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   Check(scene.medium);
   Check(scene.illumination);
   const double end = device.Now() + settings.timeBudget;
-  const double begun = reference ? 0.0 : 0.4; // part of the progress
+  const double begun = reference ? 0.0 : 0.4; // fraction of the progress
   Comparison result;
   result.device = device.Name();
   ComparedSettings tried = settings.tried;
   if (tried.monteCarloReference == MonteCarloReference::WhereItCanBeat &&
     std::all_of(settings.methods.begin(), settings.methods.end(), IsOfPhotons))
   {
-    tried.monteCarloReference = MonteCarloReference::Never; // maps have no noise, and share no solver with photons
+    tried.monteCarloReference = MonteCarloReference::Never; // maps are free of noise, and share no solver with photons
   }
   tried.scattersReference = tried.monteCarloReference == MonteCarloReference::Always ||
     std::any_of(settings.methods.begin(), settings.methods.end(), [](ComparedMethod method) {

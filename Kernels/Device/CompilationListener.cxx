@@ -25,7 +25,7 @@ struct Made
 
 Made& AllMade()
 {
-  static auto& made = *new Made; // never destroyed: kernels may be made until the end
+  static auto& made = *new Made; // never destroyed, since kernels may be created until the process ends
   return made;
 }
 }
@@ -50,7 +50,7 @@ struct Compiling
 {
   std::mutex Guard;
   int Threads = 0;
-  double Since = 0.0, Before = 0.0; ///< when the first of these threads began; seconds of earlier ones
+  double Since = 0.0, Before = 0.0; ///< start time of the first active thread; accumulated seconds of earlier ones
 };
 
 Compiling& TheCompiling()

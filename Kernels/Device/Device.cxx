@@ -19,10 +19,10 @@ namespace tyndall
 {
 namespace
 {
-const char* const Pocl = "portable computing language"; ///< in the name of its platform
+const char* const Pocl = "portable computing language"; ///< part of PoCL's platform name
 
-/// Before every source. Clang warns that other machines pass wide vectors otherwise; nobody calls kernels' functions
-/// from there.
+/// Prepended to every source. Clang warns that the calling convention of wide vectors depends on the target; kernel
+/// functions are never called from outside, so it does not matter.
 const char* const WideVectors = "#ifdef __clang__\n#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n";
 
 std::string Lower(std::string text)
@@ -38,24 +38,24 @@ struct Candidate
   std::string Label;
 };
 
-/// What all of the process shares.
+/// State shared by the whole process.
 struct Shared
 {
-  std::mutex Guard; ///< of all of it
+  std::mutex Guard; ///< protects all members
   std::map<std::string, std::shared_ptr<Device>> Devices;
-  std::optional<PoclCache> Cache; ///< as soon as PoCL was asked for devices
+  std::optional<PoclCache> Cache; ///< set once PoCL has been asked for devices
   std::vector<std::string> Warnings;
-  std::atomic<bool> HasCompiled{ false }; ///< a program, rather than read it from the cache
+  std::atomic<bool> HasCompiled{ false }; ///< whether a program was compiled rather than read from the cache
 };
 
-/// Never destroyed: an OpenCL platform may be gone before our statics are, and must not be called then.
+/// Never destroyed: an OpenCL platform may be unloaded before our statics are destroyed, and must not be called then.
 Shared& TheShared()
 {
   static auto& shared = *new Shared;
   return shared;
 }
 
-/// At the end of the process: the next one then knows what was damaged since.
+/// Called at the end of the process, so that the next one can detect files that were damaged since.
 void NoteWhatWasCompiled()
 {
   if (TheShared().HasCompiled)
@@ -69,8 +69,8 @@ bool IsPocl(const cl::Platform& platform)
   return Lower(platform.getInfo<CL_PLATFORM_NAME>()).find(Pocl) != std::string::npos;
 }
 
-/// Devices of a platform.
-/// @throws cl::Error; DeviceError where PoCL has no folder to write to: it must not be used then
+/// Lists the devices of a platform.
+/// @throws cl::Error; DeviceError if PoCL has no folder to write to, in which case it must not be used
 std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
 {
   if (IsPocl(platform) && !shared.Cache)
@@ -88,7 +88,7 @@ std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
   return devices;
 }
 
-/// MiB that this process may take; none: as many as there are.
+/// Memory limit of this process, MiB; none if it is unlimited.
 std::optional<std::size_t> LimitOfMemory()
 {
   struct rlimit limit = {};
@@ -96,7 +96,7 @@ std::optional<std::size_t> LimitOfMemory()
   return limited ? std::optional<std::size_t>(limit.rlim_cur >> 20) : std::nullopt;
 }
 
-/// For an error: drivers bring a compiler.
+/// Text for an error: OpenCL drivers include a compiler, which needs memory.
 std::string NeedsMemory()
 {
   const std::optional<std::size_t> limit = LimitOfMemory();
@@ -105,8 +105,8 @@ std::string NeedsMemory()
            : std::string("and there is too little: end other programs."));
 }
 
-/// Every device of every platform. A platform whose driver fails is passed over, not fatal: others may work.
-/// @param troubles  gets a sentence for each of those
+/// All devices of all platforms. A platform whose driver fails is skipped, since others may work.
+/// @param troubles  receives a sentence for each skipped platform
 std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
 {
   std::vector<cl::Platform> platforms;
@@ -121,7 +121,7 @@ std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
   }
   if (platforms.empty())
   {
-    // With little memory a loader says that there is no driver, too.
+    // If memory is short, the loader also reports that there is no driver.
     troubles += tooLittleMemory || LimitOfMemory() ? NeedsMemory() + " If there is no driver, install one:"
                                                    : std::string(" Install one:");
     troubles += " Debian's package pocl-opencl-icd runs OpenCL on the CPU.";
@@ -212,7 +212,7 @@ std::vector<std::string> Device::TakeWarnings()
 
 namespace
 {
-/// Bytes that all buffers on a device may take together.
+/// Limit for all buffers on a device together, bytes.
 std::size_t MemoryOf(const cl::Device& device)
 {
   const std::size_t said = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
@@ -220,7 +220,8 @@ std::size_t MemoryOf(const cl::Device& device)
   return cpu ? std::max<std::size_t>(said, HostMemory() / 4 * 3) : said;
 }
 
-/// Whether kernels are organised for a CPU. TYNDALL_AS_GPU has what GPUs get tried on one.
+/// Whether kernels are organised for a CPU. The environment variable TYNDALL_AS_GPU selects the GPU variants on a CPU,
+/// for tests.
 bool IsTakenAsCpu(const cl::Device& device)
 {
   return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 && !std::getenv("TYNDALL_AS_GPU");
@@ -285,7 +286,7 @@ bool Device::HasExtension(const std::string& name) const
 
 namespace
 {
-/// For failures without a reason; empty where the platform keeps nothing that is known.
+/// Advice for failures without a reported reason; empty if the platform has no known cache.
 std::string AdviceOnCache(const std::string& folder)
 {
   return folder.empty()
@@ -327,7 +328,7 @@ std::unique_lock<std::timed_mutex> LockHeard(std::timed_mutex& mutex)
   return lock;
 }
 
-/// @return whether it took so long that it was no reading from a cache; false where nobody listens
+/// @return whether it took too long to have been read from a cache; false without a listener
 bool CallHeard(const std::function<void()>& build)
 {
   const CompilationListener* listener = CompilationListener::OfThisThread();
@@ -344,7 +345,7 @@ bool CallHeard(const std::function<void()>& build)
 }
 
 /// Builds a program.
-/// @return what the compiler says where it fails; empty: it is built
+/// @return the compiler's log if it fails; empty if it succeeds
 std::string LogOfFailure(cl::Program& program, const cl::Device& device, const std::string& options, bool& tookLong)
 {
   try
@@ -389,7 +390,7 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
   }
   const WhileCompiling compiling;
   const BuildMark mark(this->CacheFolder);
-  constexpr double ofCompiling = 0.1; // seconds: less is reading from the cache
+  constexpr double ofCompiling = 0.1; // seconds; a shorter build was read from the cache
   const double begun = ClockSeconds();
   cl::Program program;
   bool tookLong = false;
@@ -413,8 +414,8 @@ cl::Program Device::Build(const char* kernel, const std::string& text, const std
 
 namespace
 {
-/// A buffer of a CPU in pages of 2 MB where the system has them to give: marching across a large grid otherwise waits
-/// for the translation of addresses.
+/// A CPU buffer in pages of 2 MB, if available: otherwise marching across a large grid is limited by address
+/// translation (TLB misses).
 cl::Buffer InHugePages(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
 {
   void* memory = nullptr;
@@ -466,7 +467,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
     try
     {
       Allocation allocation = this->Whole->Allocate(bytes, flags, what, residence);
-      if (allocation.onHost) // the whole is a part itself
+      if (allocation.onHost) // `Whole` is itself a view
       {
         this->Memory.GiveBack(bytes);
         this->OnHost.Take(bytes);
@@ -483,7 +484,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   {
     this->Complain(what, bytes, "the largest single allocation is " + std::to_string(this->LargestAllocation), Advice);
   }
-  if (!this->Memory.Take(bytes)) // before it is asked for: another thread must not count on the same bytes
+  if (!this->Memory.Take(bytes)) // before the allocation, so that another thread cannot reserve the same bytes
   {
     this->Complain(what, bytes, left() + " are left", Advice);
   }
@@ -499,7 +500,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   }
 }
 
-/// Where kernels work on it in place it is memory like any other, and counts as the whole device's.
+/// If kernels use host memory in place, it is like any other memory, and counts towards the whole device's.
 Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags, const char* what)
 {
   constexpr const char* Advice = "a coarser grid or fewer directions";
@@ -544,7 +545,7 @@ void Device::Release(std::size_t bytes, bool onHost)
 
 void Device::Finish()
 {
-  this->SecondsQueued = 0.0; // first: what other threads queue meanwhile is counted anew
+  this->SecondsQueued = 0.0; // reset first, so that work that other threads queue meanwhile is counted
   this->AwaitFirstRuns();
   this->TheQueue.finish();
 }

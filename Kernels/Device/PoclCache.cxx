@@ -30,7 +30,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t LongestName = 800; ///< PoCL has 1024 characters for the names of files in it
+constexpr std::size_t LongestName = 800; ///< PoCL's file names in it are limited to 1024 characters
 constexpr std::size_t Piece = std::size_t(1) << 20;
 
 std::string Megabytes(std::size_t bytes)
@@ -47,10 +47,10 @@ std::string Advice()
 struct FolderChoice
 {
   std::string folder;
-  std::string chosenBy; ///< what leads PoCL there
+  std::string chosenBy; ///< what makes PoCL choose it
 };
 
-/// As PoCL finds it.
+/// The folder that PoCL would choose.
 FolderChoice FolderOfEnvironment()
 {
   if (const char* said = std::getenv("POCL_CACHE_DIR"))
@@ -71,7 +71,7 @@ FolderChoice FolderOfEnvironment()
   return { "/tmp" + below, "PoCL itself" };
 }
 
-/// A file that has no name any more, so that it goes with the process.
+/// A file without a name, which the system deletes when the process ends.
 class Scratch
 {
 public:
@@ -98,7 +98,7 @@ public:
     }
   }
 
-  /// @return 0 or what went wrong
+  /// @return 0 or an errno
   int Write(const std::vector<char>& bytes)
   {
     for (std::size_t written = 0; this->Error == 0 && written < bytes.size();)
@@ -115,7 +115,7 @@ private:
   int Error = 0;
 };
 
-/// Bytes that a file system which compresses cannot make fewer.
+/// Bytes that a compressing file system cannot compress.
 std::vector<char> Noise()
 {
   std::vector<char> bytes(Piece);
@@ -127,7 +127,7 @@ std::vector<char> Noise()
   return bytes;
 }
 
-/// One of the user's own: what others could put there would be run.
+/// A folder that only the user can write, since files in it are executed.
 std::string PrivateFolder(std::string& trouble)
 {
   std::error_code error;
@@ -175,7 +175,7 @@ std::string WhyNotWritable(const std::string& folder, std::size_t bytes)
     return error.message();
   }
   const std::vector<char> noise = Noise();
-  std::vector<Scratch> files; // in pieces: there may be a limit to files, which PoCL's do not come near
+  std::vector<Scratch> files; // in pieces, since file sizes may be limited; PoCL's files are far smaller
   for (std::size_t written = 0; written < bytes; written += Piece)
   {
     files.emplace_back(folder);
@@ -191,7 +191,7 @@ namespace
 {
 constexpr const char* Aside = ".damaged";
 
-/// LLVM's bitcode: a signature and blocks, each of which says how many words it has.
+/// LLVM bitcode: a signature and blocks, each of which states its number of words.
 bool IsWholeBitcode(const std::string& bytes)
 {
   const auto word = [&bytes](std::size_t at) {
@@ -212,14 +212,14 @@ bool IsWholeBitcode(const std::string& bytes)
   return at == bytes.size();
 }
 
-/// A library: all of its sections lie in it.
+/// A library is whole if all of its sections lie within the file.
 bool IsWholeLibrary(const std::string& bytes)
 {
   Elf64_Ehdr header = {};
   std::memcpy(&header, bytes.data(), std::min(sizeof(header), bytes.size()));
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64)
   {
-    return header.e_ident[EI_CLASS] == ELFCLASS32; // whose headers are others
+    return header.e_ident[EI_CLASS] == ELFCLASS32; // 32-bit headers differ and are not checked
   }
   const auto lies = [&bytes](std::uint64_t from, std::uint64_t size) {
     return from <= bytes.size() && size <= bytes.size() - from;
@@ -246,14 +246,14 @@ std::optional<std::string> BytesOf(const fs::path& file)
   return stream.eof() && !stream.bad() ? std::optional<std::string>(std::move(bytes)) : std::nullopt;
 }
 
-/// What is known of a file or folder.
+/// Recorded state of a file or folder.
 struct Note
 {
-  std::uint64_t number = 0; ///< of the file on its disk
+  std::uint64_t number = 0; ///< inode number
   std::uint64_t size = 0;   ///< bytes
   std::int64_t written = 0; ///< nanoseconds: contents
-  std::int64_t changed = 0; ///< nanoseconds: contents, name, or rights
-  std::uint64_t sum = 0;    ///< of a file's bytes
+  std::int64_t changed = 0; ///< time of the last change of contents, name or permissions, ns
+  std::uint64_t sum = 0;    ///< checksum of a file's bytes
 
   bool LooksLike(const Note& other) const
   {
@@ -262,7 +262,7 @@ struct Note
   }
 };
 
-/// Without its sum.
+/// State of a file or folder, without its checksum.
 std::optional<Note> NoteOf(const std::string& path)
 {
   struct stat found = {};
@@ -316,7 +316,7 @@ public:
   }
   void Forget(const std::string& path) { this->IsNew = this->Known.erase(path) > 0 || this->IsNew; }
 
-  /// Through a file of its own: other processes may write theirs.
+  /// Writes a file of its own and renames it, since other processes may write at the same time.
   void Write() const
   {
     if (!this->IsNew)
@@ -343,15 +343,15 @@ private:
   bool IsNew = false;
 };
 
-/// Looks at what PoCL keeps in a folder, with as few questions to the system as can be: at files that are noted, and
-/// into folders of programs that have changed since they were.
+/// Inspects PoCL's cache folder with as few system calls as possible: looks at noted files, and into program folders
+/// that have changed since they were noted.
 class CacheInspection
 {
 public:
-  /// Takes what is damaged, by its path in the folder, and how. @return whether it is not there any more
+  /// Receives a damaged file, by its path in the folder, and how it is damaged. @return whether the file was removed
   using Report = std::function<bool(const std::string& path, const std::string& how)>;
 
-  /// @param folder  ends in no slash
+  /// @param folder  without a trailing slash
   explicit CacheInspection(const std::string& folder)
     : Folder(folder)
     , Known(folder)
@@ -397,7 +397,7 @@ public:
 private:
   static bool IsOfKernels(const fs::path& path) { return path.extension() == ".bc" || path.extension() == ".so"; }
   static bool CanBeUsed(const fs::path& folder) { return access(folder.c_str(), R_OK | W_OK | X_OK) == 0; }
-  /// Whether a name is a part of one of the hashes that name programs: the folder might be one of other things.
+  /// Whether a name is part of a hash that names a program; the folder might contain other files.
   static bool IsOfHash(const fs::path& path, std::size_t least, std::size_t most)
   {
     const std::string name = path.filename().string();
@@ -447,7 +447,8 @@ private:
       report(program, "cannot be used");
       return;
     }
-    const std::optional<Note> found = NoteOf(folder.string()); // before: what comes meanwhile is looked at next time
+    const std::optional<Note> found =
+      NoteOf(folder.string()); // taken before the inspection, so that later changes are seen next time
     std::vector<std::string> files, unusable;
     std::error_code none;
     for (fs::recursive_directory_iterator entry(folder, none), end; entry != end; entry.increment(none))
@@ -474,20 +475,21 @@ private:
     {
       report(path, "cannot be used");
     }
-    const bool rests = found && std::time(nullptr) - found->changed / 1000000000 > 1; // clocks of disks tick slowly
-    if (sound && rests)                                                               // else it is looked into again
+    const bool rests =
+      found && std::time(nullptr) - found->changed / 1000000000 > 1; // time stamps of file systems are coarse
+    if (sound && rests)                                              // else it is looked into again
     {
       this->Known.Set(program, *found);
     }
   }
 
-  /// @return whether nothing was wrong with it
+  /// @return whether the file is intact
   bool LookAtFile(const std::string& path, const Report& report)
   {
     const std::string file = this->Folder + path;
     const Note* const before = this->Known.Find(path);
     std::optional<Note> found = NoteOf(file);
-    if (!found) // set aside, by another process perhaps
+    if (!found) // renamed, perhaps by another process
     {
       this->Known.Forget(path);
       return true;
@@ -509,7 +511,7 @@ private:
     return true;
   }
 
-  /// @param found  gets its sum. @return empty: not damaged as far as can be seen
+  /// @param found  receives its checksum. @return how it is damaged; empty if no damage was found
   static std::string HowDamaged(const fs::path& file, const Note* before, Note& found)
   {
     const std::optional<std::string> bytes = BytesOf(file);
@@ -522,7 +524,7 @@ private:
       return "is cut off or overwritten";
     }
     found.sum = SumOf(*bytes);
-    // Ranks that compile the same program at once replace each other's bitcode, which is not the same to the last byte.
+    // Ranks that compile the same program at once replace each other's bitcode, which may differ in some bytes.
     const bool replaced = before && before->number != found.number && file.extension() == ".bc";
     return before && before->sum != found.sum && !replaced ? "was changed" : "";
   }
@@ -533,15 +535,15 @@ private:
 
 constexpr const char* PrefixOfMarks = "tyndall-building-";
 
-/// When this process began, about: ranks of one job begin together.
+/// Approximate start time of this process; ranks of one job start together.
 const std::time_t Begun = std::time(nullptr);
 
-/// Whether two runs or more ended while they built programs, and had begun apart from each other. Forgets these, and
-/// marks older than an hour. What can be locked belongs to a process that has ended.
+/// Whether two or more runs that started at different times ended while they were building programs. Deletes their
+/// marks, and marks older than an hour. A mark that can be locked belongs to a process that has ended.
 bool EndedWhileBuilding(const std::string& folder)
 {
   constexpr std::int64_t second = 1000000000, apart = 10 * second, old = 3600 * second;
-  std::vector<std::pair<std::string, int>> ended; // and its descriptor
+  std::vector<std::pair<std::string, int>> ended; // with its file descriptor
   std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = 0;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none))
@@ -591,7 +593,7 @@ std::string WithoutSlash(std::string folder)
   return folder;
 }
 
-/// In words; empty: nothing was damaged.
+/// Warning text; empty if nothing was damaged.
 std::string Told(const DamagedFiles& damaged, const std::string& folder)
 {
   return damaged.count == 0 ? std::string()
@@ -639,7 +641,7 @@ DamagedFiles SetDamagedAside(const std::string& said)
     std::error_code error;
     fs::remove_all(place + Aside, error);
     fs::rename(place, place + Aside, error);
-    if (error && fs::exists(place)) // else another process has renamed it
+    if (error && fs::exists(place)) // otherwise another process has renamed it
     {
       all.trouble = "\"" + place + "\" " + how + ", and cannot be renamed";
     }

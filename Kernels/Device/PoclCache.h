@@ -69,8 +69,8 @@ void CompileForAnyGroup();
 /// @throws DeviceError if the disk of the folder, which PoCL already uses, has become full
 void RequireRoom(const std::string& folder);
 
-/// Builds a program, and retries up to three times if the build fails without a compiler message: ranks that start with
-/// an empty folder compile the same programs at once, and a rank fails if another has just replaced its file (PoCL 3.1:
+/// Builds a program, with up to three attempts if the build fails without a compiler message: ranks that start with an
+/// empty folder compile the same programs at once, and a rank fails if another has just replaced its file (PoCL 3.1:
 /// pocl_remove of program.bc).
 /// @param build  builds it from its source. @return the log of a failure; empty: it is built
 /// @return the log of the last attempt, likewise

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// Calls act(place) with the number of the first value of each row along x of a part, in an array over a box.
+/// Calls act(place) for each row along x of a part, with the index of its first value in an array over the box.
 template <class Act>
 void ForRows(const VoxelBox& box, const VoxelBox& part, int components, const Act& act)
 {
@@ -23,7 +23,7 @@ void ForRows(const VoxelBox& box, const VoxelBox& part, int components, const Ac
   }
 }
 
-/// Values of a box, those of a part of it.
+/// Extracts the values of a part from those of a box.
 template <class T>
 std::vector<T> TakeFrom(const std::vector<T>& values, const VoxelBox& box, const VoxelBox& part, int components)
 {

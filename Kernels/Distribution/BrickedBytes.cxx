@@ -9,10 +9,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::int32_t NotYet = 256; ///< of a brick into which nothing was put
+constexpr std::int32_t NotYet = 256; ///< a brick into which nothing has been stored
 constexpr std::uint32_t LongestRun = 1u << 24;
 
-/// Numbers and, in the upper bits, one less than how often each comes.
+/// Run-length encoding: bytes with, in the upper bits, their number of repetitions less one.
 std::vector<std::uint32_t> RunsOf(const std::vector<std::uint8_t>& numbers)
 {
   std::vector<std::uint32_t> runs;
@@ -39,7 +39,7 @@ std::vector<std::uint8_t> NumbersIn(const std::vector<std::uint32_t>& runs)
   return numbers;
 }
 
-/// Calls act with the place of the first number of each row of a part, in an array over a box, and with the row.
+/// Calls act for each row of a part, with the index of its first byte in an array over the box, and with the row.
 template <class Act>
 void ForRows(const VoxelBox& part, const VoxelBox& box, const Act& act)
 {

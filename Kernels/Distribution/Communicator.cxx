@@ -16,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-/// What can go wrong, as ranks tell each other. What stands later is told before what stands earlier.
+/// Kinds of failure that ranks report to each other, in order of increasing severity.
 enum class Trouble : char
 {
   None,
@@ -28,7 +28,7 @@ enum class Trouble : char
   Other
 };
 
-/// What went wrong on this rank, and its words.
+/// The failure of this rank and its text.
 struct Outcome
 {
   Trouble trouble = Trouble::None;
@@ -104,7 +104,7 @@ void Communicator::CountAndSend(int to, int tag, std::vector<char> bytes)
   this->Give(to, tag, std::move(bytes));
 }
 
-/// What was sent first.
+/// Removes the message that was sent first.
 std::vector<char> Communicator::TakeOwn(int tag)
 {
   std::deque<std::vector<char>>& sent = this->ToItself[tag];
@@ -117,8 +117,8 @@ std::vector<char> Communicator::TakeOwn(int tag)
   return bytes;
 }
 
-/// Rank 0 joins what the others have, one after the other, and tells them.
-/// Ranks that have not as many are at different places of a computation, or had other settings: an error on each.
+/// Rank 0 combines the values of all ranks in rank order, and sends the result to all. Ranks with different numbers of
+/// values are at different places of a computation, or have different settings: an error on all.
 std::vector<double> Communicator::OverRanks(const std::vector<double>& values, const Joined& join)
 {
   if (this->Rank() > 0)
@@ -140,7 +140,7 @@ std::vector<double> Communicator::OverRanks(const std::vector<double>& values, c
   }
   if (least < most)
   {
-    all.assign(most + 1, 0.0); // as many as no rank expects
+    all.assign(most + 1, 0.0); // a number of values that no rank expects
   }
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
@@ -181,7 +181,7 @@ std::vector<char> Communicator::Agree(const std::vector<char>& own)
     }
   }
   const std::string words(worst.begin() + 1, worst.end());
-  if (!alike && words.rfind("On rank ", 0) != 0) // else ranks have agreed on it before
+  if (!alike && words.rfind("On rank ", 0) != 0) // otherwise the ranks have agreed on it before
   {
     const std::string where = "On rank " + std::to_string(from) + ": ";
     worst.insert(worst.begin() + 1, where.begin(), where.end());
@@ -225,7 +225,7 @@ void Communicator::RequireParcels(const std::vector<int>& with, const std::vecto
   }
 }
 
-/// What a rank has for itself stays, and does not count.
+/// A rank's parcel for itself is not sent, and not counted.
 std::vector<std::vector<char>> Communicator::CountAndExchange(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {

@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-/// Adds the places of a part's cells in an array over a box.
+/// Appends the indices of a part's cells in an array over a box.
 void AddPlaces(const VoxelBox& box, const VoxelBox& part, std::vector<std::size_t>& places)
 {
   for (int z = part.first[2]; z < EndOf(part, 2); ++z)
@@ -36,7 +36,7 @@ VoxelBox Moved(VoxelBox box, const std::array<int, 3>& by)
   return box;
 }
 
-/// By how much a box beyond the grid's ends is moved to where its cells are.
+/// Shift, in grid periods, that moves a box beyond the grid's ends into the grid.
 std::array<int, 3> PeriodsOf(const VoxelBox& box, const std::array<int, 3>& gridSize)
 {
   std::array<int, 3> by = {};

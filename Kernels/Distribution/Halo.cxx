@@ -13,7 +13,7 @@ Halo::Halo(Communicator& communicator, const BlockPartition& partition, const st
   , Around(periodic)
 {
   const std::array<int, 3>& size = partition.whole.size;
-  std::array<int, 3> most = {}; // periods away from the grid
+  std::array<int, 3> most = {}; // largest number of periods away from the grid
   for (const VoxelBox& block : partition.blocks)
   {
     VoxelBox box = block;
@@ -38,7 +38,7 @@ Halo::Halo(Communicator& communicator, const BlockPartition& partition, const st
   }
 }
 
-/// Of a box the part that is so many periods away, as voxels of the grid.
+/// The part of a box that lies `periods` grid periods away, as voxels of the grid.
 VoxelBox Halo::Image(const VoxelBox& box, const std::array<int, 3>& periods) const
 {
   VoxelBox moved = box;
@@ -54,7 +54,7 @@ Grid Halo::KnownGrid() const
   return BlockPartition{ this->Partition.whole, { this->Known() } }.OwnGrid(0);
 }
 
-/// Of all ranks' known voxels.
+/// Images of all ranks' known voxels.
 std::vector<VoxelBox> Halo::Images(const std::array<int, 3>& periods) const
 {
   std::vector<VoxelBox> images;
@@ -65,7 +65,7 @@ std::vector<VoxelBox> Halo::Images(const std::array<int, 3>& periods) const
   return images;
 }
 
-/// Where the voxels of an image are among the known ones.
+/// The box of known voxels that an image corresponds to.
 VoxelBox Halo::PlaceOf(const VoxelBox& image, const std::array<int, 3>& periods) const
 {
   VoxelBox place = image;

@@ -6,7 +6,7 @@ namespace tyndall
 {
 namespace
 {
-/// Powers and rates of the whole: all ranks have the same where they kept light of the same solve.
+/// Compares powers and rates of the domain, which are the same on all ranks that kept light of the same solve.
 bool IsOfOneSolve(Communicator& communicator, const KeptLight& kept)
 {
   std::vector<double> values(kept.firstScattered.begin(), kept.firstScattered.end());

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// A block and the margin, from edge to edge.
+/// The block and its margin, extended to multiples of `edge`.
 VoxelBox BoxAround(const VoxelBox& block, const Grid& whole, int margin, int edge)
 {
   VoxelBox box = block.VoxelCount() > 0 ? Grown(block, margin, whole) : VoxelBox();

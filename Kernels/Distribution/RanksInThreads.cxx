@@ -19,7 +19,7 @@ namespace tyndall
 {
 namespace
 {
-/// What is on the way to one rank.
+/// Messages on their way to one rank.
 class Mailbox
 {
 public:

@@ -7,7 +7,7 @@ namespace tyndall
 {
 namespace
 {
-/// Calls visit(number) for each of a light's, in an order that all know.
+/// Calls visit(number) for each floating-point scalar of a LightField, in a fixed order.
 template <class Visit>
 void ForNumbers(LightField& light, const Visit& visit)
 {
@@ -29,7 +29,7 @@ void ForNumbers(LightField& light, const Visit& visit)
   }
 }
 
-/// Whole numbers likewise.
+/// The same for integers.
 template <class Visit>
 void ForWholeNumbers(LightField& light, const Visit& visit)
 {

@@ -27,7 +27,7 @@ bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& part
 
 /// Phase function of a distributed medium with g by voxel: if g varies among the scattering voxels of all ranks, each
 /// rank keeps g by voxel; else all get the same phase function. Collective.
-/// @param has     voxels
+/// @param has   whether this rank has voxels
 /// @param g  g by voxel of this rank; without values, its medium stays as it is
 /// @param medium  medium of this rank, whose phase function is of the wanted kind
 void AgreeOnMeanCosine(Communicator& communicator, bool has, const Field& g, Medium& medium);

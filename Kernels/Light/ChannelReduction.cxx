@@ -8,7 +8,7 @@ namespace tyndall
 {
 namespace
 {
-/// Each group of `width` values as three groups, times red, green and blue.
+/// Expands each group of `width` values to three groups, multiplied by red, green and blue.
 void Spread(std::vector<float>& values, std::size_t width, const Rgb& colour)
 {
   std::vector<float> three(3 * values.size());
@@ -35,7 +35,7 @@ void KeepOne(std::vector<float>& values, std::size_t width)
   values.shrink_to_fit();
 }
 
-/// What is counted in watts: `change` for each colour, `scale` for sums over all.
+/// Applies `change` to each power by colour, and `scale` to sums over channels.
 template <class Change>
 void ChangePowers(LightField& light, const Change& change, double scale)
 {
@@ -53,7 +53,7 @@ void ChangePowers(LightField& light, const Change& change, double scale)
   }
 }
 
-/// Every array, and how many of its values go together in a channel.
+/// Calls act for every array, with the number of consecutive values per channel.
 template <class Act>
 void ForArrays(LightField& light, const Act& act)
 {

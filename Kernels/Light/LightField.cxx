@@ -12,7 +12,7 @@ double EnergyBalance::RelativeError(int channels) const
     const double in = this->entered[c] + this->emitted[c];
     const double out = this->absorbed[c] + this->escaped[c] + this->leftOver[c];
     const double error = in > 0.0 ? std::abs(in - out) / in : std::abs(out);
-    worst = error <= worst || std::isnan(worst) ? worst : error; // what is not a number stays
+    worst = error <= worst || std::isnan(worst) ? worst : error; // NaN propagates
   }
   return worst;
 }

@@ -79,9 +79,9 @@ Rgb Lookup(const Environment& environment, const std::array<double, 3>& directio
 
 namespace
 {
-constexpr double LeastSpotAngle = 1e-12; ///< degrees: what squares of its sine need as floats
+constexpr double LeastSpotAngle = 1e-12; ///< degrees; smaller angles' squared sines underflow in floats
 
-/// Of any length that is not 0: scaled first, so that squares neither vanish nor overflow.
+/// Normalises a vector of any length but 0; scales it first, so that squares neither underflow nor overflow.
 glm::dvec3 Unit(const std::array<double, 3>& vector)
 {
   const double largest = std::max({ std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2]) });
@@ -150,11 +150,12 @@ std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
 
 namespace
 {
-constexpr double FarAway = 1e5;       ///< of the box's longest edge, from where light is parallel
-constexpr double TooFarToAim = 1e10;  ///< the same, from where a direction does not tell what of the box is lit
-constexpr double SmallFromFar = 1e-3; ///< edge of a rectangle over its distance, up to which it shines as a point
+constexpr double FarAway = 1e5; ///< distance over the box's longest edge from which light is taken as parallel
+constexpr double TooFarToAim =
+  1e10; ///< the same, from which a direction in doubles cannot resolve which part of the box is lit
+constexpr double SmallFromFar = 1e-3; ///< largest edge over distance for which a rectangle is treated as a point
 
-/// A lamp that is FarAway, at the middle of the box. @param way  from it to there
+/// Directional light that replaces a lamp that is FarAway. @param way from the lamp to the box's centre
 Light Parallel(const Light& lamp, const glm::dvec3& way, double distance)
 {
   const double angle = AngleFromAxis(lamp, { way.x, way.y, way.z });
@@ -181,7 +182,8 @@ Light SeenFrom(const Grid& grid, const Light& lamp, std::size_t number)
   {
     return lamp;
   }
-  const double ofBox = std::hypot(edges[0], edges[1], edges[2]) / distance; // more than half of what it is seen under
+  const double ofBox =
+    std::hypot(edges[0], edges[1], edges[2]) / distance; // upper limit of half the box's angular size
   if (lamp.type == LightType::Spot && std::abs(AngleFromAxis(lamp, { way.x, way.y, way.z }) - HalfAngle(lamp)) < ofBox)
   {
     if (distance > TooFarToAim * longest)
@@ -207,7 +209,7 @@ std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights)
 
 namespace
 {
-/// About z, exact for quarter turns.
+/// Rotation about z, exact for quarter turns.
 Rotation AboutZ(double degrees)
 {
   const double quarters = degrees / 90.0;
@@ -237,7 +239,7 @@ Environment Turned(const Environment& environment, const Rotation& rotation)
   Environment turned = environment;
   for (int row = 0; row < 3; ++row)
   {
-    turned.toPicture[row] = Product(rotation, environment.toPicture[row]); // times the transposed one
+    turned.toPicture[row] = Product(rotation, environment.toPicture[row]); // times the transpose
   }
   return turned;
 }
@@ -248,7 +250,7 @@ Environment Turned(const Environment& environment, int up, double degrees)
   {
     throw InvalidInput("An environment stands up along axis 0, 1 or 2 (x, y, z) and is turned by a finite angle.");
   }
-  Rotation stands = {}; // its z along axis `up`
+  Rotation stands = {}; // maps the picture's z to axis `up`
   stands[up][2] = stands[(up + 1) % 3][0] = stands[(up + 2) % 3][1] = 1.0;
   return Turned(Turned(environment, AboutZ(degrees)), stands);
 }

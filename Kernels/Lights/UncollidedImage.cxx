@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LongestMean = 1.0 + 1e-3; ///< of a mean of unit vectors in floats
+constexpr double LongestMean = 1.0 + 1e-3; ///< longest mean of unit vectors, with rounding in floats
 
 void CheckFluence(const UncollidedImage& image, const Grid& grid)
 {

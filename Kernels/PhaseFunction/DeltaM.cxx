@@ -10,7 +10,7 @@ DeltaM::DeltaM(const std::vector<double>& all)
 {
   if (this->moments.size() > 1)
   {
-    // Nothing but a forward peak goes straight on, and the rest must be the moments of something: from -1 to 1.
+    // Only a forward peak is treated as unscattered, and the remaining moments must be valid, i.e. in [-1, 1].
     this->forward = std::max(this->forward, 0.0);
     for (double moment : this->moments)
     {

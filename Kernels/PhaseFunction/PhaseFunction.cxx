@@ -13,8 +13,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double EndsWithin = 1e-3; ///< of -1 and 1 must a table begin and end
-constexpr double Rounding = 1e-9;   ///< by which a cosine may be beyond 1
+constexpr double EndsWithin = 1e-3; ///< largest distance of a table's ends from -1 and 1
+constexpr double Rounding = 1e-9;   ///< largest excess of a cosine over 1
 
 void CheckMeanCosine(double g)
 {
@@ -25,7 +25,7 @@ void CheckMeanCosine(double g)
   }
 }
 
-/// 1 + g^2 - 2 g c without cancelling, of g towards -1 as well.
+/// 1 + g^2 - 2 g c without cancellation, also for g near -1.
 double SquareOfHenyeyGreenstein(double g, double cosine)
 {
   const double size = std::abs(g);
@@ -38,7 +38,7 @@ double ValueOfHenyeyGreenstein(double g, double cosine)
   return (1.0 - g * g) / (4.0 * Pi * square * std::sqrt(square));
 }
 
-/// By the inverse of its distribution (Witt 1977).
+/// Inverse cumulative distribution (Witt 1977).
 double CosineOfHenyeyGreenstein(double g, double u)
 {
   if (std::abs(g) < 1e-4)
@@ -50,7 +50,7 @@ double CosineOfHenyeyGreenstein(double g, double u)
   return std::clamp((1.0 + g * g - s * s) / (2.0 * g), -1.0, 1.0);
 }
 
-/// Part of the light that Henyey and Greenstein's sends below a cosine.
+/// Fraction of light scattered below a cosine by the Henyey-Greenstein function.
 double BelowOfHenyeyGreenstein(double g, double cosine)
 {
   if (std::abs(g) < 1e-4)
@@ -93,7 +93,7 @@ double CosineOfSchlick(double k, double u)
   return std::clamp((2.0 * u + k - 1.0) / (2.0 * k * u - k + 1.0), -1.0, 1.0);
 }
 
-/// Of 3/8 (1 + c^2): c^3 + 3 c + 4 = 8 u.
+/// Inverse cumulative distribution of 3/8 (1 + c^2): solves c^3 + 3 c + 4 = 8 u.
 double CosineOfRayleigh(double u)
 {
   const double half = 4.0 * u - 2.0;
@@ -122,7 +122,7 @@ void CheckCount(std::size_t cosines, std::size_t values)
   }
 }
 
-/// Of numbers only.
+/// Requires finite numbers.
 void CheckEnds(const std::vector<double>& cosines, const std::vector<double>& values)
 {
   const char* const what = "is an end of the table; it must reach from cosine -1 to 1.";
@@ -181,7 +181,7 @@ double ValueOfTable(const PhaseFunction::Table& table, double cosine)
   return table.values[row] + std::clamp(part, 0.0, 1.0) * (table.values[row + 1] - table.values[row]);
 }
 
-/// Within a row's stretch the part that goes below is a parabola.
+/// Between two rows the cumulative distribution is a parabola.
 double BelowOfTable(const PhaseFunction::Table& table, double cosine)
 {
   const auto after = std::upper_bound(table.cosines.begin(), table.cosines.end(), cosine);
@@ -207,7 +207,7 @@ double CosineOfTable(const PhaseFunction::Table& table, double u)
 std::vector<double> MomentsOfTable(const PhaseFunction::Table& table, int degree)
 {
   std::vector<double> moments(degree + 1, 0.0);
-  const GaussLegendre rule(degree / 2 + 2); // exact for P_l times a line
+  const GaussLegendre rule(degree / 2 + 2); // exact for P_l times a linear function
   for (std::size_t row = 0; row + 1 < table.cosines.size(); ++row)
   {
     const double low = table.cosines[row], width = table.cosines[row + 1] - low;
@@ -225,7 +225,7 @@ std::vector<double> MomentsOfTable(const PhaseFunction::Table& table, int degree
   return moments;
 }
 
-/// Towards the peak in stretches that halve, each by a rule of its own.
+/// Integrates over intervals that halve towards the peak, each with its own quadrature rule.
 std::vector<double> MomentsByQuadrature(const PhaseFunction& function, double peak, int degree)
 {
   std::vector<double> moments(degree + 1, 0.0);
@@ -278,7 +278,7 @@ PhaseFunction PhaseFunction::Schlick(double g)
 {
   CheckMeanCosine(g);
   PhaseFunction function;
-  function.Which = Kind::Schlick; // with g 0, too: WithMeanCosine has to know
+  function.Which = Kind::Schlick; // also for g = 0, since WithMeanCosine needs the kind
   function.The.first = g == 0.0 ? 0.0 : KOfSchlick(g);
   return function;
 }
@@ -305,7 +305,7 @@ PhaseFunction PhaseFunction::Tabulated(std::vector<double> cosines, std::vector<
   double sum = 0.0;
   for (std::size_t row = 0; row < table.cosines.size(); ++row)
   {
-    table.values[row] /= largest > 0.0 ? largest : 1.0; // so that the sum is a number
+    table.values[row] /= largest > 0.0 ? largest : 1.0; // so that the sum does not overflow
     sum +=
       row == 0 ? 0.0 : Pi * (table.values[row] + table.values[row - 1]) * (table.cosines[row] - table.cosines[row - 1]);
     table.below.push_back(sum);
@@ -392,7 +392,7 @@ double PhaseFunction::CosineAt(double u) const
     case Kind::HenyeyGreenstein: return CosineOfHenyeyGreenstein(this->The.first, u);
     case Kind::DoubleHenyeyGreenstein:
     {
-      double low = -1.0, high = 1.0; // of a sum of two there is no closed inverse
+      double low = -1.0, high = 1.0; // a sum of two functions has no closed inverse
       for (int i = 0; i < 60; ++i)
       {
         const double cosine = 0.5 * (low + high);

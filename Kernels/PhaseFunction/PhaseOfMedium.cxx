@@ -16,7 +16,7 @@ PhaseOfMedium::PhaseOfMedium(const std::array<PhaseFunction, 3>& ofChannels)
 PhaseOfMedium::PhaseOfMedium(const PhaseFunction& kind, const Field& g)
   : PhaseOfMedium(kind)
 {
-  kind.WithMeanCosine(0.0); // throws where there is none
+  kind.WithMeanCosine(0.0); // throws if the kind has no single mean cosine
   this->ByVoxel = g;
 }
 

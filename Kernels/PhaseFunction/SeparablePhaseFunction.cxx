@@ -17,9 +17,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostForSingularValues = 1024; ///< directions; the work grows with their cube
-constexpr double Dependent = 1e-3;          ///< of a vector's length is left where others span it already
-constexpr double Nothing = 1e-14;           ///< of the largest eigenvalue: what rounding leaves of zero
+constexpr int MostForSingularValues = 1024; ///< most directions; the work grows with their cube
+constexpr double Dependent = 1e-3; ///< a vector is linearly dependent if less than this fraction of its length remains
+constexpr double Nothing = 1e-14;  ///< relative to the largest eigenvalue; smaller values are zero up to rounding
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -71,7 +71,7 @@ double Cosine(const Direction& a, const Direction& b)
   return std::clamp(a.omega[0] * b.omega[0] + a.omega[1] * b.omega[1] + a.omega[2] * b.omega[2], -1.0, 1.0);
 }
 
-/// Degree beyond which cap means of the smallest cells are below 1e-4 of what they mean.
+/// Degree beyond which the cap moments of the smallest cells are below 1e-4.
 int DegreeOfMeans(const std::vector<Direction>& directions)
 {
   double least = 4.0 * Pi;
@@ -82,7 +82,7 @@ int DegreeOfMeans(const std::vector<Direction>& directions)
   return std::clamp(static_cast<int>(20.0 / std::sqrt(least / Pi)), 16, 512);
 }
 
-/// The moments of the cells' means, [degree][direction], as far as terms are not lost in rounding.
+/// Cap moments of the directions' cells, [degree][direction], up to the degree at which terms vanish in rounding.
 std::vector<std::vector<double>> MeansByDegree(
   const std::vector<double>& moments, const std::vector<Direction>& directions)
 {
@@ -136,7 +136,7 @@ std::vector<double> CellMeanMatrix(const PhaseFunction& function, const std::vec
   return matrix;
 }
 
-/// Columns made orthonormal one after the other; those that the ones before span are dropped.
+/// Orthonormalises columns one after the other; linearly dependent ones are dropped.
 Basis Orthonormal(const MatrixXd& columns, const VectorXd& values)
 {
   Basis basis = { MatrixXd(columns.rows(), columns.cols()), VectorXd(columns.cols()) };
@@ -144,7 +144,7 @@ Basis Orthonormal(const MatrixXd& columns, const VectorXd& values)
   for (int k = 0; k < columns.cols(); ++k)
   {
     VectorXd column = columns.col(k);
-    for (int again = 0; again < 2; ++again) // the second time takes what rounding left
+    for (int again = 0; again < 2; ++again) // the second pass removes what rounding left
     {
       const MatrixXd before = basis.columns.leftCols(kept);
       column -= before * (before.transpose() * column);
@@ -198,9 +198,8 @@ Basis Eigenvectors(const MatrixXd& matrix)
   return basis;
 }
 
-/// The eigenvectors of a matrix that scatters exactly the power there is, with exactly the mean cosine: 1 and omega are
-/// made eigenvectors, and of what is orthogonal to them no eigenvalue is larger than theory allows (numerics.md, Eq.
-/// (D5)).
+/// Eigenvectors of a matrix that conserves power and has the exact mean cosine: 1 and omega are made eigenvectors, and
+/// eigenvalues on their orthogonal complement are limited to the theoretical maximum (numerics.md, Eq. (D5)).
 Basis RepairedEigenvectors(
   const MatrixXd& matrix, const std::vector<Direction>& directions, const std::vector<double>& moments)
 {
@@ -219,7 +218,7 @@ Basis RepairedEigenvectors(
   return all;
 }
 
-/// Part of the light in the peak beyond the degree of `terms` terms; backward peaks have none.
+/// Fraction of light in the forward peak beyond the degree of `terms` terms; 0 for backward peaks.
 double PeakBeyond(const std::vector<double>& moments, int terms)
 {
   return std::max(0.0, moments[DegreeOfTerm(terms - 1) + 1]);
@@ -278,7 +277,7 @@ double TheoreticalError(const std::vector<double>& moments, int terms)
   {
     squares.insert(squares.end(), 2 * l + 1, moments[l] * moments[l]);
   }
-  std::sort(squares.begin(), squares.end()); // small ones first, so that their sum keeps its digits
+  std::sort(squares.begin(), squares.end()); // ascending, so that the sum is accurate
   const std::size_t beyond = squares.size() - std::min<std::size_t>(squares.size(), terms);
   const double tail = std::accumulate(squares.begin(), squares.begin() + beyond, 0.0);
   return std::sqrt(tail / std::accumulate(squares.begin(), squares.end(), 0.0));
