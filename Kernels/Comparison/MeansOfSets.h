@@ -17,7 +17,7 @@ public:
 
   /// Sum of the squared standard errors; needs at least two sets.
   double Variance() const;
-  double SumOfSquares() const; ///< of the means
+  double SumOfSquares() const; ///< sum of the squared means
   /// Root mean square of the standard errors over that of the means.
   double RelativeError() const;
 

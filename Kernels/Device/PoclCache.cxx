@@ -251,7 +251,7 @@ struct Note
 {
   std::uint64_t number = 0; ///< inode number
   std::uint64_t size = 0;   ///< bytes
-  std::int64_t written = 0; ///< nanoseconds: contents
+  std::int64_t written = 0; ///< time of the last change of contents, ns
   std::int64_t changed = 0; ///< time of the last change of contents, name or permissions, ns
   std::uint64_t sum = 0;    ///< checksum of a file's bytes
 

@@ -32,7 +32,7 @@ public:
   /// The coarsening from the fine voxels that overlap this rank's coarse voxels, some of which other ranks may own, to
   /// these coarse voxels.
   const Coarsening& Own() const { return this->OwnPart; }
-  bool HasOwn() const { return this->OwnBox().VoxelCount() > 0; } ///< coarse voxels
+  bool HasOwn() const { return this->OwnBox().VoxelCount() > 0; } ///< whether this rank owns coarse voxels
 
   /// Whether some coarse voxel straddles two ranks' blocks; the same on all ranks.
   bool Straddle() const { return this->AnyStraddles; }

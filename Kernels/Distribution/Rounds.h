@@ -15,7 +15,7 @@ namespace tyndall
 struct RoundsTraffic
 {
   std::size_t handed = 0; ///< travellers sent by this rank; one counts each time it enters another block
-  std::size_t bytes = 0;  ///< of them
+  std::size_t bytes = 0;  ///< bytes sent for them
   int rounds = 0;         ///< rounds of tracing and exchange, until no traveller was left
 };
 

@@ -16,7 +16,7 @@ namespace tyndall
 
 /// @param what  what the numbers are, for the message
 /// @param has  whether this rank has numbers; if not, its values are ignored but must be as many
-/// @throws InvalidInput  on each, where they differ
+/// @throws InvalidInput on all ranks, if the values differ
 void RequireSame(Communicator& communicator, const char* what, bool has, std::vector<double> values);
 
 /// @throws InvalidInput on all ranks, if the ranks disagree about the grid or its partition
@@ -37,6 +37,6 @@ void AgreeOnMeanCosine(Communicator& communicator, bool has, const Field& g, Med
 MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits ofBlock);
 
 /// The channels of a distributed scene.
-/// @param here  of this rank's block
+/// @param here  channels of this rank's block
 SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here);
 }

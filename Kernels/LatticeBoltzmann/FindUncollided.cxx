@@ -113,7 +113,7 @@ private:
   const LatticeProblem& Problem;
   const LatticeSettings& Settings;
   Communicator& Comm;
-  const BlockPartition Partition; ///< wide along axes on which nothing varies
+  const BlockPartition Partition; ///< blocks of voxels that are wide along axes on which nothing varies
   const double Narrowing;         ///< volume of a voxel of the scene over that of a wide voxel
   const VolumeLayout Layout;
   AcrossFaces Across;

@@ -15,7 +15,7 @@
 
 namespace tyndall
 {
-/// Collective.
+/// Checks the arguments of SolveLatticeBoltzmann. Collective.
 /// @throws InvalidInput under the conditions listed at SolveLatticeBoltzmann
 void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, const Illumination& illumination,
   const LatticeSettings& settings);

@@ -30,7 +30,7 @@ typedef struct
   int periodic;      ///< bit mask of the periodic axes
   int inner;         ///< bit mask of the faces -x, +x, ... +z beyond which another block lies
   int offset[18];    ///< index offset from a voxel to its neighbour along each direction
-  float albedo[6];   ///< of the faces -x, +x, ... +z
+  float albedo[6];   ///< albedo of the faces -x, +x, ... +z
   float incoming[6]; ///< fluence / n^2 of the diffuse light outside each face, W / length^2
   ulong stride;      ///< stride of the densities between directions
 } LatticeInfo;

@@ -8,6 +8,6 @@ enum
 {
   BrickBits = 3,    ///< bits of a voxel's index along an axis that give its place within the brick
   BrickEdge = 8,    ///< voxels per edge of a brick; the same as of OpenVDB's leaves
-  BrickVoxels = 512 ///< of a brick
+  BrickVoxels = 512 ///< voxels per brick
 };
 SHARED_END

@@ -12,8 +12,8 @@ namespace tyndall
 struct MediumTraits
 {
   bool absorbs = false;       ///< sigma_a is not zero everywhere
-  bool scatters = false;      ///< sigma_s
-  bool emits = false;         ///< emission
+  bool scatters = false;      ///< sigma_s is not zero everywhere
+  bool emits = false;         ///< emission is not zero everywhere
   bool isotropic = true;      ///< g is 0 in all voxels that scatter
   bool grey = true;           ///< sigma_a, sigma_s (to 2e-7) and the phase function are the same in all channels
   bool greyExtinction = true; ///< sigma_a + sigma_s is the same in all channels; true if `grey` is

@@ -122,7 +122,7 @@ void CheckCount(std::size_t cosines, std::size_t values)
   }
 }
 
-/// Requires finite numbers.
+/// Both arguments must hold finite numbers.
 void CheckEnds(const std::vector<double>& cosines, const std::vector<double>& values)
 {
   const char* const what = "is an end of the table; it must reach from cosine -1 to 1.";

@@ -31,7 +31,7 @@ struct PhotonChannelMap
   PhotonChannelMap() = default;
   /// @param photons  the placeholder that the problem was given
   /// @param solved  the placeholder in the problem's units
-  /// @param channels, channel  of the problem
+  /// @param channels, channel  number of channels of the problem, and the index of one
   PhotonChannelMap(const PhotonsToCome& photons, const UncollidedImage& solved, int channels, int channel);
 
   int from = 0;         ///< channel of the photons' light

@@ -9,18 +9,18 @@ namespace tyndall
 struct PieceOfLine
 {
   double passes = 0.0;    ///< fraction of x that its last voxel sends up
-  double returns = 0.0;   ///< the same of B
+  double returns = 0.0;   ///< fraction of B that its last voxel sends up
   double givesBack = 0.0; ///< fraction of x that its first voxel sends down
   double comesDown = 0.0; ///< fraction of B that its first voxel sends down; 0: the piece ends at a face of the grid
   double up = 0.0;        ///< fraction that the link before it transmits upwards
-  double down = 0.0;
+  double down = 0.0;      ///< fraction that it transmits downwards
 };
 
 /// Light that a piece sends without light incident at its ends, W / length^2.
 struct SentByPiece
 {
-  double up = 0.0;   ///< by its last voxel
-  double down = 0.0; ///< by its first
+  double up = 0.0;   ///< sent by its last voxel
+  double down = 0.0; ///< sent by its first voxel
 };
 
 /// Light incident at the ends of a piece, and light that the first voxel of the next piece sends down, W / length^2.
