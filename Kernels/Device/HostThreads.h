@@ -11,7 +11,7 @@ namespace tyndall
 /// Calls work(begin, end) concurrently for parts that together are [0, count), and waits for all of them. Results must
 /// not depend on where a part begins, so that they are the same on any number of cores.
 /// @param least  smallest number of elements per part; below some hundred kilobytes a thread costs more than it saves
-///   What a part throws is thrown when all have ended; of several the first part's.
+/// @throws what a part threw, after all parts have ended; if several did, the error of the first of them
 void InThreads(
   std::size_t count, std::size_t least, const std::function<void(std::size_t begin, std::size_t end)>& work);
 
