@@ -2,8 +2,8 @@
 
 namespace tyndall
 {
-/// Memory that this process can still allocate, bytes: the minimum of what the machine has free or can free, of what
-/// its container (cgroup 2) still allows, and of what is left of its address space (RLIMIT_AS). Infinity if none of
-/// these is known.
+/// Memory that this process can still allocate, bytes: the smallest of three limits, which are the machine's free or
+/// reclaimable memory, the allowance of its container (cgroup 2) and its remaining address space (RLIMIT_AS). Infinity
+/// if none of them is known.
 double AvailableMemory();
 }

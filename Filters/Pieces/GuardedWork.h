@@ -84,6 +84,7 @@ bool AreEmptied(vtkInformationVector* outputs);
 
 /// Runs code of a reader's RequestInformation that may fail. An exception is reported as one error, however often
 /// ParaView asks, until the reader is modified; Guarded then leaves the outputs empty.
-/// @return whether it succeeded. RequestInformation should return 1 in any case, as RequestData does.
+/// @return true if no exception was thrown. The caller returns 1 from RequestInformation either way: 0 would make the
+///   pipeline add a second error.
 bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work);
 }

@@ -228,7 +228,8 @@ void CheckOrdinates(const Domain& domain, const Medium& medium, const Illuminati
     { 1.0 * static_cast<int>(settings.scattering), 1.0 * settings.spiralDirections, 1.0 * settings.terms });
 }
 
-/// Given uncollided light; on an empty block a placeholder if any rank has it.
+/// Given uncollided light. On an empty block the result has an array, which is not read, if any rank has light given,
+/// so that all ranks take the same branches.
 UncollidedImage UncollidedKnown(const Domain& domain, const UncollidedImage& own)
 {
   static const float nothing = 0.0f;

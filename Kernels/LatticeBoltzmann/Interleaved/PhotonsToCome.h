@@ -11,8 +11,9 @@
 
 namespace tyndall
 {
-/// A placeholder for the light of photons that have not yet been marched, from which LatticeProblem chooses units and
-/// channels. It varies from voxel to voxel, and in colour if the photons do.
+/// Synthetic uncollided light for photons that have not yet been marched, from which LatticeProblem chooses units and
+/// channels. Its fluence has the order of magnitude of theirs, and varies from voxel to voxel, in three channels
+/// independently if photons differ in colour, so that the problem keeps all channels that they need.
 struct PhotonsToCome
 {
   /// @param given  channels that the photons' light will have
@@ -29,8 +30,8 @@ struct PhotonsToCome
 struct PhotonChannelMap
 {
   PhotonChannelMap() = default;
-  /// @param photons  the placeholder that the problem was given
-  /// @param solved  the placeholder in the problem's units
+  /// @param photons  the uncollided light that the problem was given
+  /// @param solved  the same light in the problem's units
   /// @param channels, channel  number of channels of the problem, and the index of one
   PhotonChannelMap(const PhotonsToCome& photons, const UncollidedImage& solved, int channels, int channel);
 

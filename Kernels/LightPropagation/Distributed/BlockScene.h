@@ -17,7 +17,7 @@
 
 namespace tyndall
 {
-/// One voxel of vacuum: placeholder medium of a rank whose block has no voxels. Its results are not counted.
+/// One voxel of vacuum, which stands for the medium of a rank whose block has no voxels. Its results are not counted.
 Medium VoxelOfVacuum(const Grid& whole);
 
 /// Scene of a block, in units and channels that are the same on all ranks.

@@ -59,9 +59,9 @@ struct CountedPhotons
   float weightUnit = 0.0f;     ///< photon weight per unit of the voxels' sums
 };
 
-/// Adds the fates of photons to the light's energy balance: the power that escaped through each face of the grid, and
-/// what is left over. Powers are rounded to whole units, whose sums do not depend on the order of the photons. Photons
-/// that continue in another block are ignored.
+/// Adds the final states of photons to the light's energy balance: the power that escaped through each face of the
+/// grid, and the unaccounted power. Powers are rounded to integers, so that their sums do not depend on the order of
+/// the photons. Photons that continue in another block are ignored.
 /// @param ends  PhotonEnd and powers of each photon
 void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result);
 

@@ -25,8 +25,8 @@ Shown ShownOf(const std::array<float, 3>& radiance, const ToneMapping& tones)
   return shown;
 }
 
-/// State of the display picture while blocks are composited from front to back. Contributions of blocks behind are
-/// truncated to whole numbers, as IceT does.
+/// State of the display picture while blocks are composited from front to back. The contribution of each block behind
+/// the first is truncated to an integer; ParaView's compositor IceT truncates in the same way.
 struct Screen
 {
   Shown shown = {};
