@@ -1,5 +1,6 @@
 #include "DiscreteOrdinates/OrdinatesScene.h"
 
+#include "Distribution/SharedMedium.h"
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
@@ -45,16 +46,7 @@ SweepTally SumOf(const Domain& domain, const SweepTally& own)
     powers.push_back(&sum.in[face]);
     powers.push_back(&sum.out[face]);
   }
-  std::vector<double> values;
-  for (const Rgb* power : powers)
-  {
-    values.insert(values.end(), power->begin(), power->end());
-  }
-  values = domain.Sum(values);
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    (*powers[i / 3])[i % 3] = values[i];
-  }
+  SumOverRanks(domain, powers);
   return sum;
 }
 

@@ -113,4 +113,18 @@ SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here)
   all.one = !domain.Any(!here.one) && all.colour.IsOne();
   return all;
 }
+
+void SumOverRanks(const Domain& domain, const std::vector<Rgb*>& powers)
+{
+  std::vector<double> values;
+  for (const Rgb* power : powers)
+  {
+    values.insert(values.end(), power->begin(), power->end());
+  }
+  values = domain.Sum(values);
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    (*powers[i / 3])[i % 3] = values[i];
+  }
+}
 }

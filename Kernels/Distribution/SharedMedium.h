@@ -39,4 +39,7 @@ MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits ofBlock);
 /// The channels of a distributed scene.
 /// @param here  channels of this rank's block
 SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here);
+
+/// Replaces each power by its sum over ranks, in one reduction. Collective.
+void SumOverRanks(const Domain& domain, const std::vector<Rgb*>& powers);
 }

@@ -5,7 +5,6 @@
 #include "LatticeBoltzmann/LatticeChannel.h"
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "LatticeBoltzmann/LatticeProblem.h"
-#include "Photons/Distributed/PhotonsInBlocks.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include <algorithm>
@@ -13,17 +12,6 @@
 
 namespace tyndall
 {
-namespace
-{
-PhotonLight MarchPhotons(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
-  const std::vector<Photon>& photons, const MarchSettings& settings, const Monitor& monitor)
-{
-  return domain.IsSerial()
-    ? PhotonMarcher(device, medium, ior, settings).March(photons, monitor)
-    : PhotonMarcherInBlocks(device, domain.Comm(), domain.Partition(), medium, ior, settings).March(photons, monitor);
-}
-}
-
 LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
   const Illumination& illumination, const LatticeSettings& settings, const Monitor& monitor)
 {
@@ -58,7 +46,7 @@ LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Med
     PhotonMarcher marcher(device, medium, ior, march);
     return InterleavedLattice(device, domain, medium, ior, illumination, settings).Solve(marcher, photons, monitor);
   }
-  const PhotonLight found = MarchPhotons(device, domain, medium, ior, photons, march, OfPart(monitor, 0.0, 0.5));
+  const PhotonLight found = PhotonMarcher(device, domain, medium, ior, march).March(photons, OfPart(monitor, 0.0, 0.5));
   Illumination lit = illumination;
   lit.uncollided = domain.IsEmpty() ? UncollidedImage() : ImageOf(found);
   LightField light = SolveLatticeBoltzmann(device, domain, medium, ior, lit, settings, OfPart(monitor, 0.5, 1.0));

@@ -193,16 +193,7 @@ void SumPowers(const Domain& domain, LightField& light)
   {
     powers.push_back(&face);
   }
-  std::vector<double> values;
-  for (const Rgb* power : powers)
-  {
-    values.insert(values.end(), power->begin(), power->end());
-  }
-  values = domain.Sum(values);
-  for (std::size_t i = 0; i < values.size(); ++i)
-  {
-    (*powers[i / 3])[i % 3] = values[i];
-  }
+  SumOverRanks(domain, powers);
   for (std::size_t c = 0; c < 3; ++c)
   {
     balance.leftOver[c] = balance.entered[c] + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];

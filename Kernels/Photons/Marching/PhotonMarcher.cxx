@@ -6,7 +6,6 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Convergence.h"
-#include "Photons/Distributed/TurnsInBlocks.h"
 #include "Photons/Importance/PilotGathering.h"
 #include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchedLight.h"
@@ -74,8 +73,6 @@ public:
     const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor) const;
   void ByTurns(const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const MarchTurns& turns,
     TurnTimes& times, const Monitor& monitor) const;
-  void ByTurns(const StartingPhotons& starting, const MarchSums& target, PhotonLight& result,
-    const TurnsInBlocks& turns, const Monitor& monitor) const;
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const;
   /// @throws InvalidInput if turns are not possible, or light is stored by bricks
   void RequireTurns() const;
@@ -299,35 +296,6 @@ void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, con
   Tally(starting.packed, onDevice.ends.Read(), result);
 }
 
-void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, const MarchSums& target,
-  PhotonLight& result, const TurnsInBlocks& turns, const Monitor& monitor) const
-{
-  Buffer<float> fluence;
-  cl::Kernel show;
-  std::unique_ptr<MarchRun> run;
-  this->TheDomain.Collective([&] {
-    if (this->Through)
-    {
-      show = this->Show(starting, target, result, fluence);
-      run = std::make_unique<MarchRun>(*this->Through, target, starting.packed);
-    }
-  });
-  turns.begin(starting.packed, result.light.channels);
-  WaitingPhotons photons(this->TheDomain.Comm(), *this->TheRounds, this->TheDomain.Own(), run.get(), starting,
-    [&](const std::vector<cl_int>& ends) { Tally(starting.packed, ends, result); });
-  photons.ToTheirEnds(
-    turns, MarchEventLimit(this->TheDomain.Whole(), this->Settings),
-    [&]() -> const Buffer<float>& {
-      if (run)
-      {
-        const std::array<int, 3>& size = this->TheDomain.Own().size;
-        this->TheDevice.Queue().enqueueNDRangeKernel(show, cl::NullRange, cl::NDRange(Count(size[1]) * Count(size[2])));
-      }
-      return fluence;
-    },
-    monitor);
-}
-
 /// Follows photons to their first collision.
 void PhotonMarcher::Implementation::FollowUncollided(
   const StartingPhotons& starting, const Way& way, PhotonLight& result, const Monitor& monitor)
@@ -498,18 +466,6 @@ PhotonLight PhotonMarcher::MarchByTurns(
     photons,
     [&](const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& ofPart) {
       this->Inside->ByTurns(starting, target, result, turns, times, ofPart);
-    },
-    monitor);
-}
-
-PhotonLight PhotonMarcher::MarchByTurns(
-  const std::vector<Photon>& share, const TurnsInBlocks& turns, const Monitor& monitor)
-{
-  this->Inside->RequireTurns();
-  return this->Inside->March(
-    share,
-    [&](const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& ofPart) {
-      this->Inside->ByTurns(starting, target, result, turns, ofPart);
     },
     monitor);
 }

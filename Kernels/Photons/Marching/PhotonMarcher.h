@@ -12,7 +12,6 @@
 
 namespace tyndall
 {
-struct TurnsInBlocks;
 
 /// Marches photons along curved rays through a medium, and deposits light in every voxel that they cross.
 ///
@@ -74,9 +73,6 @@ public:
   ///   March
   PhotonLight MarchByTurns(
     const std::vector<Photon>& photons, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor = {});
-
-  /// The same on several ranks; callbacks run between turns, not concurrently with them.
-  PhotonLight MarchByTurns(const std::vector<Photon>& share, const TurnsInBlocks& turns, const Monitor& monitor = {});
 
   /// Light of a few photons in coarse cells, and the mean origin of the photons in each cell (Pfeuti 2009, section
   /// 3.2.2). Photons take the same paths as in March, through the medium's own voxels. Voxel i of an axis belongs to

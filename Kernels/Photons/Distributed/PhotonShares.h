@@ -1,3 +1,0 @@
-#pragma once
-
-#include "Photons/Marching/PhotonShares.h"
