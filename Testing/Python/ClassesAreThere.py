@@ -13,7 +13,7 @@ for name in ("vtkParticipatingMedium", "vtkLightRig", "vtkLightPropagationMaps",
 medium = tyndall.vtkParticipatingMedium()
 medium.SetAlbedo(0.25, 0.5, 0.75)
 assert medium.GetAlbedo() == (0.25, 0.5, 0.75), medium.GetAlbedo()
-assert "scattered" in medium.SetAlbedo.__doc__
+assert "Single-scattering albedo" in medium.SetAlbedo.__doc__
 assert tyndall.vtkLightPropagationMaps.CONSERVATIVE == 1
 # One VTK for both: an image made by vtkmodules goes in.
 tyndall.vtkLightPropagationMaps().SetInputData(vtkImageData())
