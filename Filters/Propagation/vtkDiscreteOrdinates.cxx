@@ -65,14 +65,11 @@ tyndall::LightField SolvePreview(vtkDiscreteOrdinates* filter, tyndall::Device& 
 {
   const tyndall::Illumination& illumination = scene.shining.illumination;
   const tyndall::Grid coarse = tyndall::PreviewGrid(scene.domain.Whole());
-  const tyndall::PreviewSolver solve = [&](const tyndall::PreviewScene& ofCoarse) {
-    return tyndall::SolveDiscreteOrdinates(device, tyndall::Domain(ofCoarse.medium.grid), ofCoarse.medium,
-      ofCoarse.illumination, settings, tyndall::MonitorOf(filter));
-  };
-  return scene.decomposed
-    ? tyndall::SolvePreviewOnFirst({ scene.domain.Comm(), scene.domain.Partition(), scene.medium, illumination }, {},
-        tyndall::AsPropagation(settings), coarse, solve)
-    : tyndall::SolvePreview({ scene.medium, illumination, {} }, coarse, solve);
+  return tyndall::SolvePreview({ scene.domain, scene.medium, illumination }, tyndall::AsPropagation(settings), coarse,
+    [&](const tyndall::SceneBlock& block) {
+      return tyndall::SolveDiscreteOrdinates(
+        device, block.domain, block.medium, block.illumination, settings, tyndall::MonitorOf(filter));
+    });
 }
 }
 

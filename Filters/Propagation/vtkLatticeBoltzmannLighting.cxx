@@ -27,35 +27,13 @@
 
 namespace
 {
-using Solver = std::function<tyndall::LightField(const tyndall::Domain&, const tyndall::PreviewScene&)>;
-
-/// Solves a preview, on a coarser grid if voxels can be merged to cubes; a small coarse grid is solved on the first
-/// rank. Collective.
-tyndall::LightField SolvePreviewOf(const tyndall::Domain& domain, const tyndall::PreviewScene& scene,
-  const tyndall::LatticeSettings& settings, const Solver& solve)
+/// Solves a preview, on a coarser grid if voxels can be merged to cubes. Collective.
+tyndall::LightField SolvePreviewOf(
+  const tyndall::SceneBlock& scene, const tyndall::LatticeSettings& settings, const tyndall::PreviewSolver& solve)
 {
-  const tyndall::Grid coarse = tyndall::CubicPreviewGrid(domain.Whole());
-  const tyndall::PreviewSolver onFirst = [&](const tyndall::PreviewScene& of) {
-    return solve(tyndall::Domain(of.medium.grid), of);
-  };
-  if (coarse.size == domain.Whole().size)
-  {
-    return solve(domain, scene);
-  }
-  if (domain.IsSerial())
-  {
-    return tyndall::SolvePreview(scene, coarse, onFirst);
-  }
-  const tyndall::SceneInBlocks own = { domain.Comm(), domain.Partition(), scene.medium, scene.illumination };
-  const tyndall::PropagationSettings alike = tyndall::AsPropagation(settings);
-  if (coarse.VoxelCount() <= tyndall::PreviewVoxels)
-  {
-    return tyndall::SolvePreviewOnFirst(own, scene.index, alike, coarse, onFirst);
-  }
-  return tyndall::SolvePreviewInBlocks(
-    own, scene.index, alike, coarse, [&](const tyndall::PreviewScene& of, const tyndall::BlockPartition& blocks) {
-      return solve(tyndall::Domain(domain.Comm(), blocks), of);
-    });
+  const tyndall::Grid &whole = scene.domain.Whole(), coarse = tyndall::CubicPreviewGrid(whole);
+  return coarse.size == whole.size ? solve(scene)
+                                   : tyndall::SolvePreview(scene, tyndall::AsPropagation(settings), coarse, solve);
 }
 
 /// Fraction of the power that was neither absorbed nor escaped, in the worst channel.
@@ -123,27 +101,27 @@ tyndall::LatticeSettings vtkLatticeBoltzmannLighting::Settings() const
 
 /// Solves for the light. Collective. @param photons null if none are connected
 tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
-  const tyndall::Domain& domain, const tyndall::PreviewScene& scene, const std::vector<tyndall::Photon>* photons)
+  const tyndall::SceneBlock& scene, const std::vector<tyndall::Photon>* photons)
 {
   const double start = tyndall::ClockSeconds();
   const tyndall::LatticeSettings settings = this->Settings();
   std::shared_ptr<tyndall::Device> device;
-  domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
+  scene.domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
-  const auto solve = [&](const tyndall::Domain& of, const tyndall::PreviewScene& solved) {
+  const tyndall::PreviewSolver solve = [&](const tyndall::SceneBlock& solved) {
     return tyndall::SolveLatticeBoltzmann(
-      within, of, solved.medium, solved.index, solved.illumination, settings, monitor);
+      within, solved.domain, solved.medium, solved.index, solved.illumination, settings, monitor);
   };
   tyndall::LightField light;
   if (photons)
   {
     light = tyndall::SolveLatticeBoltzmann(
-      within, domain, scene.medium, scene.index, *photons, scene.illumination, settings, monitor);
+      within, scene.domain, scene.medium, scene.index, *photons, scene.illumination, settings, monitor);
   }
   else
   {
-    light = this->Preview ? SolvePreviewOf(domain, scene, settings, solve) : solve(domain, scene);
+    light = this->Preview ? SolvePreviewOf(scene, settings, solve) : solve(scene);
   }
   light.settingsUsed = tyndall::Words(settings);
   this->Seconds = tyndall::ClockSeconds() - start;
@@ -192,7 +170,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(const tyndall::SolverScen
     }
   }
   return this->LightOf(
-    scene.domain, { scene.medium, scene.shining.illumination, ior }, scene.share ? &photons : nullptr);
+    { scene.domain, scene.medium, scene.shining.illumination, ior }, scene.share ? &photons : nullptr);
 }
 
 void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)

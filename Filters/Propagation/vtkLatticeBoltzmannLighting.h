@@ -16,7 +16,7 @@ struct LatticeSettings;
 struct LightField;
 struct MediumInput;
 struct Photon;
-struct PreviewScene;
+struct SceneBlock;
 }
 
 /**
@@ -176,8 +176,7 @@ private:
   void operator=(const vtkLatticeBoltzmannLighting&) = delete;
 
   tyndall::LatticeSettings Settings() const;
-  tyndall::LightField LightOf(
-    const tyndall::Domain& domain, const tyndall::PreviewScene& scene, const std::vector<tyndall::Photon>* photons);
+  tyndall::LightField LightOf(const tyndall::SceneBlock& scene, const std::vector<tyndall::Photon>* photons);
 
   int Lattice;
   int Scheme;

@@ -7,7 +7,6 @@
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
-#include "LightPropagation/Accuracy/ErrorInBlocks.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
@@ -84,23 +83,6 @@ tyndall::LightField LightOf(tyndall::TargetLight&& found)
   return std::move(found.light);
 }
 
-/// @throws InvalidInput if the published scheme has a TargetError
-void CheckTarget(vtkLightPropagationMaps* filter)
-{
-  tyndall::Require(filter->GetScheme() != vtkLightPropagationMaps::PUBLISHED || filter->GetTargetError() == 0.0,
-    "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
-    "TargetError to 0, or Scheme to conservative.");
-}
-
-/// Solves with the directions, tolerance and voxels that TargetError needs; Quality is not read.
-tyndall::LightField SolveToTarget(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
-  const tyndall::Illumination& illumination, const tyndall::Monitor& monitor, const tyndall::PropagationSolver& solve)
-{
-  CheckTarget(filter);
-  return LightOf(
-    tyndall::SolveToTargetError(medium, illumination, SettingsOf(filter), filter->GetTargetError(), monitor, solve));
-}
-
 tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
 {
   settings.directionsPerFace = std::min(settings.directionsPerFace, tyndall::PreviewDirections);
@@ -124,79 +106,44 @@ tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Dev
   return tyndall::SolveParallel(within, medium, illumination, settings, monitor);
 }
 
-/// A serial solver of the filter's Scheme.
+/// A solver of the filter's Scheme.
+/// @param device  null for the sequential algorithm
 /// @param ofGrid  the medium whose solution `last` keeps; solutions on coarser or divided grids are not kept
-tyndall::PropagationSolver SolverOf(
-  vtkLightPropagationMaps* filter, const tyndall::Medium* ofGrid, tyndall::KeptLight* last)
+tyndall::PropagationSolver SolverOf(vtkLightPropagationMaps* filter, const std::shared_ptr<tyndall::Device>& device,
+  const tyndall::Medium* ofGrid, tyndall::KeptLight* last)
 {
-  const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
-  const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
-  const std::shared_ptr<tyndall::Device> device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice());
-  return [=](const tyndall::Medium& inside, const tyndall::Illumination& shining,
-           const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
-    tyndall::KeptLight* const kept = &inside == ofGrid ? last : nullptr;
-    return sequential ? tyndall::SolveSequential(inside, shining, how, watch)
-      : published     ? SolvePublished(filter, *device, inside, shining, how, watch)
-                      : tyndall::SolveConservative(*device, inside, shining, how, watch, kept);
+  return [=](const tyndall::SceneBlock& scene, const tyndall::PropagationSettings& how, const tyndall::Monitor& watch) {
+    tyndall::KeptLight* const kept = &scene.medium == ofGrid ? last : nullptr;
+    return !device ? tyndall::SolveSequential(scene.medium, scene.illumination, how, watch)
+      : filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED
+      ? SolvePublished(filter, *device, scene.medium, scene.illumination, how, watch)
+      : tyndall::SolveConservative(*device, scene.domain, scene.medium, scene.illumination, how, watch, kept);
   };
 }
 
-tyndall::LightField Solve(vtkLightPropagationMaps* filter, const tyndall::Medium& medium,
-  const tyndall::Illumination& illumination, tyndall::KeptLight* last)
+std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, const tyndall::Domain& domain)
 {
-  const tyndall::PropagationSettings settings = filter->GetPreview()
-    ? OfPreview(SettingsOf(filter))
-    : tyndall::AtQuality(static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter), medium, illumination);
-  const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
-  const tyndall::PropagationSolver solve = SolverOf(filter, &medium, last);
-  tyndall::LightField light = filter->GetPreview()
-    ? tyndall::SolvePreview({ medium, illumination, {} }, tyndall::PreviewGrid(medium.grid),
-        [&](const tyndall::PreviewScene& scene) { return solve(scene.medium, scene.illumination, settings, monitor); })
-    : filter->GetTargetError() > 0.0 ? SolveToTarget(filter, medium, illumination, monitor, solve)
-    : filter->GetEstimateError()     ? tyndall::SolveWithErrorEstimate(medium, illumination, settings, monitor, solve)
-                                     : solve(medium, illumination, settings, monitor);
-  if (light.settingsUsed.empty())
-  {
-    light.settingsUsed = UsedFor(light, settings, filter);
-  }
-  if (filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED && filter->GetWarmStart() && !filter->GetPreview())
-  {
-    light.leftOut.push_back(tyndall::WordsOfWarmStart(tyndall::NotBegunAsPublished));
-  }
-  return light;
-}
-}
-
-namespace
-{
-std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, tyndall::Communicator& communicator)
-{
+  const bool published = filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED;
+  const bool sequential = published && filter->GetAlgorithm() == vtkLightPropagationMaps::SEQUENTIAL;
   std::shared_ptr<tyndall::Device> device;
-  communicator.Collective([&] { device = tyndall::Device::Find(filter->GetDevice()); });
+  domain.Collective([&] { device = sequential ? nullptr : tyndall::Device::Find(filter->GetDevice()); });
   return device;
 }
 
-/// Solves a preview on the coarse grid, serially on the first rank, so the limits of decomposed solves do not apply.
-tyndall::LightField SolvePreviewOfPiece(vtkLightPropagationMaps* filter, const tyndall::SceneInBlocks& scene)
-{
-  tyndall::PropagationSolver solve;
-  scene.others.Collective([&] { solve = SolverOf(filter, nullptr, nullptr); });
-  const tyndall::PropagationSettings settings = OfPreview(SettingsOf(filter));
-  const tyndall::Monitor monitor = tyndall::MonitorOf(filter);
-  tyndall::LightField light = tyndall::SolvePreviewOnFirst(scene, {}, settings,
-    tyndall::PreviewGrid(scene.partition.whole),
-    [&](const tyndall::PreviewScene& coarse) { return solve(coarse.medium, coarse.illumination, settings, monitor); });
-  light.settingsUsed = UsedFor(light, settings, filter);
-  return light;
-}
-
-/// Settings as Quality chooses them for the medium of all ranks; with TargetError, as the properties say.
+/// Settings as Preview or Quality chooses them for the medium of all ranks; with TargetError, as the properties say.
 tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, const tyndall::SolverScene& scene)
 {
   tyndall::RequireSame(scene.domain.Comm(), "TargetError or EstimateError", true,
     { filter->GetTargetError(), filter->GetEstimateError() ? 1.0 : 0.0 });
+  if (filter->GetPreview())
+  {
+    return OfPreview(SettingsOf(filter));
+  }
   if (filter->GetTargetError() > 0.0)
   {
+    tyndall::Require(filter->GetScheme() != vtkLightPropagationMaps::PUBLISHED,
+      "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
+      "TargetError to 0, or Scheme to conservative.");
     return SettingsOf(filter);
   }
   return tyndall::AtQuality(scene.domain, static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter),
@@ -232,36 +179,32 @@ std::string vtkLightPropagationMaps::NotByBlocks(vtkInformationVector**) const
 
 std::string vtkLightPropagationMaps::ReasonNotToDecompose(const tyndall::SolverScene& scene)
 {
-  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, scene.domain.Comm());
+  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, scene.domain);
   return tyndall::ReasonNotToDecompose(
     *device, scene.domain, scene.medium, scene.shining.illumination, SettingsOn(this, scene));
 }
 
-tyndall::LightField vtkLightPropagationMaps::Solve(const tyndall::SolverScene& ofFilter)
+tyndall::LightField vtkLightPropagationMaps::Solve(const tyndall::SolverScene& given)
 {
-  const tyndall::Illumination& illumination = ofFilter.shining.illumination;
-  if (!ofFilter.decomposed)
-  {
-    return ::Solve(this, ofFilter.medium, illumination, this->Last->Where(this->WarmStart));
-  }
-  tyndall::Communicator& communicator = ofFilter.domain.Comm();
-  const tyndall::SceneInBlocks scene = { communicator, ofFilter.domain.Partition(), ofFilter.medium, illumination };
-  if (this->Preview)
-  {
-    return SolvePreviewOfPiece(this, scene);
-  }
-  tyndall::KeptLight* const last = this->Last->Where(this->WarmStart);
-  const std::shared_ptr<tyndall::Device> device = DeviceOnAll(this, communicator);
-  const tyndall::PropagationSettings settings = SettingsOn(this, ofFilter);
+  const tyndall::PropagationSettings settings = SettingsOn(this, given);
+  const tyndall::SceneBlock scene = { given.domain, given.medium, given.shining.illumination };
+  const tyndall::PropagationSolver solve =
+    SolverOf(this, DeviceOnAll(this, given.domain), &scene.medium, this->Last->Where(this->WarmStart));
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
-  if (this->TargetError > 0.0)
+  if (this->TargetError > 0.0 && !this->Preview)
   {
-    return LightOf(tyndall::SolveInBlocksToTargetError(*device, scene, settings, this->TargetError, monitor, last));
+    return LightOf(tyndall::SolveToTargetError(scene, settings, this->TargetError, monitor, solve));
   }
-  tyndall::LightField light = this->EstimateError
-    ? tyndall::SolveInBlocksWithErrorEstimate(*device, scene, settings, monitor, last)
-    : tyndall::SolveConservative(*device, ofFilter.domain, ofFilter.medium, illumination, settings, monitor, last);
+  tyndall::LightField light = this->Preview
+    ? tyndall::SolvePreview(scene, settings, tyndall::PreviewGrid(given.domain.Whole()),
+        [&](const tyndall::SceneBlock& coarse) { return solve(coarse, settings, monitor); })
+    : this->EstimateError ? tyndall::SolveWithErrorEstimate(scene, settings, monitor, solve)
+                          : solve(scene, settings, monitor);
   light.settingsUsed = UsedFor(light, settings, this);
+  if (this->Scheme == PUBLISHED && this->WarmStart && !this->Preview)
+  {
+    light.leftOut.push_back(tyndall::WordsOfWarmStart(tyndall::NotBegunAsPublished));
+  }
   return light;
 }
 

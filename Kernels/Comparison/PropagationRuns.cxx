@@ -74,16 +74,16 @@ OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
 /// @param device, scene  must outlive the solver
 PropagationSolver SolverOf(ComparedMethod method, Device& device)
 {
-  return [method, &device](const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
-           const Monitor& monitor) {
+  return [method, &device](const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor) {
+    const Medium& medium = scene.medium;
+    const Illumination& illumination = scene.illumination;
     switch (method)
     {
       case ComparedMethod::Published: return SolveParallel(device, medium, illumination, settings, monitor);
       case ComparedMethod::PublishedSequential: return SolveSequential(medium, illumination, settings, monitor);
       case ComparedMethod::DiscreteOrdinates:
-        return SolveDiscreteOrdinates(
-          device, Domain(medium.grid), medium, illumination, AsOrdinates(settings), monitor);
-      default: return SolveConservative(device, medium, illumination, settings, monitor);
+        return SolveDiscreteOrdinates(device, scene.domain, medium, illumination, AsOrdinates(settings), monitor);
+      default: return SolveConservative(device, scene.domain, medium, illumination, settings, monitor);
     }
   };
 }
@@ -131,9 +131,8 @@ std::vector<ComparedRun> PropagationRunsOf(
       PropagationSettings now = of;
       now.periodic = scene.periodic;
       const Medium& medium = scaled ? scaled->Scene().medium : scene.medium;
-      const Illumination& shining = scene.illumination;
-      return estimate ? SolveWithErrorEstimate(medium, shining, now, monitor, solver)
-                      : solver(medium, shining, now, monitor);
+      const SceneBlock solved = { Domain(medium.grid), medium, scene.illumination };
+      return estimate ? SolveWithErrorEstimate(solved, now, monitor, solver) : solver(solved, now, monitor);
     };
     runs.push_back(std::move(run));
   }

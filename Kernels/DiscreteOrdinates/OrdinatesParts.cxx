@@ -242,7 +242,7 @@ void Judge(
 {
   if (!IsPublished(settings))
   {
-    domain.IsSerial() ? JudgeBalance(light, medium) : JudgeBalance(light, domain.Comm(), !domain.IsEmpty(), medium);
+    JudgeBalance(light, domain, medium);
   }
   const double residual = light.convergence.empty() ? 0.0 : light.convergence.back().residual;
   const bool isAsked = settings.maximumOrders > 0 || (settings.seriesAfter > 0 && !IsPublished(settings));

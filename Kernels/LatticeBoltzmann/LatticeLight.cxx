@@ -227,7 +227,7 @@ void FinishLight(LightField& light, const Device& device, const LatticeProblem& 
   domain.Collective([&] { DescribeLight(light, device, anisotropic, settings, thickest); });
   if (settings.scheme == LatticeScheme::Conservative)
   {
-    JudgeBalance(light, domain.Comm(), !domain.IsEmpty(), problem.TheMedium());
+    JudgeBalance(light, domain, problem.TheMedium());
   }
   problem.Undo(light);
   domain.Collective([&] { JudgeLight(light, illumination, settings); });

@@ -248,25 +248,6 @@ void WarnAboutInputLight(const Illumination& illumination, LightField& light)
   }
 }
 
-void JudgeBalance(LightField& light, const Medium& medium)
-{
-  const Balancing balancing = BalancingOf(light.balance);
-  if (balancing != Balancing::Well)
-  {
-    Judge(light, balancing, ThickestOf(medium, medium.grid));
-  }
-}
-
-void JudgeBalance(LightField& light, Communicator& communicator, bool has, const Medium& ofBlock)
-{
-  const double worst = communicator.Largest({ static_cast<double>(BalancingOf(light.balance)) })[0];
-  if (worst > 0.0)
-  {
-    const double own = has ? ThickestOf(ofBlock, ofBlock.grid).thickness : 0.0;
-    Judge(light, static_cast<Balancing>(static_cast<int>(worst)), { communicator.Largest({ own })[0], {} });
-  }
-}
-
 void JudgeBalance(LightField& light, const Domain& domain, const Medium& medium)
 {
   const double worst = domain.Max(static_cast<double>(BalancingOf(light.balance)));

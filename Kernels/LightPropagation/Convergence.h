@@ -80,13 +80,11 @@ void WarnAboutInputLight(const Illumination& illumination, LightField& light);
 
 /// Energy balance check of every conservative solver: all power must be absorbed, escape or be left over. A relative
 /// error above 1e-4 adds a warning to `light.doubts`.
-/// @param medium  of this rank's block; read only if the balance is off, to find the cause; without voxels: not known
+/// Collective.
+/// @param light  with the balance of the whole domain
+/// @param medium  of this rank's block; read only if the balance is off, to find the cause
 /// @throws InvalidInput if the relative error is above 1e-2 or NaN, or if more than 1e-2 of the power is impossible:
 ///   absorbed or escaped power below 0, or more left over than entered
-void JudgeBalance(LightField& light, const Medium& medium);
-/// The same on several ranks, all of which hold the balance of the whole domain. Collective.
-/// @param has  this rank's block has voxels
-void JudgeBalance(LightField& light, Communicator& communicator, bool has, const Medium& ofBlock);
 void JudgeBalance(LightField& light, const Domain& domain, const Medium& medium);
 
 /// Sets `light.converged`. Adds a warning to `light.doubts` if the light has not converged, or if too much power is

@@ -148,13 +148,16 @@ std::string GridOf(const TargetScene& scene)
 void TryTarget(Device& device, const TargetScene& scene, const std::vector<float>& exact, double target,
   const std::vector<Try>& byHand, bool quick, Table& table, Score& score)
 {
-  const PropagationSolver solve = [&](const Medium& medium, const Illumination& light,
-                                    const PropagationSettings& settings, const Monitor& monitor) {
-    return SolveConservative(device, medium, light, settings, monitor);
+  const PropagationSolver solve = [&](const SceneBlock& block, const PropagationSettings& settings,
+                                    const Monitor& monitor) {
+    return SolveConservative(device, block.domain, block.medium, block.illumination, settings, monitor);
   };
   TargetLight found;
-  const double seconds =
-    SecondsOf([&] { found = SolveToTargetError(scene.medium, scene.light, {}, target, {}, solve); }, quick);
+  const double seconds = SecondsOf(
+    [&] {
+      found = SolveToTargetError({ Domain(scene.medium.grid), scene.medium, scene.light }, {}, target, {}, solve);
+    },
+    quick);
   const double error = ErrorOf(found.light.fluence, exact);
   const Try* const best = Best(byHand, target);
   const double ratio = best ? seconds / best->seconds : std::numeric_limits<double>::quiet_NaN();
@@ -190,7 +193,7 @@ void TryLevels(Device& device, const TargetScene& scene, const std::vector<float
 {
   for (const Quality quality : { Quality::Draft, Quality::Default, Quality::Fine, Quality::Reference })
   {
-    const PropagationSettings settings = AtQuality(quality, {}, scene.medium, scene.light);
+    const PropagationSettings settings = AtQuality(Domain(scene.medium.grid), quality, {}, scene.medium, scene.light);
     const Try tried = TrySettings(device, scene, exact, settings, LevelNames[static_cast<int>(quality)], quick);
     JsonLine()
       .Add("bench", "target")

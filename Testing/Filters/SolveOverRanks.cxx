@@ -3,7 +3,7 @@
 
 #include "Pieces/ControllerCommunicator.h"
 
-#include "LightPropagation/Distributed/PropagationInBlocks.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include "vtkExtentTranslator.h"
@@ -113,11 +113,11 @@ bool Solve(Communicator& communicator)
   PropagationSettings settings;
   settings.directionsPerFace = 9;
   const Waves block(partition, communicator.Rank());
-  const LightField light = SolveInBlocks(*device, communicator, partition, block.medium, shining, settings);
+  const LightField light = SolveConservative(*device, Domain(communicator, partition), block.medium, shining, settings);
   const double difference = DifferenceFromWhole(communicator, partition, light, [&] {
     const BlockPartition alone = { grid, { { { 0, 0, 0 }, grid.size } } };
     SingleRank single;
-    return SolveInBlocks(*device, single, alone, Waves(alone, 0).medium, shining, settings);
+    return SolveConservative(*device, Domain(single, alone), Waves(alone, 0).medium, shining, settings);
   });
   if (communicator.Rank() == 0)
   {

@@ -8,7 +8,6 @@
 
 #include "Distribution/RanksInThreads.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "LightPropagation/Distributed/PropagationInBlocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -196,7 +195,7 @@ inline LightField LightOfAll(Device& device, const BlockPartition& partition, co
 {
   return LightOfAll(
     partition, whole, shining, [&](Communicator& communicator, const Medium& medium, const Illumination& light) {
-      return SolveInBlocks(device, communicator, partition, medium, light, settings);
+      return SolveConservative(device, Domain(communicator, partition), medium, light, settings);
     });
 }
 

@@ -78,7 +78,7 @@ TEST_F(ChoicesInBlocks, AgreeOnWhetherTheMeanCosineVaries)
           Medium medium = given;
           medium.phase = PhaseByVoxel(kind, own, MeanCosineRange(own, given.sigma_s, given.grid.VoxelCount()));
           AgreeOnMeanCosine(communicator, true, own, medium);
-          return SolveInBlocks(GetDevice(), communicator, partition, medium, light, SettingsOf(6));
+          return SolveConservative(GetDevice(), Domain(communicator, partition), medium, light, SettingsOf(6));
         });
       ExpectSame(found, expected);
     }
@@ -93,12 +93,13 @@ TEST_F(ChoicesInBlocks, TakeTheSettingsThatAQualityHasForTheWhole)
     RandomMedium whole(Grid{ { 16, 12, 12 } }, 1, 0.01f, 7);
     std::fill_n(whole.absorption.begin(), 16 * 12 * 6, thick);
     std::fill_n(whole.scattering.begin(), 16 * 12 * 11, 0.0f);
-    const PropagationSettings expected = AtQuality(Quality::Fine, {}, whole.medium, LitFromOutside());
+    const PropagationSettings expected =
+      AtQuality(Domain(whole.medium.grid), Quality::Fine, {}, whole.medium, LitFromOutside());
     const BlockPartition partition = BlockPartition::Even(whole.medium.grid, 3);
     RunInThreads(3, [&](Communicator& communicator) {
       const PartOf part(whole, partition.blocks[communicator.Rank()]);
       const PropagationSettings found =
-        AtQualityInBlocks(communicator, partition, Quality::Fine, {}, part.medium, LitFromOutside());
+        AtQuality(Domain(communicator, partition), Quality::Fine, {}, part.medium, LitFromOutside());
       EXPECT_EQ(Words(found), Words(expected));
     });
     EXPECT_EQ(expected.directionsPerFace, thick > 1.0f ? 49 : 64);
@@ -248,7 +249,8 @@ protected:
     RunInThreads(ranks, [&](Communicator& communicator) {
       const int rank = communicator.Rank();
       PartOf part(whole, partition.blocks[rank]);
-      told[rank] = ReasonNotToDecompose(GetDevice(), communicator, partition, part.medium, part.Of(shining), settings);
+      told[rank] =
+        ReasonNotToDecompose(GetDevice(), Domain(communicator, partition), part.medium, part.Of(shining), settings);
     });
     EXPECT_EQ(std::count(told.begin(), told.end(), told[0]), ranks);
     return told[0];

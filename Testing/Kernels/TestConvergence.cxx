@@ -90,7 +90,7 @@ Judged JudgeOnRanks(int ranks, double lost, double lostOnLast)
     bool refused = false;
     try
     {
-      JudgeBalance(light, communicator, communicator.Rank() == 0, medium);
+      JudgeBalance(light, Domain(communicator, BlockPartition::Even(medium.grid, ranks)), medium);
       word = light.doubts.empty() ? "" : light.doubts[0];
     }
     catch (const InvalidInput& error)
@@ -136,7 +136,7 @@ TEST(Balance, BlamesAMediumThatIsThickEnough)
   LightField light = LightWith(0.0, 0.0); // nothing is absorbed, nothing leaves
   try
   {
-    JudgeBalance(light, medium);
+    JudgeBalance(light, Domain(medium.grid), medium);
     ADD_FAILURE() << "all power is lost";
   }
   catch (const InvalidInput& error)
@@ -152,10 +152,10 @@ TEST(Balance, OfAFaintChannelCountsByTheBrightestOne)
   LightField light = LightWith(0.0, 0.0);
   light.balance.entered = { 3.0, 0.0, 1e-8 }; // beside 1 W that is emitted
   light.balance.absorbed = { 4.0, 0.0, 0.0 }; // photons' channels share their units of power
-  JudgeBalance(light, Medium());
+  JudgeBalance(light, Domain(Grid()), Medium());
   EXPECT_TRUE(light.doubts.empty());
   light.balance.absorbed[0] = 3.9;
-  EXPECT_THROW(JudgeBalance(light, Medium()), InvalidInput);
+  EXPECT_THROW(JudgeBalance(light, Domain(Grid()), Medium()), InvalidInput);
 }
 
 /// Whose sum is right.
@@ -167,7 +167,7 @@ TEST(Balance, RefusesPowersThatNoneCanBe)
     light.balance.escaped[0] = 4.0 * escaped;
     try
     {
-      JudgeBalance(light, Medium());
+      JudgeBalance(light, Domain(Grid()), Medium());
     }
     catch (const InvalidInput& error)
     {
@@ -189,7 +189,7 @@ TEST(Balance, BlamesNoLampWhereTheMediumAloneShines)
     light.balance.entered[0] = enters ? 3.0 : 0.0;
     try
     {
-      JudgeBalance(light, Medium());
+      JudgeBalance(light, Domain(Grid()), Medium());
       ADD_FAILURE() << "all power is lost";
     }
     catch (const InvalidInput& error)

@@ -65,9 +65,9 @@ Scene Finer(const Scene& scene)
 LightField Estimate(Device& device, Scene& scene)
 {
   scene.Solve(device); // lets the medium see its arrays
-  return SolveWithErrorEstimate(scene.medium, scene.light, scene.settings, {},
-    [&](const Medium& medium, const Illumination& light, const PropagationSettings& settings, const Monitor& monitor) {
-      return SolveConservative(device, medium, light, settings, monitor);
+  return SolveWithErrorEstimate({ Domain(scene.medium.grid), scene.medium, scene.light }, scene.settings, {},
+    [&](const SceneBlock& block, const PropagationSettings& settings, const Monitor& monitor) {
+      return SolveConservative(device, block.domain, block.medium, block.illumination, settings, monitor);
     });
 }
 }

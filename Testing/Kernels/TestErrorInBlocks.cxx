@@ -4,7 +4,7 @@
 
 #include "Distribution/BoxExchange.h"
 #include "Distribution/CoarseBlocks.h"
-#include "LightPropagation/Accuracy/ErrorInBlocks.h"
+#include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 
 #include <algorithm>
@@ -17,10 +17,11 @@ using namespace tyndall;
 
 namespace
 {
-PropagationSolver SolverOfWhole(Device& device)
+PropagationSolver SolverOn(Device& device)
 {
-  return [&device](const Medium& medium, const Illumination& light, const PropagationSettings& settings,
-           const Monitor& monitor) { return SolveConservative(device, medium, light, settings, monitor); };
+  return [&device](const SceneBlock& block, const PropagationSettings& settings, const Monitor& monitor) {
+    return SolveConservative(device, block.domain, block.medium, block.illumination, settings, monitor);
+  };
 }
 
 LightField EstimatedOfAll(Device& device, const BlockPartition& partition, const RandomMedium& whole,
@@ -28,7 +29,7 @@ LightField EstimatedOfAll(Device& device, const BlockPartition& partition, const
 {
   return LightOfAll(
     partition, whole, shining, [&](Communicator& communicator, const Medium& medium, const Illumination& light) {
-      return SolveInBlocksWithErrorEstimate(device, { communicator, partition, medium, light }, settings);
+      return SolveWithErrorEstimate({ Domain(communicator, partition), medium, light }, settings, {}, SolverOn(device));
     });
 }
 
@@ -109,8 +110,8 @@ protected:
   void ExpectTheErrorsOfTheWhole(
     const RandomMedium& whole, const Illumination& shining, const PropagationSettings& settings)
   {
-    const LightField expected =
-      SolveWithErrorEstimate(whole.medium, shining, settings, {}, SolverOfWhole(this->GetDevice()));
+    const LightField expected = SolveWithErrorEstimate(
+      { Domain(whole.medium.grid), whole.medium, shining }, settings, {}, SolverOn(this->GetDevice()));
     EXPECT_GT(expected.relativeError, 1e-3);
     for (const BlockPartition& partition : CutsOf(whole.medium.grid))
     {
@@ -151,8 +152,8 @@ TEST_F(ErrorInBlocks, IsThatOfTheWholeWithCosinesAndLightByVoxel)
 TEST_F(ErrorInBlocks, MayBeOfBlocksOfOneVoxel)
 {
   RandomMedium whole(Grid{ { 3, 3, 2 } }, 1, 0.6f, 7);
-  const LightField expected =
-    SolveWithErrorEstimate(whole.medium, LitFromOutside(), SettingsOf(3), {}, SolverOfWhole(this->GetDevice()));
+  const LightField expected = SolveWithErrorEstimate(
+    { Domain(whole.medium.grid), whole.medium, LitFromOutside() }, SettingsOf(3), {}, SolverOn(this->GetDevice()));
   ExpectSameErrors(
     EstimatedOfAll(this->GetDevice(), VoxelByVoxel(whole.medium.grid), whole, LitFromOutside(), SettingsOf(3)),
     expected);
@@ -173,8 +174,8 @@ TEST_F(ErrorInBlocks, DoesNotDependOnTheNumberOfRanks)
     settings.uncollidedDirections = -1;
     const LightField one =
       EstimatedOfAll(this->GetDevice(), BlockPartition::Even(whole.medium.grid, 1), whole, shining, settings);
-    const LightField ofWhole =
-      SolveWithErrorEstimate(whole.medium, shining, settings, {}, SolverOfWhole(this->GetDevice()));
+    const LightField ofWhole = SolveWithErrorEstimate(
+      { Domain(whole.medium.grid), whole.medium, shining }, settings, {}, SolverOn(this->GetDevice()));
     EXPECT_LT(one.relativeError, 2.0 * ofWhole.relativeError);
     EXPECT_GT(one.relativeError, 0.5 * ofWhole.relativeError);
     for (const BlockPartition& partition : { BlockPartition::Even(whole.medium.grid, 3), Uneven(whole.medium.grid) })
@@ -212,15 +213,15 @@ TEST_F(ErrorInBlocks, IsBroughtToATargetAsThatOfTheWhole)
   settings.facePower = true;
   for (const double target : { 0.2, 0.008 })
   {
-    const TargetLight expected =
-      SolveToTargetError(whole.medium, shining, settings, target, {}, SolverOfWhole(this->GetDevice()));
+    const TargetLight expected = SolveToTargetError(
+      { Domain(whole.medium.grid), whole.medium, shining }, settings, target, {}, SolverOn(this->GetDevice()));
     for (const BlockPartition& partition : { BlockPartition::Even(whole.medium.grid, 3), Uneven(whole.medium.grid) })
     {
       SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks, " + std::to_string(target));
       const LightField found = LightOfAll(
         partition, whole, shining, [&](Communicator& communicator, const Medium& medium, const Illumination& light) {
-          const TargetLight own =
-            SolveInBlocksToTargetError(this->GetDevice(), { communicator, partition, medium, light }, settings, target);
+          const TargetLight own = SolveToTargetError(
+            { Domain(communicator, partition), medium, light }, settings, target, {}, SolverOn(this->GetDevice()));
           EXPECT_EQ(own.divided, expected.divided);
           EXPECT_EQ(own.solves, expected.solves);
           EXPECT_EQ(Words(own.settings), Words(expected.settings));

@@ -4,7 +4,7 @@
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
-#include "LightPropagation/Distributed/PropagationInBlocks.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "Photons/Emission/PhotonEmitter.h"
 
 #include <algorithm>
@@ -126,7 +126,7 @@ TEST_F(Extremes, ScenesOfSoManyTimesThePowerAreSolvedByTheSameSteps)
     return LightOfBlocks(partition, medium, [&](Communicator& communicator, MediumToCut& part) {
       PropagationSettings settings;
       settings.tolerance = tolerance;
-      return SolveInBlocks(device, communicator, partition, part.scene.medium, part.scene.light, settings);
+      return SolveConservative(device, Domain(communicator, partition), part.scene.medium, part.scene.light, settings);
     });
   });
 }

@@ -235,9 +235,9 @@ TEST_F(GivenLightTest, HasItsErrorEstimated)
   const Beam beam = FindBeam(this->GetDevice(), scene, { 1.0, 1.0, 1.0 });
   Illumination given;
   given.uncollided = beam.Image();
-  const LightField light = SolveWithErrorEstimate(scene.medium, given, scene.settings, {},
-    [&](const Medium& medium, const Illumination& shining, const PropagationSettings& how, const Monitor& monitor) {
-      return SolveConservative(this->GetDevice(), medium, shining, how, monitor);
+  const LightField light = SolveWithErrorEstimate({ Domain(scene.medium.grid), scene.medium, given }, scene.settings,
+    {}, [&](const SceneBlock& block, const PropagationSettings& how, const Monitor& monitor) {
+      return SolveConservative(this->GetDevice(), block.domain, block.medium, block.illumination, how, monitor);
     });
   EXPECT_EQ(light.fluenceError.size(), light.fluence.size());
   EXPECT_GT(light.relativeError, 1e-4);

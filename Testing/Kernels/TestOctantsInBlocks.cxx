@@ -178,6 +178,6 @@ TEST_F(OctantsInBlocks, FailTogetherWhereMemoryEnds)
   settings.directionsPerFace = 1;
   ExpectToFailTogether(GetDevice(), 2, 1000, [&](Device& device, Communicator& communicator) {
     PartOf part(whole, partition.blocks[communicator.Rank()]);
-    SolveInBlocks(device, communicator, partition, part.medium, Lit(), settings);
+    SolveConservative(device, Domain(communicator, partition), part.medium, Lit(), settings);
   });
 }

@@ -322,16 +322,18 @@ TEST_F(PlaneParallel, EstimatesItsErrorByFewerCosines)
   Scene scene = Slab(2.0, 0.9, 0.0, 6);
   scene.light.faces[5] = { 1.0, 1.0, 1.0 };
   scene.Attach();
-  const PropagationSolver solve = [&](const Medium& medium, const Illumination& light,
-                                    const PropagationSettings& settings, const Monitor& monitor) {
-    return SolveConservative(this->GetDevice(), medium, light, settings, monitor);
+  const PropagationSolver solve = [&](const SceneBlock& block, const PropagationSettings& settings,
+                                    const Monitor& monitor) {
+    return SolveConservative(this->GetDevice(), block.domain, block.medium, block.illumination, settings, monitor);
   };
-  const LightField light = SolveWithErrorEstimate(scene.medium, scene.light, scene.settings, {}, solve);
+  const LightField light =
+    SolveWithErrorEstimate({ Domain(scene.medium.grid), scene.medium, scene.light }, scene.settings, {}, solve);
   ASSERT_EQ(light.fluenceError.size(), 6u);
   EXPECT_GT(light.relativeError, 0.0);
   EXPECT_LT(light.relativeError, 1e-4);
   scene.settings.polarNodes = 4;
-  const LightField rough = SolveWithErrorEstimate(scene.medium, scene.light, scene.settings, {}, solve);
+  const LightField rough =
+    SolveWithErrorEstimate({ Domain(scene.medium.grid), scene.medium, scene.light }, scene.settings, {}, solve);
   EXPECT_GT(rough.relativeError, 10.0 * light.relativeError);
   EXPECT_GT(rough.relativeError, RelativeRms(rough.fluence, light.fluence));
   scene.settings.polarNodes = 65;

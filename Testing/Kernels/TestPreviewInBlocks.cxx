@@ -30,7 +30,7 @@ MediumToCut Everything(std::array<int, 3> size, int components)
 }
 
 /// Light that is made of all that a solver is given, by voxel.
-LightField Told(const PreviewScene& scene)
+LightField Told(const SceneBlock& scene)
 {
   LightField light;
   light.channels = 3;
@@ -63,7 +63,7 @@ void AddFigures(LightField& light, const Illumination& illumination)
   light.leftOut = { "one thing", "another" };
 }
 
-LightField ToldOfWhole(const PreviewScene& scene)
+LightField ToldOfWhole(const SceneBlock& scene)
 {
   LightField light = Told(scene);
   AddFigures(light, scene.illumination);
@@ -108,7 +108,7 @@ Grid Halves(const Grid& grid)
 /// Of a quarter of the voxels an axis.
 LightField OnFirst(Communicator& communicator, const BlockPartition& partition, const MediumToCut& part)
 {
-  return SolvePreviewOnFirst({ communicator, partition, part.scene.medium, part.scene.light }, part.Index(), {},
+  return SolvePreview({ Domain(communicator, partition), part.scene.medium, part.scene.light, part.Index() }, {},
     Halves(partition.whole), ToldOfWhole);
 }
 }
@@ -121,8 +121,8 @@ TEST(PreviewInBlocks, IsThatOfTheWholeOnTheFirstRank)
     MediumToCut medium = Everything({ 13, 9, 6 }, components);
     medium.Attach();
     const Grid& grid = medium.scene.medium.grid;
-    const LightField whole =
-      SolvePreview({ medium.scene.medium, medium.scene.light, medium.Index() }, Halves(grid), ToldOfWhole);
+    const LightField whole = SolvePreview(
+      { Domain(grid), medium.scene.medium, medium.scene.light, medium.Index() }, {}, Halves(grid), ToldOfWhole);
     EXPECT_EQ(whole.leftOut.front(), "detail: a preview, of 3 x 2 x 1 of 13 x 9 x 6 voxels, few directions");
     for (const BlockPartition& partition : Partitions(grid))
     {
@@ -141,14 +141,14 @@ TEST(PreviewInBlocks, IsThatOfTheWholeByBlocksOfTheCoarseGrid)
   medium.Attach();
   const Grid &grid = medium.scene.medium.grid, coarse = Coarsening(grid).Coarse();
   const LightField whole =
-    SolvePreview({ medium.scene.medium, medium.scene.light, medium.Index() }, coarse, ToldOfWhole);
+    SolvePreview({ Domain(grid), medium.scene.medium, medium.scene.light, medium.Index() }, {}, coarse, ToldOfWhole);
   for (const BlockPartition& partition : Partitions(grid))
   {
     SCOPED_TRACE(std::to_string(partition.blocks.size()) + " ranks");
     ExpectSame(LightOfBlocks(partition, medium,
                  [&](Communicator& communicator, MediumToCut& part) {
-                   const auto solve = [&](const PreviewScene& scene, const BlockPartition& blocks) {
-                     const std::size_t voxels = blocks.blocks[communicator.Rank()].VoxelCount();
+                   const auto solve = [&](const SceneBlock& scene) {
+                     const std::size_t voxels = scene.domain.Own().VoxelCount();
                      EXPECT_TRUE(voxels == 0 || voxels == scene.medium.grid.VoxelCount());
                      LightField light = voxels > 0 ? Told(scene) : LightField();
                      light.channels = 3;
@@ -156,8 +156,9 @@ TEST(PreviewInBlocks, IsThatOfTheWholeByBlocksOfTheCoarseGrid)
                      AddFigures(light, scene.illumination);
                      return light;
                    };
-                   return SolvePreviewInBlocks(
-                     { communicator, partition, part.scene.medium, part.scene.light }, part.Index(), {}, coarse, solve);
+                   return SolvePreview(
+                     { Domain(communicator, partition), part.scene.medium, part.scene.light, part.Index() }, {}, coarse,
+                     solve, 0);
                  }),
       whole);
   }
@@ -189,7 +190,7 @@ TEST(PreviewInBlocks, FailsTogetherWithWords)
       OnFirst(communicator, partition, part);
     });
   expectErrors("no memory", [&](Communicator& communicator, MediumToCut& part) {
-    SolvePreviewOnFirst({ communicator, partition, part.scene.medium, part.scene.light }, part.Index(), {},
-      Halves(partition.whole), [](const PreviewScene&) -> LightField { throw DeviceError("no memory"); });
+    SolvePreview({ Domain(communicator, partition), part.scene.medium, part.scene.light, part.Index() }, {},
+      Halves(partition.whole), [](const SceneBlock&) -> LightField { throw DeviceError("no memory"); });
   });
 }

@@ -386,7 +386,7 @@ protected:
       change(rank, part, shining, settings, monitor);
       try
       {
-        SolveInBlocks(GetDevice(), communicator, partition, part.medium, shining, settings, monitor);
+        SolveConservative(GetDevice(), Domain(communicator, partition), part.medium, shining, settings, monitor);
       }
       catch (const std::exception& error)
       {
@@ -482,8 +482,8 @@ TEST_F(PropagationBlocks, RefuseLightThatDoesNotBalanceOnAnyNumberOfRanks)
       std::string said;
       try
       {
-        const LightField light =
-          SolveInBlocks(this->GetDevice(), communicator, partition, part.medium, shining, PropagationSettings());
+        const LightField light = SolveConservative(
+          this->GetDevice(), Domain(communicator, partition), part.medium, shining, PropagationSettings());
         said = "balances to " + std::to_string(light.balance.RelativeError(1));
       }
       catch (const InvalidInput& error)

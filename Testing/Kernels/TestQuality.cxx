@@ -38,7 +38,8 @@ TEST(Quality, DefaultIsEveryNumberAsItStands)
 {
   const Scene scene = Cloud(0.3);
   EXPECT_EQ(
-    Words(AtQuality(Quality::Default, PropagationSettings(), scene.medium, scene.light)), Words(PropagationSettings()));
+    Words(AtQuality(Domain(scene.medium.grid), Quality::Default, PropagationSettings(), scene.medium, scene.light)),
+    Words(PropagationSettings()));
   EXPECT_EQ(Words(AtQuality(Domain(scene.medium.grid), Quality::Default, OrdinatesSettings(), scene.medium, {})),
     Words(OrdinatesSettings()));
   EXPECT_EQ(Words(AtQuality(Quality::Default, LatticeSettings())), Words(LatticeSettings()));
@@ -61,7 +62,7 @@ TEST(Quality, LeavesWhatWasChosen)
   view.stepSize = 3.0;
   for (const Quality quality : Levels)
   {
-    const PropagationSettings found = AtQuality(quality, chosen, scene.medium, scene.light);
+    const PropagationSettings found = AtQuality(Domain(scene.medium.grid), quality, chosen, scene.medium, scene.light);
     EXPECT_EQ(Words(found), Words(chosen));
     EXPECT_EQ(AtQuality(Domain(scene.medium.grid), quality, ordinates, scene.medium, {}).terms, 4);
     EXPECT_EQ(AtQuality(quality, lattice).tolerance, 0.2);
@@ -72,7 +73,7 @@ TEST(Quality, LeavesWhatWasChosen)
 TEST(Quality, LooksAtTheScene)
 {
   const auto fine = [](const Scene& scene) {
-    return AtQuality(Quality::Fine, PropagationSettings(), scene.medium, scene.light);
+    return AtQuality(Domain(scene.medium.grid), Quality::Fine, PropagationSettings(), scene.medium, scene.light);
   };
   Scene scene = Cloud(0.3);
   const PropagationSettings lit = fine(scene);
@@ -119,7 +120,8 @@ TEST_F(QualityOfLight, GrowsFromLevelToLevel)
     for (const Quality quality : Levels)
     {
       const double error = SquareDifference(
-        FluenceOf(this->GetDevice(), scene, AtQuality(quality, PropagationSettings(), scene.medium, scene.light)),
+        FluenceOf(this->GetDevice(), scene,
+          AtQuality(Domain(scene.medium.grid), quality, PropagationSettings(), scene.medium, scene.light)),
         light);
       EXPECT_LT(error, last) << "quality " << static_cast<int>(quality) << ", thickest " << thickest;
       this->RecordProperty(

@@ -33,8 +33,9 @@ Scene Cloud()
 
 PropagationSolver SolverOn(Device& device)
 {
-  return [&device](const Medium& medium, const Illumination& light, const PropagationSettings& settings,
-           const Monitor& monitor) { return SolveConservative(device, medium, light, settings, monitor); };
+  return [&device](const SceneBlock& block, const PropagationSettings& settings, const Monitor& monitor) {
+    return SolveConservative(device, block.domain, block.medium, block.illumination, settings, monitor);
+  };
 }
 
 std::vector<float> Exact(Device& device, const Scene& scene)
@@ -61,8 +62,8 @@ TEST_F(TargetError, IsMetByTheTrueError)
   const std::vector<float> exact = Exact(this->GetDevice(), scene);
   for (const double target : { 0.04, 0.01 })
   {
-    const TargetLight found =
-      SolveToTargetError(scene.medium, scene.light, {}, target, {}, SolverOn(this->GetDevice()));
+    const TargetLight found = SolveToTargetError(
+      { Domain(scene.medium.grid), scene.medium, scene.light }, {}, target, {}, SolverOn(this->GetDevice()));
     EXPECT_TRUE(found.met) << target;
     EXPECT_TRUE(found.light.doubts.empty());
     EXPECT_LE(found.light.relativeError, target);
@@ -76,7 +77,8 @@ TEST_F(TargetError, IsMetByTheTrueError)
 TEST_F(TargetError, IsRefusedWhereNothingReachesIt)
 {
   const Scene scene = Cloud();
-  const TargetLight found = SolveToTargetError(scene.medium, scene.light, {}, 1e-5, {}, SolverOn(this->GetDevice()));
+  const TargetLight found = SolveToTargetError(
+    { Domain(scene.medium.grid), scene.medium, scene.light }, {}, 1e-5, {}, SolverOn(this->GetDevice()));
   EXPECT_FALSE(found.met);
   EXPECT_GT(found.light.relativeError, 1e-5);
   ASSERT_EQ(found.light.doubts.size(), 1u);
@@ -91,7 +93,8 @@ TEST_F(TargetError, DividesVoxelsWhereTheseAreTooCoarse)
   lamp.position = { 4.3, 8.6, 6.1 };
   scene.light.lights.push_back(lamp);
   scene.Attach();
-  const TargetLight found = SolveToTargetError(scene.medium, scene.light, {}, 0.02, {}, SolverOn(this->GetDevice()));
+  const TargetLight found = SolveToTargetError(
+    { Domain(scene.medium.grid), scene.medium, scene.light }, {}, 0.02, {}, SolverOn(this->GetDevice()));
   EXPECT_TRUE(found.divided);
   EXPECT_EQ(found.light.fluence.size(), scene.medium.grid.VoxelCount());
   EXPECT_LT(SquareDifference(found.light.fluence, Exact(this->GetDevice(), scene)), 0.02);
@@ -111,8 +114,8 @@ TEST_F(TargetError, IsNotClaimedBesideLampsWhereItIsMissed)
   const std::vector<float> exact = Exact(this->GetDevice(), scene);
   for (const double target : { 0.05, 0.03, 0.02, 0.01 })
   {
-    const TargetLight found =
-      SolveToTargetError(scene.medium, scene.light, {}, target, {}, SolverOn(this->GetDevice()));
+    const TargetLight found = SolveToTargetError(
+      { Domain(scene.medium.grid), scene.medium, scene.light }, {}, target, {}, SolverOn(this->GetDevice()));
     EXPECT_TRUE(!found.met || SquareDifference(found.light.fluence, exact) <= target)
       << target << ": " << SquareDifference(found.light.fluence, exact) << ", estimated " << found.light.relativeError;
   }
@@ -125,8 +128,8 @@ TEST_F(TargetError, LeavesWhatWasChosen)
   chosen.directionsPerFace = 4;
   chosen.uncollidedDirections = 0;
   chosen.tolerance = 0.03;
-  const TargetLight found =
-    SolveToTargetError(scene.medium, scene.light, chosen, 0.005, {}, SolverOn(this->GetDevice()));
+  const TargetLight found = SolveToTargetError(
+    { Domain(scene.medium.grid), scene.medium, scene.light }, chosen, 0.005, {}, SolverOn(this->GetDevice()));
   EXPECT_EQ(found.settings.directionsPerFace, 4);
   EXPECT_EQ(found.settings.uncollidedDirections, 0);
   EXPECT_EQ(found.settings.tolerance, 0.03);
@@ -139,8 +142,8 @@ TEST_F(TargetError, OfLayersIsThatOfTheirCosines)
   scene.settings.periodic = { true, true, false };
   scene.light.faces[4] = { 1.0, 1.0, 1.0 };
   scene.Attach();
-  const TargetLight found =
-    SolveToTargetError(scene.medium, scene.light, scene.settings, 0.001, {}, SolverOn(this->GetDevice()));
+  const TargetLight found = SolveToTargetError(
+    { Domain(scene.medium.grid), scene.medium, scene.light }, scene.settings, 0.001, {}, SolverOn(this->GetDevice()));
   EXPECT_TRUE(found.met);
   EXPECT_GT(found.light.polarNodes, 0);
 }
@@ -150,8 +153,9 @@ TEST_F(TargetError, IsAPartOfOne)
   const Scene scene = Cloud();
   for (const double target : { 0.0, -0.1, 1.0, std::nan("") })
   {
-    EXPECT_THROW(
-      SolveToTargetError(scene.medium, scene.light, {}, target, {}, SolverOn(this->GetDevice())), InvalidInput);
+    EXPECT_THROW(SolveToTargetError({ Domain(scene.medium.grid), scene.medium, scene.light }, {}, target, {},
+                   SolverOn(this->GetDevice())),
+      InvalidInput);
   }
 }
 

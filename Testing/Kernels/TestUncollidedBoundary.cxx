@@ -269,10 +269,9 @@ TEST_F(UncollidedBoundary, TakesPartInTheErrorEstimate)
     Scene scene = LitCube(24, 1.0, 0.9);
     scene.settings.uncollidedDirections = fine;
     scene.Solve(this->GetDevice()); // lets the medium see its arrays
-    errors[fine > 0] = SolveWithErrorEstimate(scene.medium, scene.light, scene.settings, {},
-      [&](
-        const Medium& medium, const Illumination& light, const PropagationSettings& settings, const Monitor& monitor) {
-        return SolveConservative(this->GetDevice(), medium, light, settings, monitor);
+    errors[fine > 0] = SolveWithErrorEstimate({ Domain(scene.medium.grid), scene.medium, scene.light }, scene.settings,
+      {}, [&](const SceneBlock& block, const PropagationSettings& settings, const Monitor& monitor) {
+        return SolveConservative(this->GetDevice(), block.domain, block.medium, block.illumination, settings, monitor);
       }).relativeError;
   }
   EXPECT_LT(errors[1], 0.5 * errors[0]);

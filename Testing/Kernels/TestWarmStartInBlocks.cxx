@@ -4,7 +4,7 @@
 #include "BlocksOfLight.h"
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
-#include "LightPropagation/Accuracy/ErrorInBlocks.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 
 #include <gmock/gmock.h>
 
@@ -81,7 +81,7 @@ protected:
   {
     return LightOfAll(
       partition, whole, shining, [&](Communicator& communicator, const Medium& medium, const Illumination& light) {
-        return SolveInBlocks(GetDevice(), communicator, partition, medium, light, settings, {},
+        return SolveConservative(GetDevice(), Domain(communicator, partition), medium, light, settings, {},
           kept ? &kept->at(communicator.Rank()) : nullptr);
       });
   }
@@ -262,8 +262,11 @@ TEST_F(WarmStartsInBlocks, AreOfTheGridItselfWhereErrorsAreEstimatedOnACoarserOn
   const auto estimated = [&] {
     return LightOfAll(halves, change.before, change.shining,
       [&](Communicator& communicator, const Medium& medium, const Illumination& light) {
-        return SolveInBlocksWithErrorEstimate(
-          GetDevice(), { communicator, halves, medium, light }, change.settings, {}, &kept[communicator.Rank()]);
+        return SolveWithErrorEstimate({ Domain(communicator, halves), medium, light }, change.settings, {},
+          [&](const SceneBlock& block, const PropagationSettings& settings, const Monitor& monitor) {
+            return SolveConservative(GetDevice(), block.domain, block.medium, block.illumination, settings, monitor,
+              &block.medium == &medium ? &kept[communicator.Rank()] : nullptr);
+          });
       });
   };
   const LightField first = estimated(), second = estimated();
@@ -326,8 +329,8 @@ TEST_F(WarmStartsInBlocks, AreOfAllRanksOrOfNone)
     const PartOf part(change.after, halves.blocks[rank]);
     try
     {
-      SolveInBlocks(
-        GetDevice(), communicator, halves, part.medium, change.next, change.settings, {}, rank == 1 ? &kept : nullptr);
+      SolveConservative(GetDevice(), Domain(communicator, halves), part.medium, change.next, change.settings, {},
+        rank == 1 ? &kept : nullptr);
     }
     catch (const std::exception& error)
     {

@@ -1,7 +1,5 @@
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 
-#include "LightPropagation/Accuracy/CoarseSceneInBlocks.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -159,10 +157,7 @@ void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfA
   errors = blocks.Comm().Sum({ errors })[0];
   light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
 }
-}
 
-namespace
-{
 /// Error of a plane-parallel solve: the change caused by fewer cosines. It has no other error.
 void WriteErrorOfCosines(LightField& light, const LightField& few)
 {
@@ -200,30 +195,8 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
     light.convergence.empty() ? 0.0 : light.convergence.back().residual };
 }
 
-SceneOnOneRank::SceneOnOneRank(const Medium& medium, const Illumination& illumination, const PropagationSolver& solve)
-  : Partition(BlockPartition::Even(medium.grid, 1))
-  , TheMedium(medium)
-  , Light(illumination)
-  , Solve(solve)
-{
-}
-
-SolverInBlocks SceneOnOneRank::Solver() const
-{
-  return [this](const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor) {
-    return this->Solve(scene.medium, scene.illumination, settings, monitor);
-  };
-}
-
-LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve)
-{
-  SceneOnOneRank whole(medium, illumination, solve);
-  return SolveWithErrorEstimate(whole.Scene(), settings, monitor, whole.Solver());
-}
-
 LightField SolveWithErrorEstimate(
-  const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor, const SolverInBlocks& solve)
+  const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve)
 {
   LightField light = solve(scene, settings, OfPart(monitor, 0.0, FinePart));
   if (light.polarNodes > 0)
@@ -239,9 +212,8 @@ LightField SolveWithErrorEstimate(
     return light;
   }
 
-  const CoarseBlocks blocks(scene.others, scene.partition);
-  const CoarseSceneInBlocks inVoxels(blocks, scene.medium, scene.illumination);
-  const SceneInBlocks coarse = { scene.others, blocks.Coarse(), inVoxels.TheMedium(), inVoxels.Shining() };
+  const CoarseBlocks blocks(scene.domain.Comm(), scene.domain.Partition());
+  const CoarseScene coarse(blocks, scene);
   PropagationSettings plain = settings;
   plain.netFlux = false;
   plain.storedDirections = 1;
@@ -249,13 +221,13 @@ LightField SolveWithErrorEstimate(
   plain.directionsPerFace = directions;
   plain.adaptDirections = false;
   plain.uncollidedDirections = light.uncollidedDirections; // the number chosen for the fine grid
-  const std::vector<float> many = solve(coarse, plain, OfPart(monitor, FinePart, 0.95)).fluence;
+  const std::vector<float> many = solve(coarse.Scene(), plain, OfPart(monitor, FinePart, 0.95)).fluence;
   plain.directionsPerFace = OtherDirections(directions);
   if (light.uncollidedDirections > 0)
   {
     plain.uncollidedDirections = OtherDirections(light.uncollidedDirections);
   }
-  const std::vector<float> few = solve(coarse, plain, OfPart(monitor, 0.95, 1.0)).fluence;
+  const std::vector<float> few = solve(coarse.Scene(), plain, OfPart(monitor, 0.95, 1.0)).fluence;
 
   WriteErrorEstimate(light, blocks, many, few, PartOfDifference(directions, plain.directionsPerFace), OrderInSpace);
   return light;

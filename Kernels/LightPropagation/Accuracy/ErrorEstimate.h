@@ -1,52 +1,18 @@
 #pragma once
 
-#include "Light/LightField.h"
-#include "LightPropagation/PropagationSettings.h"
-
 #include "Device/Monitor.h"
 #include "Distribution/CoarseBlocks.h"
-#include "Lights/Lights.h"
-#include "Medium/Medium.h"
+#include "Light/LightField.h"
+#include "LightPropagation/Accuracy/CoarseScene.h"
+#include "LightPropagation/PropagationSettings.h"
 
 #include <functional>
 #include <vector>
 
 namespace tyndall
 {
-/// Solves a medium in the same box, with illumination given on its grid.
-using PropagationSolver =
-  std::function<LightField(const Medium&, const Illumination&, const PropagationSettings&, const Monitor&)>;
-
-/// A decomposed scene: medium and illumination of this rank's block.
-struct SceneInBlocks
-{
-  Communicator& others;
-  const BlockPartition& partition;
-  const Medium& medium;
-  const Illumination& illumination;
-};
-
-/// Solver of a decomposed scene. Collective.
-using SolverInBlocks = std::function<LightField(const SceneInBlocks&, const PropagationSettings&, const Monitor&)>;
-
-/// A scene held by a single rank, and its solver.
-class SceneOnOneRank
-{
-public:
-  SceneOnOneRank(const Medium& medium, const Illumination& illumination, const PropagationSolver& solve);
-  SceneOnOneRank(const SceneOnOneRank&) = delete;
-  SceneOnOneRank& operator=(const SceneOnOneRank&) = delete;
-
-  SceneInBlocks Scene() { return { this->Alone, this->Partition, this->TheMedium, this->Light }; }
-  SolverInBlocks Solver() const;
-
-private:
-  SingleRank Alone;
-  const BlockPartition Partition;
-  const Medium& TheMedium;
-  const Illumination& Light;
-  const PropagationSolver& Solve;
-};
+/// Solves a scene on the grid of its domain. Collective.
+using PropagationSolver = std::function<LightField(const SceneBlock&, const PropagationSettings&, const Monitor&)>;
 
 /// The two error components of Eq. (84) that are estimated separately, as root mean squares relative to that of
 /// fluence, and the residual.
@@ -78,11 +44,12 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
 ///
 /// Takes 1 / 8 + 1 / 20 of the time of the sweeps, more on small grids. An axis of a single voxel is not coarsened, and
 /// its error in voxel size is not estimated.
-LightField SolveWithErrorEstimate(const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve);
-
-/// The same for a decomposed scene. The coarse grid is that of the domain (CoarseBlocks.h), so that errors do not
-/// depend on the blocks, except by rounding. Collective; all ranks must have the same kinds of fields.
+///
+/// On several ranks the coarse grid is that of the domain (CoarseBlocks.h), so that errors do not depend on the blocks,
+/// except by rounding. Collective; all ranks must have the same kinds of fields. If the coarse solves use DSA and
+/// UncollidedDirections is left open, boundary light uses the directions of scattered light on the coarse grid. If it
+/// had finer directions on the grid itself, the estimate is then too large by the error of the coarser ones.
+/// @throws as `solve`
 LightField SolveWithErrorEstimate(
-  const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor, const SolverInBlocks& solve);
+  const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve);
 }

@@ -1,11 +1,12 @@
 #include "LightPropagation/Accuracy/PreviewLight.h"
 
+#include "Distribution/BoxExchange.h"
+#include "Distribution/SharedFigures.h"
 #include "Distribution/SharedMedium.h"
-#include "LightPropagation/Accuracy/CoarseSceneInBlocks.h"
-#include "LightPropagation/Accuracy/SceneOnFirst.h"
-#include "LightPropagation/Distributed/BlockScene.h"
+#include "LightPropagation/Problem/SceneChecks.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,38 +32,113 @@ std::string SizeOf(const Grid& grid)
   return std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " + std::to_string(grid.size[2]);
 }
 
-void RequireSame(const SceneInBlocks& own, const Field& index, const PropagationSettings& alike)
-{
-  const bool has = own.partition.blocks.at(own.others.Rank()).VoxelCount() > 0;
-  RequireSame(own.others, own.partition);
-  RequireSame(own.others, has, own.medium, own.illumination, alike);
-  RequireSame(own.others, "whether there is a refractive index", has, { index.values ? 1.0 : 0.0 });
-}
-
-/// A decomposed scene on its coarse grid, this rank's part.
-class CoarseOfPreview
+/// A decomposed scene on the coarse grid, gathered on the first rank that has fine voxels. Constructor and Spread are
+/// collective.
+class SceneOnFirst
 {
 public:
-  CoarseOfPreview(const CoarseBlocks& blocks, const SceneInBlocks& own, const Field& index)
-    : Scene(blocks, own.medium, own.illumination)
-  {
-    if (OnAnyRank(own.others, index.values != nullptr))
-    {
-      const std::size_t voxels = own.partition.blocks[own.others.Rank()].VoxelCount();
-      this->Index = blocks.Average({ index.values, index.values + (index.values ? voxels : 0) }, 1);
-    }
-  }
+  /// @param blocks  must outlive this
+  /// @param own  scene of this rank's coarse voxels, with the same kinds of fields on all ranks; not read on a rank
+  ///   without coarse voxels
+  /// @param fine  medium of this rank's block, which provides the phase function of the domain
+  SceneOnFirst(const CoarseBlocks& blocks, const SceneBlock& own, const Medium& fine);
+  SceneOnFirst(const SceneOnFirst&) = delete;
+  SceneOnFirst& operator=(const SceneOnFirst&) = delete;
 
-  PreviewScene Own() const
-  {
-    return { this->Scene.TheMedium(), this->Scene.Shining(),
-      { this->Index.empty() ? nullptr : this->Index.data(), 1 } };
-  }
+  bool IsHere() const { return this->Here; }
+  /// The gathered scene; valid on that rank only.
+  SceneBlock Scene() const { return { Domain(this->TheMedium.grid), this->TheMedium, this->Light, this->Index }; }
+
+  /// Distributes the light that the first rank computed: fluence and its uncollided part to the owners of the coarse
+  /// voxels, and global data (balance, powers, convergence, messages) to all ranks.
+  void Spread(LightField& light) const;
 
 private:
-  CoarseSceneInBlocks Scene;
-  std::vector<float> Index;
+  Field Gathered(const Field& own, int components, std::vector<float>& values) const;
+
+  const CoarseBlocks& Blocks;
+  const bool Here;
+  std::vector<VoxelBox> Boxes; ///< by rank: all coarse voxels on one rank, none on the rest
+  Medium TheMedium;
+  Illumination Light;
+  Field Index;
+  std::array<std::vector<float>, 7> Arrays;
 };
+
+SceneOnFirst::SceneOnFirst(const CoarseBlocks& blocks, const SceneBlock& own, const Medium& fine)
+  : Blocks(blocks)
+  , Here(IsFirstThatHas(blocks.Comm(), blocks.Fine()))
+  , TheMedium(fine)
+  , Light(own.illumination)
+  , Index(own.index)
+{
+  const std::vector<VoxelBox>& owned = blocks.Fine().blocks;
+  const auto first = std::find_if(owned.begin(), owned.end(), [](const VoxelBox& box) { return box.VoxelCount() > 0; });
+  this->Boxes.resize(owned.size());
+  this->Boxes[first - owned.begin()] = { {}, blocks.Coarse().whole.size };
+
+  this->TheMedium.grid = blocks.Coarse().whole;
+  Field g = own.medium.phase.Varies() ? own.medium.phase.G() : Field();
+  const std::array<std::pair<Field, Field*>, 7> fields = { { { own.medium.sigma_a, &this->TheMedium.sigma_a },
+    { own.medium.sigma_s, &this->TheMedium.sigma_s }, { own.medium.emission, &this->TheMedium.emission }, { g, &g },
+    { own.illumination.uncollided.fluence, &this->Light.uncollided.fluence },
+    { own.illumination.uncollided.meanDirection, &this->Light.uncollided.meanDirection },
+    { own.index, &this->Index } } };
+  std::vector<double> components;
+  for (const auto& [from, to] : fields)
+  {
+    components.push_back(blocks.HasOwn() && from.values ? from.components : 0.0);
+  }
+  components = blocks.Comm().Largest(components);
+  for (std::size_t i = 0; i < fields.size(); ++i)
+  {
+    *fields[i].second = this->Gathered(fields[i].first, static_cast<int>(components[i]), this->Arrays[i]);
+  }
+  if (this->Here && g.values)
+  {
+    this->TheMedium.phase = fine.phase.WithG(g);
+  }
+}
+
+/// Gathers a field of coarse voxels from all ranks on the first rank.
+Field SceneOnFirst::Gathered(const Field& own, int components, std::vector<float>& values) const
+{
+  if (components == 0)
+  {
+    return {};
+  }
+  std::vector<float> ofBlock;
+  if (this->Blocks.HasOwn())
+  {
+    const std::size_t voxels = this->Blocks.Own().Coarse().VoxelCount();
+    ofBlock.assign(own.values, own.values + voxels * static_cast<std::size_t>(components));
+  }
+  values = ValuesInBox(this->Blocks.Comm(), this->Blocks.Coarse(), this->Boxes, ofBlock, components);
+  return { this->Here ? values.data() : nullptr, components };
+}
+
+void SceneOnFirst::Spread(LightField& light) const
+{
+  Communicator& others = this->Blocks.Comm();
+  ShareFigures(others, this->Here, light);
+  const BlockPartition onFirst = { this->Blocks.Coarse().whole, this->Boxes };
+  for (std::vector<float>* const values : { &light.fluence, &light.fluenceDirect })
+  {
+    if (OnAnyRank(others, !values->empty()))
+    {
+      *values = ValuesInBox(others, onFirst, this->Blocks.Coarse().blocks, *values, light.channels);
+    }
+  }
+}
+
+void RequireSame(const SceneBlock& scene, const PropagationSettings& alike)
+{
+  Communicator& comm = scene.domain.Comm();
+  const bool has = !scene.domain.IsEmpty();
+  RequireSame(comm, scene.domain.Partition());
+  RequireSame(comm, has, scene.medium, scene.illumination, alike);
+  RequireSame(comm, "whether there is a refractive index", has, { scene.index.values ? 1.0 : 0.0 });
+}
 
 /// Interpolates light from the coarse grid to this rank's voxels.
 LightField Shown(LightField&& found, const CoarseBlocks& blocks)
@@ -103,39 +179,29 @@ Grid CubicPreviewGrid(const Grid& grid)
   });
 }
 
-LightField SolvePreview(const PreviewScene& scene, const Grid& coarse, const PreviewSolver& solve)
+LightField SolvePreview(const SceneBlock& scene, const PropagationSettings& alike, const Grid& coarse,
+  const PreviewSolver& solve, std::size_t small)
 {
-  SingleRank alone;
-  const BlockPartition whole = BlockPartition::Even(scene.medium.grid, 1);
-  const CoarseBlocks blocks(alone, whole, coarse);
-  const CoarseOfPreview averages(blocks, { alone, whole, scene.medium, scene.illumination }, scene.index);
-  return Shown(solve(averages.Own()), blocks);
-}
-
-LightField SolvePreviewOnFirst(const SceneInBlocks& own, const Field& index, const PropagationSettings& alike,
-  const Grid& coarse, const PreviewSolver& solve)
-{
-  RequireSame(own, index, alike);
-  const CoarseBlocks blocks(own.others, own.partition, coarse);
-  const CoarseOfPreview averages(blocks, own, index);
-  const SceneOnFirst first(blocks, averages.Own(), own.medium);
+  const Domain& domain = scene.domain;
+  if (!domain.IsSerial())
+  {
+    RequireSame(scene, alike);
+  }
+  const CoarseBlocks blocks(domain.Comm(), domain.Partition(), coarse);
+  const CoarseScene averages(blocks, scene);
+  if (domain.IsSerial() || coarse.VoxelCount() > small)
+  {
+    return Shown(solve(averages.Scene()), blocks);
+  }
+  const SceneOnFirst first(blocks, averages.Scene(), scene.medium);
   LightField found;
-  own.others.Collective([&] {
+  domain.Collective([&] {
     if (first.IsHere())
     {
-      found = solve(first.Whole());
+      found = solve(first.Scene());
     }
   });
   first.Spread(found);
   return Shown(std::move(found), blocks);
-}
-
-LightField SolvePreviewInBlocks(const SceneInBlocks& own, const Field& index, const PropagationSettings& alike,
-  const Grid& coarse, const PreviewSolverInBlocks& solve)
-{
-  RequireSame(own, index, alike);
-  const CoarseBlocks blocks(own.others, own.partition, coarse);
-  const CoarseOfPreview averages(blocks, own, index);
-  return Shown(solve(averages.Own(), blocks.Coarse()), blocks);
 }
 }

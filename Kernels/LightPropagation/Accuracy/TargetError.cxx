@@ -2,9 +2,9 @@
 
 #include "Device/Errors.h"
 #include "Light/Quality.h"
-#include "LightPropagation/Accuracy/CoarseSceneInBlocks.h"
 #include "LightPropagation/Accuracy/DirectionForecast.h"
 #include "LightPropagation/Problem/DividedScene.h"
+#include "LightPropagation/Problem/SceneChecks.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
@@ -53,16 +53,16 @@ bool HasLampsNearby(const Illumination& illumination)
 class TargetSearch
 {
 public:
-  TargetSearch(const SceneInBlocks& scene, const PropagationSettings& settings, double target, const Monitor& monitor,
-    const SolverInBlocks& solve)
+  TargetSearch(const SceneBlock& scene, const PropagationSettings& settings, double target, const Monitor& monitor,
+    const PropagationSolver& solve)
     : TheScene(scene)
     , Asked(settings)
     , Goal(Aim * target)
     , Target(target)
     , TheMonitor(monitor)
     , Solver(solve)
-    , Blocks(scene.others, scene.partition)
-    , Coarse(Blocks, scene.medium, scene.illumination)
+    , Blocks(scene.domain.Comm(), scene.domain.Partition())
+    , Coarse(Blocks, scene)
   {
     const PropagationSettings byDefault;
     SetUnlessChosen(this->Asked.tolerance, byDefault.tolerance, std::min(LooseTolerance, TolerancePart * this->Goal));
@@ -73,13 +73,6 @@ public:
   TargetLight Run()
   {
     this->LookAtDirections();
-    if (this->Layers)
-    {
-      return this->Finish(SolveWithErrorEstimate(this->TheScene, this->Asked, this->TheMonitor,
-        [this](const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor) {
-          return this->Count(scene, settings, monitor);
-        }));
-    }
     this->SolveAlong(this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal), 0.12, 0.4);
     if (this->Light.relativeError > this->Goal)
     {
@@ -93,7 +86,7 @@ public:
   }
 
 private:
-  LightField Count(const SceneInBlocks& scene, const PropagationSettings& settings, const Monitor& monitor)
+  LightField Count(const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor)
   {
     ++this->Solves;
     return this->Solver(scene, settings, monitor);
@@ -106,9 +99,7 @@ private:
     settings.storeMoments = false;
     settings.storedDirections = 1;
     settings.adaptDirections = false;
-    return this->Count(
-      { this->TheScene.others, this->Blocks.Coarse(), this->Coarse.TheMedium(), this->Coarse.Shining() }, settings,
-      OfPart(this->TheMonitor, from, to));
+    return this->Count(this->Coarse.Scene(), settings, OfPart(this->TheMonitor, from, to));
   }
 
   /// Solves the coarse grid with few and with more directions.
@@ -119,23 +110,19 @@ private:
     settings.staggeredRays = false;
     settings.directionsPerFace = Few;
     const LightField few = this->OnCoarse(settings, 0.0, 0.03);
-    this->Layers = few.polarNodes > 0;
-    if (!this->Layers)
+    this->AlongFew = { settings, few.fluence };
+    settings.directionsPerFace = More;
+    const LightField more = this->OnCoarse(settings, 0.03, 0.1);
+    this->AlongMore = { settings, more.fluence };
+    this->Forecast.emplace(this->TheScene.domain.Comm(), few, Few, more, More);
+    if (this->MayHaveFinerUncollided())
     {
-      this->AlongFew = { settings, few.fluence };
-      settings.directionsPerFace = More;
-      const LightField more = this->OnCoarse(settings, 0.03, 0.1);
-      this->AlongMore = { settings, more.fluence };
-      this->Forecast.emplace(this->TheScene.others, few, Few, more, More);
-      if (this->MayHaveFinerUncollided())
+      settings.directionsPerFace = Few;
+      settings.uncollidedDirections = More;
+      const LightField between = this->OnCoarse(settings, 0.1, 0.12);
+      if (between.uncollidedDirections > 0)
       {
-        settings.directionsPerFace = Few;
-        settings.uncollidedDirections = More;
-        const LightField between = this->OnCoarse(settings, 0.1, 0.12);
-        if (between.uncollidedDirections > 0)
-        {
-          this->Forecast->Separate(this->TheScene.others, few, between, more);
-        }
+        this->Forecast->Separate(this->TheScene.domain.Comm(), few, between, more);
       }
     }
   }
@@ -244,15 +231,16 @@ private:
   {
     std::optional<DividedScene> divided;
     LightField light;
-    this->TheScene.others.Collective([&] {
+    this->TheScene.domain.Collective([&] {
       divided.emplace(
-        this->TheScene.medium, this->TheScene.illumination, this->Asked.periodic, this->TheScene.partition.whole);
+        this->TheScene.medium, this->TheScene.illumination, this->Asked.periodic, this->TheScene.domain.Whole());
     });
-    const BlockPartition blocks = divided->BlocksOf(this->TheScene.partition);
+    const BlockPartition blocks = divided->BlocksOf(this->TheScene.domain.Partition());
     try
     {
-      light = this->Count({ this->TheScene.others, blocks, divided->TheMedium(), divided->Shining() }, this->Used,
-        OfPart(this->TheMonitor, 0.6, 1.0));
+      const Domain halves(this->TheScene.domain.Comm(), blocks);
+      light = this->Count(
+        { halves, divided->TheMedium(), divided->Shining() }, this->Used, OfPart(this->TheMonitor, 0.6, 1.0));
     }
     catch (const DeviceError& error) // thrown on all ranks
     {
@@ -280,19 +268,19 @@ private:
       errors += error * error;
       all += static_cast<double>(light.fluence[i]) * light.fluence[i];
     }
-    const std::vector<double> sums = this->TheScene.others.Sum({ errors, all });
+    const std::vector<double> sums = this->TheScene.domain.Sum(std::vector<double>{ errors, all });
     light.relativeError = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
   }
 
   TargetLight Finish(LightField&& light)
   {
     TargetLight found;
-    found.settings = this->Layers ? this->Asked : this->Used;
+    found.settings = this->Used;
     found.met = light.relativeError <= this->Target; // false if NaN (not known)
     found.divided = this->InHalves;
     found.solves = this->Solves;
     const std::chrono::duration<double> own = std::chrono::steady_clock::now() - this->Start;
-    found.seconds = this->TheScene.others.Largest({ own.count() })[0];
+    found.seconds = this->TheScene.domain.Max(own.count());
     if (!found.met)
     {
       light.doubts.push_back(this->WordsOfMiss(light.relativeError, found));
@@ -314,13 +302,13 @@ private:
       ", or ask for less." + this->WhyNot;
   }
 
-  const SceneInBlocks& TheScene;
+  const SceneBlock& TheScene;
   PropagationSettings Asked;
   double Goal, Target;
   const Monitor& TheMonitor;
-  const SolverInBlocks& Solver;
+  const PropagationSolver& Solver;
   CoarseBlocks Blocks;
-  CoarseSceneInBlocks Coarse;
+  CoarseScene Coarse;
   std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
 
   std::optional<DirectionForecast> Forecast;
@@ -328,26 +316,20 @@ private:
   CoarseLight AlongFew, AlongMore;
   LightField Light;
   ErrorParts Parts;
-  bool Layers = false, InHalves = false;
+  bool InHalves = false;
   int Solves = 0;
   std::string WhyNot;
 };
 }
 
-TargetLight SolveToTargetError(const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, double target, const Monitor& monitor, const PropagationSolver& solve)
-{
-  SceneOnOneRank whole(medium, illumination, solve);
-  return SolveToTargetError(whole.Scene(), settings, target, monitor, whole.Solver());
-}
-
-TargetLight SolveToTargetError(const SceneInBlocks& scene, const PropagationSettings& settings, double target,
-  const Monitor& monitor, const SolverInBlocks& solve)
+TargetLight SolveToTargetError(const SceneBlock& scene, const PropagationSettings& settings, double target,
+  const Monitor& monitor, const PropagationSolver& solve)
 {
   if (!(target > 0.0 && target < 1.0))
   {
     throw InvalidInput("TargetError is " + Text("%g", target) + "; it must be above 0 and below 1.");
   }
+  Check(scene.domain, scene.medium, scene.illumination, settings); // before coarse grids are solved
   return TargetSearch(scene, settings, target, monitor, solve).Run();
 }
 }

@@ -28,12 +28,10 @@ struct TargetLight
 ///     the work and memory) and average the result.
 /// Settings that differ from their default values are not changed. Directions are chosen for an estimate a quarter
 /// below the target, because the estimate itself has an error; `met` refers to the estimate.
-/// @param target  relative error, > 0
-TargetLight SolveToTargetError(const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings, double target, const Monitor& monitor, const PropagationSolver& solve);
-
-/// The same for a decomposed scene, with coarse and refined blocks (ErrorEstimate.h). Collective; all ranks must have
-/// the same kinds of fields, and get the same decisions.
-TargetLight SolveToTargetError(const SceneInBlocks& scene, const PropagationSettings& settings, double target,
-  const Monitor& monitor, const SolverInBlocks& solve);
+/// Collective: all ranks take the same decisions, on coarse and refined blocks of their own.
+/// @param scene  with the same kinds of fields on all ranks
+/// @param target  relative error, in (0, 1)
+/// @throws InvalidInput  if the target or the scene is invalid (SceneChecks.h)
+TargetLight SolveToTargetError(const SceneBlock& scene, const PropagationSettings& settings, double target,
+  const Monitor& monitor, const PropagationSolver& solve);
 }

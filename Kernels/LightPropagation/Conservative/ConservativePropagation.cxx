@@ -13,9 +13,7 @@
 #include "LightPropagation/Emission/GlobalStatistics.h"
 #include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
-#include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/AxisPermutation.h"
-#include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Numerics/Constants.h"
 
@@ -215,7 +213,7 @@ LightField SolveConservative(Device& device, const Domain& domain, const Medium&
   if (IsPlaneParallel(medium, illumination, settings))
   {
     LightField light = SolvePlaneParallel(medium, illumination, settings, monitor);
-    JudgeBalance(light, medium);
+    JudgeBalance(light, domain, medium);
     return light;
   }
   const AxisPermutation turn(medium.grid, illumination, settings);
@@ -251,14 +249,5 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
     return "small bright emission, whose light it has along exact rays";
   }
   return {};
-}
-
-PropagationSettings AtQuality(const Domain& domain, Quality quality, const PropagationSettings& settings,
-  const Medium& medium, const Illumination& illumination)
-{
-  const double extinction = domain.Sum(domain.IsEmpty() ? 0.0 : SumOfExtinction(medium, 0));
-  const bool scatters = domain.Any(!domain.IsEmpty() && Scatters(medium));
-  return AtQuality(
-    quality, settings, { ShinesThroughFaces(illumination), scatters, MeanThickness(domain.Whole(), extinction) });
 }
 }

@@ -5,7 +5,6 @@
 #include "Distribution/Domain.h"
 #include "Light/KeptLight.h"
 #include "Light/LightField.h"
-#include "Light/Quality.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -58,8 +57,4 @@ inline LightField SolveConservative(Device& device, const Medium& medium, const 
 /// better for"; empty if it would not. Collective. @throws as SolveConservative
 std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Medium& medium,
   const Illumination& illumination, const PropagationSettings& settings);
-
-/// AtQuality (PropagationQuality.h) for the medium of all ranks. Collective.
-PropagationSettings AtQuality(const Domain& domain, Quality quality, const PropagationSettings& settings,
-  const Medium& medium, const Illumination& illumination);
 }

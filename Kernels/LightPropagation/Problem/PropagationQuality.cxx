@@ -20,6 +20,20 @@ struct Level
   double tolerance, emissionError;
 };
 
+/// Properties of a scene that a quality level depends on.
+struct SceneOfQuality
+{
+  bool isLit, scatters; ///< isLit: light is incident through the box's faces
+  double thickness;     ///< mean optical thickness of the box
+};
+
+bool Scatters(const Medium& medium)
+{
+  const std::size_t count = medium.grid.VoxelCount() * medium.sigma_s.components;
+  return medium.sigma_s.values &&
+    std::any_of(medium.sigma_s.values, medium.sigma_s.values + count, [](float value) { return value > 0.0f; });
+}
+
 constexpr Level Draft = { 9, 9, 0, 1e-2, 0.05 };
 constexpr Level Fine = { 64, 49, 400, 1e-4, 0.01 };
 constexpr Level Reference = { 256, 144, 1600, 1e-5, 0.005 };
@@ -40,33 +54,17 @@ void SetLevel(const Level& level, PropagationSettings& settings, const SceneOfQu
 }
 }
 
-bool Scatters(const Medium& medium)
-{
-  const std::size_t count = medium.grid.VoxelCount() * medium.sigma_s.components;
-  return medium.sigma_s.values &&
-    std::any_of(medium.sigma_s.values, medium.sigma_s.values + count, [](float value) { return value > 0.0f; });
-}
-
-PropagationSettings AtQuality(
-  Quality quality, PropagationSettings settings, const Medium& medium, const Illumination& illumination)
+PropagationSettings AtQuality(const Domain& domain, Quality quality, PropagationSettings settings, const Medium& medium,
+  const Illumination& illumination)
 {
   if (quality == Quality::Default)
   {
     return settings;
   }
-  return AtQuality(quality, settings,
-    { ShinesThroughFaces(illumination), Scatters(medium), MeanThickness(medium.grid, SumOfExtinction(medium, 0)) });
-}
-
-PropagationSettings AtQuality(Quality quality, PropagationSettings settings, const SceneOfQuality& scene)
-{
-  switch (quality)
-  {
-    case Quality::Draft: SetLevel(Draft, settings, scene); break;
-    case Quality::Default: break;
-    case Quality::Fine: SetLevel(Fine, settings, scene); break;
-    case Quality::Reference: SetLevel(Reference, settings, scene); break;
-  }
+  const double extinction = domain.Sum(domain.IsEmpty() ? 0.0 : SumOfExtinction(medium, 0));
+  const SceneOfQuality scene = { ShinesThroughFaces(illumination), domain.Any(!domain.IsEmpty() && Scatters(medium)),
+    MeanThickness(domain.Whole(), extinction) };
+  SetLevel(quality == Quality::Draft ? Draft : quality == Quality::Fine ? Fine : Reference, settings, scene);
   return settings;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "Distribution/Domain.h"
 #include "Light/LightField.h"
 #include "Light/Quality.h"
 #include "LightPropagation/PropagationSettings.h"
@@ -18,18 +19,10 @@ namespace tyndall
 /// The result depends on whether light is incident through faces, from a sky or an environment (only then uncollided
 /// light has finer directions), whether anything scatters (else the directions are those of uncollided light), and
 /// whether the box is so thick that scattered light is nearly isotropic.
-PropagationSettings AtQuality(
-  Quality quality, PropagationSettings settings, const Medium& medium, const Illumination& illumination);
-
-/// Properties of a scene that a quality level depends on.
-struct SceneOfQuality
-{
-  bool isLit = false;     ///< light is incident through the box's faces
-  bool scatters = false;  ///< the medium scatters
-  double thickness = 0.0; ///< mean optical thickness of the box
-};
-PropagationSettings AtQuality(Quality quality, PropagationSettings settings, const SceneOfQuality& scene);
-bool Scatters(const Medium& medium); ///< whether any voxel scatters
+/// Collective; the quality is the same on all ranks.
+/// @param medium  of this rank's block
+PropagationSettings AtQuality(const Domain& domain, Quality quality, PropagationSettings settings, const Medium& medium,
+  const Illumination& illumination);
 
 /// "Name = value" for each setting that a quality level may choose.
 std::vector<std::string> Words(const PropagationSettings& settings);

@@ -425,7 +425,7 @@ PhotonLight PhotonMarcher::Implementation::March(
     result = this->MarchThese(share, numbers, way, monitor);
   }
   this->Handed = this->TheRounds->Traffic();
-  JudgeBalance(result.light, Medium()); // gives the same result on all ranks
+  JudgeBalance(result.light, this->TheDomain, Medium());
   return result;
 }
 
