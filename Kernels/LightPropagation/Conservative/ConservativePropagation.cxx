@@ -43,10 +43,11 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
   say(!traits.scatters, left_out::NoScattering);
   say(!traits.absorbs, left_out::NoAbsorption);
   say(!traits.emits, left_out::NoEmission);
-  say(!parts.SweepCarriesBoundarySource() && !parts.FineBoundary, left_out::DarkOutside);
-  say(parts.Fine && parts.SweepCarriesBoundarySource() && !parts.FineBoundary, left_out::EvenOutside);
-  say(parts.Lamps.empty(), left_out::NoLights);
-  say(traits.emits && parts.Emission.peaks.empty(), left_out::NoEmissionPeaks);
+  say(!parts.Lights.SweepCarriesBoundarySource() && !parts.Lights.FineBoundary, left_out::DarkOutside);
+  say(parts.Lights.Fine && parts.Lights.SweepCarriesBoundarySource() && !parts.Lights.FineBoundary,
+    left_out::EvenOutside);
+  say(parts.Lights.Lamps.empty(), left_out::NoLights);
+  say(traits.emits && parts.Lights.Emission.peaks.empty(), left_out::NoEmissionPeaks);
   say(!parts.FacesReflect(), left_out::BlackFaces);
   say(traits.scatters && found.convergence.All().size() == 1, left_out::OneOrder);
   words.insert(words.end(), found.leftOut.begin(), found.leftOut.end());
@@ -62,7 +63,7 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   {
     words = scattering.LeftOut();
   }
-  if (parts.Given)
+  if (parts.Lights.Given)
   {
     words.emplace_back(left_out::OwnUncollided);
   }
@@ -71,7 +72,7 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
     const std::vector<std::string> ofScene = LeftOutOf(parts, found);
     words.insert(words.end(), ofScene.begin(), ofScene.end());
   }
-  if (parts.FacesReflect() && parts.Fine && parts.How == IterationScheme::Dsa)
+  if (parts.FacesReflect() && parts.Lights.Fine && parts.How == IterationScheme::Dsa)
   {
     words.emplace_back("finer directions of light from outside: the box's faces reflect");
   }
@@ -147,9 +148,9 @@ LightField LightOf(const TransportParts& parts, IterationResult&& found)
   {
     AddShown(parts, found.shown, light);
   }
-  light.halfRangeFlux =
-    HalfRangeFlux((parts.FineBoundary && parts.How != IterationScheme::Dsa ? *parts.Fine : parts.Usual).Set());
-  light.uncollidedDirections = parts.FineBoundary ? parts.Fine->Set().PerFace() : 0;
+  light.halfRangeFlux = HalfRangeFlux(
+    (parts.Lights.FineBoundary && parts.How != IterationScheme::Dsa ? *parts.Lights.Fine : parts.Usual).Set());
+  light.uncollidedDirections = parts.Lights.FineBoundary ? parts.Lights.Fine->Set().PerFace() : 0;
   light.balance = found.ledger.Balance();
   light.facePowerOut = found.ledger.FacePowerOut();
   if (parts.Faces)
@@ -194,7 +195,7 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
   domain.Collective([&] { problem.Undo(light); });
   if (parts->StoresMoments())
   {
-    light.lampsApart = parts->LampsOf(illumination);
+    light.lampsApart = parts->Lights.LampsOf(illumination);
   }
   JudgeConvergence(settings, light);
   WarnAboutInputLight(illumination, light);

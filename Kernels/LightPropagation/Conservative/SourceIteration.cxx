@@ -44,7 +44,7 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
     if (thick)
     {
       this->AtFaces.emplace(OctantSources::Scene{ parts.TheDevice, this->Settings, parts.Layout, parts.OnDevice,
-        this->TheDomain.Whole(), this->TheDomain.Own(), !parts.Lamps.empty() });
+        this->TheDomain.Whole(), this->TheDomain.Own(), !parts.Lights.Lamps.empty() });
     }
     if (parts.StoresMoments())
     {
@@ -66,7 +66,7 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
 
 IterationResult SourceIteration::Run(const Monitor& monitor)
 {
-  this->Parts.CountEmission(this->Result.ledger);
+  this->Parts.Lights.CountEmission(this->Result.ledger);
   do
   {
     const Monitor ofOrder =
@@ -148,9 +148,9 @@ void SourceIteration::MakeSweeps()
   request.octantSource = this->AtFaces ? &this->AtFaces->Sources() : nullptr;
   request.angular = this->Parts.UsualValues();
   request.faceIn = this->Parts.LightByCells();
-  this->Whole = this->Parts.MakeSweep(request);
+  this->Whole = this->Parts.Transport.MakeSweep(request);
   this->MakeFilledSweep();
-  if (this->Settings.leaveOut && this->Parts.SweepCarriesBoundarySource() && !this->Shining)
+  if (this->Settings.leaveOut && this->Parts.Lights.SweepCarriesBoundarySource() && !this->Shining)
   {
     this->MakeLitSweep();
   }
@@ -164,7 +164,7 @@ void SourceIteration::MakeFilledSweep()
 {
   const std::array<bool, 3>& periodic = this->Settings.periodic;
   const MediumTraits& traits = this->Parts.Problem.Traits();
-  if (!this->Parts.SweepsParts() || !this->Settings.leaveOut || !traits.scatters ||
+  if (!this->Parts.Transport.SweepsParts() || !this->Settings.leaveOut || !traits.scatters ||
     !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] || periodic[1] || periodic[2] || this->Parts.Faces ||
     this->AtFaces || this->Cells)
   {
@@ -176,8 +176,8 @@ void SourceIteration::MakeFilledSweep()
   if (filled < MostlyFilled && later * (1.0 - filled) > 1.0)
   {
     // No flux: the final sweep computes it.
-    this->Filled =
-      this->Parts.MakeSweep({ { &this->Parts.Path, nullptr, nullptr, nullptr }, this->Parts.AllRays(), traits.filled });
+    this->Filled = this->Parts.Transport.MakeSweep(
+      { { &this->Parts.Path, nullptr, nullptr, nullptr }, this->Parts.AllRays(), traits.filled });
   }
 }
 
@@ -190,7 +190,7 @@ void SourceIteration::MakeLitSweep()
   {
     return;
   }
-  const auto isLit = [this](int direction) { return this->Parts.UsualBoundary->IsLit(direction); };
+  const auto isLit = [this](int direction) { return this->Parts.Lights.UsualBoundary->IsLit(direction); };
   double all = 0.0, lit = 0.0;
   std::vector<AxisBundles> ways;
   for (int axis = 0; axis < 3; ++axis)
@@ -207,24 +207,24 @@ void SourceIteration::MakeLitSweep()
     this->LitPart = lit / all;
     SweepRequest request = { this->DepositOfSweep(), ways };
     request.angular = this->Parts.UsualValues();
-    this->Lit = this->Parts.MakeSweep(request);
+    this->Lit = this->Parts.Transport.MakeSweep(request);
   }
 }
 
 void SourceIteration::AddUncollided(const Monitor& monitor)
 {
-  TransportParts::Sources sources = this->Parts.LampSources();
-  const auto append = [&sources](TransportParts::Sources more) {
+  LightSources::Sources sources = this->Parts.Lights.LampSources();
+  const auto append = [&sources](LightSources::Sources more) {
     std::move(more.begin(), more.end(), std::back_inserter(sources));
   };
-  append(this->Parts.OtherSources());
+  append(this->Parts.Lights.OtherSources());
   const std::size_t alongRays = sources.size(); // sources that are traced; the others are swept
-  if (this->Parts.FineBoundary)
+  if (this->Parts.Lights.FineBoundary)
   {
-    sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.FineBoundary));
+    sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.Lights.FineBoundary));
   }
-  append(this->Parts.VacuumSources());
-  const bool escapes = this->Parts.Finer.correctsEscape;
+  append(this->Parts.Lights.VacuumSources());
+  const bool escapes = this->Parts.Lights.Finer.correctsEscape;
   const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
   Buffer<float> firstMoments;
@@ -236,7 +236,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   for (std::size_t i = 0; i < sources.size(); ++i)
   {
     const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
-    const bool isLamp = i < this->Parts.Lamps.size();
+    const bool isLamp = i < this->Parts.Lights.Lamps.size();
     if (this->AtFaces && isLamp) // never if moments are stored
     {
       Add(tally, this->AddLamp(*sources[i], ofSource));
@@ -248,11 +248,11 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
     Add(tally, this->Parts.AddUncollided(*sources[i], deposit, ofSource));
     if (this->AtFaces && isSwept)
     {
-      const bool ofVacuum = this->Parts.OfVacuum && i + 1 == sources.size();
+      const bool ofVacuum = this->Parts.Lights.OfVacuum && i + 1 == sources.size();
       this->TheDomain.Collective(
-        [&] { this->AtFaces->TakeIncoming(ofVacuum ? *this->Parts.OfVacuum : *this->Parts.Fine); });
+        [&] { this->AtFaces->TakeIncoming(ofVacuum ? *this->Parts.Lights.OfVacuum : *this->Parts.Lights.Fine); });
     }
-    if (i + 1 == this->Parts.Lamps.size())
+    if (i + 1 == this->Parts.Lights.Lamps.size())
     {
       this->ShowLamps();
     }
@@ -312,7 +312,7 @@ Deposit SourceIteration::DepositOfSweep() const
 
 void SourceIteration::SweepOrder(const Monitor& monitor)
 {
-  const SweepBoundary boundary = this->Order == 0 ? this->Parts.BoundaryOfSweeps() : SweepBoundary();
+  const SweepBoundary boundary = this->Order == 0 ? this->Parts.Lights.BoundaryOfSweeps() : SweepBoundary();
   const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0 && Sum(this->Reflected) == 0.0;
   this->WasOnTheWay = std::exchange(this->OnTheWay, {});
   if (nothing)
@@ -477,7 +477,7 @@ void SourceIteration::FindOctantSources()
     return;
   }
   this->TheDomain.Collective([&] { this->AtFaces->TakeIncoming(this->Parts.Usual); });
-  const BeyondFaces beyond = this->Parts.FetchBeyond(this->AtFaces->CameInThroughFaces());
+  const BeyondFaces beyond = this->Parts.Transport.FetchBeyond(this->AtFaces->CameInThroughFaces());
   this->TheDomain.Collective([&] { this->AtFaces->Find(this->Parts.Source, beyond); });
 }
 
@@ -499,9 +499,9 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
       // Before the first order, `shown` holds only light of lamps.
       AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
         this->Order == 0 ? -1.0f : 1.0f);
-      if (this->Order == 0 && parts.Given)
+      if (this->Order == 0 && parts.Lights.Given)
       {
-        parts.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis, this->Result.shown);
+        parts.Lights.Given->AddStraightOn(parts.TheDevice, parts.Layout, parts.Basis, this->Result.shown);
       }
     }
   });

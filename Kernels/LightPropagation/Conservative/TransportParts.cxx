@@ -1,16 +1,11 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
-#include "LightPropagation/Emission/UncollidedEmission.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
-#include "LightPropagation/Sweep/SweepOfDevice.h"
 #include "LightPropagation/Uncollided/UncollidedBoundary.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
-#include "Medium/VoxelSums.h"
-#include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <exception>
-#include <functional>
 #include <utility>
 
 namespace tyndall
@@ -36,29 +31,6 @@ MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLay
   const bool unused = !traits.scatters && !byBalance;
   return { !(problem.Settings().leaveOut && (alike || unused)), byBalance };
 }
-
-/// Adds the mean boundary radiance.
-void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
-{
-  for (const Rgb& power : boundary ? boundary->IncomingPower() : std::array<Rgb, 6>())
-  {
-    for (std::size_t c = 0; c < mean.size(); ++c)
-    {
-      mean[c] += power[c] / (6.0 * Pi);
-    }
-  }
-}
-
-/// Separates localised emission, which is traced along exact rays. These neither wrap around periodic axes, because
-/// there would be infinitely many images, nor cross between blocks.
-SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& comesIn)
-{
-  const std::array<bool, 3>& periodic = problem.Settings().periodic;
-  const bool endless = periodic[0] || periodic[1] || periodic[2];
-  const bool has = problem.TheDomain().IsSerial() && !endless;
-  return problem.Traits().emits && problem.Settings().emissionError > 0.0 && has ? Split(problem.TheMedium(), comesIn)
-                                                                                 : SplitEmission();
-}
 }
 
 TransportParts::TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how,
@@ -72,27 +44,14 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Scattering(
       MakeScattering(device, this->Layout, this->OnDevice, problem.Scattering().Degree(), problem.ComputesScattering()))
   , Usual(problem.Whole(), problem.Settings(), std::move(usual), StartsOf(problem.Settings()))
-  , Finer(finer)
+  , Lights(problem, this->ByBalance(), this->Layout, this->Usual, finer)
+  , Transport(device, problem.TheDomain(), this->Layout, this->OnDevice.SigmaT(), problem.Settings().periodic)
 {
-  if (problem.HasGivenLight())
-  {
-    this->Given = std::make_unique<GivenLight>(problem.Shining().uncollided, problem.TheMedium(), problem.Scattering());
-  }
-  this->FindBoundaryLight();
-  Rgb comesIn = {};
-  AddMeanRadiance(this->UsualBoundary.get(), comesIn);
-  AddMeanRadiance(this->ByBalance() ? nullptr : this->FineBoundary.get(), comesIn);
-  this->Emission = SplitEmissionOf(problem, comesIn);
   this->FindFaceLight();
-  if (!this->TheDomain().IsSerial())
-  {
-    this->Across = std::make_unique<AcrossFaces>(
-      device, this->TheDomain().Comm(), this->TheDomain().Partition(), this->Layout, problem.Settings().periodic);
-  }
   if (problem.Scattering().Degree() > 0 && !this->IsEmpty())
   {
     this->Angular =
-      std::make_unique<SweptMoments>(this->Usual, problem.TheMedium().phase, problem.Scattering(), this->Lamps);
+      std::make_unique<SweptMoments>(this->Usual, problem.TheMedium().phase, problem.Scattering(), this->Lights.Lamps);
     this->Basis = &this->Angular->Basis();
   }
   const MediumTraits& traits = problem.Traits();
@@ -120,13 +79,13 @@ int TransportParts::Functions() const
 
 void TransportParts::LoadSource()
 {
-  this->FindVacuum();
+  this->Lights.FindVacuum();
   bool shines = false;
   this->TheDomain().Collective([&] {
     shines = this->LoadEmission(this->Source);
-    if (this->Given && this->Problem.ComputesScattering())
+    if (this->Lights.Given && this->Problem.ComputesScattering())
     {
-      const bool more = this->Given->AddStraightOn(this->TheDevice, this->Layout, this->Basis, this->Source);
+      const bool more = this->Lights.Given->AddStraightOn(this->TheDevice, this->Layout, this->Basis, this->Source);
       shines = shines || more;
     }
   });
@@ -139,109 +98,10 @@ bool TransportParts::LoadEmission(Buffer<float>& source) const
   {
     return false;
   }
-  const std::vector<float> emitted = this->EmissionOf(false);
+  const std::vector<float> emitted = this->Lights.EmissionOf(false);
   const bool shines = std::any_of(emitted.begin(), emitted.end(), [](float value) { return value > 0.0f; });
   source.Write(emitted.data(), emitted.size() - SweepPadding);
   return shines;
-}
-
-/// Emission without localised emission, W / (length^3 sr).
-/// @param emptyVoxels  of empty voxels that are swept separately; false: of all other voxels
-std::vector<float> TransportParts::EmissionOf(bool emptyVoxels) const
-{
-  const PropagationProblem& problem = this->Problem;
-  const Field smooth = this->Emission.Smooth(problem.TheMedium());
-  return Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) {
-    const bool apart = this->OfVacuum && VacuumEmission::IsEmpty(problem.Scattering().SigmaT(i, c), this->Layout.grid);
-    return apart == emptyVoxels ? smooth.At(i, c) : 0.0f;
-  });
-}
-
-void TransportParts::FindVacuum()
-{
-  const PropagationSettings& settings = this->Problem.Settings();
-  const Grid& grid = this->Problem.Whole();
-  if (!this->Problem.Traits().emits || !VacuumEmission::IsApart(grid, settings))
-  {
-    return;
-  }
-  bool any = false;
-  this->TheDomain().Collective([&] {
-    this->OfVacuum = VacuumEmission::DirectionsFor(grid, settings);
-    const std::vector<float> emitted = this->EmissionOf(true);
-    any = std::any_of(emitted.begin(), emitted.end(), [](float value) { return value > 0.0f; });
-  });
-  if (!this->TheDomain().Any(any))
-  {
-    this->OfVacuum.reset();
-  }
-}
-
-/// Separates the environment into peaks and a smooth part, for the directions of that smooth part.
-SplitEnvironment TransportParts::SplitFar(const Environment& environment) const
-{
-  return Split(environment, (this->Fine && !this->Finer.ofFacesAlone ? *this->Fine : this->Usual).Set());
-}
-
-void TransportParts::FindBoundaryLight()
-{
-  const PropagationSettings& settings = this->Problem.Settings();
-  const Illumination& shining = this->Problem.Shining();
-  const Grid& grid = this->Problem.Whole();
-  if (this->Finer.perFace > 0)
-  {
-    this->Fine = FinerDirections(grid, settings, this->Finer.perFace, this->ByBalance());
-  }
-  const SplitEnvironment environment = this->SplitFar(shining.environment);
-  this->Lamps = shining.lights;
-  this->Lamps.insert(this->Lamps.end(), environment.peaks.begin(), environment.peaks.end());
-  this->FarAway = environment.smooth;
-  this->FindFineBoundary();
-  const bool all = this->ByBalance() || !this->FineBoundary;
-  this->UsualBoundary = std::make_unique<BoundaryLight>(grid, settings, this->Usual,
-    all ? shining : AlongUsual(this->Finer, shining), all || this->Finer.ofFacesAlone ? this->FarAway : Environment());
-  if (this->SweepCarriesBoundarySource())
-  {
-    this->UsualBoundary->CheckRays(this->Layout.channels);
-  }
-}
-
-/// Makes the boundary source along the finer quadrature. A uniform boundary source keeps the usual quadrature, as
-/// scattered light has, so that a furnace stays uniform. DSA with reflecting faces also keeps it, because faces cannot
-/// reflect part of the light along other directions than those of sweeps.
-void TransportParts::FindFineBoundary()
-{
-  const PropagationSettings& settings = this->Problem.Settings();
-  const Illumination& shining = this->Problem.Shining();
-  if (!this->Fine)
-  {
-    return;
-  }
-  const Grid& grid = this->Problem.Whole();
-  const bool ofAll = !this->Finer.ofFacesAlone;
-  auto fine = std::make_unique<BoundaryLight>(
-    grid, settings, *this->Fine, AlongFiner(this->Finer, shining), ofAll ? this->FarAway : Environment());
-  const bool isEven = (this->ByBalance() || !ofAll) && fine->IsEven();
-  if (!fine->Shines() || isEven || (this->ByBalance() && Reflects(shining)))
-  {
-    return;
-  }
-  // Automatically chosen finer directions are dropped if few of their rays would hit the faces.
-  if (ofAll)
-  {
-    fine->CheckRays(this->Layout.channels);
-  }
-  else if (!BoundaryLight::HasEnoughRays(grid, settings, *this->Fine))
-  {
-    return;
-  }
-  this->FineBoundary = std::move(fine);
-}
-
-BoundaryLight TransportParts::FinePartAlongUsual() const
-{
-  return { this->Problem.Whole(), this->Problem.Settings(), this->Usual,
-    AlongFiner(this->Finer, this->Problem.Shining()), this->Finer.ofFacesAlone ? Environment() : this->FarAway };
 }
 
 void TransportParts::FindFaceLight()
@@ -255,15 +115,6 @@ void TransportParts::FindFaceLight()
   }
 }
 
-SweepBoundary TransportParts::BoundaryOfSweeps() const
-{
-  if (this->SweepCarriesBoundarySource())
-  {
-    return this->UsualBoundary->Boundary();
-  }
-  return this->Problem.Settings().leaveOut ? SweepBoundary() : [](int, int) { return Rgb{}; };
-}
-
 Deposit TransportParts::WholeDeposit() const
 {
   return { &this->Path, this->Flux.Size() > 0 ? &this->Flux : nullptr, nullptr, nullptr,
@@ -275,121 +126,9 @@ std::vector<AxisBundles> TransportParts::AllRays() const
   return { { 0, this->Usual.Along(0) }, { 1, this->Usual.Along(1) }, { 2, this->Usual.Along(2) } };
 }
 
-std::unique_ptr<SweepOperator> TransportParts::MakeSweep(const SweepRequest& request)
-{
-  const Domain& domain = this->TheDomain();
-  const std::array<bool, 3>& periodic = this->Problem.Settings().periodic;
-  std::unique_ptr<SweepOperator> sweep;
-  domain.Collective([&] {
-    if (domain.IsSerial())
-    {
-      sweep = SweepOfDevice(this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, request, this->Workspace);
-      return;
-    }
-    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, domain.Comm(), domain.Partition(), this->Layout,
-      this->OnDevice.SigmaT(), periodic, request, this->PipelineWorkspace);
-  });
-  return sweep;
-}
-
-BeyondFaces TransportParts::FetchBeyond(const Buffer<float>& byFaces)
-{
-  return this->Across ? this->Across->Fetch(byFaces) : BeyondFaces();
-}
-
-std::vector<Light> TransportParts::LampsOf(const Illumination& illumination) const
-{
-  const SplitEnvironment environment = this->SplitFar(illumination.environment);
-  std::vector<Light> lamps = illumination.lights;
-  lamps.insert(lamps.end(), environment.peaks.begin(), environment.peaks.end());
-  return lamps;
-}
-
-TransportParts::Sources TransportParts::LampSources() const
-{
-  Sources sources;
-  for (const Light& lamp : this->Lamps)
-  {
-    sources.push_back(std::make_unique<UncollidedLamp>(lamp));
-  }
-  return sources;
-}
-
-TransportParts::Sources TransportParts::BrightEmissionSources() const
-{
-  Sources sources;
-  for (const EmissionPeak& peak : this->Emission.peaks)
-  {
-    sources.push_back(std::make_unique<UncollidedEmission>(peak, this->Problem.Settings().emissionError));
-  }
-  return sources;
-}
-
-TransportParts::Sources TransportParts::OtherSources() const
-{
-  Sources sources = this->BrightEmissionSources();
-  if (this->Given)
-  {
-    sources.push_back(std::make_unique<GivenLight>(*this->Given));
-  }
-  return sources;
-}
-
-TransportParts::Sources TransportParts::VacuumSources() const
-{
-  Sources sources;
-  if (this->OfVacuum)
-  {
-    sources.push_back(std::make_unique<VacuumEmission>(*this->OfVacuum, this->EmissionOf(true)));
-  }
-  return sources;
-}
-
-void TransportParts::CountEmission(EnergyLedger& ledger) const
-{
-  const double volume = this->Layout.grid.VoxelVolume();
-  Rgb emitted = {};
-  for (int c = 0; c < this->Layout.channels && this->Problem.Traits().emits; ++c)
-  {
-    emitted[c] = SumOverVoxels(this->Layout.grid,
-      [&](std::size_t i) { return 4.0 * Pi * this->Problem.TheMedium().emission.At(i, c) * volume; });
-  }
-  emitted = this->TheDomain().Sum(emitted);
-  for (int c = 0; c < this->Layout.channels; ++c)
-  {
-    ledger.Emit(c, emitted[c]);
-  }
-}
-
-UncollidedVolume TransportParts::VolumeOf(const Deposit& deposit)
-{
-  const Domain& domain = this->TheDomain();
-  const std::array<bool, 3>& periodic = this->Problem.Settings().periodic;
-  const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  UncollidedVolume volume = { this->TheDevice, this->Layout, this->OnDevice.SigmaT(), periodic, sweeps, deposit,
-    this->Basis, nullptr };
-  if (domain.IsSerial())
-  {
-    return volume;
-  }
-  volume.whole = &this->Problem.Whole();
-  volume.fetchBeyond = [this](const Buffer<float>& byFaces) { return this->FetchBeyond(byFaces); };
-  volume.together = [&domain](const std::function<void()>& step) { domain.Collective(step); };
-  volume.followLamp = [this, &domain, &periodic](
-                        const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor) {
-    if (!this->NearLamps)
-    {
-      this->NearLamps = std::make_unique<LampsInBlocks>(
-        this->TheDevice, domain.Comm(), domain.Partition(), periodic, this->Layout, this->OnDevice.SigmaT());
-    }
-    return this->NearLamps->Deposit(ofChannels, lamp, monitor);
-  };
-  return volume;
-}
-
 SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor)
 {
-  UncollidedVolume volume = this->VolumeOf(deposit);
+  UncollidedVolume volume = this->Transport.VolumeOf(deposit, this->Basis);
   const int beam = this->SlotOf(source);
   Buffer<float> path;
   this->TheDomain().Collective([&] {
@@ -462,9 +201,9 @@ SweepTally TransportParts::SumOfVoxels(const SweepTally& own) const
 int TransportParts::SlotOf(const UncollidedSource& source) const
 {
   const auto* lamp = dynamic_cast<const UncollidedLamp*>(&source);
-  for (std::size_t i = 0; lamp && this->Angular && i < this->Lamps.size(); ++i)
+  for (std::size_t i = 0; lamp && this->Angular && i < this->Lights.Lamps.size(); ++i)
   {
-    if (&lamp->TheLight() == &this->Lamps[i])
+    if (&lamp->TheLight() == &this->Lights.Lamps[i])
     {
       return this->Angular->BeamOf(i);
     }
@@ -540,7 +279,7 @@ TransportParts::EvenSky TransportParts::FindEvenSky(const Monitor& monitor)
     const BoundaryLight light(this->Problem.Whole(), settings, directions, evenly, {});
     return this->FindUncollidedPath(UncollidedBoundary(settings, light), ofThese);
   };
-  return { along(*this->Fine, OfPart(monitor, 0.0, 0.8)), along(this->Usual, OfPart(monitor, 0.8, 1.0)) };
+  return { along(*this->Lights.Fine, OfPart(monitor, 0.0, 0.8)), along(this->Usual, OfPart(monitor, 0.8, 1.0)) };
 }
 
 std::unique_ptr<TransportParts> MakeParts(Device& device, const PropagationProblem& problem, IterationScheme how)

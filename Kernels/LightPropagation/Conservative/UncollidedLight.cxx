@@ -49,8 +49,8 @@ UncollidedLight::UncollidedLight(
   , Block(block)
   , Coefficients(medium)
 {
-  parts.CountEmission(this->Counted);
-  const double sources = parts.FineBoundary ? 0.5 : 1.0; // fraction of the time
+  parts.Lights.CountEmission(this->Counted);
+  const double sources = parts.Lights.FineBoundary ? 0.5 : 1.0; // fraction of the time
   this->AddSources(OfPart(monitor, 0.0, sources));
   this->TheDomain.Collective([&] {
     if (parts.Basis && parts.Problem.Settings().netFlux)
@@ -60,7 +60,7 @@ UncollidedLight::UncollidedLight(
     this->Lengths = parts.Path.Read();
   });
   this->Counted.Count(this->OfSources);
-  if (parts.FineBoundary)
+  if (parts.Lights.FineBoundary)
   {
     this->AddBoundaryDifference(OfPart(monitor, sources, 1.0));
   }
@@ -70,7 +70,7 @@ UncollidedLight::UncollidedLight(
 /// In optically thick voxels the position of first collisions of lamp light matters.
 bool UncollidedLight::NeedsFirstMoments() const
 {
-  return this->LinearSource && !this->Parts.Lamps.empty() &&
+  return this->LinearSource && !this->Parts.Lights.Lamps.empty() &&
     this->TheDomain.Any(AnyVoxelIsThickerThan(ThickForFirstMoments, this->TheMedium));
 }
 
@@ -96,9 +96,9 @@ void UncollidedLight::MakePassing()
 void UncollidedLight::AddSources(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
-  const TransportParts::Sources lamps = parts.LampSources();
-  TransportParts::Sources others = parts.OtherSources();
-  for (std::unique_ptr<UncollidedSource>& vacuum : parts.VacuumSources())
+  const LightSources::Sources lamps = parts.Lights.LampSources();
+  LightSources::Sources others = parts.Lights.OtherSources();
+  for (std::unique_ptr<UncollidedSource>& vacuum : parts.Lights.VacuumSources())
   {
     others.push_back(std::move(vacuum));
   }
@@ -229,8 +229,9 @@ void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
   const PropagationSettings& settings = parts.Problem.Settings();
-  const auto fine = parts.FindUncollided(UncollidedBoundary(settings, *parts.FineBoundary), OfPart(monitor, 0.0, 0.4));
-  const BoundaryLight alongUsual = parts.FinePartAlongUsual();
+  const auto fine =
+    parts.FindUncollided(UncollidedBoundary(settings, *parts.Lights.FineBoundary), OfPart(monitor, 0.0, 0.4));
+  const BoundaryLight alongUsual = parts.Lights.FinePartAlongUsual();
   const auto usual = parts.FindUncollided(UncollidedBoundary(settings, alongUsual), OfPart(monitor, 0.4, 0.5));
   const bool staysEven = settings.uncollidedDirections < 0 || ScatteredManyTimes(parts.Problem);
   const TransportParts::EvenSky even =

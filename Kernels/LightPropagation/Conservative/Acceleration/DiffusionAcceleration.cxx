@@ -73,9 +73,9 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   }
   if (this->Box)
   {
-    const bool shines = this->Parts.SweepCarriesBoundarySource();
+    const bool shines = this->Parts.Lights.SweepCarriesBoundarySource();
     this->Result.leftByCell = this->Box->LeftByCell(
-      shines ? this->Parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{}, this->TheMedium);
+      shines ? this->Parts.Lights.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{}, this->TheMedium);
   }
   return std::move(this->Result);
 }
@@ -162,7 +162,7 @@ void DiffusionAcceleration::MakeSweep()
   request.sameBoundary = true;
   request.angular = parts.UsualValues();
   request.faceIn = parts.LightByCells();
-  this->Swept = parts.MakeSweep(request);
+  this->Swept = parts.Transport.MakeSweep(request);
 }
 
 /// No flux: the diffusion system provides it.
@@ -189,7 +189,8 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
     this->Swept->Forget();
   });
   const bool shines = iteration > 0 || this->Parts.HasSource();
-  this->Tally = this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.BoundaryOfSweeps(), monitor);
+  this->Tally =
+    this->Swept->Apply(shines ? &this->Parts.Source : nullptr, this->Parts.Lights.BoundaryOfSweeps(), monitor);
   if (this->Box)
   {
     this->Box->TakeSwept();
@@ -268,7 +269,7 @@ void DiffusionAcceleration::MakeSystems()
   const CrossingPattern pattern = FindCrossingPattern(this->TheDomain.Whole(), parts.Usual.Set(),
     this->Settings.mapResolution, parts.Usual.Starts(), this->Settings.periodic);
   const std::array<Rgb, 6> incoming =
-    parts.SweepCarriesBoundarySource() ? parts.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
+    parts.Lights.SweepCarriesBoundarySource() ? parts.Lights.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
   const VolumeLayout& held = this->Block.WithGhosts();
   const GhostedMedium& medium = this->Coefficients;
   const bool passes = this->Uncollided->Passes();
@@ -553,6 +554,6 @@ void DiffusionAcceleration::FindSurfaceRadiance()
     }
   });
   this->Result.surfaceRadiance = SurfaceRadiance(
-    this->TheDomain, this->Settings.periodic, this->TheMedium, layout.channels, this->Parts.Lamps, powers);
+    this->TheDomain, this->Settings.periodic, this->TheMedium, layout.channels, this->Parts.Lights.Lamps, powers);
 }
 }

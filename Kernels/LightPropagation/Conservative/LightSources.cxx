@@ -1,0 +1,220 @@
+#include "LightPropagation/Conservative/LightSources.h"
+
+#include "LightPropagation/Emission/UncollidedEmission.h"
+#include "LightPropagation/Uncollided/UncollidedLamp.h"
+#include "Medium/VoxelSums.h"
+#include "Numerics/Constants.h"
+
+#include <algorithm>
+
+namespace tyndall
+{
+namespace
+{
+/// Adds the mean boundary radiance.
+void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
+{
+  for (const Rgb& power : boundary ? boundary->IncomingPower() : std::array<Rgb, 6>())
+  {
+    for (std::size_t c = 0; c < mean.size(); ++c)
+    {
+      mean[c] += power[c] / (6.0 * Pi);
+    }
+  }
+}
+
+/// Separates localised emission, which is traced along exact rays. These neither wrap around periodic axes, because
+/// there would be infinitely many images, nor cross between blocks.
+SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& comesIn)
+{
+  const std::array<bool, 3>& periodic = problem.Settings().periodic;
+  const bool endless = periodic[0] || periodic[1] || periodic[2];
+  const bool has = problem.TheDomain().IsSerial() && !endless;
+  return problem.Traits().emits && problem.Settings().emissionError > 0.0 && has ? Split(problem.TheMedium(), comesIn)
+                                                                                 : SplitEmission();
+}
+}
+
+LightSources::LightSources(const PropagationProblem& problem, bool byBalance, const VolumeLayout& layout,
+  const SweptDirections& usual, const UncollidedDirections& finer)
+  : Problem(problem)
+  , ByBalance(byBalance)
+  , Layout(layout)
+  , Usual(usual)
+  , Finer(finer)
+{
+  if (problem.HasGivenLight())
+  {
+    this->Given = std::make_unique<GivenLight>(problem.Shining().uncollided, problem.TheMedium(), problem.Scattering());
+  }
+  this->FindBoundaryLight();
+  Rgb comesIn = {};
+  AddMeanRadiance(this->UsualBoundary.get(), comesIn);
+  AddMeanRadiance(byBalance ? nullptr : this->FineBoundary.get(), comesIn);
+  this->Emission = SplitEmissionOf(problem, comesIn);
+}
+
+std::vector<float> LightSources::EmissionOf(bool emptyVoxels) const
+{
+  const PropagationProblem& problem = this->Problem;
+  const Field smooth = this->Emission.Smooth(problem.TheMedium());
+  return Planar(this->Layout, this->Layout.channels, [&](std::size_t i, int c) {
+    const bool apart = this->OfVacuum && VacuumEmission::IsEmpty(problem.Scattering().SigmaT(i, c), this->Layout.grid);
+    return apart == emptyVoxels ? smooth.At(i, c) : 0.0f;
+  });
+}
+
+void LightSources::FindVacuum()
+{
+  const PropagationSettings& settings = this->Problem.Settings();
+  const Grid& grid = this->Problem.Whole();
+  if (!this->Problem.Traits().emits || !VacuumEmission::IsApart(grid, settings))
+  {
+    return;
+  }
+  bool any = false;
+  this->Problem.TheDomain().Collective([&] {
+    this->OfVacuum = VacuumEmission::DirectionsFor(grid, settings);
+    const std::vector<float> emitted = this->EmissionOf(true);
+    any = std::any_of(emitted.begin(), emitted.end(), [](float value) { return value > 0.0f; });
+  });
+  if (!this->Problem.TheDomain().Any(any))
+  {
+    this->OfVacuum.reset();
+  }
+}
+
+/// Separates the environment into peaks and a smooth part, for the directions of that smooth part.
+SplitEnvironment LightSources::SplitFar(const Environment& environment) const
+{
+  return Split(environment, (this->Fine && !this->Finer.ofFacesAlone ? *this->Fine : this->Usual).Set());
+}
+
+void LightSources::FindBoundaryLight()
+{
+  const PropagationSettings& settings = this->Problem.Settings();
+  const Illumination& shining = this->Problem.Shining();
+  const Grid& grid = this->Problem.Whole();
+  if (this->Finer.perFace > 0)
+  {
+    this->Fine = FinerDirections(grid, settings, this->Finer.perFace, this->ByBalance);
+  }
+  const SplitEnvironment environment = this->SplitFar(shining.environment);
+  this->Lamps = shining.lights;
+  this->Lamps.insert(this->Lamps.end(), environment.peaks.begin(), environment.peaks.end());
+  this->FarAway = environment.smooth;
+  this->FindFineBoundary();
+  const bool all = this->ByBalance || !this->FineBoundary;
+  this->UsualBoundary = std::make_unique<BoundaryLight>(grid, settings, this->Usual,
+    all ? shining : AlongUsual(this->Finer, shining), all || this->Finer.ofFacesAlone ? this->FarAway : Environment());
+  if (this->SweepCarriesBoundarySource())
+  {
+    this->UsualBoundary->CheckRays(this->Layout.channels);
+  }
+}
+
+/// Makes the boundary source along the finer quadrature. A uniform boundary source keeps the usual quadrature, as
+/// scattered light has, so that a furnace stays uniform. DSA with reflecting faces also keeps it, because faces cannot
+/// reflect part of the light along other directions than those of sweeps.
+void LightSources::FindFineBoundary()
+{
+  const PropagationSettings& settings = this->Problem.Settings();
+  const Illumination& shining = this->Problem.Shining();
+  if (!this->Fine)
+  {
+    return;
+  }
+  const Grid& grid = this->Problem.Whole();
+  const bool ofAll = !this->Finer.ofFacesAlone;
+  auto fine = std::make_unique<BoundaryLight>(
+    grid, settings, *this->Fine, AlongFiner(this->Finer, shining), ofAll ? this->FarAway : Environment());
+  const bool isEven = (this->ByBalance || !ofAll) && fine->IsEven();
+  if (!fine->Shines() || isEven || (this->ByBalance && Reflects(shining)))
+  {
+    return;
+  }
+  // Automatically chosen finer directions are dropped if few of their rays would hit the faces.
+  if (ofAll)
+  {
+    fine->CheckRays(this->Layout.channels);
+  }
+  else if (!BoundaryLight::HasEnoughRays(grid, settings, *this->Fine))
+  {
+    return;
+  }
+  this->FineBoundary = std::move(fine);
+}
+
+BoundaryLight LightSources::FinePartAlongUsual() const
+{
+  return { this->Problem.Whole(), this->Problem.Settings(), this->Usual,
+    AlongFiner(this->Finer, this->Problem.Shining()), this->Finer.ofFacesAlone ? Environment() : this->FarAway };
+}
+
+SweepBoundary LightSources::BoundaryOfSweeps() const
+{
+  if (this->SweepCarriesBoundarySource())
+  {
+    return this->UsualBoundary->Boundary();
+  }
+  return this->Problem.Settings().leaveOut ? SweepBoundary() : [](int, int) { return Rgb{}; };
+}
+
+std::vector<Light> LightSources::LampsOf(const Illumination& illumination) const
+{
+  const SplitEnvironment environment = this->SplitFar(illumination.environment);
+  std::vector<Light> lamps = illumination.lights;
+  lamps.insert(lamps.end(), environment.peaks.begin(), environment.peaks.end());
+  return lamps;
+}
+
+LightSources::Sources LightSources::LampSources() const
+{
+  Sources sources;
+  for (const Light& lamp : this->Lamps)
+  {
+    sources.push_back(std::make_unique<UncollidedLamp>(lamp));
+  }
+  return sources;
+}
+
+LightSources::Sources LightSources::OtherSources() const
+{
+  Sources sources;
+  for (const EmissionPeak& peak : this->Emission.peaks)
+  {
+    sources.push_back(std::make_unique<UncollidedEmission>(peak, this->Problem.Settings().emissionError));
+  }
+  if (this->Given)
+  {
+    sources.push_back(std::make_unique<GivenLight>(*this->Given));
+  }
+  return sources;
+}
+
+LightSources::Sources LightSources::VacuumSources() const
+{
+  Sources sources;
+  if (this->OfVacuum)
+  {
+    sources.push_back(std::make_unique<VacuumEmission>(*this->OfVacuum, this->EmissionOf(true)));
+  }
+  return sources;
+}
+
+void LightSources::CountEmission(EnergyLedger& ledger) const
+{
+  const double volume = this->Layout.grid.VoxelVolume();
+  Rgb emitted = {};
+  for (int c = 0; c < this->Layout.channels && this->Problem.Traits().emits; ++c)
+  {
+    emitted[c] = SumOverVoxels(this->Layout.grid,
+      [&](std::size_t i) { return 4.0 * Pi * this->Problem.TheMedium().emission.At(i, c) * volume; });
+  }
+  emitted = this->Problem.TheDomain().Sum(emitted);
+  for (int c = 0; c < this->Layout.channels; ++c)
+  {
+    ledger.Emit(c, emitted[c]);
+  }
+}
+}
