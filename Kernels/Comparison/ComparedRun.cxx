@@ -1,8 +1,5 @@
 #include "Comparison/ComparedRun.h"
 
-#include "Comparison/LatticeRuns.h"
-#include "Comparison/PhotonRuns.h"
-#include "Comparison/PropagationRuns.h"
 #include "Device/Errors.h"
 
 #include <algorithm>

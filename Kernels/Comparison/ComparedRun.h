@@ -83,6 +83,13 @@ struct ComparedRun
 std::vector<ComparedRun> RunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
 
+/// The runs of one family of methods, in any order. Lattices have none if no compared grid has cubic voxels.
+std::vector<ComparedRun> LatticeRunsOf(Device& device, const ComparedScene& scene, const ComparedSettings& settings);
+std::vector<ComparedRun> PhotonRunsOf(
+  ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
+std::vector<ComparedRun> PropagationRunsOf(
+  ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
+
 /// Light of `photons` evenly distributed, unfiltered photons, for a reference.
 /// @param orders  MarchSettings::maximumOrders: 1, unscattered light; 0, all
 LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t photons, int orders, std::uint64_t seed,

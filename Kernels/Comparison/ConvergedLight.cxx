@@ -3,7 +3,6 @@
 // The reference that a comparison computes if none is given; see SolverComparison.h.
 
 #include "Comparison/PhotonReference.h"
-#include "Comparison/TimeLimit.h"
 #include "Device/Errors.h"
 #include "Numerics/NumberText.h"
 

@@ -1,4 +1,4 @@
-#include "Comparison/LatticeRuns.h"
+#include "Comparison/ComparedRun.h"
 
 #include "LatticeBoltzmann/CubicVoxels.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"

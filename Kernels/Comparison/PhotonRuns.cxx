@@ -1,4 +1,4 @@
-#include "Comparison/PhotonRuns.h"
+#include "Comparison/ComparedRun.h"
 
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Importance/PhotonImportance.h"

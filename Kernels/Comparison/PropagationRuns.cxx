@@ -1,4 +1,4 @@
-#include "Comparison/PropagationRuns.h"
+#include "Comparison/ComparedRun.h"
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"

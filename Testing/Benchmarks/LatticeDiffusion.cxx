@@ -4,7 +4,7 @@
 #include "Measure.h"
 #include "Report.h"
 
-#include "Comparison/GridTransfer.h"
+#include "Comparison/ComparedScene.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "Numerics/Constants.h"
 #include "Photons/Emission/PhotonEmitter.h"

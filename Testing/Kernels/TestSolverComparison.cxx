@@ -1,7 +1,5 @@
 #include "DeviceTest.h"
 
-#include "Comparison/ComparisonErrors.h"
-#include "Comparison/MeansOfSets.h"
 #include "Comparison/PhotonReference.h"
 #include "Comparison/SolverComparison.h"
 #include "Device/CompilationListener.h"
