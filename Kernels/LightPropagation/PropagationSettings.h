@@ -29,7 +29,7 @@ struct PropagationSettings
 {
   int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
   bool adaptDirections = true; ///< use more for slabs (UnvaryingAxes.h); false: exactly directionsPerFace
-  /// Number of polar cosines per hemisphere for plane-parallel media (PlaneParallel/IsPlaneParallel.h); 0: 16, or 20 if
+  /// Number of polar cosines per hemisphere for plane-parallel media (PlaneParallelPropagation.h); 0: 16, or 20 if
   /// scattering is anisotropic.
   int polarNodes = 0;
   /// Directions per cube face, a square number, for uncollided light of boundary sources, sky and environment

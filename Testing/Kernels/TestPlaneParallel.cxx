@@ -5,7 +5,7 @@
 
 #include "Device/Errors.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
-#include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
+#include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Reference/ReferenceTable.h"

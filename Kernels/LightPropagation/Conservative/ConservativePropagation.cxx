@@ -11,7 +11,6 @@
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Emission/GlobalStatistics.h"
-#include "LightPropagation/PlaneParallel/IsPlaneParallel.h"
 #include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
 #include "LightPropagation/Problem/AxisPermutation.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"

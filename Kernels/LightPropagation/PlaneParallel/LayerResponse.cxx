@@ -1,15 +1,50 @@
 #include "LightPropagation/PlaneParallel/LayerResponse.h"
 
-#include "LightPropagation/PlaneParallel/LayerIntegrals.h"
+#include "Numerics/Legendre.h"
 
-#include <Eigen/LU>
-
+#include <algorithm>
 #include <cmath>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 namespace tyndall
 {
 namespace
 {
+constexpr double Thin =
+  1e-3; ///< below it x^2 is neglected beside 1 in integrals of a beam, above it differences are used
+
+/// (1 - exp(-r)) / r
+double MeanOfExponential(double r)
+{
+  return r < 1e-8 ? 1.0 - 0.5 * r : -std::expm1(-r) / r;
+}
+
+/// Integral of exp(-x (1 - s) - r s) over [0, 1].
+double MeanOfBoth(double x, double r)
+{
+  const double half = 0.5 * (x - r);
+  if (std::abs(half) > 1.0)
+  {
+    return (std::exp(-r) - std::exp(-x)) / (x - r);
+  }
+  const double sinhOver = std::abs(half) < 1e-4 ? 1.0 + half * half / 6.0 : std::sinh(half) / half;
+  return std::exp(-0.5 * (x + r)) * sinhOver;
+}
+
+/// Integral of s^power exp(-r s) over [0, 1] for r < 1, by its series.
+double SeriesOfMoment(int power, double r)
+{
+  double term = 1.0, sum = 0.0;
+  for (int n = 0; n < 20; ++n)
+  {
+    sum += term / (n + power + 1.0);
+    term *= -r / (n + 1.0);
+  }
+  return sum;
+}
+
 /// (x a - y b) (x a + y b)^-1 for diagonal a, b.
 Eigen::MatrixXd Ratio(const LayerModes& modes, const Eigen::ArrayXd& a, const Eigen::ArrayXd& b)
 {
@@ -18,6 +53,137 @@ Eigen::MatrixXd Ratio(const LayerModes& modes, const Eigen::ArrayXd& a, const Ei
   const Eigen::MatrixXd other = modes.y * (b * scale).matrix().asDiagonal();
   return (one + other).transpose().partialPivLu().solve((one - other).transpose()).transpose();
 }
+}
+
+HalfRangeQuadrature::HalfRangeQuadrature(int count)
+{
+  const GaussLegendre rule(count);
+  for (int i = 0; i < count; ++i)
+  {
+    const double root = 0.5 * (1.0 + rule.points[i]);
+    this->cosines.push_back(root * root);
+    this->weights.push_back(rule.weights[i] * root);
+  }
+}
+
+std::vector<double> NormalisedLegendre(int degree, int order, double x)
+{
+  std::vector<double> p(degree + 1, 0.0);
+  if (order > degree)
+  {
+    return p;
+  }
+  const double sine = std::sqrt(std::max(0.0, (1.0 - x) * (1.0 + x)));
+  p[order] = 1.0;
+  for (int i = 1; i <= order; ++i)
+  {
+    p[order] *= sine * std::sqrt((2.0 * i - 1.0) / (2.0 * i));
+  }
+  const double m = order;
+  for (int l = order + 1; l <= degree; ++l)
+  {
+    const double two = l > order + 1 ? std::sqrt((l - 1.0 - m) * (l - 1.0 + m)) * p[l - 2] : 0.0;
+    p[l] = ((2.0 * l - 1.0) * x * p[l - 1] - two) / std::sqrt((l - m) * (l + m));
+  }
+  return p;
+}
+
+double TanhOver(double x)
+{
+  return x < 1e-4 ? 1.0 - x * x / 3.0 : std::tanh(x) / x;
+}
+
+double MeanOfEvenSource(double x)
+{
+  return x < 0.02 ? (1.0 - 0.1 * x * x) / 12.0 : (1.0 - TanhOver(0.5 * x)) / (x * x);
+}
+
+BeamIntegrals::BeamIntegrals(double x, double r)
+{
+  this->meanBeam = MeanOfExponential(r);
+  if (x < Thin)
+  {
+    const double first = r < 1.0 ? SeriesOfMoment(1, r) : (this->meanBeam - std::exp(-r)) / r;
+    const double second = r < 1.0 ? SeriesOfMoment(2, r) : (2.0 * first - std::exp(-r)) / r;
+    this->slopeAtEntry = this->meanBeam - first;
+    this->slopeAtExit = first;
+    this->mean = 0.5 * (first - second);
+    return;
+  }
+  const double e = std::exp(-x), one = -std::expm1(-2.0 * x);
+  const double along = MeanOfExponential(x + r), against = MeanOfBoth(x, r);
+  this->slopeAtEntry = (along - e * against) / one;
+  this->slopeAtExit = (against - e * along) / one;
+  this->mean = (this->meanBeam - this->slopeAtEntry - this->slopeAtExit) / (x * x);
+}
+
+Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, int order)
+{
+  const auto count = static_cast<int>(nodes.cosines.size());
+  Eigen::MatrixXd values(count, degree + 1);
+  for (int i = 0; i < count; ++i)
+  {
+    const std::vector<double> at = NormalisedLegendre(degree, order, nodes.cosines[i]);
+    for (int l = 0; l <= degree; ++l)
+    {
+      values(i, l) = std::sqrt(nodes.weights[i]) * at[l];
+    }
+  }
+  return values;
+}
+
+namespace
+{
+/// Identity minus the scattering matrix, restricted to moments whose Legendre functions are even in the cosine, or odd.
+Eigen::MatrixXd OneLessScattered(
+  const LayerScattering& scattering, const Eigen::MatrixXd& legendre, int order, bool even)
+{
+  const Eigen::Index count = legendre.rows();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(count, count);
+  for (Eigen::Index l = order; l < legendre.cols(); ++l)
+  {
+    const double moment = scattering.phase.moments[static_cast<std::size_t>(l)];
+    if (((l + order) % 2 == 0) == even && moment != 0.0)
+    {
+      const auto at = legendre.col(l);
+      matrix.noalias() -= scattering.Albedo() * (2.0 * l + 1.0) * moment * at * at.transpose();
+    }
+  }
+  return matrix;
+}
+
+/// Square of the smallest k, whose mode is nearly isotropic. Its rounding error would act as absorption, so the
+/// contribution of the isotropic part is computed from the absorption instead.
+double SmallestSquare(const LayerScattering& scattering, const Eigen::MatrixXd& even, const Eigen::MatrixXd& legendre,
+  const Eigen::VectorXd& mode)
+{
+  const Eigen::VectorXd evenly = legendre.col(0);
+  const double part = evenly.dot(mode);
+  const Eigen::VectorXd rest = mode - part * evenly;
+  return std::max(0.0, scattering.absorbed * part * part + rest.dot(even * rest));
+}
+}
+
+LayerModes::LayerModes(const LayerScattering& scattering, const HalfRangeQuadrature& nodes, int order)
+{
+  const Eigen::MatrixXd legendre = LegendreAtNodes(nodes, static_cast<int>(scattering.phase.moments.size()) - 1, order);
+  const Eigen::VectorXd cosines =
+    Eigen::Map<const Eigen::VectorXd>(nodes.cosines.data(), static_cast<Eigen::Index>(nodes.cosines.size()));
+  const Eigen::MatrixXd even = OneLessScattered(scattering, legendre, order, true);
+  const Eigen::LLT<Eigen::MatrixXd> odd(OneLessScattered(scattering, legendre, order, false));
+  const Eigen::MatrixXd lower = odd.matrixL();
+  const Eigen::MatrixXd steep = cosines.cwiseInverse().asDiagonal() * lower;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> found(steep.transpose() * even * steep);
+  const Eigen::MatrixXd& vectors = found.eigenvectors();
+  this->k = found.eigenvalues().cwiseMax(0.0);
+  this->x = steep * vectors;
+  this->y = odd.matrixU().solve(vectors);
+  this->inverseX = this->y.transpose() * cosines.asDiagonal();
+  if (order == 0)
+  {
+    this->k[0] = SmallestSquare(scattering, even, legendre, this->x.col(0));
+  }
+  this->k = this->k.cwiseSqrt();
 }
 
 LayerOperator::LayerOperator(const LayerModes& modes, double depth)

@@ -1,11 +1,70 @@
 #pragma once
 
-#include "LightPropagation/PlaneParallel/LayerModes.h"
+#include "PhaseFunction/DeltaM.h"
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace tyndall
 {
+/// Half-range quadrature in the cosine on (0, 1): Gauss's rule in the square root of the cosine, which clusters nodes
+/// at grazing directions, where radiance varies fastest. With 16 nodes the transmittance of diffuse light, 2 E_3(tau),
+/// is accurate to 1e-7 and its mean within any layer to 2e-5 (Gauss's rule in the cosine itself: 5e-6, 7e-4).
+struct HalfRangeQuadrature
+{
+  explicit HalfRangeQuadrature(int count);
+
+  std::vector<double> cosines, weights; ///< ascending; the weights sum to 1
+};
+
+/// sqrt((l - m)! / (l + m)!) P_l^m(x) for l = 0 to `degree`, without the sign (-1)^m; 0 where l < m. |x| <= 1.
+std::vector<double> NormalisedLegendre(int degree, int order, double x);
+
+/// tanh(x) / x; 1 at 0.
+double TanhOver(double x);
+/// (1 - tanh(x / 2) / (x / 2)) / x^2; 1/12 at 0. This is the mean over [0, 1] of the solution of a'' = x^2 a - 1 with a
+/// = 0 at both ends.
+double MeanOfEvenSource(double x);
+
+/// Integrals of the solution of a'' = x^2 a - exp(-r s) on [0, 1] with a = 0 at both ends: a mode with decay rate x,
+/// driven by a beam that is attenuated by exp(-r) across a layer. x, r >= 0.
+struct BeamIntegrals
+{
+  BeamIntegrals(double x, double r);
+
+  double slopeAtEntry; ///< a'(0)
+  double slopeAtExit;  ///< -a'(1)
+  double mean;         ///< of a
+  double meanBeam;     ///< of exp(-r s)
+};
+
+/// Scattering of a medium, per mean free path.
+struct LayerScattering
+{
+  double absorbed = 1.0; ///< 1 - albedo; stored separately to keep digits near albedo 1
+  DeltaM phase;          ///< without the unscattered forward part
+
+  double Albedo() const { return 1.0 - this->absorbed; }
+};
+
+/// Eigenmodes of radiance in a uniform plane-parallel layer (numerics.md, Eqs. (P3) to (P6)). Multiply downward and
+/// upward radiance at each node by the square root of its weight; their sum is X a(z), their difference Y b(z), and
+/// each mode satisfies
+///   a' = -b + Y^T d,   b' = -k^2 a + X^T s
+/// independently, with z in mean free paths, and s, d the sum and difference of the sources. In this form modes need no
+/// growing exponentials, and only one (k = 0 without absorption) needs a limit.
+struct LayerModes
+{
+  /// @param order  of the Fourier series in azimuth
+  LayerModes(const LayerScattering& scattering, const HalfRangeQuadrature& nodes, int order);
+
+  Eigen::MatrixXd x, y, inverseX;
+  Eigen::VectorXd k; ///< >= 0, ascending
+};
+
+/// Normalised Legendre functions at the nodes, times sqrt(weight); column l.
+Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, int order);
+
 /// Reflection and transmission operators of a uniform layer, the same from both sides. Vectors are over the nodes:
 /// radiance times the square root of the weight.
 struct LayerOperator

@@ -3,11 +3,23 @@
 #include "Device/Monitor.h"
 #include "Light/LightField.h"
 #include "LightPropagation/PropagationSettings.h"
+#include "Lights/Lights.h"
 #include "Medium/Medium.h"
+
+#include <array>
 
 namespace tyndall
 {
-/// Plane-parallel solver, for scenes for which IsPlaneParallel (IsPlaneParallel.h) holds: discrete ordinates in the
+/// Axis along which layers are stacked: the only axis that is not periodic; -1 if the other two are not both periodic.
+int AxisOfLayers(const std::array<bool, 3>& periodic);
+
+/// Whether a scene is plane-parallel, and can be solved as such: two axes are periodic, all columns of voxels are
+/// equal, there are at most 8192 layers, and the only external sources are directional lights, sky and faces. Also, no
+/// setting may request what only the voxel solver has: a constant source, plain source iteration, a number of
+/// directions or moments, first moments (firstMoments), or leaveOut off.
+bool IsPlaneParallel(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
+
+/// Plane-parallel solver, for scenes for which IsPlaneParallel holds: discrete ordinates in the
 /// cosine to the axis of the layers, exact within each layer (numerics.md, section 10 d). Forward scattering beyond the
 /// moments that the nodes resolve is treated as unscattered (delta-M). Runs on the host, in a few milliseconds for 64
 /// layers; leftOut says so. Reports one iteration, without a residual.

@@ -1,5 +1,8 @@
 #include "LightPropagation/PlaneParallel/SlabScene.h"
 
+#include "Numerics/Constants.h"
+#include "Numerics/SphericalHarmonics.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,6 +10,94 @@
 
 namespace tyndall
 {
+namespace
+{
+/// Transmittance of a layer, and the mean of exp(-depth) over it.
+struct FallOff
+{
+  explicit FallOff(double depth)
+    : mean(depth > 1e-8 ? -std::expm1(-depth) / depth : 1.0 - 0.5 * depth)
+    , left(std::exp(-depth))
+  {
+  }
+
+  double mean, left;
+};
+
+/// Sum over nodes of weight, powers of the cosine and of the sine, and values that already contain the square root of
+/// the weight.
+double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values, bool cosine, bool sine)
+{
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+  {
+    const double mu = nodes.cosines[i];
+    sum += std::sqrt(nodes.weights[i]) * (cosine ? mu : 1.0) * (sine ? std::sqrt(1.0 - mu * mu) : 1.0) * values[i];
+  }
+  return sum;
+}
+
+/// Calls act(layer, mean irradiance perpendicular to the beam) for each layer.
+template <class Act>
+void ForLayersOf(const LayerStack& stack, const StackBeam& beam, const Act& act)
+{
+  const std::vector<double> at = BeamAtLayers(stack, beam);
+  for (std::size_t i = 0; i < at.size(); ++i)
+  {
+    act(i, at[i] * FallOff(stack.layers[i].depth / beam.cosine).mean);
+  }
+}
+
+/// Matrix that projects radiance at the nodes, given as amplitudes of its Fourier series in azimuth, onto each
+/// spherical harmonic of the scene axes. Columns: node, down and up, order (cos, then sin).
+Eigen::MatrixXd Projection(const SlabScene& scene, const HalfRangeQuadrature& nodes, int degree, int orders)
+{
+  const auto count = static_cast<int>(nodes.cosines.size());
+  const int series = 1 + 2 * orders, around = 2 * (degree + orders) + 1;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero((degree + 1) * (degree + 1), 2 * count * series);
+  for (int n = 0; n < 2 * count; ++n)
+  {
+    const double mu = nodes.cosines[n / 2], sine = std::sqrt(1.0 - mu * mu);
+    for (int turn = 0; turn < around; ++turn)
+    {
+      const double azimuth = 2.0 * Pi * turn / around;
+      std::array<double, 3> omega;
+      omega[scene.Along()] = n % 2 == 0 ? mu : -mu;
+      omega[(scene.Along() + 1) % 3] = sine * std::cos(azimuth);
+      omega[(scene.Along() + 2) % 3] = sine * std::sin(azimuth);
+      const std::vector<double> harmonics = SphericalHarmonics(degree, omega);
+      const Eigen::VectorXd there =
+        Eigen::Map<const Eigen::VectorXd>(harmonics.data(), static_cast<Eigen::Index>(harmonics.size()));
+      for (int s = 0; s < series; ++s)
+      {
+        const int m = (s + 1) / 2;
+        const double wave = s % 2 == 1 ? std::cos(m * azimuth) : s > 0 ? std::sin(m * azimuth) : 1.0;
+        matrix.col(n * series + s) += 2.0 * Pi / around * std::sqrt(nodes.weights[n / 2]) * wave * there;
+      }
+    }
+  }
+  return matrix;
+}
+
+/// Amplitudes of one layer, in the order of the columns of Projection.
+Eigen::VectorXd Amplitudes(const SlabColumn& column, std::size_t layer, int series)
+{
+  const Eigen::Index count = column.even.means[layer].sum.size();
+  Eigen::VectorXd all(2 * count * series);
+  for (int s = 0; s < series; ++s)
+  {
+    const StackSolution& of = s == 0 ? column.even : column.slanting[(s - 1) / 2][(s - 1) % 2];
+    const LayerMeans& means = of.means[layer];
+    for (Eigen::Index n = 0; n < count; ++n)
+    {
+      all[2 * n * series + s] = 0.5 * (means.sum[n] + means.flux[n]);
+      all[(2 * n + 1) * series + s] = 0.5 * (means.sum[n] - means.flux[n]);
+    }
+  }
+  return all;
+}
+}
+
 SlabScene::SlabScene(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
   : TheMedium(medium)
   , Shining(illumination)
@@ -130,5 +221,109 @@ double SlabScene::Absorbing(std::size_t layer, int channel) const
 std::array<double, 2> SlabScene::Sideways(std::size_t beam) const
 {
   return { this->Directions[beam][1], this->Directions[beam][2] };
+}
+
+SlabColumn::SlabColumn(const SlabScene& scene, int channel, const HalfRangeQuadrature& nodes, int degree, int orders)
+  : fluence(scene.Count())
+  , direct(scene.Count())
+  , stack(scene.StackOf(channel, degree))
+{
+  this->flux.fill(std::vector<double>(scene.Count()));
+  const StackLight light = scene.LightOf(channel);
+  this->even = Solve(this->stack, light, nodes, 0);
+  for (int m = 1; m <= orders; ++m)
+  {
+    this->slanting.push_back({ Solve(this->stack, scene.BeamsOf(channel, m, false), nodes, m),
+      Solve(this->stack, scene.BeamsOf(channel, m, true), nodes, m) });
+  }
+  for (std::size_t i = 0; i < scene.Count(); ++i)
+  {
+    this->fluence[i] = 2.0 * Pi * Integral(nodes, this->even.means[i].sum, false, false);
+    this->flux[0][i] = 2.0 * Pi * Integral(nodes, this->even.means[i].flux, true, false);
+    for (std::size_t along = 0; along < 2 && orders > 0; ++along)
+    {
+      this->flux[1 + along][i] = Pi * Integral(nodes, this->slanting[0][along].means[i].sum, false, true);
+    }
+  }
+  this->AddBeams(scene, light, channel);
+  this->AddDiffuse(light, scene.UnscatteredStackOf(channel), nodes);
+  this->SumUp(scene, light, nodes, channel);
+}
+
+/// Adds the beams. In `fluence`, light scattered into the unscattered forward part belongs to the beam; in `direct` it
+/// does not.
+void SlabColumn::AddBeams(const SlabScene& scene, const StackLight& light, int channel)
+{
+  const LayerStack unscattered = scene.UnscatteredStackOf(channel);
+  for (std::size_t b = 0; b < light.beams.size(); ++b)
+  {
+    const StackBeam& beam = light.beams[b];
+    const std::array<double, 2> sideways = scene.Sideways(b);
+    ForLayersOf(this->stack, beam, [&](std::size_t i, double mean) {
+      this->fluence[i] += mean;
+      this->flux[0][i] += (beam.fromTop ? beam.cosine : -beam.cosine) * mean;
+      this->flux[1][i] += sideways[0] * mean;
+      this->flux[2][i] += sideways[1] * mean;
+    });
+    ForLayersOf(unscattered, beam, [&](std::size_t i, double mean) { this->direct[i] += mean; });
+    this->entered[beam.fromTop ? 0 : 1] += beam.cosine * beam.irradiance;
+  }
+}
+
+/// Adds uncollided light of faces and emission, along the nodes.
+void SlabColumn::AddDiffuse(const StackLight& light, const LayerStack& unscattered, const HalfRangeQuadrature& nodes)
+{
+  const std::size_t count = unscattered.layers.size();
+  for (const bool fromTop : { true, false })
+  {
+    for (std::size_t n = 0; n < nodes.cosines.size(); ++n)
+    {
+      double radiance = fromTop ? light.radianceAtTop : light.radianceAtBottom;
+      for (std::size_t step = 0; step < count; ++step)
+      {
+        const std::size_t i = fromTop ? step : count - 1 - step;
+        const StackLayer& layer = unscattered.layers[i];
+        const double depth = layer.depth / nodes.cosines[n], sent = layer.emitted / nodes.cosines[n];
+        const FallOff falls(depth);
+        const double meanSent = depth > 1e-4 ? (1.0 - falls.mean) / depth : 0.5 - depth / 6.0;
+        this->direct[i] += 2.0 * Pi * nodes.weights[n] * (radiance * falls.mean + sent * meanSent);
+        radiance = radiance * falls.left + sent * falls.mean;
+      }
+    }
+  }
+}
+
+void SlabColumn::SumUp(const SlabScene& scene, const StackLight& light, const HalfRangeQuadrature& nodes, int channel)
+{
+  this->entered[0] += Pi * light.radianceAtTop;
+  this->entered[1] += Pi * light.radianceAtBottom;
+  this->out = { 2.0 * Pi * Integral(nodes, this->even.upAtTop, true, false) + this->even.beamsAtTop,
+    2.0 * Pi * Integral(nodes, this->even.downAtBottom, true, false) + this->even.beamsAtBottom };
+  this->escaped = { (1.0 - light.albedoAtTop) * this->out[0], (1.0 - light.albedoAtBottom) * this->out[1] };
+  for (std::size_t i = 0; i < scene.Count(); ++i)
+  {
+    this->absorbed += scene.Absorbing(i, channel) * this->fluence[i];
+    this->emitted += 4.0 * Pi * this->stack.layers[i].emitted;
+  }
+}
+
+std::vector<double> ScatteredMoments(
+  const SlabScene& scene, const SlabColumn& column, const HalfRangeQuadrature& nodes, int degree)
+{
+  const auto orders = static_cast<int>(column.slanting.size());
+  const Eigen::MatrixXd projection = Projection(scene, nodes, degree, orders);
+  std::vector<double> moments;
+  for (std::size_t i = 0; i < scene.Count(); ++i)
+  {
+    const Eigen::VectorXd found = projection * Amplitudes(column, i, 1 + 2 * orders);
+    const DeltaM& phase = column.stack.kinds[column.stack.layers[i].kind].phase;
+    for (Eigen::Index j = 0; j < found.size(); ++j)
+    {
+      const auto l = static_cast<std::size_t>(DegreeOfTerm(static_cast<int>(j)));
+      const double moment = l < phase.moments.size() ? phase.moments[l] : 0.0;
+      moments.push_back((1.0 - phase.forward) * moment * found[j] / std::sqrt(4.0 * Pi));
+    }
+  }
+  return moments;
 }
 }
