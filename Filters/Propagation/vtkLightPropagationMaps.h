@@ -132,7 +132,7 @@ public:
 
   ///@{
   /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved with more
-  /// (UnvaryingAxes.h).
+  /// (GridAxes.h).
   tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 
@@ -140,7 +140,7 @@ public:
   /// Directions per face of a cube for the uncollided flux of boundary sources: faces, sky and environment
   /// (conservative scheme). This flux has shadows with sharp edges and is swept only once, so it can have many
   /// directions while few suffice for scattered light. Default -1: as many as cost a quarter more time, for boundary
-  /// sources on faces only (UncollidedDirections.h); 0: as DirectionsPerFace; else square numbers up to 4096.
+  /// sources on faces only (LightSources.h); 0: as DirectionsPerFace; else square numbers up to 4096.
   tyndallRangeMacro(UncollidedDirections, int, -1, VTK_INT_MAX);
   ///@}
 

@@ -11,8 +11,8 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Problem/AngularDegree.h"
+#include "LightPropagation/Problem/GridAxes.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
-#include "LightPropagation/Problem/UnvaryingAxes.h"
 #include "LightPropagation/Published/PublishedModel.h"
 
 #include <algorithm>

@@ -24,6 +24,6 @@ OrdinatesSettings AtQuality(
 /// "Name = value" of each setting that a quality level may choose and that has an effect: spiralDirections instead of
 /// directionsPerFace if set, no terms with the full matrix.
 std::vector<std::string> Words(const OrdinatesSettings& settings);
-/// The same with the settings actually used: slabs are solved with more directions (UnvaryingAxes.h).
+/// The same with the settings actually used: slabs are solved with more directions (GridAxes.h).
 std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light);
 }

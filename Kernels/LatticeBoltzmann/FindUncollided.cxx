@@ -4,7 +4,7 @@
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "LightPropagation/Problem/UnvaryingAxes.h"
+#include "LightPropagation/Problem/GridAxes.h"
 #include "LightPropagation/Sweep/Pipelined/AcrossFaces.h"
 #include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"

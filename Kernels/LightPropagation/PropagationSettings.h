@@ -28,13 +28,13 @@ enum class PropagationAcceleration
 struct PropagationSettings
 {
   int directionsPerFace = 25;  ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
-  bool adaptDirections = true; ///< use more for slabs (UnvaryingAxes.h); false: exactly directionsPerFace
+  bool adaptDirections = true; ///< use more for slabs (GridAxes.h); false: exactly directionsPerFace
   /// Number of polar cosines per hemisphere for plane-parallel media (PlaneParallelPropagation.h); 0: 16, or 20 if
   /// scattering is anisotropic.
   int polarNodes = 0;
   /// Directions per cube face, a square number, for uncollided light of boundary sources, sky and environment
   /// (UncollidedBoundary.h); 0: the same as for scattered light; -1: chosen so that the solve takes about a quarter
-  /// longer at most, where this reduces the error (UncollidedDirections.h).
+  /// longer at most, where this reduces the error (LightSources.h).
   int uncollidedDirections = -1;
   /// Offset the rays of each direction differently within a voxel (RayBundles.h). With more than 100
   /// uncollidedDirections uncollided light always does so, unless the solve is accelerated. From 144 directions a face

@@ -8,9 +8,9 @@
 #include "TargetScenes.h"
 
 #include "Light/Quality.h"
+#include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "LightPropagation/Problem/DividedScene.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 
 #include <algorithm>

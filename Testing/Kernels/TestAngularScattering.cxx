@@ -4,7 +4,6 @@
 #include "MediumScene.h"
 
 #include "LightPropagation/Angular/AngularBasis.h"
-#include "LightPropagation/Problem/DirectionKernel.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Scattering/BeamScattering.h"
 #include "Numerics/Constants.h"

@@ -5,7 +5,7 @@
 
 #include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpu.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "Numerics/Constants.h"

@@ -4,7 +4,7 @@
 
 #include "DiscreteOrdinates/OrdinatesQuality.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
-#include "LightPropagation/Problem/DividedScene.h"
+#include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "Viewing/Scene/ViewSettings.h"
 

@@ -5,7 +5,7 @@
 
 #include "Distribution/RanksInThreads.h"
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 

@@ -6,7 +6,7 @@
 #include "RandomMedium.h"
 
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpu.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 #include "Medium/BoxFaces.h"

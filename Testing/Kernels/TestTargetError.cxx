@@ -4,8 +4,8 @@
 
 #include "Device/Errors.h"
 #include "LightPropagation/Accuracy/DirectionForecast.h"
+#include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Accuracy/TargetError.h"
-#include "LightPropagation/Problem/DividedScene.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "Device/Monitor.h"
 #include "Distribution/CoarseBlocks.h"
 #include "Light/LightField.h"
-#include "LightPropagation/Accuracy/CoarseScene.h"
+#include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/PropagationSettings.h"
 
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Light/LightField.h"
-#include "LightPropagation/Accuracy/CoarseScene.h"
+#include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/PropagationSettings.h"
 #include "Medium/Grid.h"
 

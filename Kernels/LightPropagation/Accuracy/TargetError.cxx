@@ -3,7 +3,7 @@
 #include "Device/Errors.h"
 #include "Light/Quality.h"
 #include "LightPropagation/Accuracy/DirectionForecast.h"
-#include "LightPropagation/Problem/DividedScene.h"
+#include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Problem/SceneChecks.h"
 #include "Numerics/NumberText.h"
 

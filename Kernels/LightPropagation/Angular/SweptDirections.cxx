@@ -1,9 +1,88 @@
 #include "LightPropagation/Angular/SweptDirections.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <utility>
 
 namespace tyndall
 {
+namespace
+{
+/// The direction that represents `omega`.
+std::array<double, 3> Standard(std::array<double, 3> omega, const Grid& grid, const std::array<bool, 3>& single)
+{
+  for (int a = 0; a < 3; ++a)
+  {
+    omega[a] = single[a] ? std::abs(omega[a]) : omega[a];
+  }
+  for (const std::array<int, 2>& pair : { std::array<int, 2>{ 0, 1 }, { 1, 2 }, { 0, 2 }, { 0, 1 } })
+  {
+    const bool same = single[pair[0]] && single[pair[1]] && grid.spacing[pair[0]] == grid.spacing[pair[1]];
+    if (same && omega[pair[0]] < omega[pair[1]])
+    {
+      std::swap(omega[pair[0]], omega[pair[1]]);
+    }
+  }
+  return omega;
+}
+}
+
+DirectionSymmetry::DirectionSymmetry(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set)
+  : ClassOf(set.directions.size())
+{
+  std::array<bool, 3> single;
+  for (int a = 0; a < 3; ++a)
+  {
+    single[a] = periodic[a] && grid.size[a] == 1;
+  }
+  std::map<std::array<double, 3>, int> numbers; // quadratures are symmetric to the last bit
+  for (std::size_t d = 0; d < set.directions.size(); ++d)
+  {
+    const std::array<double, 3> standard = Standard(set.directions[d].omega, grid, single);
+    const auto [found, isNew] = numbers.insert({ standard, static_cast<int>(this->Classes.size()) });
+    if (isNew)
+    {
+      this->Classes.emplace_back();
+    }
+    std::vector<int>& all = this->Classes[found->second];
+    all.insert(standard == set.directions[d].omega ? all.begin() : all.end(), static_cast<int>(d));
+    this->ClassOf[d] = found->second;
+  }
+}
+
+int DirectionSymmetry::Count() const
+{
+  return static_cast<int>(this->Classes.size());
+}
+
+std::vector<Bundle> DirectionSymmetry::Standing(const std::vector<Bundle>& bundles) const
+{
+  std::vector<Bundle> standing;
+  for (const Bundle& bundle : bundles)
+  {
+    std::map<std::size_t, std::vector<Member>> parts; // by the size of the direction's class
+    for (Member member : bundle.members)
+    {
+      member.direction = this->IsRepresentative(member.direction) ? member.direction : -1;
+      member.opposite = this->IsRepresentative(member.opposite) ? member.opposite : -1;
+      const int any = std::max(member.direction, member.opposite);
+      if (any >= 0)
+      {
+        parts[this->AllOf(any).size()].push_back(member);
+      }
+    }
+    for (const auto& [all, members] : parts)
+    {
+      Bundle part = bundle;
+      part.members = members;
+      part.power *= static_cast<double>(all);
+      standing.push_back(part);
+    }
+  }
+  return standing;
+}
+
 SweptDirections::SweptDirections(
   const Grid& grid, const PropagationSettings& settings, DirectionSet set, RayStarts starts)
   : TheGrid(grid)

@@ -5,7 +5,7 @@
 #include "Distribution/Communicator.h"
 #include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
-#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 
 #include <array>

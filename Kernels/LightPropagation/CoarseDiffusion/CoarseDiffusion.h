@@ -2,7 +2,7 @@
 
 #include "LightPropagation/CoarseDiffusion/CoarseShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
-#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 
 #include <array>
 #include <vector>

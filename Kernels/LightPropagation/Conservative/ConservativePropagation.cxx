@@ -12,7 +12,7 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Emission/GlobalStatistics.h"
 #include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
-#include "LightPropagation/Problem/AxisPermutation.h"
+#include "LightPropagation/Problem/GridAxes.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Numerics/Constants.h"
 

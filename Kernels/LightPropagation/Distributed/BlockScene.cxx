@@ -3,8 +3,8 @@
 #include "Distribution/SharedMedium.h"
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Problem/DirectionKernel.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -27,7 +27,7 @@ PropagationSettings AtQuality(const Domain& domain, Quality quality, Propagation
 /// "Name = value" for each setting that a quality level may choose.
 std::vector<std::string> Words(const PropagationSettings& settings);
 /// The same with the values that SolveConservative used for `light`: more directions if a slab needs them
-/// (UnvaryingAxes.h), and the chosen uncollidedDirections, 0 if no light used them. Layers solved in the polar cosine
+/// (GridAxes.h), and the chosen uncollidedDirections, 0 if no light used them. Layers solved in the polar cosine
 /// only used none of these settings; the result is then "PolarNodes = value".
 std::vector<std::string> Words(PropagationSettings settings, const LightField& light);
 /// The settings that the published scheme uses.

@@ -13,6 +13,8 @@ namespace tyndall
 {
 namespace
 {
+constexpr double Uneven = 1.5; ///< ratio of the thickest line to the mean of all lines, weighted by thickness
+
 /// The default tolerance rather than the user's, so that the choice of method does not depend on it.
 const double UsualTolerance = PropagationSettings().tolerance;
 /// Extrapolation distance: distance beyond a face at which the diffuse flux extrapolates to zero, mean free paths
@@ -23,7 +25,7 @@ constexpr double ThickVoxel = 10.0;
 
 /// Time of an accelerated solve, in units of one unaccelerated scattering order of the same scene (`./run bench
 /// thick`): set-up and finish, the number of iterations, and the correction of each, in addition to its sweep.
-/// UncollidedDirections.cxx has its own, older figure.
+/// LightSources.cxx has its own, older figure.
 struct AcceleratedTime
 {
   double setUp, rows, correction;
@@ -192,6 +194,23 @@ IterationScheme AvailableInBlocks(IterationScheme serial, const PropagationSetti
   const bool wraps = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
   return serial == IterationScheme::CoarseMeshDsa && wraps ? IterationScheme::SourceIteration : serial;
 }
+}
+
+ThickLines::ThickLines(const Grid& grid, const LineSums& sigma_t)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    double all = 0.0, squares = 0.0;
+    for (const double line : sigma_t[axis])
+    {
+      all += line;
+      squares += line * line;
+    }
+    const double thickest = *std::max_element(sigma_t[axis].begin(), sigma_t[axis].end());
+    const double mean = all > 0.0 ? squares / all : 0.0;
+    this->along[axis] = grid.spacing[axis] * std::cbrt(mean * mean * thickest);
+    this->uneven = this->uneven || thickest > Uneven * mean;
+  }
 }
 
 ScatteringOfScene ScatteringOf(const PropagationProblem& problem)

@@ -1,5 +1,6 @@
 #include "LightPropagation/Problem/TruncatedScattering.h"
 
+#include "LightPropagation/Angular/AngularBasis.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
@@ -9,6 +10,35 @@ namespace tyndall
 {
 namespace
 {
+/// Directions per face that are tested as incident ones, in addition to those of the set
+constexpr int FromPerFace = 144;
+constexpr double LeastPart = 1e-3;   ///< tolerance for rounding, relative to the mean
+constexpr double MostDamping = 16.0; ///< damping s at which all moments vanish
+
+/// Whether `omega` lies in one of the 48 parts of the sphere that are images of each other under rotations and
+/// reflections of the cube. A quadrature and its functions, degree by degree, have that symmetry.
+bool IsInOnePart(const std::array<double, 3>& omega)
+{
+  constexpr double Rounding = 1e-12;
+  return omega[0] >= omega[1] - Rounding && omega[1] >= omega[2] - Rounding && omega[2] >= -Rounding;
+}
+
+std::vector<std::array<double, 3>> ComingFrom(const DirectionSet& set)
+{
+  std::vector<std::array<double, 3>> from = { { 1.0, 0.0, 0.0 } }; // beams are often parallel to an axis
+  for (const DirectionSet& one : { set, EquiangularDirections(FromPerFace) })
+  {
+    for (const Direction& direction : one.directions)
+    {
+      if (IsInOnePart(direction.omega))
+      {
+        from.push_back(direction.omega);
+      }
+    }
+  }
+  return from;
+}
+
 constexpr double Thickest = 1.0; ///< optical thickness of a voxel up to which its degree is above 0
 constexpr int Columns = 1024;    ///< tabulated mean cosines; moments are interpolated linearly between them
 
@@ -21,6 +51,74 @@ std::vector<DeltaM> TruncationsOf(const PhaseFunction& function, int degree, con
   }
   return truncations;
 }
+}
+
+DirectionKernel::DirectionKernel(const DirectionSet& set, int degree)
+  : Degrees(degree + 1)
+{
+  const AngularBasis basis(set, degree);
+  std::vector<std::vector<double>> functions;
+  for (const Direction& direction : set.directions)
+  {
+    functions.push_back(basis.At(direction.omega));
+  }
+  for (const std::array<double, 3>& omega : ComingFrom(set))
+  {
+    const std::vector<double> there = basis.At(omega);
+    for (const std::vector<double>& here : functions)
+    {
+      std::vector<double> parts(this->Degrees, 0.0);
+      for (int i = 0; i < basis.Count(); ++i)
+      {
+        parts[AngularBasis::DegreeOf(i)] += here[i] * there[i];
+      }
+      this->Parts.insert(this->Parts.end(), parts.begin(), parts.end());
+    }
+  }
+}
+
+double DirectionKernel::Least(const std::vector<double>& moments) const
+{
+  double least = 1.0;
+  for (std::size_t pair = 0; pair < this->Parts.size(); pair += this->Degrees)
+  {
+    double sum = 0.0;
+    for (std::size_t l = 0; l < moments.size(); ++l)
+    {
+      sum += moments[l] * this->Parts[pair + l];
+    }
+    least = std::min(least, sum);
+  }
+  return least;
+}
+
+DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel)
+{
+  if (truncated.moments.size() < 2 || kernel.Least(truncated.moments) >= LeastPart)
+  {
+    return truncated;
+  }
+  const double g = truncated.forward + (1.0 - truncated.forward) * truncated.moments[1];
+  const double forward = g < 0.0 ? 0.0 : truncated.forward; // there is no forward peak to remove
+  const auto damped = [&](double s) {
+    std::vector<double> moments = truncated.moments;
+    for (std::size_t l = 0; l < moments.size(); ++l)
+    {
+      const double whole = truncated.forward + (1.0 - truncated.forward) * moments[l];
+      moments[l] = (whole - forward) / (1.0 - forward) * std::exp(-s * static_cast<double>(l * (l + 1)));
+    }
+    return moments;
+  };
+  double low = 0.0, high = MostDamping;
+  for (int i = 0; i < 20; ++i)
+  {
+    const double s = 0.5 * (low + high);
+    (kernel.Least(damped(s)) >= LeastPart ? high : low) = s;
+  }
+  DeltaM positive = truncated;
+  positive.moments = damped(high);
+  positive.forward = (g - positive.moments[1]) / (1.0 - positive.moments[1]);
+  return positive;
 }
 
 TruncatedScattering::TruncatedScattering(
@@ -139,5 +237,29 @@ float TruncatedScattering::SigmaS(std::size_t voxel, int channel, int l) const
   }
   const double moment = this->Of(voxel, channel, degree, [l](const DeltaM& truncated) { return truncated.moments[l]; });
   return static_cast<float>(this->SigmaS(voxel, channel) * moment);
+}
+
+MediumOnDevice::MediumOnDevice(Device& device, const Medium& medium, const TruncatedScattering& scattering,
+  const VolumeLayout& layout, const Needs& needs)
+{
+  const int extinctions = layout.sharedExtinction ? 1 : layout.channels;
+  const auto load = [&](int channels, const char* what, auto&& value) {
+    return PlanarOnDevice(device, layout, channels, value, what);
+  };
+  this->Extinction = load(extinctions, "sigma_t", [&](std::size_t i, int c) { return scattering.SigmaT(i, c); });
+  if (needs.sigma_s)
+  {
+    this->Scattering = load(layout.channels, "sigma_s", [&](std::size_t i, int c) { return scattering.SigmaS(i, c); });
+  }
+  if (needs.sigma_a)
+  {
+    this->Absorption = load(layout.channels, "sigma_a", [&](std::size_t i, int c) { return medium.sigma_a.At(i, c); });
+  }
+  if (scattering.Degree() > 0)
+  {
+    this->OfDegrees = load(layout.channels * (scattering.Degree() + 1), "sigma_s",
+      [&](std::size_t i, int part) { return scattering.SigmaS(i, part % layout.channels, part / layout.channels); });
+    this->Transport = load(extinctions, "sigma_t", [&](std::size_t i, int c) { return medium.TransportSigmaT(i, c); });
+  }
 }
 }

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "LightPropagation/Problem/DirectionKernel.h"
+#include "Device/Buffer.h"
+#include "LightPropagation/Angular/DirectionSet.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
 #include "Medium/Medium.h"
 #include "PhaseFunction/DeltaM.h"
 
@@ -11,6 +13,29 @@
 
 namespace tyndall
 {
+/// Discrete phase function: the scattering between the directions of a quadrature that a series of angular moments
+/// gives (numerics.md, section 2.3). For a truncated forward peak it is negative for some pairs of directions.
+class DirectionKernel
+{
+public:
+  /// @param degree  degree of the moments, at most MostDegree(set)
+  DirectionKernel(const DirectionSet& set, int degree);
+
+  /// Minimum of the phase function (mean 1) for scattering into any direction of the set, from any direction of the set
+  /// or between them.
+  /// @param moments  moments 0 to the degree, or fewer
+  double Least(const std::vector<double>& moments) const;
+
+private:
+  int Degrees;
+  std::vector<float> Parts; ///< [pair of directions][degree]: contribution of a moment of 1
+};
+
+/// Returns `truncated` unchanged if its phase function is nowhere negative on the quadrature. Otherwise multiplies
+/// moments of degree l by exp(-s l (l + 1)), with the smallest s that removes negative values; the unscattered part is
+/// adjusted so that the mean cosine is unchanged.
+DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel);
+
 /// A medium's scattering as the sweeps treat it (delta-M, DeltaM.h): in each voxel the forward peak is treated as
 /// unscattered light, and the remainder has moments up to a degree. Optically thick voxels have a lower degree, down to
 /// 0, since light loses its directional information within them (numerics.md, section 2.2). Coefficients in 1/length.
@@ -60,5 +85,35 @@ private:
   std::array<std::vector<DeltaM>, 3> OfChannel; ///< by degree; used if g does not vary by voxel
   std::vector<std::vector<DeltaM>> OfG;         ///< used if g varies: by g, evenly spaced from -1 to 1, then by degree
   std::vector<std::uint8_t> Degrees;            ///< [voxel][channel]; empty: all 0
+};
+
+/// A medium's coefficients on the device, 1/length, in the layout of VolumeLayout. sigma_t and sigma_s exclude light
+/// that is treated as unscattered (TruncatedScattering.h).
+class MediumOnDevice
+{
+public:
+  /// Which coefficients get arrays of their own.
+  struct Needs
+  {
+    bool sigma_s; ///< false if it is never read or equals sigma_t
+    bool sigma_a;
+  };
+  MediumOnDevice(Device& device, const Medium& medium, const TruncatedScattering& scattering,
+    const VolumeLayout& layout, const Needs& needs);
+
+  const Buffer<float>& SigmaT() const { return this->Extinction; }
+  const Buffer<float>& SigmaS() const { return this->Scattering.Size() > 0 ? this->Scattering : this->Extinction; }
+  const Buffer<float>& SigmaA() const { return this->Absorption; } ///< empty if not requested
+  /// sigma_s of each degree (TruncatedScattering.h), [degree][channel][stride]; empty if all scattering is isotropic.
+  const Buffer<float>& SigmaOfDegrees() const { return this->OfDegrees; }
+  /// Transport extinction sigma_a + sigma_s (1 - g), used by the diffusion correction. The same as SigmaT() if all
+  /// scattering is isotropic.
+  const Buffer<float>& TransportSigmaT() const
+  {
+    return this->Transport.Size() > 0 ? this->Transport : this->Extinction;
+  }
+
+private:
+  Buffer<float> Extinction, Scattering, Absorption, OfDegrees, Transport;
 };
 }

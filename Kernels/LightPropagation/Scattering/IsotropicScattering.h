@@ -1,14 +1,14 @@
 #pragma once
 
 #include "Device/Device.h"
-#include "LightPropagation/Problem/MediumOnDevice.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 
 namespace tyndall
 {
 /// Isotropic scattering: source = sigma_s fluence / 4 pi (numerics.md, Eq. (42); Gruson et al. 2012, equation 4, in
-/// conservative form). sigma_s already includes the factor for a mean cosine g (MediumOnDevice.h).
+/// conservative form). sigma_s already includes the factor for a mean cosine g (TruncatedScattering.h).
 class IsotropicScattering : public ScatteringOperator
 {
 public:

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "LightPropagation/Angular/AngularBasis.h"
-#include "LightPropagation/Angular/AngularValues.h"
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "Lights/Lights.h"

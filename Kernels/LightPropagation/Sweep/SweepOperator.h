@@ -2,7 +2,7 @@
 
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
-#include "LightPropagation/Angular/AngularValues.h"
+#include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Sweep/Deposit.h"
 #include "LightPropagation/Sweep/SweepTally.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Angular/AngularValues.h"
+#include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Sweep/SweepShared.h"
 #include "LightPropagation/Sweep/SweepVolume.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "LightPropagation/Angular/AngularValues.h"
+#include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Sweep/Deposit.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "Medium/BoxFaces.h"

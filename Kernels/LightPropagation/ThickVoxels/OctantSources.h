@@ -1,8 +1,8 @@
 #pragma once
 
 #include "LightPropagation/Angular/SweptDirections.h"
-#include "LightPropagation/Problem/MediumOnDevice.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Sweep/BeyondFaces.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/ThickVoxels/OctantSourcesShared.h"
