@@ -6,7 +6,6 @@
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
-#include "LightPropagation/Conservative/ShownLight.h"
 #include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
@@ -15,10 +14,12 @@
 #include "LightPropagation/Problem/GridAxes.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Numerics/Constants.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -94,27 +95,99 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   return words;
 }
 
-/// Adds the data for rendering scattered light, in the same form on all ranks.
-void AddShown(const TransportParts& parts, const Buffer<float>& ofOrders, LightField& light)
+constexpr double MostBytes = 1024.0 * 1024.0 * 1024.0;
+
+/// Number of spherical harmonics kept: all those of a degree limited by memory.
+int HarmonicsKept(int degree, std::size_t values)
+{
+  const auto count = [](int l) { return (l + 1) * (l + 1); };
+  while (degree > 1 && 4.0 * count(degree) * static_cast<double>(values) > MostBytes)
+  {
+    --degree;
+  }
+  return count(degree);
+}
+
+constexpr float LeastScattering = 1e-30f; ///< 1/length, in the solver's unit: weaker scattering is invisible
+
+/// Factor from source to scattered radiance per mean free path of scattering: 1 / sigma_s, or 0 where sigma_s is
+/// negligible.
+Buffer<float> PerScattering(Device& device, const VolumeLayout& layout, const Field& sigma_s)
+{
+  const auto inverse = [&](std::size_t i, int c) {
+    return sigma_s.At(i, c) > LeastScattering ? 1.0f / sigma_s.At(i, c) : 0.0f;
+  };
+  return PlanarOnDevice(device, layout, layout.channels, inverse, "the inverse of sigma_s");
+}
+
+/// Whether the unscattered forward part differs between the channels of a voxel.
+bool HasColouredStraightOn(const TransportParts& parts)
+{
+  const TruncatedScattering& scattering = parts.Problem.Scattering();
+  for (std::size_t i = 0; i < parts.Layout.grid.VoxelCount(); ++i)
+  {
+    for (int c = 1; c < parts.Layout.channels; ++c)
+    {
+      if (scattering.StraightOn(i, c) != scattering.StraightOn(i, 0))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// LightField::scatteredMoments in the solver's units. Overwrites parts.Path.
+/// @param shown  IterationResult::shown
+std::vector<float> MomentsForPictures(const TransportParts& parts, const Buffer<float>& shown, int harmonics)
+{
+  const VolumeLayout& layout = parts.Layout;
+  Device& device = parts.TheDevice;
+  const std::vector<double> matrix = parts.Basis->Matrix();
+  const Buffer<float> basis(device, std::vector<float>(matrix.begin(), matrix.end()), "the angular functions");
+  const Buffer<float> scale = PerScattering(device, layout, parts.Problem.TheMedium().sigma_s);
+  const std::array<int, 3>& size = layout.grid.size;
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    cl::Kernel kernel = device.Kernel("to_harmonics", kernel_source::MomentScattering);
+    With(
+      kernel, layout.Places(parts.Functions()), cl_int(c), basis, shown, scale, cl_ulong(layout.Stride()), parts.Path);
+    device.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], harmonics));
+  }
+  std::vector<float> moments(layout.grid.VoxelCount() * layout.channels * harmonics);
+  parts.Path.Read(moments.data(), moments.size());
+  return moments;
+}
+
+/// Adds the data from which a camera renders scattered light along any direction (numerics.md, section 14.7):
+/// scatteredMoments and straightOn, in the same form on all ranks. Collective.
+/// @param shown  IterationResult::shown
+void AddShown(const TransportParts& parts, const Buffer<float>& shown, LightField& light)
 {
   const Domain& domain = parts.TheDomain();
-  std::unique_ptr<ShownLight> shown;
-  if (parts.Basis)
-  {
+  const bool coloured = domain.Any(parts.Basis && HasColouredStraightOn(parts));
+  domain.Collective([&] {
+    if (!parts.Basis)
+    {
+      return;
+    }
     std::size_t most = 0; // values of one function in the largest block
     for (const VoxelBox& block : domain.Partition().blocks)
     {
       most = std::max(most, parts.Layout.channels * block.VoxelCount());
     }
-    shown = std::make_unique<ShownLight>(
-      parts.Problem.TheMedium(), parts.Problem.Scattering(), *parts.Basis, parts.Layout, most);
-  }
-  const bool coloured = domain.Any(shown && shown->HasColour());
-  domain.Collective([&] {
-    if (shown)
+    const int harmonics = HarmonicsKept(parts.Basis->Degree(), most), channels = coloured ? parts.Layout.channels : 1;
+    light.scatteredMoments = MomentsForPictures(parts, shown, harmonics);
+    light.straightOn.resize(parts.Layout.grid.VoxelCount() * channels);
+    for (std::size_t i = 0; i < light.straightOn.size(); ++i)
     {
-      shown->TakeColour(coloured);
-      shown->AddTo(light, parts.TheDevice, ofOrders, parts.Path);
+      light.straightOn[i] = parts.Problem.Scattering().StraightOn(i / channels, static_cast<int>(i % channels));
+    }
+    if (harmonics < parts.Functions())
+    {
+      light.leftOut.push_back("angular moments for pictures: " + std::to_string(harmonics) + " of " +
+        std::to_string(parts.Functions()) + ", more take above 1 GiB");
     }
   });
 }

@@ -20,11 +20,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
-constexpr int FewPlanes = 256;        ///< that a ray crosses around a periodic axis per order, if more orders follow
-constexpr double MostlyLit = 0.75;    ///< fraction of rays above which a separate sweep does not pay
-constexpr double MostlyFilled = 0.75; ///< the same for voxels
-constexpr double FallByCells = 0.3;   ///< smallest assumed ratio of successive remainders
-constexpr int OrdersExpected = 6;     ///< assumed when deciding whether to sweep empty slabs only at the end
+constexpr double FallByCells = 0.3; ///< smallest assumed ratio of successive remainders
 }
 
 SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
@@ -56,12 +52,13 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   if (parts.How == IterationScheme::CoarseMeshDsa)
   {
     this->Cells.emplace(parts);
-    for (RestOfOrders& rest : this->Rest)
+    for (RestOfOrders& rest : this->ToCome.rest)
     {
       rest.BeginWarm(FallByCells);
     }
   }
-  this->MakeSweeps();
+  this->Sweeps.emplace(parts, this->DepositOfSweep(), this->AtFaces ? &this->AtFaces->Sources() : nullptr,
+    this->Cells.has_value(), this->Shining);
 }
 
 IterationResult SourceIteration::Run(const Monitor& monitor)
@@ -69,8 +66,8 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   this->Parts.Lights.CountEmission(this->Result.ledger);
   do
   {
-    const Monitor ofOrder =
-      OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, this->Residual, this->Order + done); });
+    const Monitor ofOrder = OfPart(
+      monitor, [this](double done) { return ProgressOf(this->Settings, this->ToCome.residual, this->Order + done); });
     const double uncollided = this->Order == 0 ? UncollidedPart : 0.0;
     if (this->Order == 0)
     {
@@ -90,11 +87,11 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
     }
     this->TheDomain.Collective([&] { Report(ofOrder, 1.0); });
     ++this->Order;
-    this->Lit.reset();
+    this->Sweeps->EndFirstOrder();
   } while (!this->Done());
-  if (this->Filled && this->Order > 1)
+  if (this->Order > 1)
   {
-    this->SweepEmptySlabs(monitor);
+    this->Sweeps->SweepEmptySlabs(this->Result.ledger, monitor);
   }
   if (this->Cells)
   {
@@ -136,78 +133,6 @@ void SourceIteration::LetEscape()
   {
     this->Escaped[c] += escaped[c];
     this->Result.ledger.Escape(c, escaped[c]);
-  }
-}
-
-void SourceIteration::MakeSweeps()
-{
-  // Coarse-mesh DSA does not know of rays that wait for the next sweep, so they go all the way.
-  const bool wholeWay = this->Settings.maximumOrders > 0 || this->Cells;
-  const int mostPlanes = wholeWay ? MostPlanesAround : FewPlanes;
-  SweepRequest request = { this->DepositOfSweep(), this->Parts.AllRays(), {}, mostPlanes };
-  request.octantSource = this->AtFaces ? &this->AtFaces->Sources() : nullptr;
-  request.angular = this->Parts.UsualValues();
-  request.faceIn = this->Parts.LightByCells();
-  this->Whole = this->Parts.Transport.MakeSweep(request);
-  this->MakeFilledSweep();
-  if (this->Settings.leaveOut && this->Parts.Lights.SweepCarriesBoundarySource() && !this->Shining)
-  {
-    this->MakeLitSweep();
-  }
-}
-
-/// Makes the sweep of later orders, which covers only the box that the medium fills: light that leaves this box does
-/// not come back. Fluence in the other voxels is computed at the end, for all orders in one sweep. Not used with
-/// periodic axes, whose rays would be under way in both sweeps; nor if face light by cell is requested, or sources
-/// differ by octant, which the final sweep does not know.
-void SourceIteration::MakeFilledSweep()
-{
-  const std::array<bool, 3>& periodic = this->Settings.periodic;
-  const MediumTraits& traits = this->Parts.Problem.Traits();
-  if (!this->Parts.Transport.SweepsParts() || !this->Settings.leaveOut || !traits.scatters ||
-    !this->Parts.Scattering->CanScatterAllOrders() || periodic[0] || periodic[1] || periodic[2] || this->Parts.Faces ||
-    this->AtFaces || this->Cells)
-  {
-    return;
-  }
-  const double filled =
-    static_cast<double>(traits.filled.VoxelCount()) / static_cast<double>(this->Parts.Layout.grid.VoxelCount());
-  const int later = (this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : OrdersExpected) - 1;
-  if (filled < MostlyFilled && later * (1.0 - filled) > 1.0)
-  {
-    // No flux: the final sweep computes it.
-    this->Filled = this->Parts.Transport.MakeSweep(
-      { { &this->Parts.Path, nullptr, nullptr, nullptr }, this->Parts.AllRays(), traits.filled });
-  }
-}
-
-/// Makes the first sweep, restricted to directions with incident light, if these are few. Not used with periodic axes,
-/// where rays wait in the other directions for the next order.
-void SourceIteration::MakeLitSweep()
-{
-  const std::array<bool, 3>& periodic = this->Settings.periodic;
-  if (periodic[0] || periodic[1] || periodic[2])
-  {
-    return;
-  }
-  const auto isLit = [this](int direction) { return this->Parts.Lights.UsualBoundary->IsLit(direction); };
-  double all = 0.0, lit = 0.0;
-  std::vector<AxisBundles> ways;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    all += CountRays(this->Parts.Usual.Along(axis));
-    for (int way = 0; way < 2; ++way)
-    {
-      ways.push_back({ axis, this->Parts.Usual.LitAlong(axis, way, isLit) });
-      lit += CountRays(ways.back().bundles);
-    }
-  }
-  if (lit <= MostlyLit * all)
-  {
-    this->LitPart = lit / all;
-    SweepRequest request = { this->DepositOfSweep(), ways };
-    request.angular = this->Parts.UsualValues();
-    this->Lit = this->Parts.Transport.MakeSweep(request);
   }
 }
 
@@ -269,7 +194,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
     }
   });
   this->Result.ledger.Count(tally);
-  this->Stranded = tally.onTheWay;
+  this->ToCome.stranded = tally.onTheWay;
   if (escapes)
   {
     // Needed for any light source, because contributions of sources add up.
@@ -313,14 +238,15 @@ Deposit SourceIteration::DepositOfSweep() const
 void SourceIteration::SweepOrder(const Monitor& monitor)
 {
   const SweepBoundary boundary = this->Order == 0 ? this->Parts.Lights.BoundaryOfSweeps() : SweepBoundary();
-  const bool nothing = !boundary && !this->Shining && Sum(this->OnTheWay) == 0.0 && Sum(this->Reflected) == 0.0;
-  this->WasOnTheWay = std::exchange(this->OnTheWay, {});
+  const bool nothing =
+    !boundary && !this->Shining && Sum(this->ToCome.onTheWay) == 0.0 && Sum(this->ToCome.reflected) == 0.0;
+  this->ToCome.wasOnTheWay = std::exchange(this->ToCome.onTheWay, {});
   if (nothing)
   {
     return;
   }
   const Buffer<float>* const source = this->Shining ? &this->Parts.Source : nullptr;
-  SweepOperator& sweep = this->InFilledPart() ? *this->Filled : this->Lit ? *this->Lit : *this->Whole;
+  SweepOperator& sweep = this->Sweeps->Of(this->Order);
   BeamsInSource beams = this->Parts.BeamsOfSource();
   this->TheDomain.Collective([&] {
     if (this->Order == 0)
@@ -330,8 +256,8 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
   });
   const SweepTally tally = sweep.Apply(source, boundary, monitor);
   beams.GoOn();
-  this->OnTheWay = tally.onTheWay;
-  if (!this->InFilledPart())
+  this->ToCome.onTheWay = tally.onTheWay;
+  if (!this->Sweeps->OmitsEmptySlabs(this->Order))
   {
     this->Result.ledger.Count(tally);
     return;
@@ -348,7 +274,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
 /// Reflects the outgoing light of this order, which has then not escaped.
 void SourceIteration::ReflectOrder()
 {
-  this->Reflected = {};
+  this->ToCome.reflected = {};
   if (!this->Parts.Faces)
   {
     return;
@@ -359,24 +285,10 @@ void SourceIteration::ReflectOrder()
   {
     for (int c = 0; c < 3; ++c)
     {
-      this->Reflected[c] += back[face][c];
+      this->ToCome.reflected[c] += back[face][c];
       this->Result.ledger.Escape(c, face, -back[face][c]);
     }
   }
-}
-
-/// Index range of a channel that a sweep may have changed, in whole vectors.
-std::array<std::size_t, 2> SourceIteration::SweptValues() const
-{
-  if (!this->InFilledPart())
-  {
-    return { 0, this->Parts.Layout.Stride() };
-  }
-  const std::array<int, 3>& n = this->Parts.Layout.grid.size;
-  const std::size_t layer = static_cast<std::size_t>(n[0]) * n[1];
-  const VoxelBox& filled = this->Parts.Problem.Traits().filled;
-  return { layer * filled.first[2] / SweepPadding * SweepPadding,
-    RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
 }
 
 /// As ScatterOrder, plus the predicted sum of all orders to come (coarse-mesh DSA), which is subtracted from the next
@@ -389,29 +301,25 @@ void SourceIteration::ScatterByCells()
     this->LookAtDirect(parts.Path, 1.0 / parts.Layout.grid.VoxelVolume());
   }
   const bool guessed = this->Order == 0 && this->Warm.Begins();
-  Rgb foreseen = this->OnTheWay;
-  std::transform(foreseen.begin(), foreseen.end(), this->Stranded.begin(), foreseen.begin(), std::plus<>());
+  Rgb foreseen = this->ToCome.onTheWay;
+  std::transform(foreseen.begin(), foreseen.end(), this->ToCome.stranded.begin(), foreseen.begin(), std::plus<>());
   const OrdersByCells::Powers powers =
     this->Cells->ScatterOrder(this->Result.ledger, foreseen, guessed ? &this->Warm.Guess() : nullptr);
-  this->Scattered = powers.scattered;
+  this->ToCome.scattered = powers.scattered;
   this->Shining = Sum(powers.magnitude) > 0.0;
-  this->Residual = 0.0;
+  this->ToCome.residual = 0.0;
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    this->Result.ledger.SetUnaccounted(c, powers.left[c] + this->OnTheWay[c] + this->Stranded[c]);
-    this->AllScattered[c] += powers.scattered[c];
-    const double before = std::abs(this->WasOnTheWay[c]), onTheWay = std::abs(this->OnTheWay[c]);
-    const double now = this->Cells->ForeseeWay()
-      ? GoesOnAsForeseen(before, onTheWay, powers.magnitude[c])
-      : GoesOnToItsEnd(this->Settings.maximumOrders, before, onTheWay, powers.magnitude[c]);
-    if (now > 0.0 && this->AllScattered[c] > 0.0)
-    {
-      this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
-    }
+    this->Result.ledger.SetUnaccounted(c, powers.left[c] + this->ToCome.onTheWay[c] + this->ToCome.stranded[c]);
+    this->ToCome.allScattered[c] += powers.scattered[c];
+    const double before = std::abs(this->ToCome.wasOnTheWay[c]), onTheWay = std::abs(this->ToCome.onTheWay[c]);
+    this->ToCome.Expect(c,
+      this->Cells->ForeseeWay() ? GoesOnAsForeseen(before, onTheWay, powers.magnitude[c])
+                                : GoesOnToItsEnd(this->Settings.maximumOrders, before, onTheWay, powers.magnitude[c]));
   }
-  const double all = Sum(this->AllScattered);
-  this->Result.convergence.Add(
-    this->Residual, all > 0.0 ? std::abs(Sum(this->Scattered)) / all : 0.0, this->Cells->WithOut(this->Result.ledger));
+  const double all = Sum(this->ToCome.allScattered);
+  this->Result.convergence.Add(this->ToCome.residual, all > 0.0 ? std::abs(Sum(this->ToCome.scattered)) / all : 0.0,
+    this->Cells->WithOut(this->Result.ledger));
 }
 
 /// @param scale  converts `fluence` to W / length^2
@@ -442,31 +350,39 @@ void SourceIteration::ScatterOrder()
   }
   this->FindOctantSources();
   const ScatteringOperator::Powers powers = this->ScatterSwept();
-  this->Scattered = powers.scattered;
+  this->ToCome.scattered = powers.scattered;
   for (int c = 0; c < 3; ++c)
   {
     this->Result.ledger.Absorb(c, powers.absorbed[c]);
   }
-  this->Shining = Sum(this->Scattered) > 0.0;
+  this->Shining = Sum(this->ToCome.scattered) > 0.0;
   if (this->Warm.Begins() && this->Order > 0)
   {
     this->GoOnWarm();
   }
   else
   {
-    this->EstimateResidual();
+    this->ToCome.residual = 0.0;
+    for (int c = 0; c < this->Parts.Layout.channels; ++c)
+    {
+      const double now = GoesOnToItsEnd(this->Settings.maximumOrders, this->ToCome.wasOnTheWay[c],
+        this->ToCome.onTheWay[c], this->ToCome.scattered[c] + this->ToCome.reflected[c]);
+      this->ToCome.allScattered[c] += now;
+      this->ToCome.Expect(c, now);
+    }
   }
   for (int c = 0; c < 3; ++c)
   {
     this->Result.ledger.SetUnaccounted(
-      c, this->Scattered[c] + this->OnTheWay[c] + this->Reflected[c] + this->Stranded[c]);
+      c, this->ToCome.scattered[c] + this->ToCome.onTheWay[c] + this->ToCome.reflected[c] + this->ToCome.stranded[c]);
   }
   if (this->Order == 0)
   {
     this->LookAtDirect(this->Parts.Fluence, 1.0);
   }
-  const double all = Sum(this->AllScattered);
-  this->Result.convergence.Add(this->Residual, all > 0.0 ? Sum(this->Scattered) / all : 0.0, this->Result.ledger);
+  const double all = Sum(this->ToCome.allScattered);
+  this->Result.convergence.Add(
+    this->ToCome.residual, all > 0.0 ? Sum(this->ToCome.scattered) / all : 0.0, this->Result.ledger);
 }
 
 /// Computes the sources by octant from all light incident on voxels, including that beyond the faces of the block.
@@ -493,7 +409,8 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
       return;
     }
     this->GatherMoments();
-    powers = parts.Scattering->ScatterOrder(parts.WholeDeposit(), parts.Fluence, parts.Source, this->SweptValues());
+    powers = parts.Scattering->ScatterOrder(
+      parts.WholeDeposit(), parts.Fluence, parts.Source, this->Sweeps->Values(this->Order));
     if (parts.StoresMoments())
     {
       // Before the first order, `shown` holds only light of lamps.
@@ -508,24 +425,6 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
   return { this->TheDomain.Sum(powers.absorbed), this->TheDomain.Sum(powers.scattered) };
 }
 
-/// Estimates the power that the orders to come will add to the scattered light, relative to the sum so far. Uses the
-/// largest of all channels.
-void SourceIteration::EstimateResidual()
-{
-  this->Residual = 0.0;
-  for (int c = 0; c < this->Parts.Layout.channels; ++c)
-  {
-    const double now = GoesOnToItsEnd(
-      this->Settings.maximumOrders, this->WasOnTheWay[c], this->OnTheWay[c], this->Scattered[c] + this->Reflected[c]);
-    this->AllScattered[c] += now;
-    if (now == 0.0)
-    {
-      continue;
-    }
-    this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
-  }
-}
-
 /// Adds the scattering source of the first guess to the source of the next sweep.
 void SourceIteration::BeginWarm()
 {
@@ -533,7 +432,7 @@ void SourceIteration::BeginWarm()
   this->Shining = this->Shining || Sum(this->Warm.GuessedPower()) != 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    this->Rest[c].BeginWarm(this->Warm.Rate(c));
+    this->ToCome.rest[c].BeginWarm(this->Warm.Rate(c));
   }
 }
 
@@ -549,18 +448,15 @@ void SourceIteration::GoOnWarm()
   }
   const Rgb magnitudes = this->Warm.MagnitudeOf(this->Parts.Source);
   this->Shining = Sum(magnitudes) > 0.0;
-  this->Residual = 0.0;
+  this->ToCome.residual = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)
   {
-    this->AllScattered[c] += this->Scattered[c];
-    this->Scattered[c] -= guessed[c];
+    this->ToCome.allScattered[c] += this->ToCome.scattered[c];
+    this->ToCome.scattered[c] -= guessed[c];
     const double reflected = this->Parts.Faces ? this->Parts.Faces->Magnitude()[c] : 0.0;
-    const double now = GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->WasOnTheWay[c]),
-      std::abs(this->OnTheWay[c]), magnitudes[c] + reflected);
-    if (now > 0.0)
-    {
-      this->Residual = std::max(this->Residual, this->Rest[c].After(now, this->AllScattered[c]));
-    }
+    this->ToCome.Expect(c,
+      GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->ToCome.wasOnTheWay[c]),
+        std::abs(this->ToCome.onTheWay[c]), magnitudes[c] + reflected));
   }
 }
 
@@ -576,7 +472,7 @@ void SourceIteration::GatherMoments()
 void SourceIteration::Leave()
 {
   this->Result.warm = this->Warm.Begins();
-  const Rgb rates = { this->Rest[0].Ratio(), this->Rest[1].Ratio(), this->Rest[2].Ratio() };
+  const Rgb rates = { this->ToCome.rest[0].Ratio(), this->ToCome.rest[1].Ratio(), this->ToCome.rest[2].Ratio() };
   std::vector<float> moments;
   this->TheDomain.Collective([&] { moments = this->Moments.Size() > 0 ? this->Moments.Read() : std::vector<float>(); });
   this->Result.kept = this->Warm.Leave(this->Direct, moments, rates);
@@ -584,59 +480,26 @@ void SourceIteration::Leave()
 
 bool SourceIteration::Done() const
 {
-  if (this->Residual == 0.0 || this->Order >= MostOrders)
+  if (this->ToCome.residual == 0.0 || this->Order >= MostOrders)
   {
     return true;
   }
   const int least = this->Warm.Begins() ? 2 : 3; // after a guess the rate of decrease is known earlier
-  return this->Settings.maximumOrders > 0 ? this->Order >= this->Settings.maximumOrders
-                                          : this->Order >= least && MeetsTolerance(this->Settings, this->Residual);
-}
-
-/// Computes the light of all orders after the first in the voxels around the medium, and through the box faces: one
-/// sweep of the source of all orders minus the unswept source of the last one (numerics.md, Eq. (44)).
-void SourceIteration::SweepEmptySlabs(const Monitor& monitor)
-{
-  TransportParts& parts = this->Parts;
-  parts.Scattering->ScatterAllOrders(parts.Fluence, parts.Source);
-  const SweepTally tally = this->Whole->Apply(&parts.Source, {}, monitor);
-  for (int face = 0; face < 6; ++face)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      this->Result.ledger.AssignFace(c, face, tally.out[face][c]);
-    }
-  }
-  this->AddOutside(parts.Problem.Traits().filled);
-}
-
-/// Adds the path integrals of a sweep to the fluence of the voxels outside a box.
-void SourceIteration::AddOutside(const VoxelBox& box)
-{
-  const TransportParts& parts = this->Parts;
-  const VolumeLayout& layout = parts.Layout;
-  cl::Kernel add = parts.TheDevice.Kernel("add_outside", kernel_source::SourceIteration);
-  const std::array<int, 3>& n = layout.grid.size;
-  With(add, parts.Path, parts.Fluence, cl_ulong(layout.Stride()), static_cast<float>(1.0 / layout.grid.VoxelVolume()),
-    cl_int3{ { n[0], n[1], n[2] } }, cl_int3{ { box.first[0], box.first[1], box.first[2] } },
-    cl_int3{ { box.size[0], box.size[1], box.size[2] } });
-  parts.TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(layout.Stride(), layout.channels));
+  return this->Settings.maximumOrders > 0
+    ? this->Order >= this->Settings.maximumOrders
+    : this->Order >= least && MeetsTolerance(this->Settings, this->ToCome.residual);
 }
 
 std::vector<std::string> SourceIteration::LeftOut() const
 {
   std::vector<std::string> words = this->Warm.LeftOut();
-  if (this->Filled)
-  {
-    words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));
-  }
   if (this->Settings.source == PropagationSource::Octants && !this->AtFaces)
   {
     words.emplace_back(OctantSources::AreThick(this->Parts.Problem) ? left_out::NotByOctant : left_out::ThinVoxels);
   }
-  if (this->LitPart < 1.0)
+  for (const std::string& line : this->Sweeps->LeftOut())
   {
-    words.push_back(left_out::DarkDirections(this->LitPart));
+    words.push_back(line);
   }
   return words;
 }

@@ -123,7 +123,7 @@ Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
     }
     const std::size_t lines = static_cast<std::size_t>(layout.grid.size[1]) * layout.grid.size[2];
     Buffer<float> tally(device, lines * layout.channels, "sums");
-    cl::Kernel kernel = device.Kernel("sum_magnitudes", kernel_source::WarmStart);
+    cl::Kernel kernel = device.Kernel("sum_magnitudes", kernel_source::SourceIteration);
     With(kernel, layout.Places(this->Parts.Functions()), source, tally, cl_ulong(layout.Stride()));
     device.Queue().enqueueNDRangeKernel(
       kernel, cl::NullRange, cl::NDRange(lines, layout.channels), GroupOfLargeItems(device, 2));

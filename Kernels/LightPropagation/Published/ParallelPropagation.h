@@ -2,7 +2,6 @@
 
 #include "LightPropagation/Published/OrderLedger.h"
 #include "LightPropagation/Published/PublishedModel.h"
-#include "LightPropagation/Published/PublishedPlan.h"
 #include "LightPropagation/Published/PublishedSweep.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
 

@@ -1,0 +1,153 @@
+#include "LightPropagation/Conservative/OrderSweeps.h"
+
+#include "Device/Sizes.h"
+#include "Light/LeftOut.h"
+#include "TyndallKernelSources.h"
+
+namespace tyndall
+{
+namespace
+{
+constexpr int FewPlanes = 256;        ///< that a ray crosses around a periodic axis per order, if more orders follow
+constexpr double MostlyLit = 0.75;    ///< fraction of rays above which a separate sweep does not pay
+constexpr double MostlyFilled = 0.75; ///< the same for voxels
+constexpr int OrdersExpected = 6;     ///< assumed when deciding whether to sweep empty slabs only at the end
+
+bool IsPeriodic(const PropagationSettings& settings)
+{
+  return settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
+}
+}
+
+OrderSweeps::OrderSweeps(
+  TransportParts& parts, const Deposit& deposit, const Buffer<float>* octantSource, bool byCells, bool shines)
+  : Parts(parts)
+{
+  const PropagationSettings& settings = parts.Problem.Settings();
+  // Coarse-mesh DSA does not know of rays that wait for the next sweep, so they go all the way.
+  const bool wholeWay = settings.maximumOrders > 0 || byCells;
+  SweepRequest request = { deposit, parts.AllRays(), {}, wholeWay ? MostPlanesAround : FewPlanes };
+  request.octantSource = octantSource;
+  request.angular = parts.UsualValues();
+  request.faceIn = parts.LightByCells();
+  this->Whole = parts.Transport.MakeSweep(request);
+  if (!octantSource && !byCells && this->MayOmitEmptySlabs())
+  {
+    // No flux: the final sweep computes it.
+    this->Filled = parts.Transport.MakeSweep(
+      { { &parts.Path, nullptr, nullptr, nullptr }, parts.AllRays(), parts.Problem.Traits().filled });
+  }
+  if (settings.leaveOut && parts.Lights.SweepCarriesBoundarySource() && !shines && !IsPeriodic(settings))
+  {
+    this->MakeLitSweep(deposit);
+  }
+}
+
+/// Whether later orders sweep only the box that the medium fills: light that leaves this box does not come back. Not
+/// with periodic axes, whose rays would be under way in both sweeps; nor if face light by cell is requested, which the
+/// final sweep does not know.
+bool OrderSweeps::MayOmitEmptySlabs() const
+{
+  const PropagationSettings& settings = this->Parts.Problem.Settings();
+  const MediumTraits& traits = this->Parts.Problem.Traits();
+  if (!this->Parts.Transport.SweepsParts() || !settings.leaveOut || !traits.scatters ||
+    !this->Parts.Scattering->CanScatterAllOrders() || IsPeriodic(settings) || this->Parts.Faces)
+  {
+    return false;
+  }
+  const double filled =
+    static_cast<double>(traits.filled.VoxelCount()) / static_cast<double>(this->Parts.Layout.grid.VoxelCount());
+  const int later = (settings.maximumOrders > 0 ? settings.maximumOrders : OrdersExpected) - 1;
+  return filled < MostlyFilled && later * (1.0 - filled) > 1.0;
+}
+
+/// Makes the first sweep, restricted to directions with incident light, if these are few. Not used with periodic axes,
+/// where rays wait in the other directions for the next order.
+void OrderSweeps::MakeLitSweep(const Deposit& deposit)
+{
+  const auto isLit = [this](int direction) { return this->Parts.Lights.UsualBoundary->IsLit(direction); };
+  double all = 0.0, lit = 0.0;
+  std::vector<AxisBundles> ways;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    all += CountRays(this->Parts.Usual.Along(axis));
+    for (int way = 0; way < 2; ++way)
+    {
+      ways.push_back({ axis, this->Parts.Usual.LitAlong(axis, way, isLit) });
+      lit += CountRays(ways.back().bundles);
+    }
+  }
+  if (lit <= MostlyLit * all)
+  {
+    this->LitPart = lit / all;
+    SweepRequest request = { deposit, ways };
+    request.angular = this->Parts.UsualValues();
+    this->Lit = this->Parts.Transport.MakeSweep(request);
+  }
+}
+
+SweepOperator& OrderSweeps::Of(int order)
+{
+  return this->OmitsEmptySlabs(order) ? *this->Filled : this->Lit ? *this->Lit : *this->Whole;
+}
+
+std::array<std::size_t, 2> OrderSweeps::Values(int order) const
+{
+  if (!this->OmitsEmptySlabs(order))
+  {
+    return { 0, this->Parts.Layout.Stride() };
+  }
+  const std::array<int, 3>& n = this->Parts.Layout.grid.size;
+  const std::size_t layer = static_cast<std::size_t>(n[0]) * n[1];
+  const VoxelBox& filled = this->Parts.Problem.Traits().filled;
+  return { layer * filled.first[2] / SweepPadding * SweepPadding,
+    RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
+}
+
+/// One sweep of the source of all orders minus the unswept source of the last one (numerics.md, Eq. (44)).
+void OrderSweeps::SweepEmptySlabs(EnergyLedger& ledger, const Monitor& monitor)
+{
+  if (!this->Filled)
+  {
+    return;
+  }
+  TransportParts& parts = this->Parts;
+  parts.Scattering->ScatterAllOrders(parts.Fluence, parts.Source);
+  const SweepTally tally = this->Whole->Apply(&parts.Source, {}, monitor);
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      ledger.AssignFace(c, face, tally.out[face][c]);
+    }
+  }
+  this->AddOutside(parts.Problem.Traits().filled);
+}
+
+/// Adds the path integrals of a sweep to the fluence of the voxels outside a box.
+void OrderSweeps::AddOutside(const VoxelBox& box)
+{
+  const TransportParts& parts = this->Parts;
+  const VolumeLayout& layout = parts.Layout;
+  cl::Kernel add = parts.TheDevice.Kernel("add_outside", kernel_source::SourceIteration);
+  const std::array<int, 3>& n = layout.grid.size;
+  With(add, parts.Path, parts.Fluence, cl_ulong(layout.Stride()), static_cast<float>(1.0 / layout.grid.VoxelVolume()),
+    cl_int3{ { n[0], n[1], n[2] } }, cl_int3{ { box.first[0], box.first[1], box.first[2] } },
+    cl_int3{ { box.size[0], box.size[1], box.size[2] } });
+  parts.TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(layout.Stride(), layout.channels));
+}
+
+std::vector<std::string> OrderSweeps::LeftOut() const
+{
+  std::vector<std::string> words;
+  if (this->Filled)
+  {
+    words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));
+  }
+  if (this->LitPart < 1.0)
+  {
+    words.push_back(left_out::DarkDirections(this->LitPart));
+  }
+  return words;
+}
+}
