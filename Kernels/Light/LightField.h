@@ -38,9 +38,36 @@ struct ConvergenceRow
   double leftOver = 0.0;
 };
 
+/// What a solve reports about itself, of the whole domain.
+struct SolveReport
+{
+  /// Estimated error of the fluence: its root mean square over that of the fluence. 0: not asked for; NaN: not known.
+  double relativeError = 0.0;
+  /// Half-range flux of the quadrature used for boundary sources (DirectionSet.h); 0: there is none.
+  double halfRangeFlux = 0.0;
+  std::vector<ConvergenceRow> convergence;
+  /// For each row, how many sweeps the initial guess saved: the row at which the last solve without a guess reached
+  /// this residual, less this row's number; 0 if this solve had no guess. Empty: no warm start was asked for
+  /// (KeptLight.h).
+  std::vector<int> sweepsSaved;
+  bool converged = true; ///< the last residual is at most the tolerance, or all orders that were asked for are done
+  std::vector<std::string> doubts; ///< warnings about the result, one sentence each
+  /// Polar quadrature nodes of a plane-parallel solve (PropagationSettings::polarNodes); 0: rays were traced through
+  /// voxels.
+  int polarNodes = 0;
+  /// Directions per face that were used, if the solver chooses (PropagationSettings::adaptDirections).
+  int directionsPerFace = 0;
+  int uncollidedDirections = 0;     ///< directions per face for uncollided boundary light; 0: as directionsPerFace
+  std::vector<std::string> leftOut; ///< parts of the computation that the scene did not need (LeftOut.h)
+  int solves = 1;                   ///< number of solves, including those on coarser grids (TargetError.h)
+  double secondsOfAll = 0.0;        ///< run time of all solves; 0 if there was only one, whose time is in `convergence`
+  std::vector<std::string> settingsUsed; ///< "Name = value" for each setting chosen by the quality (Quality.h)
+  std::string device;
+};
+
 /// The light in a medium, as every solver returns it. Arrays are over the grid's voxels, x fastest, channels
 /// interleaved; an array that was not asked for is empty.
-struct LightField
+struct LightField : SolveReport
 {
   int channels = 1;
   std::vector<float> fluence;       ///< W / length^2, `channels` per voxel
@@ -65,8 +92,6 @@ struct LightField
   /// Outgoing radiance at the box's faces, W / (length^2 sr), [cell][SurfaceCosines][channel] (BoxFaces.h); empty if no
   /// boundary voxel is optically thick, or it is not known.
   std::vector<float> surfaceRadiance;
-  /// Estimated error of the fluence: its root mean square over that of the fluence. 0: not asked for; NaN: not known.
-  double relativeError = 0.0;
   EnergyBalance balance;
   /// Net escaped power through -x, +x, -y, +y, -z, +z, W: what leaves less what the faces reflect.
   std::array<Rgb, 6> facePowerOut = {};
@@ -74,25 +99,5 @@ struct LightField
   /// reflection; empty if it was not asked for and no face reflects.
   std::vector<float> facePower;
   std::array<Rgb, 6> faceAlbedo = {}; ///< fraction of facePower that is reflected (Illumination::faceAlbedo)
-  /// Half-range flux of the quadrature used for boundary sources (DirectionSet.h); 0: there is none.
-  double halfRangeFlux = 0.0;
-  std::vector<ConvergenceRow> convergence;
-  /// For each row, how many sweeps the initial guess saved: the row at which the last solve without a guess reached
-  /// this residual, less this row's number; 0 if this solve had no guess. Empty: no warm start was asked for
-  /// (KeptLight.h).
-  std::vector<int> sweepsSaved;
-  bool converged = true; ///< the last residual is at most the tolerance, or all orders that were asked for are done
-  std::vector<std::string> doubts; ///< warnings about the result, one sentence each
-  /// Polar quadrature nodes of a plane-parallel solve (PropagationSettings::polarNodes); 0: rays were traced through
-  /// voxels.
-  int polarNodes = 0;
-  /// Directions per face that were used, if the solver chooses (PropagationSettings::adaptDirections).
-  int directionsPerFace = 0;
-  int uncollidedDirections = 0;     ///< directions per face for uncollided boundary light; 0: as directionsPerFace
-  std::vector<std::string> leftOut; ///< parts of the computation that the scene did not need (LeftOut.h)
-  int solves = 1;                   ///< number of solves, including those on coarser grids (TargetError.h)
-  double secondsOfAll = 0.0;        ///< run time of all solves; 0 if there was only one, whose time is in `convergence`
-  std::vector<std::string> settingsUsed; ///< "Name = value" for each setting chosen by the quality (Quality.h)
-  std::string device;
 };
 }

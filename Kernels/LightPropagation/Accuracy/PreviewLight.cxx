@@ -152,14 +152,9 @@ LightField Shown(LightField&& found, const CoarseBlocks& blocks)
   }
   light.balance = found.balance;
   light.facePowerOut = found.facePowerOut;
-  light.halfRangeFlux = found.halfRangeFlux;
-  light.directionsPerFace = found.directionsPerFace;
-  light.uncollidedDirections = found.uncollidedDirections;
-  light.polarNodes = found.polarNodes;
-  light.convergence = std::move(found.convergence);
-  light.sweepsSaved = std::move(found.sweepsSaved);
-  light.device = std::move(found.device);
-  light.leftOut = std::move(found.leftOut);
+  static_cast<SolveReport&>(light) = std::move(found);
+  light.doubts.clear(); // a preview is not judged
+  light.converged = true;
   light.leftOut.insert(light.leftOut.begin(),
     "detail: a preview, of " + SizeOf(blocks.Coarse().whole) + " of " + SizeOf(blocks.Fine().whole) +
       " voxels, few directions");
