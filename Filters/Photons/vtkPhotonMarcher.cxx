@@ -7,7 +7,7 @@
 #include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
 #include "Numerics/ChooseEvenly.h"
-#include "Photons/Marching/PhotonShares.h"
+#include "Photons/Marching/PhotonPacking.h"
 #include "Photons/PhotonData.h"
 #include "Photons/Published/PublishedPhotons.h"
 #include "Photons/RefractiveInput.h"

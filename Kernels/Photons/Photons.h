@@ -52,28 +52,25 @@ struct MarchSettings
   /// photons in one segment. In a mostly empty medium this takes a small part of the memory and of the time; in voxels
   /// of bricks that hold any medium the light is the same, to rounding. Takes effect only if the index is constant
   /// (empty space then focuses no light), at least three quarters of the bricks are empty, and photons are followed
-  /// through one order, without counts, batches and Unsafe sums; otherwise light is stored voxel by voxel.
+  /// through one order, without counts and batches; otherwise light is stored voxel by voxel.
   bool byBricks = false;
   /// Whether kernels leave out what the scene does not need; false: kernels always have three channels and the
   /// integrator, to measure the saving.
   bool leaveOut = true;
 
-  /// How concurrent additions to the same sums are kept from losing deposits. All but Unsafe give the same light, bit
-  /// for bit.
+  /// How concurrent additions to the same sums are kept from losing deposits. All give the same light, bit for bit.
   enum class Sums
   {
     Fitting, ///< Private on a CPU of up to 8 cores and on devices without 64-bit atomics, else Shared
     Shared,  ///< one copy, 64-bit fixed-point atomics; needs cl_khr_int64_base_atomics
     Private, ///< a copy for each compute unit (as many as fit into memory), added up at the end
-    /// One copy, plain additions that lose some deposits; only to measure the cost of safety, not with batches.
-    Unsafe,
   };
   Sums sums = Sums::Fitting;
 };
 
-/// @throws InvalidInput if the order is not 1, 2 or 4, the step size is not 0.05 to 1e4 voxels, Unsafe sums are
-///   combined with batches, maximumOrders is negative, errorBatches is 1, outside 0 to MarchedBatchesAtMost or combined
-///   with counts or batches, or batches are combined with maximumOrders other than 1
+/// @throws InvalidInput if the order is not 1, 2 or 4, the step size is not 0.05 to 1e4 voxels, maximumOrders is
+///   negative, errorBatches is 1, outside 0 to MarchedBatchesAtMost or combined with counts or batches, or batches are
+///   combined with maximumOrders other than 1
 void Check(const MarchSettings& settings);
 
 /// The path of one photon: its corners, and the fraction of its power (all channels together) that is left at each; 1

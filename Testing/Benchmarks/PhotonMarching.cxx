@@ -83,7 +83,7 @@ void TimeWays(const PhotonBench& bench)
     return way(name, [&] { return marcher.March(scene.photons); });
   };
   MarchSettings settings;
-  const double fitting = conservative("conservative, octree", settings, true);
+  conservative("conservative, octree", settings, true);
   conservative("conservative, voxel by voxel", settings, false);
   settings.counts = true;
   conservative("conservative, octree, counts", settings, true);
@@ -97,12 +97,6 @@ void TimeWays(const PhotonBench& bench)
   settings.order = 2;
   settings.sums = MarchSettings::Sums::Shared;
   conservative("conservative, shared sums (atomics)", settings, true);
-  settings.sums = MarchSettings::Sums::Unsafe;
-  const double plain = conservative("conservative, plain additions that lose some", settings, true);
-  PhotonLine("accumulation", "fitting", scene.settings.grid)
-    .Add("ratio", fitting / plain)
-    .Add("against", "plain")
-    .Print();
   way("as published", [&] {
     return MarchPublished(device, Domain(scene.Medium().grid), scene.Medium(), scene.Index(),
       scene.octree.levels.data(), scene.photons, { 10, false });

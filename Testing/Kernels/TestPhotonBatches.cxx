@@ -321,6 +321,4 @@ TEST_F(PhotonBatchesTest, RefusesWhatMeansNothing)
     photons[2].weight = weight;
     ExpectRefusal([&] { marcher.March(photons); }, "Photon 2 has weight");
   }
-  scene.settings.sums = MarchSettings::Sums::Unsafe;
-  ExpectRefusal([&] { scene.Marcher(this->GetDevice()); }, "Unsafe");
 }

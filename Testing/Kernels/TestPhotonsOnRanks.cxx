@@ -438,7 +438,6 @@ TEST_F(PhotonsOnRanks, FailTogether)
     this->ExpectErrors(words, change);
     this->ExpectErrors(words, change, true);
   }
-  this->ExpectErrors("Unsafe", [](Given g) { g.settings.sums = MarchSettings::Sums::Unsafe; });
   this->ExpectErrors("disagree about g", [](Given g) {
     g.settings.maximumOrders = 0;
     g.part.medium.phase = PhaseFunction::HenyeyGreenstein(g.rank == 1 ? 0.5 : 0.0);

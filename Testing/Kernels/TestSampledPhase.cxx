@@ -5,7 +5,7 @@
 
 #include "Device/Defines.h"
 #include "Numerics/Legendre.h"
-#include "Photons/Scattering/SampledPhase.h"
+#include "Photons/Scattering/PhotonScattering.h"
 #include "TyndallKernelSources.h"
 
 #include <cmath>
@@ -37,11 +37,11 @@ protected:
       "{ random_numbers random = random_of(11, get_global_id(0)); const scattering medium = { 0, phase };"
       "  out[get_global_id(0)] = cosine_of(&medium, voxel, draw(&random)); }";
     cl::Kernel kernel = device.Kernel("cosines", source,
-      phase.Options() + Define("CHANNELS", 1) + Define("MEDIUM_CHANNELS", 1) + Define("DIRECTIONS", 1) +
+      phase.options + Define("CHANNELS", 1) + Define("MEDIUM_CHANNELS", 1) + Define("DIRECTIONS", 1) +
         Define("GATHERS", 0) + Define("ORDER", 2) + Define("BENDS", 0) + Define("LEVELS", 0) + Define("ATOMICS", 0) +
         Define("WORKERS", 1) + Define("BLOCK", 1) + Define("REAL_WIDTH", 1));
     Buffer<float> out(device, Draws, "cosines");
-    With(kernel, phase.Values(), voxel, out);
+    With(kernel, phase.values, voxel, out);
     device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(Draws));
     return out.Read();
   }

@@ -2,9 +2,8 @@
 
 #include "Device/Clock.h"
 #include "Distribution/Rounds.h"
-#include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/MarchRun.h"
-#include "Photons/Marching/PhotonShares.h"
+#include "Photons/Marching/PhotonPacking.h"
 
 #include <algorithm>
 #include <cmath>
@@ -194,7 +193,7 @@ struct PilotMarch
   PilotMarch(
     const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells)
     : sums(medium, packed, cellOfVoxel, cells)
-    , run(medium, this->sums.Target(), packed)
+    , run(medium, this->sums.Target(), packed.channels)
   {
   }
 

@@ -1,13 +1,19 @@
 #include "Photons/Marching/MarchMedium.h"
 
 #include "Device/Defines.h"
-#include "Photons/Marching/MarchLaunch.h"
+#include "Device/Errors.h"
+#include "Device/HostMemory.h"
+#include "Device/HostThreads.h"
+#include "Device/Sizes.h"
+#include "Distribution/SharedMedium.h"
+#include "Photons/Marching/MarchRun.h"
 #include "Refraction/Index/SquaredIndex.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace tyndall
 {
@@ -18,6 +24,10 @@ constexpr int RoundsAtMost = 64;   ///< maximum path length of a photon, in sums
 constexpr float DarkUnits = 1e-3f; ///< power too small to show in any sum
 /// Fraction of bricks; if more are filled, a layout by bricks saves little.
 constexpr double FilledAtMost = 0.25;
+
+// As in PhotonMedium.cl.
+constexpr float OutsideOfGrid = -3e38f;
+constexpr float ThickestVoxel = 1e30f;
 
 /// Number of components to upload: 0 if a coefficient is zero everywhere.
 int ComponentsOf(const Field& field, bool needed)
@@ -35,13 +45,51 @@ PhotonBricks BricksOf(Device& device, const Grid& grid, const FilledBricks& fill
   bool bends, bool scatters)
 {
   const bool oneOrder = settings.maximumOrders == 1 || !scatters;
-  if (!settings.byBricks || bends || !oneOrder || settings.counts || settings.batches ||
-    settings.sums == MarchSettings::Sums::Unsafe)
+  if (!settings.byBricks || bends || !oneOrder || settings.counts || settings.batches)
   {
     return {};
   }
   return filled.FilledPart() > FilledAtMost ? PhotonBricks() : PhotonBricks(device, filled, grid);
 }
+}
+
+FilledBricks CheckMarchedMedium(
+  const Domain& domain, const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree)
+{
+  Check(domain.Whole());
+  domain.Partition().Check();
+  if (domain.IsEmpty())
+  {
+    return FilledBricks();
+  }
+  const std::string rank = std::to_string(domain.Rank());
+  const FilledBricks filled = CheckedBricks(medium);
+  Require(
+    medium.grid.size == domain.Own().size, "The medium of rank " + rank + " does not have the size of its block.");
+  CheckIndex(ior, medium.grid);
+  CheckLevels(levels, medium.grid, domain.Whole());
+  Require((levels != nullptr) == octree,
+    "The block of rank " + rank +
+      (levels ? " has octree levels and others have none." : " has no octree levels and others have."));
+  return filled;
+}
+
+void RequireSameMedium(const Domain& domain, const Medium& medium, const Field& ior)
+{
+  Communicator& communicator = domain.Comm();
+  RequireSame(communicator, domain.Partition());
+  const bool has = !domain.IsEmpty();
+  RequireSame(communicator, "whether there is a refractive index", has, { ior.values ? 1.0 : 0.0 });
+  const auto components = [](const Field& field) { return field.values ? field.components : 0; };
+  RequireSame(communicator, "the components of sigma_a or sigma_s", has,
+    { 1.0 * components(medium.sigma_a), 1.0 * components(medium.sigma_s) });
+}
+
+IndexRange IndexRangeOfAll(const Domain& domain, const IndexRange& own)
+{
+  const double endless = std::numeric_limits<double>::infinity();
+  return { static_cast<float>(-domain.Max(domain.IsEmpty() ? -endless : -own.least)),
+    static_cast<float>(domain.Max(domain.IsEmpty() ? -endless : own.largest)) };
 }
 
 int MarchTraits::Channels(const MarchSettings& settings) const
@@ -53,6 +101,82 @@ MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior, const FilledBr
 {
   return { { TraitsOf(medium, filled) }, medium.sigma_a.HasColour() || medium.sigma_s.HasColour(),
     IndexRangeOf(ior, medium.grid) };
+}
+
+PhotonBricks::PhotonBricks(Device& device, const FilledBricks& bricks, const Grid& grid)
+  : Voxels(grid)
+  , BrickCount(bricks.count)
+  , RecordCount(1)
+{
+  this->Begin.reserve(bricks.filled.size());
+  for (const unsigned char filled : bricks.filled)
+  {
+    const auto record = static_cast<cl_int>(this->RecordCount);
+    this->Begin.push_back(filled ? record : -record);
+    this->RecordCount += filled ? BrickVoxels : 1;
+  }
+  this->OnDevice = Buffer<cl_int>(device, this->Begin, "bricks of the medium");
+}
+
+template <class Act>
+void PhotonBricks::ForFilled(const Act& act) const
+{
+  InThreads(this->Begin.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t brick = begin; brick < end; ++brick)
+    {
+      if (this->Begin[brick] < 0)
+      {
+        continue;
+      }
+      const int n = static_cast<int>(brick), nx = this->BrickCount[0], ny = this->BrickCount[1];
+      const std::array<int, 3> low = { n % nx * BrickEdge, n / nx % ny * BrickEdge, n / (nx * ny) * BrickEdge };
+      std::array<int, 3> high;
+      for (int a = 0; a < 3; ++a)
+      {
+        high[a] = std::min(low[a] + BrickEdge, this->Voxels.size[a]);
+      }
+      for (int z = low[2]; z < high[2]; ++z)
+      {
+        for (int y = low[1]; y < high[1]; ++y)
+        {
+          const std::size_t voxel = this->Voxels.IndexOf({ low[0], y, z });
+          const auto record =
+            static_cast<std::size_t>(this->Begin[brick] + ((z - low[2]) * BrickEdge + (y - low[1])) * BrickEdge);
+          act(record, voxel, static_cast<std::size_t>(high[0] - low[0]));
+        }
+      }
+    }
+  });
+}
+
+PhotonBricks::Coefficients PhotonBricks::Pack(
+  const Medium& medium, double diagonal, int channels, int aComponents, int sComponents) const
+{
+  const std::size_t ofA = tyndall::Count(aComponents), ofS = tyndall::Count(sComponents);
+  const std::size_t all = tyndall::Count(channels);
+  Coefficients packed = { Zeros(this->RecordCount * all), Zeros(this->RecordCount * ofA),
+    Zeros(this->RecordCount * ofS) };
+  for (std::size_t c = 0; c < all; ++c)
+  {
+    packed.extinction[c * this->RecordCount] = OutsideOfGrid;
+  }
+  const auto over = static_cast<float>(diagonal);
+  // Copies a whole row at a time: rows of a brick are far apart in memory.
+  this->ForFilled([&](std::size_t record, std::size_t voxel, std::size_t count) {
+    std::copy_n(medium.sigma_a.values + voxel * ofA, count * ofA, packed.sigmaA.data() + record * ofA);
+    std::copy_n(medium.sigma_s.values + voxel * ofS, count * ofS, packed.sigmaS.data() + record * ofS);
+    for (std::size_t c = 0; c < all; ++c)
+    {
+      float* const values = packed.extinction.data() + c * this->RecordCount + record;
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        const int channel = static_cast<int>(c);
+        const float extinction = medium.sigma_a.At(voxel + i, channel) + medium.sigma_s.At(voxel + i, channel);
+        values[i] = std::min(over * extinction, ThickestVoxel);
+      }
+    }
+  });
+  return packed;
 }
 
 int MarchEventLimit(const Grid& whole, const MarchSettings& settings)
@@ -266,7 +390,7 @@ MarchInfo MarchMedium::Describe() const
   info.stepSize = static_cast<float>(this->settings.stepSize);
   info.slowest = 0.5f * this->traits.index.least / *std::max_element(info.spacing, info.spacing + 3);
   info.darkness = DarkUnits;
-  info.eventLimit = info.pause = this->EventLimit();
+  info.eventLimit = this->EventLimit();
   info.copy = this->Records();
   return info;
 }
@@ -274,7 +398,8 @@ MarchInfo MarchMedium::Describe() const
 std::string MarchMedium::Options() const
 {
   return Define("MEDIUM_CHANNELS", this->channels) + Define("BENDS", this->bends) + Define("LEVELS", this->hasLevels) +
-    Define("NODE_BRICKS", this->nodesOfWhole) + Define("BRICKS", this->bricks.AreThere()) + MultiplyAdds;
+    Define("NODE_BRICKS", this->nodesOfWhole) + Define("BRICKS", this->bricks.AreThere()) +
+    Define("BLOCKS", this->IsBlock()) + MultiplyAdds;
 }
 
 cl::Kernel MarchMedium::MediumKernel(const char* name) const

@@ -2,13 +2,13 @@
 
 #include "Device/Buffer.h"
 #include "Distribution/BrickedBytes.h"
+#include "Distribution/Domain.h"
+#include "Medium/FilledBricks.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 #include "Medium/VoxelBox.h"
 #include "Photons/Marching/MarchShared.h"
-#include "Photons/Marching/PhotonBricks.h"
 #include "Photons/Marching/PhotonPacking.h"
-#include "Photons/Marching/PhotonSumsShared.h"
 #include "Photons/Photons.h"
 #include "Refraction/Index/IndexRange.h"
 
@@ -30,7 +30,60 @@ struct MarchTraits : MediumTraits
   /// Number of channels of the light that these photons deposit.
   int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
 };
+// Checks of the medium through which photons are marched; each rank has one block of it.
+
+/// Checks the medium of this rank's block; a rank without voxels has none to check.
+/// @param levels  null if there is no octree
+/// @param octree  whether any rank has octree levels
+/// @return which of the medium's bricks are filled
+/// @throws InvalidInput if the block's input is not valid
+FilledBricks CheckMarchedMedium(
+  const Domain& domain, const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree);
+
+/// Checks that all blocks agree on the partition, on whether there is a refractive index, and on the number of
+/// components of their coefficients. Collective.
+/// @throws InvalidInput  on every rank, if they differ
+void RequireSameMedium(const Domain& domain, const Medium& medium, const Field& ior);
+
+/// The range of the refractive index over all blocks. Collective.
+IndexRange IndexRangeOfAll(const Domain& domain, const IndexRange& own);
+
 MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior, const FilledBricks& filled);
+
+/// Memory layout by bricks, for the medium and for the sums of deposits: a filled brick has a record for each of its
+/// voxels, x fastest; an empty brick has a single record. Record 0 stands for everything outside the grid.
+class PhotonBricks
+{
+public:
+  PhotonBricks() = default; ///< no bricks: arrays are stored voxel by voxel
+  PhotonBricks(Device& device, const FilledBricks& bricks, const Grid& grid);
+
+  bool AreThere() const { return this->RecordCount > 0; }
+  std::size_t Records() const { return this->RecordCount; }
+  std::size_t Count() const { return this->Begin.size(); }
+  /// First record of each filled brick; for an empty brick, its record number, negated (less than 0).
+  const Buffer<cl_int>& First() const { return this->OnDevice; }
+
+  struct Coefficients
+  {
+    /// [channels][records], times the voxel diagonal, as pack_extinction in PhotonMedium.cl computes it by voxels.
+    std::vector<float> extinction;
+    std::vector<float> sigmaA, sigmaS; ///< [records][components]
+  };
+  /// @param aComponents, sComponents  components of sigma_a and sigma_s in the medium, or 0 to leave them out
+  Coefficients Pack(const Medium& medium, double diagonal, int channels, int aComponents, int sComponents) const;
+
+private:
+  /// Calls act(first record, first voxel, count) for each row of voxels along x in filled bricks, on all cores.
+  template <class Act>
+  void ForFilled(const Act& act) const;
+
+  Grid Voxels;
+  std::array<int, 3> BrickCount = { 0, 0, 0 };
+  std::size_t RecordCount = 0;
+  std::vector<cl_int> Begin;
+  Buffer<cl_int> OnDevice;
+};
 
 /// The part of a grid through which one rank marches photons.
 struct MarchedPart
@@ -102,7 +155,7 @@ public:
   PhotonBricks bricks;       ///< layout by bricks, if all arrays use it
 
   Buffer<float> sigmaA, sigmaS;
-  Buffer<float> sigma;        ///< layout: pack_extinction in PhotonMedium.cl, or PhotonBricks.h
+  Buffer<float> sigma;        ///< layout: pack_extinction in PhotonMedium.cl, or PhotonBricks
   Buffer<float> coefficients; ///< spline of n^2, SquaredIndex.cl
   Buffer<cl_uchar> nodes;     ///< layout: pack_extinction in PhotonMedium.cl
 

@@ -1,21 +1,61 @@
 #include "Photons/Marching/MarchRun.h"
 
-#include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
 #include "Device/Sizes.h"
-#include "Photons/Marching/MarchLaunch.h"
 
 #include <algorithm>
 #include <numeric>
+#include <string>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
-constexpr std::size_t FirstLaunch = 16384; ///< photons; its duration determines the size of the next launch
+/// Maximum number of compute units for private sums: with more, adding up the copies costs more than atomics.
+constexpr int PrivateSumsAtMost = 8;
+constexpr int MarchBlock = 512; ///< number of neighbouring photons that one work-item takes at a time
+/// Path segments in the first launch with straight rays; two cores follow them in less than the time of a launch.
+constexpr double EventsPerLaunch = 4e7;
+constexpr double FirstBent = 16384; ///< photons in the first launch with curved rays
+/// Photons per launch in a block of a grid: 30 MiB for those that leave it.
+constexpr std::size_t MarchedBetweenBlocks = 262144;
 
-/// Indices of the first photon of each batch, and one past the last, for photons ordered by batch.
+bool HasAtomics(const Device& device)
+{
+  return device.HasExtension("cl_khr_int64_base_atomics");
+}
+
+bool NeedAtomics(const Device& device, MarchSettings::Sums sums)
+{
+  const bool atomics = HasAtomics(device);
+  const bool few = device.IsCpu() && device.ComputeUnits() <= PrivateSumsAtMost;
+  if (sums == MarchSettings::Sums::Shared && !atomics)
+  {
+    throw DeviceError(device.Name() +
+      " has no 64-bit atomics (cl_khr_int64_base_atomics), which shared sums need. Choose private sums.");
+  }
+  return sums == MarchSettings::Sums::Shared || (sums == MarchSettings::Sums::Fitting && atomics && !few);
+}
+
+/// Photons in the first launch. With straight rays, the cost of a launch follows from the number of voxels; with curved
+/// rays, it is measured in the first launch.
+double FirstLaunch(const MarchMedium& medium)
+{
+  const double edges = (medium.grid.size[0] + medium.grid.size[1] + medium.grid.size[2]) / 3.0;
+  const double straight = EventsPerLaunch / edges;
+  return medium.bends ? std::min(straight, FirstBent * std::min(medium.settings.stepSize, 1.0)) : straight;
+}
+
+const std::vector<PhotonOnItsWay>& SortByBatch(std::vector<PhotonOnItsWay>& photons)
+{
+  std::stable_sort(
+    photons.begin(), photons.end(), [](const PhotonOnItsWay& a, const PhotonOnItsWay& b) { return a.batch < b.batch; });
+  return photons;
+}
+
+/// Indices of the first photon of each batch, and one past the last photon.
 std::vector<int> BeginsOf(const std::vector<PhotonOnItsWay>& photons, int batches)
 {
   std::vector<int> begins(static_cast<std::size_t>(batches) + 1, 0);
@@ -28,112 +68,167 @@ std::vector<int> BeginsOf(const std::vector<PhotonOnItsWay>& photons, int batche
 }
 }
 
-/// Photons of one round.
-struct MarchRun::Marched
+MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int numbers, int batches, std::size_t held)
 {
-  PhotonsOnDevice starting;
-  Buffer<PhotonOnItsWay> arrived;
-  bool resumes; ///< march the arrived photons, not the starting ones
-};
+  const Device& device = medium.device;
+  MarchShares shares;
+  shares.atomics = NeedAtomics(device, medium.settings.sums);
+  shares.batches = shares.copies = batches;
+  const std::size_t bytes = records * static_cast<std::size_t>(numbers) * sizeof(cl_long);
+  const std::size_t free = device.MemoryLimit() - std::min(device.MemoryLimit(), device.BytesInUse() - held);
+  const auto fitting = [&] { return std::min(device.AllocationLimit(), free / (shares.atomics ? 1 : 2)) / bytes; };
+  const bool mayShare = medium.settings.sums == MarchSettings::Sums::Fitting && HasAtomics(device);
+  if (mayShare && fitting() < static_cast<std::size_t>(std::max(device.ComputeUnits(), batches)))
+  {
+    shares.atomics = true; // slower additions, but on all cores
+  }
+  const std::size_t fit = fitting();
+  if (batches > 1 && fit < static_cast<std::size_t>(batches))
+  {
+    throw DeviceError("The sums of " + std::to_string(batches) + " batches of photons need " +
+      std::to_string(bytes / (1 << 20) * static_cast<std::size_t>(batches)) + " MiB, and " + device.Name() +
+      " has room for " + std::to_string(fit) + " of them. Use fewer batches, or a coarser grid.");
+  }
+  if (!shares.atomics)
+  {
+    shares.workers =
+      static_cast<int>(std::min(std::max<std::size_t>(fit, 1), static_cast<std::size_t>(device.ComputeUnits())));
+    shares.copies = std::max(shares.workers, batches);
+  }
+  return shares;
+}
 
-MarchRun::MarchRun(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed)
-  : Medium(medium)
-  , Info(medium.Describe())
-  , Target(target)
-  , Channels(packed.channels)
-  , Kernel(medium.IsBlock() ? MarchKernelFor(medium, target, packed.channels, "march_block", Define("BLOCKS", 1))
-                            : cl::Kernel())
+PhotonsOnDevice::PhotonsOnDevice(
+  Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marksOfPhotons)
+  : resumes(false)
+  , starting(device, packed.values, "photons")
+  , begins(packed.batchBegin)
+  , batchBegin(device, begins, "batches of photons")
+  , marks(device, marksOfPhotons, "marks of photons")
+  , ends(device, packed.Count() * static_cast<std::size_t>(EndWords + packed.channels), "ends of photons")
 {
 }
 
-void MarchRun::GoAsFarAs(const TurnSchedule& turn)
+PhotonsOnDevice::PhotonsOnDevice(Device& device, std::vector<PhotonOnItsWay> photons, int batches, int channels)
+  : resumes(true)
+  , arrived(device, SortByBatch(photons), "photons from other blocks")
+  , begins(BeginsOf(photons, batches))
+  , batchBegin(device, begins, "batches of photons")
+  , marks(device, 0, "marks of photons")
+  , ends(device, photons.size() * static_cast<std::size_t>(EndWords + channels), "ends of photons")
 {
-  this->Info.pause = static_cast<cl_int>(turn.gone);
-  this->Info.eventLimit = turn.last ? this->Info.pause : this->Medium.EventLimit();
+}
+
+std::size_t PhotonsOnDevice::LargestBatch() const
+{
+  int largest = 0;
+  for (std::size_t b = 1; b < this->begins.size(); ++b)
+  {
+    largest = std::max(largest, this->begins[b] - this->begins[b - 1]);
+  }
+  return static_cast<std::size_t>(largest);
+}
+
+MarchKernel::MarchKernel(
+  const MarchMedium& medium, const MarchSums& target, int channels, const std::string& options, const char* name)
+  : kernel(medium.MarchKernel(name, channels, target.directions,
+      Define("REAL_WIDTH", medium.device.KernelWidth()) + Define("ATOMICS", target.shares.atomics) +
+        Define("WORKERS", target.shares.workers) + Define("BLOCK", MarchBlock) + Define("PATHS", 0) +
+        Define("COUNTS", target.counts) + Define("CELLS", target.cells != nullptr) + options))
+  , Medium(medium)
+  , Target(target)
+  , None(medium.device, 0, "cells of the voxels")
+{
+}
+
+cl_uint MarchKernel::Set(const PhotonsOnDevice& photons, MarchLaunch launch, const Buffer<cl_int>& counters)
+{
+  const MarchShares& shares = this->Target.shares;
+  launch.copyStride = shares.copies > 1 ? this->Target.Stride() : 0;
+  launch.copies = shares.copies;
+  launch.batches = shares.batches;
+  launch.resumes |= cl_int(photons.resumes);
+  const Buffer<cl_int>& cells = this->Medium.bricks.AreThere() ? this->Medium.bricks.First()
+    : this->Target.cells                                       ? *this->Target.cells
+                                                               : this->None;
+  With(this->kernel, this->Medium.Describe(), launch, this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
+    cells, photons.Handle(), photons.marks, photons.ends, *this->Target.sums, photons.batchBegin, counters);
+  return 12;
+}
+
+cl::NDRange MarchKernel::Range(std::size_t photons) const
+{
+  const MarchShares& shares = this->Target.shares;
+  return shares.workers > 0
+    ? cl::NDRange(Count(shares.workers))
+    : cl::NDRange(PartsOf(photons, Count(this->Medium.device.KernelWidth())), Count(shares.batches));
+}
+
+cl::NDRange MarchKernel::Group() const
+{
+  return this->Target.shares.workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(this->Medium.device, 2);
+}
+
+// Few launches are best: at the end of each, work-items idle.
+Batches PhotonLaunches(
+  const MarchMedium& medium, std::size_t photons, std::size_t first, std::size_t whole, int batches)
+{
+  constexpr double SecondsPerLaunch = 0.1;
+  Batches launches;
+  launches.count = photons;
+  launches.first = first;
+  launches.whole = whole;
+  launches.seconds = SecondsPerLaunch;
+  launches.growth = 8.0;
+  if (medium.IsBlock())
+  {
+    launches.most = std::max(MarchedBetweenBlocks / Count(batches), whole);
+  }
+  return launches;
 }
 
 MarchRun::Outcome MarchRun::Start(
   const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor)
 {
-  Device& device = this->Medium.device;
-  if (!this->Medium.IsBlock())
-  {
-    const PhotonsOnDevice onDevice(device, photons, marks);
-    MarchPhotons(this->Medium, photons, onDevice, this->Target, monitor);
-    return { onDevice.ends.Read(), {} };
-  }
-  return this->March(
-    { PhotonsOnDevice(device, photons, marks), Buffer<PhotonOnItsWay>(device, 0, "photons from other blocks"), false },
-    photons.batchBegin, monitor);
+  return this->March(PhotonsOnDevice(this->Medium.device, photons, marks), monitor);
 }
 
 MarchRun::Outcome MarchRun::Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor)
 {
-  std::stable_sort(
-    arrived.begin(), arrived.end(), [](const PhotonOnItsWay& a, const PhotonOnItsWay& b) { return a.batch < b.batch; });
-  PackedPhotons none;
-  none.channels = this->Channels;
-  none.batchBegin = { 0, 0 };
-  none.numbers.resize(arrived.size()); // as many as there will be end records
-  Device& device = this->Medium.device;
   return this->March(
-    { PhotonsOnDevice(device, none), Buffer<PhotonOnItsWay>(device, arrived, "photons from other blocks"), true },
-    BeginsOf(arrived, this->Target.shares.batches), monitor);
+    PhotonsOnDevice(this->Medium.device, std::move(arrived), this->Target.shares.batches, this->Channels), monitor);
 }
 
-MarchRun::Outcome MarchRun::March(const Marched& photons, const std::vector<int>& batchBegin, const Monitor& monitor)
-{
-  Outcome outcome;
-  const double all = batchBegin.back();
-  for (std::size_t batch = 0; batch + 1 < batchBegin.size(); ++batch)
-  {
-    if (const auto begin = batchBegin[batch], end = batchBegin[batch + 1]; begin < end)
-    {
-      this->MarchBatch(photons, static_cast<int>(batch), static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
-        OfPart(monitor, begin / all, end / all), outcome.gone);
-    }
-  }
-  outcome.ends = photons.starting.ends.Read();
-  return outcome;
-}
-
-/// Marches photons `begin` to `end`, which belong to one batch.
-void MarchRun::MarchBatch(const Marched& photons, int batch, std::size_t begin, std::size_t end, const Monitor& monitor,
-  std::vector<PhotonOnItsWay>& gone)
+MarchRun::Outcome MarchRun::March(const PhotonsOnDevice& photons, const Monitor& monitor)
 {
   Device& device = this->Medium.device;
   const MarchShares& shares = this->Target.shares;
-  const std::size_t width = Count(device.KernelWidth());
-  // Stride between copies of a batch; each copy has a worker of its own.
-  const std::size_t stride = shares.copies > 1 ? this->Target.records * Count(this->Target.numbers) : 0;
-  const auto workers =
-    static_cast<std::size_t>(shares.workers > 0 ? (shares.copies - batch + shares.batches - 1) / shares.batches : 0);
-  Batches launches;
-  launches.count = end - begin;
-  launches.first = FirstLaunch;
-  launches.whole = Count(MarchBlock) * std::max<std::size_t>(workers, 1);
-  launches.seconds = SecondsPerLaunch;
-  launches.growth = 8.0;
-  launches.most = std::max(MarchedBetweenBlocks, launches.whole);
-  const Buffer<cl_int> none(device, 0, "cells of the voxels");
-  GonePhotons<PhotonOnItsWay> elsewhere(device, std::min(launches.count, launches.most));
-  Buffer<cl_int> next(device, 1, "number of the next photon");
-  const std::size_t before = gone.size();
-  InBatches(device, launches, monitor, [&](std::size_t first, std::size_t size) {
-    elsewhere.Empty();
-    next.Fill(0);
-    With(this->Kernel, this->Info, this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
-      photons.starting.values, photons.starting.marks, photons.arrived, elsewhere.Room(), elsewhere.Number(),
-      photons.starting.ends, *this->Target.sums, cl_ulong(Count(batch) * stride),
-      cl_ulong(Count(shares.batches) * stride), next, cl_int(photons.resumes), cl_int(begin + first), cl_int(size),
-      this->Target.cells ? *this->Target.cells : none);
-    this->Medium.Launch(this->Kernel, cl::NDRange(workers > 0 ? workers : PartsOf(size, width)),
-      workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(device));
-    elsewhere.AppendTo(gone);
+  const std::size_t batches = Count(shares.batches);
+  const int sharing = (shares.workers + shares.batches - 1) / shares.batches; // workers that share a batch
+  const Batches launches = PhotonLaunches(this->Medium, photons.LargestBatch(),
+    static_cast<std::size_t>(FirstLaunch(this->Medium) / shares.batches),
+    Count(MarchBlock) * Count(std::max(sharing, 1)), shares.batches);
+  const Buffer<PhotonOnItsWay> gone(device,
+    this->Medium.IsBlock() ? batches * std::min(launches.count, launches.most) : 0, "photons into other blocks");
+  Buffer<cl_int> counters(device, batches + 1, "numbers of the next photons");
+  Outcome outcome;
+  InBatches(device, launches, monitor, [&](std::size_t first, std::size_t count) {
+    counters.Fill(0);
+    MarchLaunch launch = {};
+    launch.first = static_cast<cl_int>(first);
+    launch.count = static_cast<cl_int>(count);
+    const cl_uint next = this->Kernel.Set(photons, launch, counters);
+    if (this->Medium.IsBlock())
+    {
+      SetFrom(this->Kernel.kernel, next, gone);
+    }
+    this->Medium.Launch(this->Kernel.kernel, this->Kernel.Range(count), this->Kernel.Group());
+    if (this->Medium.IsBlock())
+    {
+      AppendPhotons(gone, counters.Read().back(), outcome.gone);
+    }
   });
-  for (std::size_t i = before; i < gone.size(); ++i)
-  {
-    gone[i].batch = batch;
-  }
+  outcome.ends = photons.ends.Read();
+  return outcome;
 }
 }

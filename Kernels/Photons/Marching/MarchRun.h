@@ -1,17 +1,111 @@
 #pragma once
 
+#include "Device/Batches.h"
+#include "Device/Buffer.h"
 #include "Device/Monitor.h"
-#include "Photons/Marching/MarchLaunch.h"
+#include "Photons/Marching/MarchMedium.h"
 #include "Photons/Marching/MarchShared.h"
-#include "Photons/Marching/MarchTurns.h"
+#include "Photons/Marching/PhotonPacking.h"
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 namespace tyndall
 {
+/// How many copies of the sums there are, and which work-item adds to which copy. Work-item w serves copies w, w +
+/// workers, ...; copy c belongs to batch c % batches.
+struct MarchShares
+{
+  bool atomics = false;
+  /// Work-items that fetch photons from a common counter; 0: one work-item per packet, all of a batch add to one copy.
+  int workers = 0;
+  int copies = 1;
+  int batches = 1;
+};
+
+/// Chooses the number of copies of the sums from the settings and the device's memory.
+/// @param records  records in one copy of the sums
+/// @param numbers  64-bit numbers in a record
+/// @param held     bytes already allocated that the new sums will reuse
+/// @throws DeviceError if the settings ask for atomics that the device lacks, or the sums of all batches do not fit
+MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int numbers, int batches, std::size_t held);
+
+/// The buffer to which photons deposit, and its layout.
+struct MarchSums
+{
+  MarchShares shares;
+  std::size_t records = 0; ///< records in a copy: voxels of the padded grid, records of bricks, or coarse cells
+  int numbers = 1;         ///< numbers in a record
+  bool directions = false; ///< whether a record holds sums of power times direction
+  bool counts = false;     ///< whether a record counts the photons that crossed its voxel
+  /// Coarse cell of each voxel, for deposits to cells, which count photons; null: deposits to voxels.
+  const Buffer<cl_int>* cells = nullptr;
+  const Buffer<cl_long>* sums = nullptr; ///< [copies][records][numbers]
+
+  /// Numbers in one copy.
+  std::size_t Stride() const { return this->records * static_cast<std::size_t>(this->numbers); }
+};
+
 inline const int* WhereIs(const PhotonOnItsWay& photon)
 {
   return photon.way.voxel;
+}
+
+/// Photons on a device, ordered by batch: those that start, or those that have arrived from other blocks.
+struct PhotonsOnDevice
+{
+  /// @param marks  counting mark of each packed photon (PhotonMarch.cl); empty if photons are not counted
+  PhotonsOnDevice(Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marks = {});
+  PhotonsOnDevice(Device& device, std::vector<PhotonOnItsWay> arrived, int batches, int channels);
+
+  const cl::Buffer& Handle() const { return this->resumes ? this->arrived.Handle() : this->starting.Handle(); }
+  std::size_t LargestBatch() const; ///< number of photons
+
+  bool resumes; ///< whether they have arrived from other blocks
+  Buffer<float> starting;
+  Buffer<PhotonOnItsWay> arrived;
+  std::vector<int> begins; ///< index of the first photon of each batch, and one past the last photon
+  Buffer<cl_int> batchBegin;
+  Buffer<cl_ulong> marks;
+  Buffer<cl_int> ends; ///< PhotonEnd and remaining power of each photon
+};
+
+/// A kernel of PhotonMarch.cl that adds to such sums.
+class MarchKernel
+{
+public:
+  /// @param options  besides those that follow from the medium and the sums
+  MarchKernel(const MarchMedium& medium, const MarchSums& target, int channels, const std::string& options = {},
+    const char* name = "march_photons");
+
+  /// Sets the arguments that all variants of the kernel have. @return their number
+  cl_uint Set(const PhotonsOnDevice& photons, MarchLaunch launch, const Buffer<cl_int>& counters);
+  /// The range for `photons` of each batch, and the size of work-groups.
+  cl::NDRange Range(std::size_t photons) const;
+  cl::NDRange Group() const;
+
+  cl::Kernel kernel;
+
+private:
+  const MarchMedium& Medium;
+  const MarchSums& Target;
+  Buffer<cl_int> None;
+};
+
+/// Size of the launches of a kernel that follows photons.
+/// @param photons  the largest number of photons in a batch
+/// @param first, whole  photons in the first launch; launches are multiples of `whole`
+Batches PhotonLaunches(
+  const MarchMedium& medium, std::size_t photons, std::size_t first, std::size_t whole, int batches);
+
+/// Appends the first `count` photons in a buffer to `all`.
+template <class OnItsWay>
+void AppendPhotons(const Buffer<OnItsWay>& photons, int count, std::vector<OnItsWay>& all)
+{
+  const std::size_t before = all.size(), more = static_cast<std::size_t>(count);
+  all.resize(before + more);
+  photons.Read(all.data() + before, more);
 }
 
 /// Marches photons through a rank's part of a grid: to their ends or, in a block, until they leave it.
@@ -19,36 +113,34 @@ class MarchRun
 {
 public:
   /// @param medium, target  must outlive this
-  /// @param packed  gives the number of channels, the same for all photons
-  MarchRun(const MarchMedium& medium, const MarchSums& target, const PackedPhotons& packed);
+  /// @param channels  channels of power of the photons
+  MarchRun(const MarchMedium& medium, const MarchSums& target, int channels)
+    : Medium(medium)
+    , Target(target)
+    , Channels(channels)
+    , Kernel(medium, target, channels)
+  {
+  }
 
   /// Result of a march.
   struct Outcome
   {
     std::vector<cl_int> ends;         ///< PhotonEnd and powers of each photon (Tally)
-    std::vector<PhotonOnItsWay> gone; ///< photons that left for other blocks, or wait in this one, in any order
+    std::vector<PhotonOnItsWay> gone; ///< photons that left for other blocks, in any order
   };
-  /// In later marches, photons in a block wait after turn.gone path segments in all; in the last turn they are given up
-  /// there.
-  void GoAsFarAs(const TurnSchedule& turn);
-
-  /// Marches photons that start in the block.
+  /// Marches photons that start in this part.
   /// @param marks  counting marks of the photons, or none
   /// @throws Aborted: the sums then hold only a part of the photons
   Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
-  /// Marches photons that arrived from other blocks, or waited. @throws Aborted
+  /// Marches photons that arrived from other blocks. @throws Aborted
   Outcome Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor);
 
 private:
-  struct Marched;
-  Outcome March(const Marched& photons, const std::vector<int>& batchBegin, const Monitor& monitor);
-  void MarchBatch(const Marched& photons, int batch, std::size_t begin, std::size_t end, const Monitor& monitor,
-    std::vector<PhotonOnItsWay>& gone);
+  Outcome March(const PhotonsOnDevice& photons, const Monitor& monitor);
 
   const MarchMedium& Medium;
-  MarchInfo Info;
   const MarchSums& Target;
   int Channels;
-  cl::Kernel Kernel;
+  MarchKernel Kernel;
 };
 }

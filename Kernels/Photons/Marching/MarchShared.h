@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels that march photons.
+// Shared by C++ and the kernels that march photons and sum their deposits.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -42,9 +42,20 @@ typedef struct
   float slowest;     ///< lower bound of the speed, voxels per time, from which the duration of a step is computed
   float darkness;    ///< power below which a photon counts as extinguished
   int eventLimit;    ///< maximum number of path segments (walls and velocity changes) of a photon
-  int pause;         ///< number of path segments after which a photon in a block waits; eventLimit or more: never
   ulong copy;        ///< voxels of the padded grid
 } MarchInfo;
+
+/// The photons of one launch of a kernel of PhotonMarch.cl, and where they deposit.
+typedef struct
+{
+  ulong copyStride;    ///< numbers from copy to copy of the sums
+  int copies, batches; ///< of the sums, at least as many copies as batches; copy c belongs to batch c modulo batches
+  int first, count;    ///< photons within each batch
+  int resumes;         ///< 1: photons that are under way; 0: photons that start
+  int events;          ///< number of path segments in a turn
+  int last;            ///< 1: photons that have not ended are given up after this turn
+  int writes;          ///< 1: vertices of paths are written; 0: they are counted
+} MarchLaunch;
 
 /// What became of a photon. In kernels, the remaining power of each channel follows.
 typedef struct
@@ -77,11 +88,29 @@ typedef struct
 {
   ulong mark; ///< its mark, see PhotonMarch.cl
   WayOnward way;
-  int batch;     ///< its batch, used by the host only
+  int batch;     ///< its batch
   int counted;   ///< coarse cell that counted it last
   int crossings; ///< path segments that were deposited
   int steps;     ///< steps of the integrator
   float power[3];
   float owed[3]; ///< compensation of rounding errors in `power` (Kahan)
 } PhotonOnItsWay;
+
+enum
+{
+  CountShift = 40 ///< bit position of photon counts, above the bits of weights
+};
+
+/// Parameters of the conversion of sums to light.
+typedef struct
+{
+  IndexGrid grid;
+  float diagonal;             ///< length of a voxel's diagonal
+  float fluence;              ///< W / length^2 per unit of power along a voxel's diagonal, divided by 2^exponent
+  int exponent;               ///< kept apart, as the product may be below the range of float
+  float colour[3];            ///< colour of the single channel, if CHANNELS is 1
+  float weight;               ///< photon weight per unit of the sums
+  int absorption, scattering; ///< components of sigma_a and sigma_s; 0: absent
+  int copies, batches;        ///< of the sums: copy c belongs to batch c modulo batches
+} LightSumsInfo;
 SHARED_END

@@ -1,10 +1,10 @@
 #include "Photons/Marching/MarchTurns.h"
 
 #include "Device/Defines.h"
-#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 namespace tyndall
@@ -22,74 +22,94 @@ Span SpanOf(const cl::Event& first, const cl::Event& last)
     1e-9 * static_cast<double>(last.getProfilingInfo<CL_PROFILING_COMMAND_END>()) };
 }
 
-/// State of the photons between turns, and the arguments of their kernel.
-class TurnsOfPhotons
+/// The length of each turn; the last one takes photons to their ends.
+class TurnSchedule
 {
 public:
-  TurnsOfPhotons(
-    const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons, const MarchSums& target)
-    : Medium(medium)
-    , Photons(photons)
-    , Target(target)
-    , Count(packed.Count())
-    , PacketCount(PartsOf(packed.Count(), static_cast<std::size_t>(medium.device.KernelWidth())))
-    , March(MarchKernelFor(medium, target, packed.channels, "march_turn", Define("TURNS", 1)))
-    , None(medium.device, 0, "cells of the voxels")
-    , Packets(medium.device, this->PacketCount * this->BytesOfPacket(packed.channels), "photons on their way")
-    , Going(medium.device, this->PacketCount, "photons on their way")
-    , Left(medium.device, 1, "number of photons on their way")
-    , Next(medium.device, 1, "number of the next photon")
+  /// @param each  path segments per turn, as MarchTurns has them
+  /// @param limit  maximum number of path segments of a photon
+  /// @param all  number of photons
+  TurnSchedule(int each, int limit, std::size_t all)
+    : Each(each)
+    , Limit(limit)
+    , All(all)
   {
   }
 
-  /// Queues a turn. @param stretches  path segments, at most the medium's limit
-  cl::Event Turn(const cl::CommandQueue& queue, int turn, int stretches, bool last);
+  /// Begins the next turn. @param left  photons that have not ended; if they are fewer than a hundredth of all, this
+  /// turn is the last one
+  void Next(std::size_t left)
+  {
+    constexpr std::size_t few = 100;
+    this->last = this->Each == 0 || left < this->All / few || this->Before + this->Each >= this->Limit;
+    this->stretches = this->last ? this->Limit : this->Each;
+    this->Before += this->stretches;
+  }
+
+  int stretches = 0; ///< path segments in this turn
+  bool last = false;
+
+private:
+  int Each, Limit;
+  std::size_t All;
+  std::int64_t Before = 0; ///< path segments of earlier turns
+};
+
+/// State of the photons between turns, and their kernel.
+class TurnsOfPhotons
+{
+public:
+  TurnsOfPhotons(const MarchMedium& medium, const PhotonsOnDevice& photons, const MarchSums& target, int channels)
+    : Photons(photons)
+    , Packets(PartsOf(photons.LargestBatch(), Count(medium.device.KernelWidth())))
+    , March(medium, target, channels, Define("TURNS", 1))
+    , States(medium.device, this->Packets * this->BytesOfPacket(medium, target, channels), "photons on their way")
+    , Going(medium.device, this->Packets, "photons on their way")
+    , Counters(medium.device, 2, "number of the next photon, and of photons on their way")
+  {
+  }
+
+  /// Queues a turn.
+  cl::Event Turn(const cl::CommandQueue& queue, bool first, const TurnSchedule& turn)
+  {
+    queue.enqueueFillBuffer(this->Counters.Handle(), cl_int(0), 0, 2 * sizeof(cl_int));
+    MarchLaunch launch = {};
+    launch.count = static_cast<cl_int>(this->Photons.LargestBatch());
+    launch.resumes = cl_int(!first);
+    launch.events = turn.stretches;
+    launch.last = cl_int(turn.last);
+    const cl_uint next = this->March.Set(this->Photons, launch, this->Counters);
+    SetFrom(this->March.kernel, next, this->States, this->Going);
+    cl::Event marched;
+    queue.enqueueNDRangeKernel(this->March.kernel, cl::NullRange, this->March.Range(this->Photons.LargestBatch()),
+      this->March.Group(), nullptr, &marched);
+    queue.flush();
+    return marched;
+  }
   /// Waits for the queue, then returns the number of photons that have not ended.
   std::size_t StillGoing(const cl::CommandQueue& queue) const
   {
     cl_int left = 0;
-    queue.enqueueReadBuffer(this->Left.Handle(), CL_TRUE, 0, sizeof(left), &left);
+    queue.enqueueReadBuffer(this->Counters.Handle(), CL_TRUE, sizeof(left), sizeof(left), &left);
     return static_cast<std::size_t>(left);
   }
 
 private:
-  std::size_t BytesOfPacket(int channels) const
+  static std::size_t BytesOfPacket(const MarchMedium& medium, const MarchSums& target, int channels)
   {
-    cl::Kernel size = MarchKernelFor(this->Medium, this->Target, channels, "size_packet", Define("TURNS", 1));
-    const Buffer<cl_int> bytes(this->Medium.device, 1, "size of a packet");
-    this->Medium.Launch(With(size, bytes), cl::NDRange(1));
+    cl::Kernel size = MarchKernel(medium, target, channels, Define("TURNS", 1), "size_packet").kernel;
+    const Buffer<cl_int> bytes(medium.device, 1, "size of a packet");
+    medium.Launch(With(size, bytes), cl::NDRange(1));
     return static_cast<std::size_t>(bytes.Read().front());
   }
 
-  const MarchMedium& Medium;
   const PhotonsOnDevice& Photons;
-  const MarchSums& Target;
-  std::size_t Count, PacketCount;
-  cl::Kernel March;
-  Buffer<cl_int> None;
-  Buffer<cl_uchar> Packets;
-  Buffer<cl_int> Going, Left, Next;
+  std::size_t Packets;
+  MarchKernel March;
+  Buffer<cl_uchar> States;
+  Buffer<cl_int> Going;
+  Buffer<cl_int> Counters;
 };
-
-cl::Event TurnsOfPhotons::Turn(const cl::CommandQueue& queue, int turn, int stretches, bool last)
-{
-  const MarchShares& shares = this->Target.shares;
-  const std::size_t stride =
-    shares.copies > 1 ? this->Target.records * static_cast<std::size_t>(this->Target.numbers) : 0;
-  queue.enqueueFillBuffer(this->Left.Handle(), cl_int(0), 0, sizeof(cl_int));
-  queue.enqueueFillBuffer(this->Next.Handle(), cl_int(0), 0, sizeof(cl_int));
-  With(this->March, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
-    this->Photons.values, this->Photons.marks, this->None, this->Photons.ends, *this->Target.sums, cl_ulong(stride),
-    this->Packets, this->Going, this->Left, this->Next, cl_int(this->Count), cl_int(turn), cl_int(stretches),
-    cl_int(last));
-  const bool workers = shares.workers > 0;
-  cl::Event marched;
-  queue.enqueueNDRangeKernel(this->March, cl::NullRange,
-    cl::NDRange(workers ? static_cast<std::size_t>(shares.workers) : this->PacketCount),
-    workers ? cl::NDRange(1) : GroupOfLargeItems(this->Medium.device), nullptr, &marched);
-  queue.flush();
-  return marched;
-}
 
 void AddTimes(const cl::Event& marched, const std::array<cl::Event, 2>& meanwhile, TurnTimes& times)
 {
@@ -99,15 +119,6 @@ void AddTimes(const cl::Event& marched, const std::array<cl::Event, 2>& meanwhil
 }
 }
 
-void TurnSchedule::Next(std::size_t left)
-{
-  constexpr std::size_t few = 100;
-  const double before = static_cast<double>(this->gone);
-  this->last = this->Each == 0 || left < this->All / few || before + this->Each >= static_cast<double>(this->Limit);
-  this->stretches = this->last ? this->Limit : this->Each;
-  this->gone += this->stretches;
-}
-
 TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
   const MarchSums& target, const MarchTurns& turns,
   const std::function<const Buffer<float>&(const cl::CommandQueue& queue)>& show, const Monitor& monitor)
@@ -115,14 +126,14 @@ TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, c
   TurnTimes times;
   const cl::CommandQueue mine = medium.device.AnotherQueue();
   const cl::CommandQueue theirs = turns.sideBySide ? medium.device.AnotherQueue() : mine;
-  TurnsOfPhotons all(medium, packed, photons, target);
+  TurnsOfPhotons all(medium, photons, target, packed.channels);
   medium.device.Finish(); // work on the device's own queue
   TurnSchedule turn(turns.stretches, medium.EventLimit(), packed.Count());
   std::size_t left = packed.Count();
   for (; left > 0; ++times.turns)
   {
     turn.Next(left);
-    const std::vector<cl::Event> marched = { all.Turn(mine, times.turns, turn.stretches, turn.last) };
+    const std::vector<cl::Event> marched = { all.Turn(mine, times.turns == 0, turn) };
     const bool besides = times.turns > 0; // the first turn has no light to process
     const std::array<cl::Event, 2> meanwhile = besides ? turns.meanwhile(theirs) : std::array<cl::Event, 2>();
     theirs.enqueueBarrierWithWaitList(&marched);

@@ -1,11 +1,9 @@
 #pragma once
 
 #include "Device/Monitor.h"
-#include "Photons/Marching/MarchLaunch.h"
+#include "Photons/Marching/MarchRun.h"
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <functional>
 
 namespace tyndall
@@ -25,33 +23,6 @@ struct MarchTurns
   /// Queues the transfer of the light accumulated since the first turn.
   /// @param fluence  W / length^2, [voxel][channel]
   std::function<void(const cl::CommandQueue& queue, const Buffer<float>& fluence)> take;
-};
-
-/// The length of each turn; the last one takes photons to their ends.
-class TurnSchedule
-{
-public:
-  /// @param each  path segments per turn, as MarchTurns has them
-  /// @param limit  maximum number of path segments of a photon
-  /// @param all  number of photons
-  TurnSchedule(int each, int limit, std::size_t all)
-    : Each(each)
-    , Limit(limit)
-    , All(all)
-  {
-  }
-
-  /// Begins the next turn. @param left  photons that have not ended; if they are fewer than a hundredth of all, this
-  /// turn is the last one
-  void Next(std::size_t left);
-
-  int stretches = 0;     ///< path segments in this turn
-  std::int64_t gone = 0; ///< path segments up to the end of this turn
-  bool last = false;
-
-private:
-  int Each, Limit;
-  std::size_t All;
 };
 
 /// Device times of a march in turns.

@@ -9,18 +9,17 @@
 #include "Light/LeftOut.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
+#include <random>
 #include <string>
+#include <utility>
 
 namespace tyndall
 {
 namespace
 {
-// A voxel's count of photons is stored in the bits above the sum of their weights, in the same 64 bits.
-constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
-constexpr double WeightUnits = 65536.0; ///< units in the largest weight
-
 /// Expands the tallies of a single channel to the three that it stands for.
 void Colour(const Rgb& colour, PhotonLight& result)
 {
@@ -31,19 +30,6 @@ void Colour(const Rgb& colour, PhotonLight& result)
     spread(*watts);
   }
   std::for_each(result.light.facePowerOut.begin(), result.light.facePowerOut.end(), spread);
-}
-
-/// Counting mark of each photon: a count of one, and its weight.
-std::vector<cl_ulong> Marks(const std::vector<Photon>& photons, const PackedPhotons& packed, float unit)
-{
-  std::vector<cl_ulong> marks;
-  marks.reserve(packed.Count());
-  for (const std::size_t number : packed.numbers)
-  {
-    const double units = unit > 0.0f ? photons[number].weight / static_cast<double>(unit) : 0.0;
-    marks.push_back((cl_ulong(1) << CountShift) + static_cast<cl_ulong>(std::min(units + 0.5, WeightUnits)));
-  }
-  return marks;
 }
 
 /// Replaces this rank's powers and numbers by their sums over all ranks. Collective.
@@ -69,14 +55,6 @@ void SumUp(const Domain& domain, const std::vector<Rgb*>& powers, const std::vec
   }
 }
 
-void CheckCounted(std::size_t photons)
-{
-  if (photons > CountedAtMost)
-  {
-    throw InvalidInput("There are " + std::to_string(photons) + " photons; voxels can count up to " +
-      std::to_string(CountedAtMost) + ". March fewer at a time, or without counts.");
-  }
-}
 }
 
 MarchedLight::MarchedLight(const MarchMedium& medium)
@@ -210,24 +188,6 @@ void MarchedLight::Finish(
   }
 }
 
-CountedPhotons::CountedPhotons(
-  const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count)
-{
-  CheckCounted(count);
-  this->weightUnit = static_cast<float>(largestWeight / WeightUnits);
-  this->marks = Marks(some, packed, this->weightUnit);
-}
-
-float CountedPhotons::LargestWeight(const std::vector<Photon>& photons)
-{
-  float largest = 0.0f;
-  for (const Photon& photon : photons)
-  {
-    largest = std::max(largest, photon.weight);
-  }
-  return largest;
-}
-
 void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result)
 {
   EnergyBalance& balance = result.light.balance;
@@ -325,5 +285,159 @@ void SayWhatIsLeftOut(const MarchMedium& through, const PackedPhotons& packed, L
   say(leaveOut && !through.traits.absorbs, left_out::NoAbsorption);
   say(through.bricks.AreThere(), "light voxel by voxel in empty space: it is kept by bricks of 8x8x8 voxels there");
   say(!through.settings.meanDirection, "mean direction: it was not asked for");
+}
+
+namespace
+{
+constexpr Rgb White = { 1.0, 1.0, 1.0 };
+
+void Add(Rgb& sum, const Rgb& more)
+{
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    sum[c] += more[c];
+  }
+}
+
+void AddBalance(PhotonLight& sum, const PhotonLight& part)
+{
+  EnergyBalance& all = sum.light.balance;
+  const EnergyBalance& more = part.light.balance;
+  Add(all.entered, more.entered);
+  Add(all.emitted, more.emitted);
+  Add(all.absorbed, more.absorbed);
+  Add(all.escaped, more.escaped);
+  Add(all.leftOver, more.leftOver);
+  Add(sum.scattered, part.scattered);
+  Add(sum.exchanged, part.exchanged);
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    Add(sum.light.facePowerOut[face], part.light.facePowerOut[face]);
+  }
+  sum.scatterings += part.scatterings;
+  sum.missed += part.missed;
+  sum.deposits += part.deposits;
+  sum.steps += part.steps;
+  sum.secondsMarching += part.secondsMarching;
+  sum.seconds += part.seconds;
+}
+
+void AddTo(std::vector<double>& sum, const std::vector<float>& part)
+{
+  sum.resize(part.size(), 0.0);
+  std::transform(sum.begin(), sum.end(), part.begin(), sum.begin(), [](double a, float b) { return a + b; });
+}
+
+std::vector<float> Floats(const std::vector<double>& values)
+{
+  return { values.begin(), values.end() };
+}
+
+/// Repeats each value three times.
+void Widen(std::vector<double>& values)
+{
+  std::vector<double> three;
+  for (double value : values)
+  {
+    three.insert(three.end(), 3, value);
+  }
+  values.swap(three);
+}
+}
+
+// Random choice rather than a fixed stride: low-discrepancy samples depend on the digits of their indices (every
+// sixteenth index has the same last four binary digits, which are Hammersley's leading ones), and all photons of a
+// batch would come from one part of the light.
+PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
+{
+  std::mt19937 random; // the same sequence for every batch
+  PhotonNumbers numbers;
+  for (std::size_t row = 0; row < photons; row += batches)
+  {
+    const std::size_t number = row + (batch + random()) % batches;
+    if (number < photons)
+    {
+      numbers.push_back(number);
+    }
+  }
+  return numbers;
+}
+
+void MarchedBatches::Add(PhotonLight&& part)
+{
+  ++this->Count;
+  // By chance all photons of this batch have one colour.
+  if (this->Count > 1 && part.light.channels < this->All.light.channels)
+  {
+    Spread(part.light, White);
+    part.scattered = part.exchanged = {};
+  }
+  if (this->Count > 1 && part.light.channels > this->All.light.channels)
+  {
+    Spread(this->All.light, White);
+    for (std::vector<double>* values : { &this->Fluence, &this->Squares, &this->Direct })
+    {
+      Widen(*values);
+    }
+  }
+  this->AddArrays(part);
+  if (this->Count == 1)
+  {
+    this->All = std::move(part);
+    return;
+  }
+  AddBalance(this->All, part);
+}
+
+void MarchedBatches::AddArrays(const PhotonLight& part)
+{
+  const auto channels = static_cast<std::size_t>(part.light.channels);
+  AddTo(this->Fluence, part.light.fluence);
+  AddTo(this->Direct, part.light.fluenceDirect);
+  this->Squares.resize(part.light.fluence.size(), 0.0);
+  for (std::size_t i = 0; i < part.light.fluence.size(); ++i)
+  {
+    this->Squares[i] += static_cast<double>(part.light.fluence[i]) * part.light.fluence[i];
+  }
+  this->Flow.resize(part.meanDirection.size(), 0.0);
+  this->Weights.resize(part.meanDirection.size() / 3, 0.0);
+  for (std::size_t i = 0; i < this->Weights.size(); ++i)
+  {
+    double weight = 0.0;
+    for (std::size_t c = 0; c < channels; ++c)
+    {
+      weight += part.light.fluence[i * channels + c] / static_cast<double>(channels);
+    }
+    this->Weights[i] += weight;
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      this->Flow[3 * i + a] += weight * part.meanDirection[3 * i + a];
+    }
+  }
+}
+
+PhotonLight MarchedBatches::Sum() &&
+{
+  if (this->Count < 2)
+  {
+    return std::move(this->All);
+  }
+  LightField& light = this->All.light;
+  light.fluence = Floats(this->Fluence);
+  light.fluenceDirect = Floats(this->Direct);
+  light.fluenceError.clear();
+  const double count = this->Count;
+  for (std::size_t i = 0; i < this->Fluence.size(); ++i)
+  {
+    // Each batch is a part of the light: the variance of the sum is that of `count` such parts.
+    const double scatter = this->Squares[i] - this->Fluence[i] * this->Fluence[i] / count;
+    light.fluenceError.push_back(static_cast<float>(std::sqrt(std::max(scatter, 0.0) * count / (count - 1.0))));
+  }
+  for (std::size_t i = 0; i < this->Flow.size(); ++i)
+  {
+    const double weight = this->Weights[i / 3];
+    this->All.meanDirection[i] = weight > 0.0 ? static_cast<float>(this->Flow[i] / weight) : 0.0f;
+  }
+  return std::move(this->All);
 }
 }

@@ -2,8 +2,8 @@
 
 #include "Device/Buffer.h"
 #include "Distribution/Domain.h"
-#include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/MarchMedium.h"
+#include "Photons/Marching/MarchRun.h"
 #include "Photons/Photons.h"
 
 #include <vector>
@@ -30,7 +30,7 @@ public:
     const PackedPhotons& packed, const MarchSums& target, const LightField& light, const Buffer<float>& fluence) const;
   /// Converts the sums to the arrays of `result`, and to absorbed and scattered power, then zeroes them. result.light
   /// states how many channels it is to have.
-  /// @param weightUnit  CountedPhotons::weightUnit, if photons are counted
+  /// @param weightUnit  StartingPhotons::weightUnit, if photons are counted
   void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result) const;
 
 private:
@@ -43,20 +43,6 @@ private:
 
   const MarchMedium& Medium;
   Buffer<cl_long> Sums; ///< zero between two runs
-};
-
-/// Marks by which photons are counted in the voxels that they cross.
-struct CountedPhotons
-{
-  CountedPhotons() = default;
-  /// @param packed  the photons out of `some` that need marks
-  /// @param largestWeight, count  largest weight and number of the photons of all ranks
-  /// @throws InvalidInput if there are more photons than voxels can count
-  CountedPhotons(const std::vector<Photon>& some, const PackedPhotons& packed, float largestWeight, std::size_t count);
-  static float LargestWeight(const std::vector<Photon>& photons);
-
-  std::vector<cl_ulong> marks; ///< one per packed photon: a count of one, and its weight
-  float weightUnit = 0.0f;     ///< photon weight per unit of the voxels' sums
 };
 
 /// Adds the final states of photons to the light's energy balance: the power that escaped through each face of the
@@ -74,4 +60,25 @@ void AddUpScattered(const Domain& domain, PhotonLight& result);
 void PutIntoColours(const PackedPhotons& packed, int colours, PhotonLight& result);
 
 void SayWhatIsLeftOut(const MarchMedium& medium, const PackedPhotons& packed, LightField& light);
+
+/// Indices of the photons in one of the batches from which the standard error is estimated: one random photon out of
+/// each group of `batches`, the same on every machine.
+PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches);
+
+/// Sums the light of several independent batches of photons, each a part of all the power, and estimates the standard
+/// error of the sum (numerics.md, Eq. (99e)).
+class MarchedBatches
+{
+public:
+  void Add(PhotonLight&& part);
+  /// The light of all batches, with fluenceError. With one batch or none, the light as it is, without an error.
+  PhotonLight Sum() &&;
+
+private:
+  void AddArrays(const PhotonLight& part);
+
+  PhotonLight All;
+  int Count = 0;
+  std::vector<double> Fluence, Squares, Direct, Flow, Weights;
+};
 }

@@ -6,15 +6,13 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Convergence.h"
+#include "Numerics/NumberText.h"
 #include "Photons/Importance/PilotGathering.h"
-#include "Photons/Marching/MarchedBatches.h"
 #include "Photons/Marching/MarchedLight.h"
-#include "Photons/Marching/MarchInput.h"
 #include "Photons/Marching/MarchRun.h"
+#include "Photons/Marching/PhotonPacking.h"
 #include "Photons/Marching/PhotonPaths.h"
-#include "Photons/Marching/PhotonShares.h"
 #include "Photons/Scattering/PhotonScattering.h"
-#include "Photons/Scattering/ScatteredChannels.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -59,6 +57,29 @@ bool IsDivided(const Domain& domain)
 }
 }
 
+void Check(const MarchSettings& settings)
+{
+  constexpr double ShortestStep = 0.05; // voxels; for shorter steps, rounding of positions matters
+  constexpr double LongestStep = 1e4;
+  Require(settings.order == 1 || settings.order == 2 || settings.order == 4,
+    "The integrator's order is " + std::to_string(settings.order) + "; there are 1, 2 and 4.");
+  Require(settings.stepSize >= ShortestStep && settings.stepSize <= LongestStep,
+    "The step size is " + Text("%g", settings.stepSize) + " voxels; it must be " + Text("%g", ShortestStep) + " to " +
+      Text("%g", LongestStep) + ".");
+  Require(settings.maximumOrders >= 0,
+    "MaximumOrders is " + std::to_string(settings.maximumOrders) +
+      "; it must be 0 (until photons are absorbed or have left) or more.");
+  Require(settings.errorBatches == 0 || (settings.errorBatches > 1 && settings.errorBatches <= MarchedBatchesAtMost),
+    "A standard error from " + std::to_string(settings.errorBatches) +
+      " batches of photons was asked for; it takes 2 to " + std::to_string(MarchedBatchesAtMost) + ", or 0 for none.");
+  Require(settings.errorBatches == 0 || !(settings.batches || settings.counts),
+    "The standard error is found from batches of its own. Ask for it, or for counts and for the light "
+    "of each of the photons' batches, not for both.");
+  Require(settings.maximumOrders == 1 || !settings.batches,
+    "The light of each batch is kept apart as far as photons are not scattered. Take MaximumOrders 1 "
+    "with batches, or none of them.");
+}
+
 class PhotonMarcher::Implementation
 {
 public:
@@ -95,8 +116,7 @@ private:
     const std::vector<Photon>& share, const PlaceOfShare& place, const Way& way, const Monitor& monitor);
   void FollowUncollided(const StartingPhotons& starting, const Way& way, PhotonLight& result, const Monitor& monitor);
   void AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor) const;
-  ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons,
-    const PhotonScattering::Settings& settings, const Monitor& monitor) const;
+  ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor) const;
   cl::Kernel Show(
     const StartingPhotons& starting, const MarchSums& target, const PhotonLight& result, Buffer<float>& fluence) const;
 
@@ -122,8 +142,6 @@ PhotonMarcher::Implementation::Implementation(Device& device, const Domain& doma
   domain.Collective([&] {
     filled = CheckMarchedMedium(domain, medium, ior, levels, octree);
     Check(settings);
-    Require(!this->Divided || settings.sums != MarchSettings::Sums::Unsafe,
-      "A medium that is divided among ranks is not marched through with Unsafe sums.");
   });
   RequireSameMedium(domain, medium, ior);
   RequireSame(domain, settings);
@@ -252,8 +270,9 @@ void PhotonMarcher::Implementation::AtOnce(
   const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor) const
 {
   std::unique_ptr<MarchRun> run;
-  this->TheDomain.Collective(
-    [&] { run = this->Through ? std::make_unique<MarchRun>(*this->Through, target, starting.packed) : nullptr; });
+  this->TheDomain.Collective([&] {
+    run = this->Through ? std::make_unique<MarchRun>(*this->Through, target, starting.packed.channels) : nullptr;
+  });
   this->TheRounds->UntilAllEnd<PhotonOnItsWay>(
     [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& ofRound) {
       MarchRun::Outcome outcome;
@@ -325,15 +344,15 @@ void PhotonMarcher::Implementation::FollowUncollided(
 }
 
 /// This rank's part of one channel's scattered light and tallies.
-ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(const PhotonScattering* in, PackedPhotons photons,
-  const PhotonScattering::Settings& settings, const Monitor& monitor) const
+ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(
+  const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor) const
 {
   std::unique_ptr<ScatteringRun> run;
   this->TheRounds->UntilAllEnd<ScatteredOnItsWay>(
     [&](int round, std::vector<ScatteredOnItsWay>&& arrived, const Monitor& ofRound) {
       if (in && round == 0)
       {
-        run = std::make_unique<ScatteringRun>(*in, std::move(photons), settings);
+        run = std::make_unique<ScatteringRun>(*in, std::move(photons));
         return run->Start(ofRound);
       }
       return in ? run->Resume(arrived, ofRound) : std::vector<ScatteredOnItsWay>();
@@ -350,9 +369,10 @@ void PhotonMarcher::Implementation::AddScattered(
 {
   if (this->Scattering)
   {
-    this->Scattering->AddTo(result, packed, monitor,
-      [this](const PhotonScattering* in, PackedPhotons photons, const PhotonScattering::Settings& settings,
-        const Monitor& ofRun) { return this->FollowScattered(in, std::move(photons), settings, ofRun); });
+    this->Scattering->AddTo(
+      result, packed, monitor, [this](const PhotonScattering* in, PackedPhotons photons, const Monitor& ofRun) {
+        return this->FollowScattered(in, std::move(photons), ofRun);
+      });
     AddUpScattered(this->TheDomain, result);
   }
   else if (this->Settings.maximumOrders != 1)
@@ -366,7 +386,9 @@ PhotonLight PhotonMarcher::Implementation::MarchThese(
   const std::vector<Photon>& share, const PhotonNumbers& numbers, const Way& way, const Monitor& monitor)
 {
   const double start = ClockSeconds();
-  const StartingPhotons starting = SendToTheirBlocks(this->TheDomain, share, numbers, this->Traits, this->Settings);
+  const StartingPhotons starting =
+    SendToTheirBlocks(this->TheDomain, share, numbers, this->Traits.Channels(this->Settings) == 3,
+      MarchEventLimit(this->TheDomain.Whole(), this->Settings), this->Settings);
   const PackedPhotons& packed = starting.packed;
   PhotonLight result;
   const int colours = this->Scattering && this->Scattering->HasColour() ? 3 : this->Traits.ColoursOf(packed);

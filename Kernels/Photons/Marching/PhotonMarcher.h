@@ -31,8 +31,7 @@ namespace tyndall
 /// of their paths, to the rank whose block they enter (numerics.md, section 12.6). Paths do not depend on the blocks:
 /// the light is the same, bit for bit, on any number of ranks; powers of scattered light, which are sums of floats, to
 /// 1e-9. A rank stores only its block of the medium and, for the refractive index, a halo of some voxels: 20 or more
-/// for steps of order 4 in an octree, whose nodes are stored on every rank. Light by bricks and `Unsafe` sums require
-/// an undivided grid.
+/// for steps of order 4 in an octree, whose nodes are stored on every rank. Light by bricks requires an undivided grid.
 ///
 /// Kernels are specialised to the scene: without integrator and interpolation if the index is constant, with one
 /// channel if all photons have one colour and the medium is grey.

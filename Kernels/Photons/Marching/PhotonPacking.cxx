@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "Medium/Traits.h"
 #include "Numerics/NumberText.h"
+#include "Photons/Marching/MarchShared.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +20,10 @@ namespace
 constexpr int TileBits = 8;
 constexpr double SameColour = 1e-6;
 
-void CheckPhoton(const Photon& photon, std::size_t number)
+void CheckPhoton(const Photon& photon, std::size_t number, bool batches)
 {
   const std::string name = "Photon " + std::to_string(number);
+  const auto isPower = [](float value) { return value >= 0.0f && !std::isinf(value); };
   float length = 0.0f;
   for (int a = 0; a < 3; ++a)
   {
@@ -29,7 +31,7 @@ void CheckPhoton(const Photon& photon, std::size_t number)
     {
       throw InvalidInput(name + " has a position or direction that is not finite.");
     }
-    if (!(photon.power[a] >= 0.0f) || std::isinf(photon.power[a]))
+    if (!isPower(photon.power[a]))
     {
       throw InvalidInput(name + " has power " + Text("%g", photon.power[a]) + "; it must be finite and not negative.");
     }
@@ -39,10 +41,24 @@ void CheckPhoton(const Photon& photon, std::size_t number)
   {
     throw InvalidInput(name + " has direction (0, 0, 0); say where it goes.");
   }
-  if (!(photon.weight >= 0.0f) || std::isinf(photon.weight))
+  if (!isPower(photon.weight))
   {
     throw InvalidInput(
       name + " has weight " + Text("%g", photon.weight) + "; it must be finite and not negative, 1 as a rule.");
+  }
+  if (batches && (photon.batch < 0 || photon.batch >= MarchedBatchesAtMost))
+  {
+    throw InvalidInput(name + " is of batch " + std::to_string(photon.batch) + "; there are 0 to " +
+      std::to_string(MarchedBatchesAtMost - 1) + ".");
+  }
+}
+
+/// @throws InvalidInput for the first photon that is not valid
+void CheckPhotons(const std::vector<Photon>& photons, bool batches)
+{
+  for (std::size_t i = 0; i < photons.size(); ++i)
+  {
+    CheckPhoton(photons[i], i, batches);
   }
 }
 
@@ -127,15 +143,6 @@ std::vector<std::uint32_t> ByBatch(const std::vector<std::uint32_t>& order, cons
   return sorted;
 }
 
-void CheckBatch(const Photon& photon, std::size_t number)
-{
-  if (photon.batch < 0 || photon.batch >= MarchedBatchesAtMost)
-  {
-    throw InvalidInput("Photon " + std::to_string(number) + " is of batch " + std::to_string(photon.batch) +
-      "; there are 0 to " + std::to_string(MarchedBatchesAtMost - 1) + ".");
-  }
-}
-
 Rgb PowerOf(const Photon& photon)
 {
   return { photon.power[0], photon.power[1], photon.power[2] };
@@ -205,6 +212,268 @@ void FillInOrder(PackedPhotons& packed, const std::vector<Photon>& photons, cons
     packed.entered[c] = static_cast<double>(entered[c]) * packed.unit;
   }
 }
+
+/// The properties of all photons together that decide how each is packed.
+struct PhotonTotals
+{
+  double brightest = 0.0;      ///< W, of the brightest photon, channels summed
+  std::int64_t powerUnits = 0; ///< total power, each photon rounded up to units of UnitOfPower
+  Rgb firstColour = {};        ///< of the first photon that has any power; black if none has
+  bool oneColour = true;       ///< whether all photons have that colour
+  int batches = 1;             ///< number of batches that are kept apart
+};
+
+double BrightestOf(const std::vector<Photon>& photons)
+{
+  double brightest = 0.0;
+  for (const Photon& photon : photons)
+  {
+    brightest = std::max(brightest, Sum(PowerOf(photon)));
+  }
+  return brightest;
+}
+
+/// Total power of the photons, each rounded up to units of at most 2^-30 of the brightest of all photons.
+std::int64_t PowerUnitsOf(const std::vector<Photon>& photons, double brightest)
+{
+  const double unit = UnitOfPower(brightest);
+  std::int64_t sum = 0;
+  for (const Photon& photon : photons)
+  {
+    sum += static_cast<std::int64_t>(std::ceil(Sum(PowerOf(photon)) / unit));
+  }
+  return sum;
+}
+
+Rgb FirstColourOf(const std::vector<Photon>& photons)
+{
+  const auto first =
+    std::find_if(photons.begin(), photons.end(), [](const Photon& photon) { return PowerOf(photon) != Rgb{}; });
+  return first == photons.end() ? Rgb{} : PowerOf(*first);
+}
+
+bool HaveColour(const std::vector<Photon>& photons, const Rgb& first)
+{
+  CommonColour common;
+  common.Add(first);
+  for (std::size_t i = 0; i < photons.size() && common.IsOne(); ++i)
+  {
+    common.Add(PowerOf(photons[i]));
+  }
+  return common.IsOne();
+}
+
+/// A packing without photons.
+PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsAtMost)
+{
+  PackedPhotons packed;
+  CommonColour common;
+  common.Add(all.firstColour);
+  const Rgb relative = common.Relative();
+  for (int c = 0; c < 3; ++c)
+  {
+    const double part = 3.0 * relative[c] / Sum(relative);
+    packed.colour[c] = std::abs(part - 1.0) < SameColour ? 1.0 : part;
+  }
+  packed.grey = all.oneColour && packed.colour == Rgb{ 1.0, 1.0, 1.0 };
+  packed.channels = all.oneColour && !coloured ? 1 : 3;
+  packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
+  const double total = static_cast<double>(all.powerUnits) * UnitOfPower(all.brightest);
+  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * depositsAtMost / 0x1p62))) : 1.0;
+  packed.batchBegin.assign(static_cast<std::size_t>(all.batches) + 1, 0);
+  return packed;
+}
+
+/// Adds photons to such a packing.
+void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid)
+{
+  const IncomingPhotons met = ClipToVolume(grid, photons);
+  packed.missed = photons.size() - met.numbers.size();
+  std::vector<std::uint32_t> order = Order(met.rays);
+  if (packed.Batches() > 1)
+  {
+    order = ByBatch(order, photons, met.numbers, packed.Batches(), packed.batchBegin);
+  }
+  else
+  {
+    packed.batchBegin = { 0, static_cast<int>(met.rays.size()) };
+  }
+  FillInOrder(packed, photons, met, order);
+}
+
+/// Integers are sent as two doubles, a high and a low half, whose sums are exact.
+constexpr double Half = 0x1p31;
+
+}
+
+std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vector<std::int64_t>& numbers)
+{
+  if (communicator.Ranks() == 1)
+  {
+    return numbers;
+  }
+  std::vector<double> halves;
+  for (const std::int64_t number : numbers)
+  {
+    const std::int64_t low = number % static_cast<std::int64_t>(Half);
+    halves.push_back(static_cast<double>((number - low) / static_cast<std::int64_t>(Half)));
+    halves.push_back(static_cast<double>(low));
+  }
+  halves = communicator.Sum(halves);
+  std::vector<std::int64_t> sums;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+  {
+    sums.push_back(static_cast<std::int64_t>(halves[2 * i]) * static_cast<std::int64_t>(Half) +
+      static_cast<std::int64_t>(halves[2 * i + 1]));
+  }
+  return sums;
+}
+
+int BatchesOf(const std::vector<Photon>& photons)
+{
+  std::int32_t last = 0;
+  for (const Photon& photon : photons)
+  {
+    last = std::max(last, photon.batch);
+  }
+  return last + 1;
+}
+
+namespace
+{
+/// The colour on the first rank that has one.
+Rgb FirstOfAll(const Domain& domain, const Rgb& own)
+{
+  std::vector<double> colours(3 * static_cast<std::size_t>(domain.Comm().Ranks()), 0.0);
+  std::copy(own.begin(), own.end(), colours.begin() + 3 * domain.Rank());
+  colours = domain.Sum(colours);
+  const auto first = std::find_if(colours.begin(), colours.end(), [](double power) { return power != 0.0; });
+  Rgb colour = {};
+  if (first != colours.end())
+  {
+    std::copy_n(colours.begin() + (first - colours.begin()) / 3 * 3, 3, colour.begin());
+  }
+  return colour;
+}
+
+PhotonTotals TotalsOf(const Domain& domain, const std::vector<Photon>& share, bool batches)
+{
+  PhotonTotals all;
+  all.brightest = domain.Max(BrightestOf(share));
+  all.batches = static_cast<int>(domain.Max(batches ? BatchesOf(share) : 1));
+  all.powerUnits = SumExactly(domain.Comm(), { PowerUnitsOf(share, all.brightest) })[0];
+  all.firstColour = FirstOfAll(domain, FirstColourOf(share));
+  all.oneColour = !domain.Any(!HaveColour(share, all.firstColour));
+  return all;
+}
+
+void AddUpEntered(const Domain& domain, PackedPhotons& packed)
+{
+  std::vector<std::int64_t> numbers(packed.enteredUnits.begin(), packed.enteredUnits.end());
+  numbers.push_back(static_cast<std::int64_t>(packed.missed));
+  numbers = SumExactly(domain.Comm(), numbers);
+  packed.missed = static_cast<std::size_t>(numbers.back());
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    packed.enteredUnits[c] = numbers[c];
+    packed.entered[c] = static_cast<double>(numbers[c]) * packed.unit;
+  }
+}
+
+/// A photon in the format in which it is sent.
+struct SentPhoton
+{
+  float values[9] = {}; ///< as in PackedPhotons
+  int batch = 0;
+  cl_ulong number = 0, mark = 0;
+};
+
+/// Sorts photons by the block in which each starts.
+std::vector<std::vector<SentPhoton>> ByBlocks(
+  const BlockPartition& partition, const PackedPhotons& packed, const std::vector<cl_ulong>& marks)
+{
+  std::vector<std::vector<SentPhoton>> byRank(partition.blocks.size());
+  int batch = 0;
+  for (std::size_t i = 0; i < packed.Count(); ++i)
+  {
+    while (static_cast<int>(i) >= packed.batchBegin[static_cast<std::size_t>(batch) + 1])
+    {
+      ++batch;
+    }
+    const float* const values = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach());
+    int voxel[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxel[axis] = std::clamp(static_cast<int>(values[axis]), 0, partition.whole.size[axis] - 1);
+    }
+    const auto holds = [&](const VoxelBox& block) { return Holds(block, voxel); };
+    const auto block = std::find_if(partition.blocks.begin(), partition.blocks.end(), holds);
+    SentPhoton photon;
+    std::copy_n(values, packed.FloatsEach(), photon.values);
+    photon.batch = batch;
+    photon.number = packed.numbers[i];
+    photon.mark = marks.empty() ? 0 : marks[i];
+    byRank[static_cast<std::size_t>(block - partition.blocks.begin())].push_back(photon);
+  }
+  return byRank;
+}
+
+std::vector<int> EveryRank(const Communicator& communicator)
+{
+  std::vector<int> ranks(static_cast<std::size_t>(communicator.Ranks()));
+  std::iota(ranks.begin(), ranks.end(), 0);
+  return ranks;
+}
+
+/// Joins the received photons, batch by batch.
+void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, StartingPhotons& starting)
+{
+  PackedPhotons& packed = starting.packed;
+  packed.values.clear();
+  packed.numbers.clear();
+  starting.marks.clear();
+  for (int batch = 0; batch < packed.Batches(); ++batch)
+  {
+    packed.batchBegin[static_cast<std::size_t>(batch)] = static_cast<int>(packed.numbers.size());
+    for (const std::vector<SentPhoton>& parcel : parcels)
+    {
+      for (const SentPhoton& photon : parcel)
+      {
+        if (photon.batch != batch)
+        {
+          continue;
+        }
+        packed.values.insert(packed.values.end(), photon.values, photon.values + packed.FloatsEach());
+        packed.numbers.push_back(photon.number);
+        if (marked)
+        {
+          starting.marks.push_back(photon.mark);
+        }
+      }
+    }
+  }
+  packed.batchBegin.back() = static_cast<int>(packed.numbers.size());
+}
+
+/// Marks the photons for counting: a count of one, and the weight of each.
+/// @param largest, count  largest weight and number of the photons of all ranks
+/// @throws InvalidInput if there are more photons than voxels can count
+void MarkForCounting(const std::vector<Photon>& share, float largest, std::size_t count, StartingPhotons& starting)
+{
+  // A voxel's count of photons is stored in the bits above the sum of their weights, in the same 64 bits.
+  constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
+  constexpr double WeightUnits = 65536.0; // in the largest weight
+  Require(count <= CountedAtMost,
+    "There are " + std::to_string(count) + " photons; voxels can count up to " + std::to_string(CountedAtMost) +
+      ". March fewer at a time, or without counts.");
+  const float unit = static_cast<float>(largest / WeightUnits);
+  for (const std::size_t number : starting.packed.numbers)
+  {
+    const double units = unit > 0.0f ? share[number].weight / static_cast<double>(unit) : 0.0;
+    starting.marks.push_back((cl_ulong(1) << CountShift) + static_cast<cl_ulong>(std::min(units + 0.5, WeightUnits)));
+  }
+  starting.weightUnit = unit;
+}
 }
 
 bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::array<double, 3>& direction)
@@ -235,128 +504,6 @@ bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::arra
   return enter <= leave;
 }
 
-int BatchesOf(const std::vector<Photon>& photons)
-{
-  std::int32_t last = 0;
-  for (const Photon& photon : photons)
-  {
-    last = std::max(last, photon.batch);
-  }
-  return last + 1;
-}
-
-std::size_t PackedPhotons::LargestBatch() const
-{
-  int largest = 0;
-  for (std::size_t b = 1; b < this->batchBegin.size(); ++b)
-  {
-    largest = std::max(largest, this->batchBegin[b] - this->batchBegin[b - 1]);
-  }
-  return static_cast<std::size_t>(largest);
-}
-
-double BrightestOf(const std::vector<Photon>& photons)
-{
-  double brightest = 0.0;
-  for (const Photon& photon : photons)
-  {
-    brightest = std::max(brightest, Sum(PowerOf(photon)));
-  }
-  return brightest;
-}
-
-std::int64_t PowerUnitsOf(const std::vector<Photon>& photons, double brightest)
-{
-  const double unit = UnitOfPower(brightest);
-  std::int64_t sum = 0;
-  for (const Photon& photon : photons)
-  {
-    sum += static_cast<std::int64_t>(std::ceil(Sum(PowerOf(photon)) / unit));
-  }
-  return sum;
-}
-
-Rgb FirstColourOf(const std::vector<Photon>& photons)
-{
-  const auto first =
-    std::find_if(photons.begin(), photons.end(), [](const Photon& photon) { return PowerOf(photon) != Rgb{}; });
-  return first == photons.end() ? Rgb{} : PowerOf(*first);
-}
-
-bool HaveColour(const std::vector<Photon>& photons, const Rgb& first)
-{
-  CommonColour common;
-  common.Add(first);
-  for (std::size_t i = 0; i < photons.size() && common.IsOne(); ++i)
-  {
-    common.Add(PowerOf(photons[i]));
-  }
-  return common.IsOne();
-}
-
-PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsAtMost)
-{
-  PackedPhotons packed;
-  CommonColour common;
-  common.Add(all.firstColour);
-  const Rgb relative = common.Relative();
-  for (int c = 0; c < 3; ++c)
-  {
-    const double part = 3.0 * relative[c] / Sum(relative);
-    packed.colour[c] = std::abs(part - 1.0) < SameColour ? 1.0 : part;
-  }
-  packed.grey = all.oneColour && packed.colour == Rgb{ 1.0, 1.0, 1.0 };
-  packed.channels = all.oneColour && !coloured ? 1 : 3;
-  packed.colour = packed.channels == 3 ? Rgb{ 1.0, 1.0, 1.0 } : packed.colour;
-  const double total = static_cast<double>(all.powerUnits) * UnitOfPower(all.brightest);
-  packed.unit = total > 0.0 ? std::exp2(std::ceil(std::log2(total * depositsAtMost / 0x1p62))) : 1.0;
-  packed.batchBegin.assign(static_cast<std::size_t>(all.batches) + 1, 0);
-  return packed;
-}
-
-void CheckPhotons(const std::vector<Photon>& photons, bool batches)
-{
-  for (std::size_t i = 0; i < photons.size(); ++i)
-  {
-    CheckPhoton(photons[i], i);
-    if (batches)
-    {
-      CheckBatch(photons[i], i);
-    }
-  }
-}
-
-void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid)
-{
-  const IncomingPhotons met = ClipToVolume(grid, photons);
-  packed.missed = photons.size() - met.numbers.size();
-  std::vector<std::uint32_t> order = Order(met.rays);
-  if (packed.Batches() > 1)
-  {
-    order = ByBatch(order, photons, met.numbers, packed.Batches(), packed.batchBegin);
-  }
-  else
-  {
-    packed.batchBegin = { 0, static_cast<int>(met.rays.size()) };
-  }
-  FillInOrder(packed, photons, met, order);
-}
-
-PackedPhotons Pack(
-  const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches)
-{
-  CheckPhotons(photons, batches);
-  PhotonTotals all;
-  all.brightest = BrightestOf(photons);
-  all.powerUnits = PowerUnitsOf(photons, all.brightest);
-  all.firstColour = FirstColourOf(photons);
-  all.oneColour = HaveColour(photons, all.firstColour);
-  all.batches = batches ? BatchesOf(photons) : 1;
-  PackedPhotons packed = PackingOf(all, coloured, depositsAtMost);
-  FillPacking(packed, photons, grid);
-  return packed;
-}
-
 PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger)
 {
   PackedPhotons one;
@@ -373,5 +520,94 @@ PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour
     one.entered[0] += one.unit * one.values.back();
   }
   return one;
+}
+
+PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost)
+{
+  CheckPhotons(photons, false);
+  PackedPhotons packed = PackingOf(TotalsOf(Domain(grid), photons, false), coloured, depositsAtMost);
+  FillPacking(packed, photons, grid);
+  return packed;
+}
+
+PlaceOfShare PlaceAmong(Communicator& communicator, std::size_t share)
+{
+  std::vector<double> counts(static_cast<std::size_t>(communicator.Ranks()), 0.0);
+  counts[static_cast<std::size_t>(communicator.Rank())] = static_cast<double>(share);
+  counts = communicator.Sum(counts);
+  const auto begin = counts.begin();
+  return { static_cast<std::size_t>(std::accumulate(begin, begin + communicator.Rank(), 0.0)),
+    static_cast<std::size_t>(std::accumulate(begin, counts.end(), 0.0)) };
+}
+
+StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon>& share, const PhotonNumbers& numbers,
+  bool coloured, double depositsAtMost, const MarchSettings& settings)
+{
+  Communicator& communicator = domain.Comm();
+  domain.Collective([&] { CheckPhotons(share, settings.batches); });
+  const PhotonTotals totals = TotalsOf(domain, share, settings.batches);
+  float heaviest = 0.0f;
+  for (const Photon& photon : share)
+  {
+    heaviest = std::max(heaviest, photon.weight);
+  }
+  heaviest = static_cast<float>(domain.Max(heaviest));
+  StartingPhotons starting;
+  domain.Collective([&] {
+    starting.packed = PackingOf(totals, coloured, depositsAtMost);
+    FillPacking(starting.packed, share, domain.Whole());
+  });
+  AddUpEntered(domain, starting.packed);
+  const std::size_t met = PlaceAmong(communicator, starting.packed.Count()).all;
+  domain.Collective([&] {
+    if (settings.counts)
+    {
+      MarkForCounting(share, heaviest, met, starting);
+    }
+    for (std::size_t& number : starting.packed.numbers)
+    {
+      number = numbers[number];
+    }
+  });
+  if (domain.IsSerial())
+  {
+    return starting; // photons are already where they start
+  }
+  Join(communicator.Exchange<SentPhoton>(
+         EveryRank(communicator), [&] { return ByBlocks(domain.Partition(), starting.packed, starting.marks); }),
+    settings.counts, starting);
+  return starting;
+}
+
+std::vector<Photon> ChosenOnEachRank(Communicator& communicator, const std::vector<Photon>& share,
+  const PlaceOfShare& place, const std::vector<std::size_t>& chosen)
+{
+  std::vector<Photon> own;
+  for (const std::size_t number : chosen)
+  {
+    if (number >= place.first && number < place.first + share.size())
+    {
+      own.push_back(share[number - place.first]);
+    }
+  }
+  std::vector<Photon> all;
+  for (const std::vector<Photon>& some : communicator.Exchange<Photon>(
+         EveryRank(communicator), [&] { return std::vector<std::vector<Photon>>(communicator.Ranks(), own); }))
+  {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+PackedPhotons ThoseIn(const VoxelBox& block, const Grid& whole, const PackedPhotons& packed)
+{
+  if (block.size == whole.size)
+  {
+    return packed;
+  }
+  StartingPhotons starting;
+  starting.packed = packed;
+  Join({ ByBlocks({ whole, { block, { { 0, 0, 0 }, whole.size } } }, packed, {})[0] }, false, starting);
+  return starting.packed;
 }
 }

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "Medium/Grid.h"
+#include "Device/OpenCL.h"
+#include "Distribution/Domain.h"
+#include "Medium/VoxelBox.h"
 #include "Photons/Photons.h"
 
 #include <array>
@@ -27,7 +29,6 @@ struct PackedPhotons
   std::size_t Count() const { return this->numbers.size(); }
   int FloatsEach() const { return 6 + this->channels; }
   int Batches() const { return static_cast<int>(this->batchBegin.size()) - 1; }
-  std::size_t LargestBatch() const; ///< number of photons
 };
 
 /// Indices of a subset of all photons.
@@ -36,38 +37,13 @@ using PhotonNumbers = std::vector<std::size_t>;
 /// The largest batch of any photon, plus one.
 int BatchesOf(const std::vector<Photon>& photons);
 
+/// Packs photons, all as one batch.
 /// @param coloured       keep three channels even if one would do
 /// @param depositsAtMost  maximum deposits of one photon: power is scaled so that no sum of that many deposits can
 ///   exceed 2^62 (numerics.md, Eq. (99))
-/// @param batches        keep the photons of each batch together; otherwise all count as one batch
-/// @throws InvalidInput if a photon's position, direction, power or weight is not finite, its direction zero, its power
-///   or weight negative, or its batch (if asked for) not 0 to 63
-PackedPhotons Pack(
-  const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost, bool batches = false);
-
-// The steps of Pack, for photons that are distributed over several ranks.
-
-/// The properties of all photons together that decide how each is packed.
-struct PhotonTotals
-{
-  double brightest = 0.0;      ///< W, of the brightest photon: BrightestOf
-  std::int64_t powerUnits = 0; ///< sum of PowerUnitsOf over all photons
-  Rgb firstColour = {};        ///< of the first photon that has any power
-  bool oneColour = true;       ///< whether all photons have that colour
-  int batches = 1;             ///< number of batches that are kept apart
-};
-double BrightestOf(const std::vector<Photon>& photons); ///< W, channels summed
-/// Total power of the photons, each rounded up to units of at most 2^-30 of the brightest of all photons.
-std::int64_t PowerUnitsOf(const std::vector<Photon>& photons, double brightest);
-Rgb FirstColourOf(const std::vector<Photon>& photons); ///< black if no photon has power
-bool HaveColour(const std::vector<Photon>& photons, const Rgb& first);
-/// @throws InvalidInput as Pack
-void CheckPhotons(const std::vector<Photon>& photons, bool batches);
-
-/// A packing without photons.
-PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsAtMost);
-/// Adds photons to a packing made by PackingOf.
-void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid);
+/// @throws InvalidInput if a photon's position, direction, power or weight is not finite, its direction zero, or its
+///   power or weight negative
+PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool coloured, double depositsAtMost);
 
 /// Extracts one channel of packed photons.
 /// @param channel  which of the packed channels
@@ -85,4 +61,48 @@ inline std::int64_t WholeUnits(float power)
 /// @param position, direction  in voxels
 /// @return false if the line does not meet the grid
 bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::array<double, 3>& direction);
+
+// Photons distributed over ranks: rank 0 has the first of all photons, then rank 1, and so on. These functions are
+// collective, except for ThoseIn.
+
+/// Position of a rank's photons among all photons.
+struct PlaceOfShare
+{
+  std::size_t first = 0; ///< index of its first photon among all
+  std::size_t all = 0;   ///< number of photons of all ranks
+};
+PlaceOfShare PlaceAmong(Communicator& communicator, std::size_t share);
+
+/// Sums integers over all ranks, without rounding.
+std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vector<std::int64_t>& numbers);
+
+/// Photons that start in a rank's block.
+struct StartingPhotons
+{
+  /// `packed.numbers` are indices among all photons; `entered` and `missed` are totals over all ranks.
+  PackedPhotons packed;
+  /// If photons are counted, the mark by which each is counted in the voxels that it crosses (PhotonMarch.cl), and the
+  /// photon weight per unit of the voxels' sums.
+  std::vector<cl_ulong> marks;
+  float weightUnit = 0.0f;
+};
+
+/// Packs the photons of all ranks as a serial run would, and sends each to the rank in whose block it starts.
+/// @param share    this rank's photons
+/// @param numbers  indices of these among all photons
+/// @param coloured, depositsAtMost  as for Pack
+/// @param settings  whether batches are kept apart, and photons are counted
+/// @throws InvalidInput  on every rank, if any of them has a photon that Pack refuses or, if batches are asked for,
+///   whose batch is not 0 to 63, or if there are more photons than voxels can count
+StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon>& share, const PhotonNumbers& numbers,
+  bool coloured, double depositsAtMost, const MarchSettings& settings);
+
+/// Gathers the photons with the given indices on each rank, ascending.
+/// @param chosen  indices among all photons, fewer than all
+std::vector<Photon> ChosenOnEachRank(Communicator& communicator, const std::vector<Photon>& share,
+  const PlaceOfShare& place, const std::vector<std::size_t>& chosen);
+
+/// The packed photons that start in a block, judged by the voxel that the kernels assign to them. `entered` and
+/// `missed` stay totals.
+PackedPhotons ThoseIn(const VoxelBox& block, const Grid& whole, const PackedPhotons& packed);
 }

@@ -4,12 +4,10 @@
 #include "Device/GroupSize.h"
 #include "Distribution/MessageTags.h"
 #include "Distribution/Rounds.h"
-#include "Photons/Marching/MarchLaunch.h"
 #include "Photons/Marching/MarchRun.h"
-#include "Photons/Marching/PhotonShares.h"
+#include "Photons/Marching/PhotonPacking.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -19,42 +17,6 @@ namespace tyndall
 {
 namespace
 {
-/// Corners of paths: position in voxels, remaining power.
-using CornersOfWays = std::vector<std::vector<cl_float4>>;
-
-/// Runs a kernel with PATHS and reads the corners.
-/// @param ways   number of paths, one work-item each
-/// @param queue  queues the kernel; called twice, first to count corners only
-CornersOfWays TraceCorners(const MarchMedium& medium, std::size_t ways,
-  const std::function<void(bool counting, const Buffer<cl_int>& offsets, const Buffer<cl_float4>& corners,
-    const Buffer<cl_int>& counts)>& queue)
-{
-  Device& device = medium.device;
-  Buffer<cl_int> offsets(device, ways, "offsets of paths");
-  const Buffer<cl_int> counts(device, ways, "lengths of paths");
-  queue(true, offsets, Buffer<cl_float4>(device, 0, "paths"), counts);
-  const std::vector<cl_int> lengths = counts.Read();
-  std::vector<cl_int> begin(lengths.size() + 1, 0);
-  std::partial_sum(lengths.begin(), lengths.end(), begin.begin() + 1);
-  offsets.Write(begin.data());
-  const Buffer<cl_float4> corners(device, static_cast<std::size_t>(begin.back()), "paths");
-  queue(false, offsets, corners, counts);
-  const std::vector<cl_float4> all = corners.Read();
-  CornersOfWays ofWays;
-  for (std::size_t i = 0; i < ways; ++i)
-  {
-    ofWays.emplace_back(all.begin() + begin[i], all.begin() + begin[i + 1]);
-  }
-  return ofWays;
-}
-
-/// Compiler options of such a kernel.
-std::string PathOptions()
-{
-  return Define("REAL_WIDTH", 1) + Define("ATOMICS", 0) + Define("WORKERS", 0) + Define("PATHS", 1) +
-    Define("COUNTS", 0) + Define("CELLS", 0);
-}
-
 /// The path of a packed photon.
 PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<cl_float4>& corners)
 {
@@ -90,79 +52,81 @@ public:
   PathRun(const MarchMedium& medium, int channels)
     : Medium(medium)
     , Channels(channels)
-    , Kernel(medium.MarchKernel(medium.IsBlock() ? "trace_in_block" : "trace_paths", channels, false,
-        PathOptions() + (medium.IsBlock() ? Define("BLOCKS", 1) : std::string())))
+    , Kernel(medium.MarchKernel("trace_paths", channels, false,
+        Define("REAL_WIDTH", 1) + Define("ATOMICS", 0) + Define("WORKERS", 0) + Define("PATHS", 1) +
+          Define("COUNTS", 0) + Define("CELLS", 0)))
   {
   }
 
   /// Traces photons that start here, or have arrived from other blocks. @return those that continue in other blocks
   std::vector<PhotonOnItsWay> Start(
-    const PackedPhotons& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts);
-  std::vector<PhotonOnItsWay> Resume(const std::vector<PhotonOnItsWay>& arrived, std::vector<PathPart>& parts);
+    const PackedPhotons& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts)
+  {
+    return this->Trace(PhotonsOnDevice(this->Medium.device, photons, marks), marks, parts);
+  }
+  std::vector<PhotonOnItsWay> Resume(const std::vector<PhotonOnItsWay>& arrived, std::vector<PathPart>& parts)
+  {
+    std::vector<cl_ulong> marks;
+    for (const PhotonOnItsWay& photon : arrived)
+    {
+      marks.push_back(photon.mark);
+    }
+    return this->Trace(PhotonsOnDevice(this->Medium.device, arrived, 1, this->Channels), marks, parts);
+  }
 
 private:
-  std::vector<PhotonOnItsWay> Trace(const PackedPhotons& photons, const std::vector<PhotonOnItsWay>& arrived,
-    const std::vector<cl_ulong>& marks, bool resumes, std::vector<PathPart>& parts);
+  std::vector<PhotonOnItsWay> Trace(
+    const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts);
 
   const MarchMedium& Medium;
   int Channels;
   cl::Kernel Kernel;
 };
 
-std::vector<PhotonOnItsWay> PathRun::Start(
-  const PackedPhotons& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts)
-{
-  return this->Trace(photons, {}, marks, false, parts);
-}
-
-std::vector<PhotonOnItsWay> PathRun::Resume(const std::vector<PhotonOnItsWay>& arrived, std::vector<PathPart>& parts)
-{
-  PackedPhotons none;
-  none.channels = this->Channels;
-  none.batchBegin = { 0, 0 };
-  none.numbers.resize(arrived.size()); // as many as there will be end records
-  std::vector<cl_ulong> marks;
-  for (const PhotonOnItsWay& photon : arrived)
-  {
-    marks.push_back(photon.mark);
-  }
-  return this->Trace(none, arrived, marks, true, parts);
-}
-
-std::vector<PhotonOnItsWay> PathRun::Trace(const PackedPhotons& photons, const std::vector<PhotonOnItsWay>& arrived,
-  const std::vector<cl_ulong>& marks, bool resumes, std::vector<PathPart>& parts)
+/// Runs the kernel twice: it counts corners, then writes them.
+std::vector<PhotonOnItsWay> PathRun::Trace(
+  const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts)
 {
   std::vector<PhotonOnItsWay> into;
   if (marks.empty())
   {
     return into;
   }
-  Device& device = this->Medium.device;
-  const PhotonsOnDevice onDevice(device, photons, marks);
-  const Buffer<PhotonOnItsWay> come(device, arrived, "photons from other blocks");
+  const MarchMedium& medium = this->Medium;
+  Device& device = medium.device;
   const Buffer<cl_int> none(device, 0, "cells of the voxels");
-  const Buffer<cl_int>& cells = this->Medium.bricks.AreThere() ? this->Medium.bricks.First() : none;
-  GonePhotons<PhotonOnItsWay> gone(device, this->Medium.IsBlock() ? marks.size() : 0);
-  gone.Empty();
-  CornersOfWays corners = TraceCorners(this->Medium, marks.size(),
-    [&](bool counting, const Buffer<cl_int>& offsets, const Buffer<cl_float4>& to, const Buffer<cl_int>& counts) {
-      if (!this->Medium.IsBlock())
-      {
-        With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
-          onDevice.values, cells, onDevice.ends, cl_int(counting), offsets, to, counts);
-        this->Medium.Launch(this->Kernel, cl::NDRange(marks.size()), GroupOfLargeItems(device));
-        return;
-      }
-      gone.Empty();
-      With(this->Kernel, this->Medium.Describe(), this->Medium.sigma, this->Medium.coefficients, this->Medium.nodes,
-        onDevice.values, onDevice.marks, come, gone.Room(), gone.Number(), onDevice.ends, cl_int(counting), offsets, to,
-        counts, cl_int(resumes));
-      this->Medium.Launch(this->Kernel, cl::NDRange(marks.size()), GroupOfLargeItems(device));
-    });
-  gone.AppendTo(into);
+  const Buffer<PhotonOnItsWay> gone(device, medium.IsBlock() ? marks.size() : 0, "photons into other blocks");
+  Buffer<cl_int> counters(device, 1, "number of photons into other blocks");
+  Buffer<cl_int> places(device, marks.size(), "places of paths");
+  MarchLaunch launch = {};
+  launch.resumes = cl_int(photons.resumes);
+  const auto trace = [&](const Buffer<cl_float4>& corners) {
+    counters.Fill(0);
+    With(this->Kernel, medium.Describe(), launch, medium.sigma, medium.coefficients, medium.nodes,
+      medium.bricks.AreThere() ? medium.bricks.First() : none, photons.Handle(), photons.marks, photons.ends, places,
+      corners, counters);
+    if (medium.IsBlock())
+    {
+      SetFrom(this->Kernel, 12, gone);
+    }
+    medium.Launch(this->Kernel, cl::NDRange(marks.size()), GroupOfLargeItems(device));
+  };
+  trace(Buffer<cl_float4>(device, 0, "paths"));
+  const std::vector<cl_int> lengths = places.Read();
+  std::vector<cl_int> begin(lengths.size() + 1, 0);
+  std::partial_sum(lengths.begin(), lengths.end(), begin.begin() + 1);
+  places.Write(begin.data());
+  const Buffer<cl_float4> corners(device, static_cast<std::size_t>(begin.back()), "paths");
+  launch.writes = 1;
+  trace(corners);
+  const std::vector<cl_float4> all = corners.Read();
   for (std::size_t i = 0; i < marks.size(); ++i)
   {
-    parts.push_back({ marks[i], std::move(corners[i]) });
+    parts.push_back({ marks[i], { all.begin() + begin[i], all.begin() + begin[i + 1] } });
+  }
+  if (medium.IsBlock())
+  {
+    AppendPhotons(gone, counters.Read().front(), into);
   }
   return into;
 }

@@ -7,7 +7,7 @@
 //   MARKS       1: photons carry marks (PhotonMarch.cl)
 //   BRICKS      1: the medium is stored by bricks (PhotonBricks.cl); indices are those of records, and there are [copy]
 //               of them
-//   BLOCKS      1: photons may enter other blocks of the grid (WaysOnward.cl)
+//   BLOCKS      1: photons march to the end of their block of the grid (WaysOnward.cl), without BRICKS
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It is a sequence of steps,
 // straight lines of constant velocity; where the velocity changes, code and comments say that the photon turns:
@@ -52,11 +52,12 @@ typedef struct
   __global PhotonEnd* ends;
   __global float4* vertices;   // of a path: position in voxels, remaining power; null: vertices are only counted
   const __global ulong* marks; // marks of photons, with MARKS
-  // With CELLS: [copy] coarse cell of each voxel; with BRICKS: first records, PhotonBricks.h.
+  // With CELLS: [copy] coarse cell of each voxel; with BRICKS: first records, MarchMedium.h.
   const __global int* cells;
 #if BLOCKS
-  __global PhotonOnItsWay* gone; // photons that enter other blocks
+  __global PhotonOnItsWay* gone; // photons that enter other blocks, in any order
   volatile __global int* gone_count;
+  int batch; // batch of the photons
 #endif
 } march_arrays;
 

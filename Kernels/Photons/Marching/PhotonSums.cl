@@ -2,12 +2,12 @@
 //   CHANNELS, DIRECTIONS, COUNTS  as in PhotonMarch.cl
 //   CARRIES                 if defined, fractions of a unit of a voxel's absorbed power are carried to the next voxel
 //                           of the row. Needed if units are large: half a unit per voxel would be lost otherwise
-//   BRICKS                  1: the sums are stored by bricks (PhotonBricks.h)
+//   BRICKS                  1: the sums are stored by bricks (MarchMedium.h)
 //   COLOURS                 channels of the output: 3 also if one channel stands for three (CHANNELS 1)
 
 #include "Medium/BrickShared.h"
 #include "Numerics/Numerics.cl"
-#include "Photons/Marching/PhotonSumsShared.h"
+#include "Photons/Marching/MarchShared.h"
 
 #define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
 #define component(values, count, voxel, c) \
@@ -185,7 +185,7 @@ static void leave_dark(__global float* fluence, __global float* mean_direction, 
 #endif
 }
 
-// As finish_light, one brick per work-item, for sums stored by bricks (PhotonBricks.h). One batch, and no counts.
+// As finish_light, one brick per work-item, for sums stored by bricks (MarchMedium.h). One batch, and no counts.
 //   sigma_a, sigma_s  one per record
 //   fluence, mean_direction  one per voxel; in an empty brick only the lowest voxel is written, with the mean over the
 //                            brick, until fill_empty

@@ -6,8 +6,8 @@
 #include "Distribution/Halo.h"
 #include "Distribution/SharedMedium.h"
 #include "Photons/Marching/MarchedLight.h"
-#include "Photons/Marching/MarchInput.h"
-#include "Photons/Marching/PhotonShares.h"
+#include "Photons/Marching/MarchMedium.h"
+#include "Photons/Marching/PhotonPacking.h"
 #include "Photons/Published/PublishedMarch.h"
 
 #include <algorithm>
@@ -183,7 +183,8 @@ private:
   {
     PhotonNumbers numbers(share.size());
     std::iota(numbers.begin(), numbers.end(), PlaceAmong(this->TheDomain.Comm(), share.size()).first);
-    return SendToTheirBlocks(this->TheDomain, share, numbers, {}, PackingSettings());
+    return SendToTheirBlocks(this->TheDomain, share, numbers, true,
+      MarchEventLimit(this->TheDomain.Whole(), PackingSettings()), PackingSettings());
   }
 
   /// Follows photons to their ends. @param unit  W of one unit of power during the march

@@ -4,17 +4,63 @@
 #include "Device/HostMappedBuffer.h"
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"
-#include "Photons/Marching/MarchLaunch.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace tyndall
 {
 namespace
 {
+constexpr int Block = 16;         ///< number of photons that a work-item takes at a time
+constexpr int TableParts = 65536; ///< equal steps of probability in a table of cosines
+
+/// Values of PHASE in ScatterPhotons.cl.
+enum PhaseSampling
+{
+  Evenly = 0,
+  ByHenyeyGreenstein = 1,
+  BySchlick = 2,
+  ByTable = 3
+};
+
+PhaseSampling PhaseOf(const Medium& medium)
+{
+  const PhaseFunction& function = medium.phase.OfChannel(0);
+  if (!medium.phase.Varies() && function.IsIsotropic())
+  {
+    return Evenly;
+  }
+  switch (function.TheKind())
+  {
+    case PhaseFunction::Kind::Isotropic: return medium.phase.Varies() ? ByHenyeyGreenstein : Evenly;
+    case PhaseFunction::Kind::HenyeyGreenstein: return ByHenyeyGreenstein;
+    case PhaseFunction::Kind::Schlick: return BySchlick;
+    default: return ByTable;
+  }
+}
+
+/// Parameter of the phase function, one or one per voxel; or its table of cosines.
+std::vector<float> PhaseValues(const Medium& medium)
+{
+  const PhaseSampling phase = PhaseOf(medium);
+  std::vector<float> values;
+  for (int i = 0; i <= TableParts && phase == ByTable; ++i)
+  {
+    values.push_back(static_cast<float>(medium.phase.OfChannel(0).CosineAt(static_cast<double>(i) / TableParts)));
+  }
+  const bool given = phase == ByHenyeyGreenstein || phase == BySchlick;
+  const std::size_t parameters = !given ? 0 : medium.phase.Varies() ? medium.grid.VoxelCount() : 1;
+  for (std::size_t i = 0; i < parameters; ++i)
+  {
+    values.push_back(static_cast<float>(medium.phase.At(i, 0).Shape().first));
+  }
+  return values;
+}
+
 /// sigma_s and sigma_a times the voxel diagonal in the padded grid; 0 in the padding.
 std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 {
@@ -59,37 +105,30 @@ double ScatteringStepPart(const Field& ior, const std::array<int, 3>& size)
   return std::clamp(Seen / std::max(jump, 1e-9), Least, 1.0);
 }
 
-PhotonScattering::PhotonScattering(const MarchMedium& through, const Medium& medium, double stepPart)
-  : Through(through)
-  , StepPart(stepPart)
-  , Optical(through.device, OpticalOf(through, medium), "how voxels scatter")
-  , Phase(through.device, medium)
+SampledPhase::SampledPhase(Device& device, const Medium& medium)
+  : options(Define("PHASE", static_cast<int>(PhaseOf(medium))) + Define("VARIES", medium.phase.Varies()) +
+      Define("COSINES", PhaseOf(medium) == ByTable ? TableParts : 0))
+  , values(device, PhaseValues(medium), "how light is scattered")
 {
 }
 
-namespace
+PhotonScattering::PhotonScattering(const MarchMedium& inLayout, const Medium& medium, double part)
+  : through(inLayout)
+  , stepPart(part)
+  , optical(through.device, OpticalOf(through, medium), "how voxels scatter")
+  , phase(through.device, medium)
 {
-constexpr int Block = 16; ///< number of photons that a work-item takes at a time
-
-/// Indices of the photons, the keys of their random numbers.
-std::vector<cl_ulong> StreamsOf(const PackedPhotons& packed)
-{
-  return { packed.numbers.begin(), packed.numbers.end() };
-}
 }
 
-ScatteringRun::ScatteringRun(
-  const PhotonScattering& in, PackedPhotons photons, const PhotonScattering::Settings& settings)
+ScatteringRun::ScatteringRun(const PhotonScattering& in, PackedPhotons photons)
   : In(in)
-  , Settings(settings)
   , Packed(std::move(photons))
-  , Numbers(in.Through.settings.meanDirection ? 4 : 1)
-  , Shares(ShareSums(in.Through, in.Through.PaddedCount(), Numbers, 1, 0))
-  , Photons(in.Through.device, Packed.values, "photons")
-  , Streams(in.Through.device, StreamsOf(Packed), "numbers of photons")
-  , Sums(in.Through.device,
-      in.Through.PaddedCount() * static_cast<std::size_t>(Numbers) * static_cast<std::size_t>(Shares.copies),
-      "sums of the photons' light")
+  , Numbers(in.through.settings.meanDirection ? 4 : 1)
+  , Shares(ShareSums(in.through, in.through.PaddedCount(), Numbers, 1, 0))
+  , Photons(in.through.device, Packed.values, "photons")
+  , Streams(in.through.device, { Packed.numbers.begin(), Packed.numbers.end() }, "numbers of photons")
+  , Sums(
+      in.through.device, in.through.PaddedCount() * Count(Numbers) * Count(Shares.copies), "sums of the photons' light")
   , Kernel(this->MakeKernel())
 {
   this->Sums.Fill(0);
@@ -103,76 +142,66 @@ int ScatteringRun::Workers() const
 
 cl::Kernel ScatteringRun::MakeKernel() const
 {
-  const MarchMedium& through = this->In.Through;
-  const bool block = through.IsBlock();
-  return through.device.Kernel(block ? "scatter_in_block" : "scatter_photons", kernel_source::ScatterPhotons,
-    through.Options() + this->In.Phase.Options() + Define("CHANNELS", 1) + Define("DIRECTIONS", 1) +
+  const MarchMedium& through = this->In.through;
+  return through.device.Kernel("scatter_photons", kernel_source::ScatterPhotons,
+    through.Options() + this->In.phase.options + Define("CHANNELS", 1) + Define("DIRECTIONS", 1) +
       Define("ORDER", through.settings.order) + Define("REAL_WIDTH", 1) + Define("ATOMICS", this->Shares.atomics) +
-      Define("WORKERS", this->Workers()) + Define("BLOCK", Block) + Define("GATHERS", this->Numbers > 1) +
-      Define("BLOCKS", block));
+      Define("WORKERS", this->Workers()) + Define("BLOCK", Block) + Define("GATHERS", this->Numbers > 1));
 }
 
 std::vector<ScatteredOnItsWay> ScatteringRun::Start(const Monitor& monitor)
 {
-  const Buffer<ScatteredOnItsWay> none(this->In.Through.device, 0, "photons from other blocks");
-  return this->Launch(none, this->Packed.Count(), false, monitor);
+  return this->Launch(this->Photons.Handle(), this->Packed.Count(), false, monitor);
 }
 
 std::vector<ScatteredOnItsWay> ScatteringRun::Resume(
   const std::vector<ScatteredOnItsWay>& arrived, const Monitor& monitor)
 {
-  const Buffer<ScatteredOnItsWay> onDevice(this->In.Through.device, arrived, "photons from other blocks");
-  return this->Launch(onDevice, arrived.size(), true, monitor);
-}
-
-Batches ScatteringRun::LaunchesOf(std::size_t photons) const
-{
-  Batches launches;
-  launches.count = photons;
-  launches.first = launches.whole = static_cast<std::size_t>(Block) * Count(std::max(this->Workers(), 1));
-  launches.seconds = SecondsPerLaunch;
-  launches.growth = 8.0;
-  if (this->In.Through.IsBlock())
-  {
-    launches.most = std::max(MarchedBetweenBlocks, launches.whole);
-  }
-  return launches;
+  const Buffer<ScatteredOnItsWay> onDevice(this->In.through.device, arrived, "photons from other blocks");
+  return this->Launch(onDevice.Handle(), arrived.size(), true, monitor);
 }
 
 std::vector<ScatteredOnItsWay> ScatteringRun::Launch(
-  const Buffer<ScatteredOnItsWay>& arrived, std::size_t all, bool resumes, const Monitor& monitor)
+  const cl::Buffer& photons, std::size_t all, bool resumes, const Monitor& monitor)
 {
   std::vector<ScatteredOnItsWay> into;
   if (all == 0)
   {
     return into;
   }
-  const MarchMedium& through = this->In.Through;
+  const MarchMedium& through = this->In.through;
+  const int orders = through.settings.maximumOrders;
   MarchInfo info = through.Describe();
-  info.stepSize *= static_cast<float>(this->In.StepPart);
-  info.eventLimit = static_cast<int>(std::min(1e9, info.eventLimit / this->In.StepPart));
-  const ScatterInfo how = { this->Settings.seed, this->Settings.mostScatterings };
-  const cl_ulong stride = through.PaddedCount() * Count(this->Numbers);
-  const Batches launches = this->LaunchesOf(all);
+  info.stepSize *= static_cast<float>(this->In.stepPart);
+  info.eventLimit = static_cast<int>(std::min(1e9, info.eventLimit / this->In.stepPart));
+  ScatterInfo how = {};
+  how.seed = through.settings.seed;
+  how.mostScatterings = orders == 0 ? std::numeric_limits<int>::max() : orders - 1;
+  how.copyStride = through.PaddedCount() * Count(this->Numbers);
+  how.resumes = cl_int(resumes);
+  const std::size_t whole = Count(Block) * Count(std::max(this->Workers(), 1));
+  const Batches launches = PhotonLaunches(through, all, whole, whole, 1);
   const Buffer<ScatterEnd> ends(through.device, all, "ends of photons");
-  GonePhotons<ScatteredOnItsWay> gone(through.device, through.IsBlock() ? std::min(all, launches.most) : 0);
-  Buffer<cl_int> next(through.device, 1, "number of the next photon");
+  const Buffer<ScatteredOnItsWay> gone(
+    through.device, through.IsBlock() ? std::min(all, launches.most) : 0, "photons into other blocks");
+  Buffer<cl_int> counters(through.device, 2, "number of the next photon");
   InBatches(through.device, launches, monitor, [&](std::size_t first, std::size_t count) {
-    next.Fill(0);
-    gone.Empty();
-    cl_uint argument = 9;
-    SetFrom(this->Kernel, 0, info, how, through.sigma, through.coefficients, through.nodes, this->In.Optical,
-      this->In.Phase.Values(), this->Photons, this->Streams);
+    counters.Fill(0);
+    how.first = static_cast<cl_int>(first);
+    how.count = static_cast<cl_int>(count);
+    With(this->Kernel, info, how, through.sigma, through.coefficients, through.nodes, this->In.optical,
+      this->In.phase.values, photons, this->Streams, ends, this->Sums, counters);
     if (through.IsBlock())
     {
-      SetFrom(this->Kernel, argument, arrived, gone.Room(), gone.Number(), cl_int(resumes));
-      argument += 4;
+      SetFrom(this->Kernel, 12, gone);
     }
-    SetFrom(this->Kernel, argument, ends, this->Sums, stride, next, cl_int(first), cl_int(count));
-    const auto workers = static_cast<std::size_t>(this->Workers());
+    const std::size_t workers = Count(this->Workers());
     through.Launch(
       this->Kernel, cl::NDRange(workers > 0 ? workers : count), workers > 0 ? cl::NDRange(1) : cl::NullRange);
-    gone.AppendTo(into);
+    if (through.IsBlock())
+    {
+      AppendPhotons(gone, counters.Read().back(), into);
+    }
   });
   this->TakeEnds(ends.Read());
   return into;
@@ -187,7 +216,7 @@ ScatteredPhotons ScatteringRun::Finish()
 /// Converts the sums to light.
 void ScatteringRun::TakeLight()
 {
-  const MarchMedium& through = this->In.Through;
+  const MarchMedium& through = this->In.through;
   Device& device = through.device;
   const Grid& grid = through.grid;
   const std::size_t voxels = grid.VoxelCount(), rows = voxels / static_cast<std::size_t>(grid.size[0]);
@@ -238,6 +267,132 @@ void ScatteringRun::TakeEnds(const std::vector<ScatterEnd>& ends)
     {
       this->Found.leftOver += unit * end.power;
     }
+  }
+}
+
+namespace
+{
+/// One channel of a medium, with its own arrays.
+struct OneChannelMedium
+{
+  OneChannelMedium(const Medium& medium, int channel)
+    : seen(medium)
+  {
+    const auto take = [&](Field& field, std::vector<float>& values) {
+      for (std::size_t i = 0; i < medium.grid.VoxelCount() && field.values; ++i)
+      {
+        values.push_back(field.At(i, channel));
+      }
+      field = { values.empty() ? nullptr : values.data(), 1 };
+    };
+    take(this->seen.sigma_a, this->sigma_a);
+    take(this->seen.sigma_s, this->sigma_s);
+    this->seen.emission = {};
+    this->seen.phase = medium.phase.Seen(channel);
+  }
+  OneChannelMedium(const OneChannelMedium&) = delete;
+  OneChannelMedium& operator=(const OneChannelMedium&) = delete;
+
+  std::vector<float> sigma_a, sigma_s;
+  Medium seen;
+};
+
+/// Adds the light of one run, times a colour, to all channels or to the only one.
+void AddRun(const ScatteredPhotons& found, const Rgb& colour, PhotonLight& light)
+{
+  const auto channels = static_cast<std::size_t>(light.light.channels);
+  EnergyBalance& balance = light.light.balance;
+  for (std::size_t c = 0; c < channels; ++c)
+  {
+    balance.entered[c] += colour[c] * found.entered;
+    balance.absorbed[c] += colour[c] * found.absorbed;
+    balance.leftOver[c] += colour[c] * (found.leftOver - found.exchanged);
+    light.exchanged[c] += colour[c] * found.exchanged;
+    for (std::size_t face = 0; face < 6; ++face)
+    {
+      light.light.facePowerOut[face][c] += colour[c] * found.escaped[face];
+      balance.escaped[c] += colour[c] * found.escaped[face];
+    }
+    for (std::size_t i = 0; i < found.fluence.size(); ++i)
+    {
+      light.light.fluence[i * channels + c] += static_cast<float>(colour[c] * found.fluence[i]);
+    }
+  }
+  light.scatterings += found.scatterings;
+}
+}
+
+ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
+{
+  for (int c = 0; c < (block.coloured ? 3 : 1); ++c)
+  {
+    Channel channel;
+    if (const MarchMedium* const through = block.through)
+    {
+      const OneChannelMedium one(block.medium, c);
+      if (block.coloured)
+      {
+        MarchTraits traits = through->traits;
+        traits.coloured = false;
+        traits.grey = traits.greyExtinction = true;
+        auto own = std::make_unique<MarchMedium>(
+          device, one.seen, block.ior, block.settings, traits, through->block, nullptr, block.levels);
+        if (block.nodes)
+        {
+          own->SetNodes(*block.nodes);
+        }
+        channel.own = std::move(own);
+      }
+      channel.photons =
+        std::make_unique<PhotonScattering>(block.coloured ? *channel.own : *through, one.seen, block.stepPart);
+    }
+    this->Channels.push_back(std::move(channel));
+  }
+}
+
+/// Contribution of one unit of a run's light to each channel.
+Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int run)
+{
+  Rgb colour = {};
+  colour[static_cast<std::size_t>(run)] = 1.0;
+  return oneRun ? packed.colour : colour;
+}
+
+void ScatteredChannels::AddTo(
+  PhotonLight& light, const PackedPhotons& packed, const Monitor& monitor, const Follower& follow) const
+{
+  light.light.fluenceDirect = light.light.fluence;
+  light.light.balance = {};
+  light.light.facePowerOut = {};
+  const bool oneRun = this->Channels.size() == 1 && packed.channels == 1;
+  const int runs = oneRun ? 1 : 3;
+  std::vector<float> flow(light.meanDirection.size(), 0.0f);
+  for (int run = 0; run < runs; ++run)
+  {
+    const double all = runs;
+    const std::size_t of = this->Channels.size() == 1 ? 0 : static_cast<std::size_t>(run);
+    const double power = oneRun || packed.channels == 3 ? 1.0 : packed.colour[static_cast<std::size_t>(run)];
+    const ScatteredPhotons found = follow(this->Channels[of].photons.get(),
+      OneChannel(packed, packed.channels == 3 ? run : 0, power, PhotonScattering::DepositsPerEvent),
+      OfPart(monitor, run / all, (run + 1) / all));
+    const Rgb colour = ColourOfRun(packed, oneRun, run);
+    AddRun(found, colour, light);
+    for (std::size_t i = 0; i < flow.size(); ++i)
+    {
+      flow[i] += static_cast<float>(Sum(colour) * found.flow[i]);
+    }
+  }
+  const auto channels = static_cast<std::size_t>(light.light.channels);
+  for (std::size_t i = 0; i < flow.size(); ++i)
+  {
+    double all = 0.0, direct = 0.0;
+    for (std::size_t c = 0; c < channels; ++c)
+    {
+      const double counts = channels == 1 ? 3.0 : 1.0; // one channel stands for three
+      all += counts * light.light.fluence[i / 3 * channels + c];
+      direct += counts * light.light.fluenceDirect[i / 3 * channels + c];
+    }
+    light.meanDirection[i] = all > 0.0 ? static_cast<float>((direct * light.meanDirection[i] + flow[i]) / all) : 0.0f;
   }
 }
 }

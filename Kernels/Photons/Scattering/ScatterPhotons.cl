@@ -6,7 +6,6 @@
 //   PHASE     phase function: 0 isotropic, 1 Henyey-Greenstein, 2 Schlick, 3 table of cosines
 //   VARIES    1: the parameter of 1 and 2 is given by voxel
 //   COSINES   number of cosines in the table, less one
-//   BLOCKS    1: photons are followed to the end of their block of the grid
 //
 // The optical depth to the next scattering is sampled and consumed along the path. Absorption is subtracted from the
 // photon's power; from the first scattering on, the remaining power times path length is deposited: an unbiased
@@ -29,26 +28,33 @@ typedef struct
   const __global float2* optical; // [padded] sigma_s and sigma_a times a voxel diagonal
   // Phase function parameter, one or [voxel]; or cosines at equal steps of probability.
   const __global float* phase;
+#if BLOCKS
+  __global ScatteredOnItsWay* gone; // photons that enter other blocks, in any order
+  volatile __global int* gone_count;
+#endif
 } scattering;
 
 static float cosine_of(const scattering* medium, ulong voxel, float u)
 {
   const float s = 2.0f * u - 1.0f;
-#if PHASE == 0
-  return s;
-#elif PHASE == 3
-  const float position = u * COSINES;
-  const int i = min((int)position, COSINES - 1);
-  return mix(medium->phase[i], medium->phase[i + 1], position - i);
-#else
+  if (PHASE == 0)
+  {
+    return s;
+  }
+  if (PHASE == 3)
+  {
+    const float position = u * COSINES;
+    const int i = min((int)position, COSINES - 1);
+    return mix(medium->phase[i], medium->phase[i + 1], position - i);
+  }
   const float g = medium->phase[VARIES ? voxel : 0], above = 1.0f + g * s;
-#if PHASE == 2
-  return (s + g) / above;
-#else // inverse cumulative distribution, in a form without cancellation
+  if (PHASE == 2)
+  {
+    return (s + g) / above;
+  }
+  // Inverse cumulative distribution, in a form without cancellation.
   const float sum = s + 0.5f * g * (s * s + 3.0f) + g * g * (s + 0.5f * g * (s * s - 1.0f));
   return sum / (above * above);
-#endif
-#endif
 }
 
 // Rotates a direction by an angle with the given cosine, around a random azimuth, turn in [0, 1) (Duff et al. 2017: a
@@ -74,11 +80,12 @@ static ulong voxel_number(const MarchInfo* info, int at)
 static void leave(__global long* record, float amount, float4 direction)
 {
   add_units(record, convert_long_rte(amount));
-#if GATHERS
-  add_units(record + 1, convert_long_rte(amount * direction.y));
-  add_units(record + 2, convert_long_rte(amount * direction.z));
-  add_units(record + 3, convert_long_rte(amount * direction.w));
-#endif
+  if (GATHERS)
+  {
+    add_units(record + 1, convert_long_rte(amount * direction.y));
+    add_units(record + 2, convert_long_rte(amount * direction.z));
+    add_units(record + 3, convert_long_rte(amount * direction.w));
+  }
 }
 
 static void begin(const march_arrays* arrays, photon_lanes* lanes, float3 place, float3 way)
@@ -310,105 +317,73 @@ static void follow(const march_arrays* arrays, const scattering* medium, const S
   }
 }
 
-#if BLOCKS
-typedef struct
-{
-  const __global float* photons;             // photons that start here, in the format of scatter_photons
-  const __global ulong* numbers;             // keys of their random numbers
-  const __global ScatteredOnItsWay* arrived; // photons that arrived from other blocks
-  __global ScatteredOnItsWay* gone;          // photons that enter other blocks, in any order
-  volatile __global int* gone_count;
-} photons_of_block;
-
-// Follows photon i of those that start here or, with `resumes`, of those that have arrived.
-static ScatterEnd end_in_block(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
-  const photons_of_block* photons, int resumes, int i)
+// Follows photon i of those that start or, with how->resumes, of those that have arrived from other blocks.
+//   photons  position (voxels), unit direction, power (units) of photons that start; else ScatteredOnItsWay
+//   numbers  keys of the random numbers of photons that start
+static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
+  const __global float* photons, const __global ulong* numbers, int i)
 {
   photon_lanes lanes;
   scattered_flight flight;
-  if (!resumes)
+#if BLOCKS
+  if (how->resumes)
   {
-    set_out(arrays, how, photons->photons + (ulong)i * PHOTON_FLOATS, photons->numbers[i], &lanes, &flight);
-  }
-  else
-  {
-    take_over(arrays, how, photons->arrived + i, &lanes, &flight);
+    const __global ScatteredOnItsWay* arrived = (const __global ScatteredOnItsWay*)photons + i;
+    take_over(arrays, how, arrived, &lanes, &flight);
     if (flight.events > 0)
     {
       arrive(arrays, &lanes, &flight.end);
     }
     else
     {
-      begin(arrays, &lanes, vload3(0, photons->arrived[i].way.start), vload3(0, photons->arrived[i].way.velocity));
+      begin(arrays, &lanes, vload3(0, arrived->way.start), vload3(0, arrived->way.velocity));
     }
   }
+  else
+#endif
+  {
+    set_out(arrays, how, photons + (ulong)i * PHOTON_FLOATS, numbers[i], &lanes, &flight);
+  }
   follow(arrays, medium, how, &lanes, &flight);
+#if BLOCKS
   if (flight.end.face == Elsewhere)
   {
-    hand_on(arrays, &lanes, &flight, photons->gone + atomic_add(photons->gone_count, 1));
+    hand_on(arrays, &lanes, &flight, medium->gone + atomic_add(medium->gone_count, 1));
   }
+#endif
   return flight.end;
 }
 
-__kernel void scatter_in_block(MarchInfo info, ScatterInfo how, const __global float* sigma,
+// Follows photons how.first to how.first + how.count to their ends, or into other blocks.
+//   counters  number of the next photon; then, with BLOCKS, the number of photons in `gone`
+__kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global float* sigma,
   const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
-  const __global float* phase, const __global float* photons, const __global ulong* numbers,
-  const __global ScatteredOnItsWay* arrived, __global ScatteredOnItsWay* gone, volatile __global int* gone_count,
-  int resumes, __global ScatterEnd* ends, __global long* sums, ulong copyStride, volatile __global int* next, int first,
-  int count)
+  const __global float* phase, const __global float* photons, const __global ulong* numbers, __global ScatterEnd* ends,
+  __global long* sums, volatile __global int* counters
+#if BLOCKS
+  ,
+  __global ScatteredOnItsWay* gone
+#endif
+)
 {
+#if BLOCKS
+  const scattering medium = { optical, phase, gone, counters + 1 };
+#else
   const scattering medium = { optical, phase };
-  const photons_of_block all = { photons, numbers, arrived, gone, gone_count };
+#endif
 #if WORKERS > 0
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride };
-  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
+  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * how.copyStride };
+  // Which work-item takes a block does not affect the sums.
+  for (int block = atomic_add(counters, BLOCK); block < how.count; block = atomic_add(counters, BLOCK))
   {
-    for (int i = first + block; i < first + min(block + BLOCK, count); ++i)
+    for (int i = how.first + block; i < how.first + min(block + BLOCK, how.count); ++i)
     {
-      ends[i] = end_in_block(&arrays, &medium, &how, &all, resumes, i);
+      ends[i] = end_of(&arrays, &medium, &how, photons, numbers, i);
     }
   }
 #else
   const march_arrays arrays = { &info, sigma, coefficients, nodes, sums };
-  const int i = first + get_global_id(0);
-  ends[i] = end_in_block(&arrays, &medium, &how, &all, resumes, i);
+  const int i = how.first + get_global_id(0);
+  ends[i] = end_of(&arrays, &medium, &how, photons, numbers, i);
 #endif
 }
-#else
-static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
-  const __global float* photon, ulong number)
-{
-  photon_lanes lanes;
-  scattered_flight flight;
-  set_out(arrays, how, photon, number, &lanes, &flight);
-  follow(arrays, medium, how, &lanes, &flight);
-  return flight.end;
-}
-
-// Follows photons `first` to `first + count`.
-//   optical, phase  properties of the medium (struct scattering)
-//   photons         position (voxels), unit direction, power (units)
-//   numbers         keys of the photons' random numbers
-__kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global float* sigma,
-  const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
-  const __global float* phase, const __global float* photons, const __global ulong* numbers, __global ScatterEnd* ends,
-  __global long* sums, ulong copyStride, volatile __global int* next, int first, int count)
-{
-  const scattering medium = { optical, phase };
-#if WORKERS > 0
-  march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * copyStride, 0, 0, 0, 0 };
-  // Which work-item takes a block does not affect the sums.
-  for (int block = atomic_add(next, BLOCK); block < count; block = atomic_add(next, BLOCK))
-  {
-    for (int i = first + block; i < first + min(block + BLOCK, count); ++i)
-    {
-      ends[i] = end_of(&arrays, &medium, &how, photons + (ulong)i * PHOTON_FLOATS, numbers[i]);
-    }
-  }
-#else
-  const march_arrays arrays = { &info, sigma, coefficients, nodes, sums, 0, 0, 0, 0 };
-  const int i = first + get_global_id(0);
-  ends[i] = end_of(&arrays, &medium, &how, photons + (ulong)i * PHOTON_FLOATS, numbers[i]);
-#endif
-}
-#endif

@@ -5,12 +5,15 @@
 #include "Photons/Marching/MarchShared.h"
 
 SHARED_BEGIN
-/// Parameters of photons followed beyond their first scattering.
+/// Parameters of a launch that follows photons beyond their first scattering.
 typedef struct
 {
   ulong seed;
+  ulong copyStride; ///< numbers from copy to copy of the sums
   /// Maximum number of scatterings of a photon; it is given up where it would be scattered once more.
   int mostScatterings;
+  int first, count; ///< the photons of the launch
+  int resumes;      ///< 1: photons that have arrived from other blocks; 0: photons that start
 } ScatterInfo;
 
 /// What became of a photon; powers are in units.
