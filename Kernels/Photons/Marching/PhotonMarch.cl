@@ -150,7 +150,7 @@ static void resume_packet(const march_arrays* arrays, const __global PhotonOnIts
 #endif
 
 // Follows photons `first` to `first + REAL_WIDTH`, but only those before `end`, to their ends or into another block.
-// With PATHS, returns the number of vertices of the path, including the photon's start but not where it enters the block.
+// With PATHS, returns the number of vertices of the path, with its start but not where it enters the block.
 //   photons  photons that start or, with `resumes`, PhotonOnItsWay
 static int march_packet(const march_arrays* arrays, const __global float* photons, int resumes, int first, int end)
 {

@@ -1,14 +1,17 @@
 #include "Photons/Published/PublishedPhotons.h"
 
 #include "Device/Clock.h"
+#include "Device/Defines.h"
 #include "Device/Errors.h"
+#include "Device/Sizes.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/Halo.h"
 #include "Distribution/SharedMedium.h"
 #include "Photons/Marching/MarchedLight.h"
 #include "Photons/Marching/MarchMedium.h"
 #include "Photons/Marching/PhotonPacking.h"
-#include "Photons/Published/PublishedMarch.h"
+#include "Photons/Published/PublishedPhotonsShared.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,11 +22,18 @@
 
 namespace tyndall
 {
+inline const int* WhereIs(const PublishedPhoton& photon)
+{
+  return photon.voxel;
+}
+
 namespace
 {
 /// Maximum distance in voxels between successive deposits of a step: its line goes from voxel to voxel or, if it runs
 /// along an edge, by rounding past one.
 constexpr int VoxelsPassed = 2;
+
+constexpr std::size_t PhotonsPerLaunch = 1 << 16;
 
 /// Settings for packing the photons: three channels, and a step limit as for steps of one voxel.
 MarchSettings PackingSettings()
@@ -59,16 +69,6 @@ std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double large
   return photons;
 }
 
-void RequireAtomics(const Device& device)
-{
-  if (!device.HasExtension("cl_khr_int64_base_atomics"))
-  {
-    throw DeviceError(device.Name() +
-      " has no 64-bit atomics (cl_khr_int64_base_atomics), which the published scheme needs. "
-      "Choose the conservative scheme, or another device.");
-  }
-}
-
 /// Adds the fate of an ended photon to the tallies.
 void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, PackingLoss& loss)
 {
@@ -102,6 +102,145 @@ void AddUp(const Domain& domain, PackingLoss& loss)
   loss.deposits = static_cast<std::size_t>(values[6]);
   loss.givenUp = static_cast<std::size_t>(values[7]);
 }
+
+/// A block of a medium on its device, and the light of photons marched through it by the published scheme.
+class PublishedMarch
+{
+public:
+  /// Halo of the refractive index in voxels: one for interpolation, and one for differences.
+  static constexpr int Reach = 2;
+
+  /// @param medium  coefficients in the block's voxels; must outlive this
+  /// @param ior     refractive index in `part.known`, the block and a halo of Reach voxels; null: rays are straight
+  /// @param levels  levels of the whole grid's octree in the block's voxels; null: no octree
+  /// @param stepLimit  maximum number of steps of a photon
+  /// @param tries   compare-and-swap attempts before a deposit is given up
+  PublishedMarch(Device& device, const Medium& medium, const float* ior, const std::uint8_t* levels,
+    const MarchedPart& part, int stepLimit, int tries)
+    : TheDevice(device)
+    , TheMedium(medium)
+    , Voxels(medium.grid.VoxelCount())
+    , Options(Define("BENDS", ior != nullptr) + Define("LEVELS", levels != nullptr) + Define("TRIES", tries) +
+        Define("A_CHANNELS", Components(medium.sigma_a)) + Define("S_CHANNELS", Components(medium.sigma_s)))
+    , Info(Describe(part, stepLimit))
+    , Index(this->FindIndex(ior, part))
+    , SigmaA(this->Upload(medium.sigma_a))
+    , SigmaS(this->Upload(medium.sigma_s))
+    , Nodes(device, levels, levels ? this->Voxels : 0, "octree levels")
+    , Packed(device, this->Voxels, "packed light")
+  {
+    this->Packed.Fill(0);
+    device.Finish();
+  }
+
+  /// Marches photons as far as the block goes, and updates the position, face and counts of each.
+  /// @param photons  those that start in the block or enter it. @throws Aborted
+  void March(std::vector<PublishedPhoton>& photons, const Monitor& monitor)
+  {
+    cl::Kernel march = this->Kernel("march_published");
+    for (std::size_t first = 0; first < photons.size(); first += PhotonsPerLaunch)
+    {
+      const std::size_t count = std::min(PhotonsPerLaunch, photons.size() - first);
+      const Buffer<PublishedPhoton> some(this->TheDevice, photons.data() + first, count, "photons");
+      With(march, this->Info, this->Index, this->SigmaA, this->SigmaS, this->Nodes, some, this->Packed);
+      this->Launch(march, cl::NDRange(count));
+      some.Read(photons.data() + first, count);
+      Report(monitor, static_cast<double>(first + count) / static_cast<double>(photons.size()));
+    }
+  }
+
+  /// Reads fluence and mean direction, three values per voxel. @param unit  W of one unit of power
+  void Unpack(double unit, PhotonLight& result)
+  {
+    const double volume = this->TheMedium.grid.VoxelVolume();
+    const Buffer<float> fluence(this->TheDevice, 3 * this->Voxels, "fluence");
+    const Buffer<float> direction(this->TheDevice, 3 * this->Voxels, "mean direction");
+    cl::Kernel unpack = this->Kernel("unpack_light");
+    With(unpack, static_cast<float>(unit * std::cbrt(volume) / volume), this->Packed, fluence, direction);
+    this->Launch(unpack, cl::NDRange(this->Voxels));
+    result.light.fluence = fluence.Read();
+    result.meanDirection = direction.Read();
+  }
+
+  /// Applies the 3x3x3 Gaussian filter of the published scheme to values in a box, 3 per voxel; beyond the box, values
+  /// of the nearest voxel are used.
+  std::vector<float> Smoothed(const VoxelBox& box, const std::vector<float>& values)
+  {
+    Buffer<float> from(this->TheDevice, values, "light"), to(this->TheDevice, values.size(), "smoothed light");
+    cl::Kernel kernel = this->Kernel("smooth_along");
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      With(kernel, cl_int(axis), SizeForKernels(box.size), from, to);
+      this->Launch(kernel, RangeOf(box.size));
+      from.Swap(to);
+    }
+    return from.Read();
+  }
+
+private:
+  static int Components(const Field& field) { return field.values ? field.components : 0; }
+  static IndexGrid SizeForKernels(const std::array<int, 3>& size) { return { { size[0], size[1], size[2] } }; }
+  static cl::NDRange RangeOf(const std::array<int, 3>& size)
+  {
+    return { Count(size[0]), Count(size[1]), Count(size[2]) };
+  }
+
+  static PublishedMarchInfo Describe(const MarchedPart& part, int stepLimit)
+  {
+    PublishedMarchInfo info = {};
+    info.whole = SizeForKernels(part.whole.size);
+    info.own = SizeForKernels(part.own.size);
+    info.known = SizeForKernels(part.known.size);
+    for (int a = 0; a < 3; ++a)
+    {
+      info.first[a] = part.own.first[a];
+      info.knownFirst[a] = part.known.first[a];
+      info.spacing[a] = static_cast<float>(part.whole.spacing[a]);
+    }
+    info.stepLimit = stepLimit;
+    return info;
+  }
+
+  cl::Kernel Kernel(const char* name)
+  {
+    return this->TheDevice.Kernel(name, kernel_source::PublishedPhotons, this->Options);
+  }
+
+  void Launch(const cl::Kernel& kernel, const cl::NDRange& range)
+  {
+    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, cl::NullRange);
+  }
+
+  Buffer<float> Upload(const Field& field)
+  {
+    return { this->TheDevice, field.values, this->Voxels * Count(Components(field)), "a coefficient" };
+  }
+
+  Buffer<cl_float4> FindIndex(const float* ior, const MarchedPart& part)
+  {
+    const std::size_t known = ior ? part.known.VoxelCount() : 0;
+    Buffer<cl_float4> index(this->TheDevice, known, "index and gradient");
+    if (known > 0)
+    {
+      const Buffer<float> n(this->TheDevice, ior, known, "ior");
+      cl::Kernel kernel = this->Kernel("published_index");
+      With(kernel, this->Info, n, index);
+      this->Launch(kernel, RangeOf(part.known.size));
+      this->TheDevice.Finish(); // before n is released
+    }
+    return index;
+  }
+
+  Device& TheDevice;
+  const Medium& TheMedium;
+  const std::size_t Voxels;
+  const std::string Options;
+  const PublishedMarchInfo Info;
+  Buffer<cl_float4> Index; ///< n and its gradient; empty if rays are straight
+  Buffer<float> SigmaA, SigmaS;
+  Buffer<cl_uchar> Nodes;
+  Buffer<cl_ulong> Packed; ///< packed light
+};
 
 /// One rank's part of a march.
 class PublishedOfBlock
@@ -147,7 +286,12 @@ private:
     const bool octree = this->TheDomain.Any(levels != nullptr);
     this->TheDomain.Collective([&] {
       CheckMarchedMedium(this->TheDomain, this->TheMedium, ior, levels, octree);
-      RequireAtomics(this->TheDevice);
+      if (!this->TheDevice.HasExtension("cl_khr_int64_base_atomics"))
+      {
+        throw DeviceError(this->TheDevice.Name() +
+          " has no 64-bit atomics (cl_khr_int64_base_atomics), which the published scheme needs. "
+          "Choose the conservative scheme, or another device.");
+      }
     });
     RequireSameMedium(this->TheDomain, this->TheMedium, ior);
     RequireSame(
@@ -215,9 +359,7 @@ private:
     this->TheDomain.Collective([&] {
       if (this->Through)
       {
-        PublishedMarch::Light light = this->Through->Unpack(unit);
-        result.light.fluence = std::move(light.fluence);
-        result.meanDirection = std::move(light.direction);
+        this->Through->Unpack(unit, result);
       }
     });
     const double volume = this->TheDomain.Whole().VoxelVolume();
