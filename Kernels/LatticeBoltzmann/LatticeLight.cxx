@@ -10,7 +10,7 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
-#include "Refraction/Index/IndexRange.h"
+#include "Refraction/Index/IndexField.h"
 
 #include <algorithm>
 #include <functional>

@@ -2,7 +2,7 @@
 #include "DeviceTest.h"
 #include "PhotonScene.h"
 
-#include "Refraction/Index/SquaredIndex.h"
+#include "Refraction/Index/IndexField.h"
 
 #include <random>
 

@@ -10,7 +10,7 @@
 #include "Photons/Marching/MarchShared.h"
 #include "Photons/Marching/PhotonPacking.h"
 #include "Photons/Photons.h"
-#include "Refraction/Index/IndexRange.h"
+#include "Refraction/Index/IndexField.h"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,12 @@
 #include "Refraction/Index/IndexField.h"
 
 #include "Device/Defines.h"
+#include "Device/Errors.h"
 #include "Device/Sizes.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/PyramidLayout.h"
 #include "Numerics/Vectors.h"
+#include "Refraction/Index/IndexShared.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -15,6 +18,9 @@ namespace tyndall
 {
 namespace
 {
+constexpr float Rounding = 1e-6f; ///< relative
+constexpr float Least = static_cast<float>(LeastIndex);
+constexpr float Largest = static_cast<float>(LargestIndex);
 constexpr int LargestFilter = 65;
 /// Bytes of the gradient that the device holds at a time.
 constexpr std::size_t LayerBytes = std::size_t(32) << 20;
@@ -41,6 +47,54 @@ cl::NDRange Rounded(std::size_t x, std::size_t y, std::size_t z, std::size_t gro
 {
   return cl::NDRange(RoundUp(x, groupX), RoundUp(y, groupY), z);
 }
+}
+
+void CheckIndex(const Field& ior, const Grid& grid)
+{
+  const std::size_t count = ior.values ? grid.VoxelCount() : 0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (!(ior.values[i] >= Least && ior.values[i] <= Largest))
+    {
+      throw InvalidInput("ior is " + Text("%g", ior.values[i]) + " in voxel " + VoxelName(grid, i) +
+        " (the first such voxel); a refractive index must be finite and positive, from " + Text("%g", Least) + " to " +
+        Text("%g", Largest) + ".");
+    }
+  }
+}
+
+bool IndexRange::Varies() const
+{
+  return this->largest - this->least > Rounding * this->largest;
+}
+
+IndexRange IndexRangeOf(const Field& ior, const Grid& grid)
+{
+  if (!ior.values)
+  {
+    return {};
+  }
+  const auto range = std::minmax_element(ior.values, ior.values + grid.VoxelCount());
+  return { *range.first, *range.second };
+}
+
+void CheckLevels(const std::uint8_t* levels, const Grid& grid, const Grid& whole)
+{
+  const int top = PyramidLayout(whole.size).Top();
+  const std::size_t count = levels ? grid.VoxelCount() : 0;
+  int highest = 0; // separate from the search for the voxel: compilers vectorise this loop
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    highest = std::max<int>(highest, levels[i]);
+  }
+  if (highest > top)
+  {
+    const std::size_t i =
+      static_cast<std::size_t>(std::find_if(levels, levels + count, [&](int level) { return level > top; }) - levels);
+    throw InvalidInput("octree_level is " + std::to_string(levels[i]) + " in voxel " + VoxelName(grid, i) +
+      " (the first such voxel); a grid of this size has levels 0 to " + std::to_string(top) +
+      ". Make them with RefractionOctree.");
+  }
 }
 
 void CheckFilterSize(int filterSize)
@@ -100,5 +154,25 @@ std::vector<float> IndexGradient(Device& device, const Grid& grid, const Buffer<
       gradient.data() + layer * static_cast<std::size_t>(first));
   }
   return gradient;
+}
+
+Buffer<float> SquaredIndexCoefficients(Device& device, const Grid& grid, const Buffer<float>& ior)
+{
+  const IndexGrid size = { { grid.size[0], grid.size[1], grid.size[2] } };
+  const auto padded = [&](int axis, int by) { return static_cast<std::size_t>(grid.size[axis] + by); };
+  const auto launch = [&](const cl::Kernel& kernel, int by) {
+    device.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(padded(0, by), padded(1, by), padded(2, by)));
+  };
+  const Buffer<float> squares(device, padded(0, 6) * padded(1, 6) * padded(2, 6), "n^2 beyond the grid");
+  Buffer<float> coefficients(device, padded(0, 4) * padded(1, 4) * padded(2, 4), "squared index");
+  cl::Kernel extend = device.Kernel("extend_squared_index", kernel_source::SquaredIndex);
+  With(extend, size, ior, squares);
+  launch(extend, 6);
+  cl::Kernel combine = device.Kernel("squared_index_coefficients", kernel_source::SquaredIndex);
+  With(combine, size, squares, coefficients);
+  launch(combine, 4);
+  device.Finish();
+  return coefficients;
 }
 }

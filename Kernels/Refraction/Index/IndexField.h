@@ -2,12 +2,36 @@
 
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
-#include "Medium/Grid.h"
+#include "Medium/Medium.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace tyndall
 {
+/// Valid range of a refractive index: squares of such values, and their differences, stay well within the range of
+/// float.
+constexpr double LeastIndex = 1e-6;
+constexpr double LargestIndex = 1e6;
+
+/// @throws InvalidInput if the index is not finite or not from LeastIndex to LargestIndex; names the first such voxel
+void CheckIndex(const Field& ior, const Grid& grid);
+
+/// Least and largest refractive index; null values are 1 everywhere.
+struct IndexRange
+{
+  float least = 1.0f;
+  float largest = 1.0f;
+
+  bool Varies() const; ///< whether they differ by more than rounding
+};
+IndexRange IndexRangeOf(const Field& ior, const Grid& grid);
+
+/// @param levels  one octree level per voxel of a part of a grid, or null
+/// @throws InvalidInput if a level is above that of the single node that would hold the whole grid; names the first
+///   such voxel
+void CheckLevels(const std::uint8_t* levels, const Grid& part, const Grid& whole);
+
 /// @throws InvalidInput if the width of a filter, in voxels, is even or not from 1 to 65
 void CheckFilterSize(int filterSize);
 
@@ -23,4 +47,10 @@ void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>
 /// voxels. The device holds a few layers of the gradient at a time.
 std::vector<float> IndexGradient(
   Device& device, const Grid& grid, const Buffer<float>& index, const Monitor& monitor = {});
+
+/// Coefficients of the B-spline of n^2 through voxel centres, in the layout of SquaredIndex.cl: the grid with two more
+/// at either end of each axis.
+/// @param ior  refractive index, one per voxel
+/// @throws DeviceError if they do not fit
+Buffer<float> SquaredIndexCoefficients(Device& device, const Grid& grid, const Buffer<float>& ior);
 }

@@ -5,8 +5,53 @@
 //   NOISE     1 if materials are perturbed
 //   VARIED_G  1 if scattering materials differ in their mean cosines
 
-#include "Refraction/Index/GradientNoise.cl"
 #include "Refraction/Voxelization/MaterialsShared.h"
+
+// Gradient noise of Perlin (Improving noise, SIGGRAPH 2002) with a hash in place of his table, so that a seed chooses
+// one of 2^32 patterns.
+
+inline uint scrambled(uint bits)
+{
+  bits ^= bits >> 16;
+  bits *= 0x7feb352du;
+  bits ^= bits >> 15;
+  bits *= 0x846ca68bu;
+  bits ^= bits >> 16;
+  return bits;
+}
+
+// Dot product of `away` with one of the twelve directions to the midpoints of a cube's edges, chosen by a hash.
+inline float gradient_at(int3 corner, uint seed, float3 away)
+{
+  const uint hash = scrambled((uint)corner.x + scrambled((uint)corner.y + scrambled((uint)corner.z + seed)));
+  const uint kind = hash % 12;
+  const float first = kind < 8 ? away.x : away.y;
+  const float second = kind < 4 ? away.y : away.z;
+  return ((kind & 1) ? -first : first) + ((kind & 2) ? -second : second);
+}
+
+// Gradient noise in [-1, 1], twice continuously differentiable, 0 at integer coordinates; features have a size of about
+// 1.
+inline float gradient_noise(float3 position, uint seed)
+{
+  const float3 low = floor(position);
+  const int3 corner = convert_int3(low);
+  const float3 in = position - low;
+  const float3 fade = in * in * in * (in * (in * 6.0f - 15.0f) + 10.0f);
+  float value[2];
+  for (int z = 0; z < 2; ++z)
+  {
+    float row[2];
+    for (int y = 0; y < 2; ++y)
+    {
+      const float left = gradient_at(corner + (int3)(0, y, z), seed, in - (float3)(0, y, z));
+      const float right = gradient_at(corner + (int3)(1, y, z), seed, in - (float3)(1, y, z));
+      row[y] = mix(left, right, fade.x);
+    }
+    value[z] = mix(row[0], row[1], fade.y);
+  }
+  return clamp(mix(value[0], value[1], fade.z), -1.0f, 1.0f);
+}
 
 // One work-item per voxel (index i in the slab), one row of work-items per run of the slab.
 
@@ -22,11 +67,11 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
   {
     sigma_a[i * CHANNELS + c] += part * a[c];
     sigma_s[i * CHANNELS + c] += part * s[c];
-#if VARIED_G
     const float weight = part * s[c];
-    g[i * CHANNELS + c] +=
-      weight > 0.0f ? (material->g - g[i * CHANNELS + c]) * (weight / sigma_s[i * CHANNELS + c]) : 0.0f;
-#endif
+    if (VARIED_G && weight > 0.0f)
+    {
+      g[i * CHANNELS + c] += (material->g - g[i * CHANNELS + c]) * (weight / sigma_s[i * CHANNELS + c]);
+    }
   }
 }
 
@@ -45,8 +90,7 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const u
   const ulong voxel = slab.first + get_global_id(1) * slab.stride + get_global_id(0);
   const float number = inside[i];
   MaterialInfo material = given; // PoCL 3.1 lets the work-items of a group share a struct argument: do not write to it
-#if NOISE
-  if (number > 0.0f)
+  if (NOISE && number > 0.0f)
   {
     const ulong row = voxel / slab.nx;
     const float3 index =
@@ -56,7 +100,6 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const u
     material.n += material.indexNoise * noise;
     material.scattering *= 1.0f + material.scatteringNoise * noise;
   }
-#endif
   covered[i] += number;
   add_material(number / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s, g);
 }

@@ -2,7 +2,7 @@
 
 #include "Medium/Grid.h"
 #include "Refraction/Voxelization/TriangleMesh.h"
-#include "Refraction/Voxelization/WindingNumbers.h"
+#include "Refraction/Voxelization/Voxelization.h"
 
 #include <string>
 #include <vector>

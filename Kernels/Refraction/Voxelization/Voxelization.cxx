@@ -4,11 +4,11 @@
 #include "Device/Sizes.h"
 #include "Medium/GridOfBox.h"
 #include "Refraction/Voxelization/SampleLattice.h"
-#include "Refraction/Voxelization/WindingNumbers.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,116 +17,300 @@ namespace tyndall
 {
 namespace
 {
+constexpr std::size_t CrossingGroup = 64;                   ///< work-group size
+constexpr int SamplesOfWord = 4;                            ///< of winding numbers: one byte per sample
+constexpr std::size_t WindingBytes = std::size_t(16) << 20; ///< of crossings held at a time for winding numbers
+
+/// Compiler options of Voxelization.cl.
+std::string CrossingOptions(int samplesOfVoxel, bool winding)
+{
+  return Define("SAMPLES", samplesOfVoxel) + Define("WINDING", winding);
+}
+
+/// Queues a kernel of Voxelization.cl or SurfaceFraction.cl with one work-item per tile, column or voxel.
+void RunCrossings(Device& device, const cl::Kernel& kernel, std::size_t items)
+{
+  device.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(RoundUp(items, CrossingGroup)), cl::NDRange(CrossingGroup));
+}
+
+/// Tiles of a mesh's triangles on the device; their memory is kept between uses.
+class TilesOnDevice
+{
+public:
+  const Buffer<cl_uint4>& Upload(Device& device, const std::vector<cl_uint4>& tiles)
+  {
+    if (this->Tiles.Size() < tiles.size())
+    {
+      this->Tiles = Buffer<cl_uint4>(device, tiles.size() + tiles.size() / 4, "pieces of the mesh");
+    }
+    this->Tiles.Write(tiles.data(), tiles.size());
+    return this->Tiles;
+  }
+
+private:
+  Buffer<cl_uint4> Tiles;
+};
+
+/// Marks the crossings of meshes with some rows of columns in a buffer (mark_crossings of Voxelization.cl).
+class CrossingMarker
+{
+public:
+  /// @param words      32-bit words per column
+  /// @param fromAbove  mark the samples after a crossing instead of those before it
+  CrossingMarker(Device& device, const SampleColumns& columns, int words, bool fromAbove, const std::string& options)
+    : TheDevice(device)
+    , Columns(columns)
+    , Words(words)
+    , FromAbove(fromAbove)
+    , Kernel(device.Kernel("mark_crossings", kernel_source::Voxelization, options))
+  {
+  }
+
+  /// Queues the kernel.
+  /// @param marks  `words` for each column of the rows
+  /// @param sums   one for each column of the rows; empty if winding numbers are computed
+  void Mark(const LatticeMesh& mesh, int firstRow, int endRow, Buffer<cl_uint>& marks, Buffer<cl_uint>& sums)
+  {
+    marks.Fill(0);
+    sums.Fill(0);
+    const std::vector<cl_uint4> tiles = mesh.Tiles(this->Columns, firstRow, endRow);
+    if (tiles.empty())
+    {
+      return;
+    }
+    With(this->Kernel, static_cast<cl_int>(tiles.size()), this->Tiles.Upload(this->TheDevice, tiles), mesh.Points(),
+      mesh.Triangles(), this->Columns.axis, this->Columns.pitch, this->Columns.samples,
+      static_cast<cl_int>(this->FromAbove), this->Columns.count[0], this->Words, firstRow, marks, sums);
+    RunCrossings(this->TheDevice, this->Kernel, tiles.size());
+  }
+
+private:
+  Device& TheDevice;
+  SampleColumns Columns;
+  int Words;
+  bool FromAbove;
+  cl::Kernel Kernel;
+  TilesOnDevice Tiles;
+};
+
+/// Combines the results of find_windings (Voxelization.cl) for all columns.
+class WindingSum
+{
+public:
+  WindingSum(const Grid& grid, const VoxelBox& box, const SampleColumns& columns)
+    : TheGrid(grid)
+    , Box(box)
+    , Columns(columns)
+  {
+  }
+
+  void Add(const cl_int4& ofColumn, int across, int up)
+  {
+    this->Windings.lowest = std::min(this->Windings.lowest, ofColumn.s[0]);
+    this->Windings.highest = std::max(this->Windings.highest, ofColumn.s[1]);
+    if (this->Windings.oddSamples == 0 && ofColumn.s[2] > 0)
+    {
+      std::array<int, 3> sample;
+      sample[this->Columns.axis] = ofColumn.s[3];
+      sample[this->Columns.across] = across;
+      sample[this->Columns.up] = up;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const double pitch = this->TheGrid.spacing[axis] / this->Columns.samplesOfVoxel;
+        sample[axis] += this->Box.first[axis] * this->Columns.samplesOfVoxel;
+        this->Windings.firstOddSample[axis] = this->TheGrid.origin[axis] + (sample[axis] + 0.5) * pitch;
+      }
+      this->Windings.firstOddNumber = sample;
+    }
+    this->Windings.oddSamples += static_cast<std::size_t>(ofColumn.s[2]);
+  }
+
+  WindingNumbers Windings;
+
+private:
+  const Grid& TheGrid;
+  const VoxelBox& Box;
+  const SampleColumns& Columns;
+};
+
+/// Computes winding numbers at the samples in some rows of voxels of a box of the grid.
+/// @param mesh      on the lattice that starts at the box's first voxel, as do the columns
+/// @param rows      one per row of voxels along columns.up: nonzero to examine the row
+/// @param inverted  whether the corners run clockwise as seen from outside
+WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& box, const LatticeMesh& mesh,
+  const SampleColumns& columns, const std::vector<cl_int>& rows, bool inverted, const Monitor& monitor)
+{
+  const int words = PartsOf(columns.samples, SamplesOfWord);
+  const auto across = static_cast<std::size_t>(columns.count[0]);
+  const int atOnce = static_cast<int>(std::clamp<std::size_t>(
+    WindingBytes / (across * words * sizeof(cl_uint)), 1, static_cast<std::size_t>(columns.samplesOfVoxel)));
+  const std::string options = CrossingOptions(columns.samplesOfVoxel, true);
+  CrossingMarker marker(device, columns, words, false, options);
+  cl::Kernel find = device.Kernel("find_windings", kernel_source::Voxelization, options);
+  Buffer<cl_uint> marks(device, across * atOnce * words, "crossings of the mesh");
+  Buffer<cl_uint> noSums(device, 0, "no sums");
+  Buffer<cl_int4> found(device, across * atOnce, "winding numbers");
+  std::vector<cl_int4> ofColumns(across * atOnce);
+
+  WindingSum sum(grid, box, columns);
+  for (int first = 0; first < columns.count[1]; first += atOnce)
+  {
+    const int end = std::min(first + atOnce, columns.count[1]);
+    const auto from = rows.begin() + first / columns.samplesOfVoxel;
+    const auto to = rows.begin() + (end - 1) / columns.samplesOfVoxel + 1;
+    if (std::all_of(from, to, [](cl_int asked) { return asked == 0; }))
+    {
+      continue;
+    }
+    Report(monitor, static_cast<double>(first) / columns.count[1]);
+    const int count = columns.count[0] * (end - first);
+    marker.Mark(mesh, first, end, marks, noSums);
+    With(find, count, words, columns.samples, inverted ? -1 : 1, marks, found);
+    RunCrossings(device, find, Count(count));
+    found.Read(ofColumns.data());
+    for (int c = 0; c < count; ++c)
+    {
+      sum.Add(ofColumns[static_cast<std::size_t>(c)], c % columns.count[0], first + c / columns.count[0]);
+    }
+  }
+  return sum.Windings;
+}
+
+/// Rows of voxels along an axis, and the rows of a mesh's samples that they need.
+struct SampleSlab
+{
+  int firstVoxel, endVoxel; ///< along columns.up
+  /// Rows of samples: those of the voxels, and one more on either side where the grid has it.
+  int firstRow, endRow;
+};
+
 SampleColumns Along(int axis, const Grid& grid, const SampleColumns& like)
 {
   return { grid, axis, like.samplesOfVoxel, like.pitch };
 }
-}
 
-SurfaceFraction::SurfaceFraction(
-  Device& device, const Grid& grid, const SampleColumns& columns, int words, std::size_t voxels, bool several)
-  : TheDevice(device)
-  , Size(grid.size)
-  , Bits(columns)
-  , Words(words)
-  , Several(several)
-  , Columns{ Along(0, grid, columns), Along(1, grid, columns), Along(2, grid, columns) }
-  , Corrections(device, voxels, "fractions of samples")
-  , Taken(device, several ? voxels : 0, "samples of later meshes in voxels")
+/// Refines counts of samples in voxels to a fraction of a sample, from the exact position of the surface between two
+/// samples (numerics.md, section 11.1). Occupancy from samples alone has terraces where a surface is nearly parallel to
+/// layers of voxels; these are wider than the smoothing of the index, and bend light.
+class SurfaceFraction
 {
-  const auto kernel = [&](const char* name, int axis) {
-    const std::string options =
-      CrossingOptions(columns.samplesOfVoxel, false) + Define("AXIS", axis) + Define("BIT_AXIS", columns.axis);
-    return device.Kernel(name, kernel_source::SurfaceFraction, options);
-  };
-  for (int axis = 0; axis < 3; ++axis)
+public:
+  /// @param columns  columns of the samples' bits, `words` words of 32 bits per column
+  /// @param voxels   maximum number of voxels in a slab: takes 4 bytes each, and 4 more if there are several meshes
+  SurfaceFraction(
+    Device& device, const Grid& grid, const SampleColumns& columns, int words, std::size_t voxels, bool several)
+    : TheDevice(device)
+    , Size(grid.size)
+    , Bits(columns)
+    , Words(words)
+    , Several(several)
+    , Columns{ Along(0, grid, columns), Along(1, grid, columns), Along(2, grid, columns) }
+    , Corrections(device, voxels, "fractions of samples")
+    , Taken(device, several ? voxels : 0, "samples of later meshes in voxels")
   {
-    this->MeasureAlong[axis] = kernel("measure_crossings", axis);
-  }
-  this->RefineCounts = kernel("refine_counts", 0);
-  this->ClaimSamples = kernel("claim_samples", 0);
-}
-
-void SurfaceFraction::Begin()
-{
-  if (this->Several)
-  {
-    this->Taken.Fill({});
-  }
-}
-
-void SurfaceFraction::Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab,
-  const Buffer<cl_uint>& bits, const Buffer<cl_uint>& claimed)
-{
-  this->Corrections.Fill(0);
-  SampleBox box = { { 0, 0, 0 }, {} };
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    box.end[axis] = this->Size[axis] * this->Bits.samplesOfVoxel;
-  }
-  box.first[this->Bits.up] = slab.firstVoxel * this->Bits.samplesOfVoxel;
-  box.end[this->Bits.up] = slab.endVoxel * this->Bits.samplesOfVoxel;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const SampleColumns& columns = this->Columns[axis];
-    const std::vector<cl_uint4> tiles = mesh.Tiles(columns, box);
-    if (tiles.empty())
+    const auto kernel = [&](const char* name, int axis) {
+      const std::string options =
+        CrossingOptions(columns.samplesOfVoxel, false) + Define("AXIS", axis) + Define("BIT_AXIS", columns.axis);
+      return device.Kernel(name, kernel_source::SurfaceFraction, options);
+    };
+    for (int axis = 0; axis < 3; ++axis)
     {
-      continue;
+      this->MeasureAlong[axis] = kernel("measure_crossings", axis);
     }
-    Buffer<cl_uint4>& onDevice = this->Tiles[axis];
-    if (onDevice.Size() < tiles.size())
-    {
-      onDevice = Buffer<cl_uint4>(this->TheDevice, tiles.size() + tiles.size() / 4, "pieces of the mesh");
-    }
-    onDevice.Write(tiles.data(), tiles.size());
-    cl::Kernel& kernel = this->MeasureAlong[axis];
-    With(kernel, static_cast<cl_int>(tiles.size()), onDevice, mesh.Points(), mesh.Triangles(), columns.pitch,
-      columns.samples, bits, static_cast<cl_int>(this->Several), claimed, this->Taken, this->Words, this->Bits.count[0],
-      slab.firstRow, slab.firstVoxel, this->VoxelsOf(slab), orientation, this->Corrections);
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, CrossingRange(tiles.size()), CrossingGroup());
+    this->RefineCounts = kernel("refine_counts", 0);
+    this->ClaimSamples = kernel("claim_samples", 0);
   }
-}
 
-void SurfaceFraction::Refine(
-  const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts)
-{
-  const cl_int4 voxels = this->VoxelsOf(slab);
-  With(this->RefineCounts, voxels, this->Corrections, static_cast<cl_int>(this->Several), this->Taken, bits,
-    this->Words, this->Bits.count[0], slab.firstRow, slab.firstVoxel, counts);
-  const std::size_t count = static_cast<std::size_t>(voxels.s[0]) * voxels.s[1] * voxels.s[2];
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    this->RefineCounts, cl::NullRange, CrossingRange(count), CrossingGroup());
-  if (this->Several)
+  /// Call before the last mesh of a slab.
+  void Begin()
   {
-    for (int row = slab.firstRow; row < slab.firstVoxel * this->Bits.samplesOfVoxel; ++row)
+    if (this->Several)
     {
-      this->Claim(slab, row, bits, claimed);
-    }
-    for (int row = slab.endVoxel * this->Bits.samplesOfVoxel; row < slab.endRow; ++row)
-    {
-      this->Claim(slab, row, bits, claimed);
+      this->Taken.Fill({});
     }
   }
-}
 
-void SurfaceFraction::Claim(const SampleSlab& slab, int row, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed)
-{
-  const int words = this->Bits.count[0] * this->Words;
-  With(this->ClaimSamples, static_cast<cl_ulong>(row - slab.firstRow) * words, words, bits, claimed);
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    this->ClaimSamples, cl::NullRange, CrossingRange(static_cast<std::size_t>(words)), CrossingGroup());
-}
+  /// Queues the measurement of the difference between a mesh's volume and its count of samples.
+  /// @param orientation  see OrientedMesh
+  /// @param bits         samples inside the mesh, in the slab's rows
+  /// @param claimed      samples inside later meshes, in the same rows; empty if there is only one mesh
+  void Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab, const Buffer<cl_uint>& bits,
+    const Buffer<cl_uint>& claimed)
+  {
+    this->Corrections.Fill(0);
+    SampleBox box = { { 0, 0, 0 }, {} };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      box.end[axis] = this->Size[axis] * this->Bits.samplesOfVoxel;
+    }
+    box.first[this->Bits.up] = slab.firstVoxel * this->Bits.samplesOfVoxel;
+    box.end[this->Bits.up] = slab.endVoxel * this->Bits.samplesOfVoxel;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const SampleColumns& columns = this->Columns[axis];
+      const std::vector<cl_uint4> tiles = mesh.Tiles(columns, box);
+      if (tiles.empty())
+      {
+        continue;
+      }
+      cl::Kernel& kernel = this->MeasureAlong[axis];
+      With(kernel, static_cast<cl_int>(tiles.size()), this->Tiles[axis].Upload(this->TheDevice, tiles), mesh.Points(),
+        mesh.Triangles(), columns.pitch, columns.samples, bits, static_cast<cl_int>(this->Several), claimed,
+        this->Taken, this->Words, this->Bits.count[0], slab.firstRow, slab.firstVoxel, this->VoxelsOf(slab),
+        orientation, this->Corrections);
+      RunCrossings(this->TheDevice, kernel, tiles.size());
+    }
+  }
 
-cl_int4 SurfaceFraction::VoxelsOf(const SampleSlab& slab) const
-{
-  cl_int4 voxels = { { this->Size[0], this->Size[1], this->Size[2], 0 } };
-  voxels.s[this->Bits.up] = slab.endVoxel - slab.firstVoxel;
-  return voxels;
-}
+  /// Queues the conversion of the slab's counts from whole samples to units of 1 / UnitsOfSample, including the
+  /// measurement for the last mesh. Also marks as claimed the samples in the slab's rows that lie outside its voxels.
+  void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts)
+  {
+    const cl_int4 voxels = this->VoxelsOf(slab);
+    With(this->RefineCounts, voxels, this->Corrections, static_cast<cl_int>(this->Several), this->Taken, bits,
+      this->Words, this->Bits.count[0], slab.firstRow, slab.firstVoxel, counts);
+    RunCrossings(this->TheDevice, this->RefineCounts, Count(voxels.s[0]) * voxels.s[1] * voxels.s[2]);
+    if (this->Several)
+    {
+      for (int row = slab.firstRow; row < slab.firstVoxel * this->Bits.samplesOfVoxel; ++row)
+      {
+        this->Claim(slab, row, bits, claimed);
+      }
+      for (int row = slab.endVoxel * this->Bits.samplesOfVoxel; row < slab.endRow; ++row)
+      {
+        this->Claim(slab, row, bits, claimed);
+      }
+    }
+  }
 
-namespace
-{
+private:
+  void Claim(const SampleSlab& slab, int row, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed)
+  {
+    const int words = this->Bits.count[0] * this->Words;
+    With(this->ClaimSamples, static_cast<cl_ulong>(row - slab.firstRow) * words, words, bits, claimed);
+    RunCrossings(this->TheDevice, this->ClaimSamples, Count(words));
+  }
+  cl_int4 VoxelsOf(const SampleSlab& slab) const
+  {
+    cl_int4 voxels = { { this->Size[0], this->Size[1], this->Size[2], 0 } };
+    voxels.s[this->Bits.up] = slab.endVoxel - slab.firstVoxel;
+    return voxels;
+  }
+
+  Device& TheDevice;
+  std::array<int, 3> Size; ///< size of the grid
+  SampleColumns Bits;
+  int Words;
+  bool Several;
+  std::array<SampleColumns, 3> Columns; ///< along x, y and z
+  std::array<cl::Kernel, 3> MeasureAlong;
+  cl::Kernel RefineCounts, ClaimSamples;
+  std::array<TilesOnDevice, 3> Tiles;
+  Buffer<cl_int> Corrections;
+  Buffer<cl_ushort2> Taken;
+};
+
 constexpr int LargestSampleCount = 16;
 /// Maximum number of voxels in a slab, unless one row has more.
 constexpr std::size_t SlabVoxels = std::size_t(4) << 20;
@@ -269,8 +453,7 @@ private:
       const int firstOdd = static_cast<int>(m) * this->TheGrid.size[this->Columns.up];
       With(this->Fill, columns, this->Columns.count[0], this->Words, this->FromAbove, this->Bits, this->Sums,
         this->Oriented[m].orientation, this->Odd, firstOdd, slab.firstRow);
-      this->TheDevice.Queue().enqueueNDRangeKernel(
-        this->Fill, cl::NullRange, CrossingRange(static_cast<std::size_t>(columns)), CrossingGroup());
+      RunCrossings(this->TheDevice, this->Fill, static_cast<std::size_t>(columns));
       if (this->Fractions)
       {
         this->Fractions->Measure(this->Meshes[m], this->Oriented[m].orientation, slab, this->Bits, this->Claimed);
@@ -295,10 +478,9 @@ private:
     With(this->Count, size[this->Columns.axis], columns, rows, this->Words, skipped, this->Bits, this->Claimed,
       static_cast<cl_int>(this->Claimed.Size() > 0), this->Counts, units, stride[this->Columns.axis],
       stride[this->Columns.across], stride[this->Columns.up]);
-    const std::size_t group = CrossingGroup().get()[0];
     this->TheDevice.Queue().enqueueNDRangeKernel(this->Count, cl::NullRange,
-      cl::NDRange(RoundUp(static_cast<std::size_t>(columns), group), static_cast<std::size_t>(rows)),
-      cl::NDRange(group, 1));
+      cl::NDRange(RoundUp(static_cast<std::size_t>(columns), CrossingGroup), static_cast<std::size_t>(rows)),
+      cl::NDRange(CrossingGroup, 1));
   }
 
   SamplesInside SlabOf(std::size_t mesh, int first, int end) const
@@ -329,6 +511,22 @@ private:
   std::optional<SurfaceFraction> Fractions; ///< present if the settings ask for fractions
   Buffer<cl_int> Odd;                       ///< for each mesh's rows of voxels: nonzero where FindWindings is to look
 };
+}
+
+void WindingNumbers::Add(const WindingNumbers& others)
+{
+  const auto place = [](const std::array<int, 3>& number) {
+    return std::array<int, 3>{ number[2], number[1], number[0] };
+  };
+  const bool first = this->oddSamples == 0 || place(others.firstOddNumber) < place(this->firstOddNumber);
+  if (others.oddSamples > 0 && first)
+  {
+    this->firstOddSample = others.firstOddSample;
+    this->firstOddNumber = others.firstOddNumber;
+  }
+  this->oddSamples += others.oddSamples;
+  this->lowest = std::min(this->lowest, others.lowest);
+  this->highest = std::max(this->highest, others.highest);
 }
 
 void Check(const VoxelizationSettings& settings)

@@ -4,9 +4,7 @@
 #include "Device/Monitor.h"
 #include "Medium/Grid.h"
 #include "Medium/VoxelBox.h"
-#include "Refraction/Voxelization/SampleLattice.h"
 #include "Refraction/Voxelization/TriangleMesh.h"
-#include "Refraction/Voxelization/WindingNumbers.h"
 
 #include <array>
 #include <cstddef>
@@ -15,54 +13,18 @@
 
 namespace tyndall
 {
-/// Rows of voxels along an axis, and the rows of a mesh's samples that they need.
-struct SampleSlab
+/// Samples at which the winding number of a mesh is neither 0 nor 1: the mesh intersects itself, or has parts inside
+/// out or within each other.
+struct WindingNumbers
 {
-  int firstVoxel, endVoxel; ///< along columns.up
-  /// Rows of samples: those of the voxels, and one more on either side where the grid has it.
-  int firstRow, endRow;
-};
+  std::size_t oddSamples = 0;  ///< number of such samples
+  int lowest = 0, highest = 1; ///< range of their winding numbers, and of 0 and 1
+  /// Position of the first such sample, in the order z, y, x for columns along x.
+  std::array<double, 3> firstOddSample = { 0, 0, 0 };
+  std::array<int, 3> firstOddNumber = { 0, 0, 0 }; ///< its index along each axis of the whole grid
 
-/// Refines counts of samples in voxels to a fraction of a sample, from the exact position of the surface between two
-/// samples (numerics.md, section 11.1). Occupancy from samples alone has terraces where a surface is nearly parallel to
-/// layers of voxels; these are wider than the smoothing of the index, and bend light.
-class SurfaceFraction
-{
-public:
-  /// @param columns  columns of the samples' bits, `words` words of 32 bits per column
-  /// @param voxels   maximum number of voxels in a slab: takes 4 bytes each, and 4 more if there are several meshes
-  SurfaceFraction(
-    Device& device, const Grid& grid, const SampleColumns& columns, int words, std::size_t voxels, bool several);
-
-  /// Call before the last mesh of a slab.
-  void Begin();
-
-  /// Queues the measurement of the difference between a mesh's volume and its count of samples.
-  /// @param orientation  see OrientedMesh
-  /// @param bits         samples inside the mesh, in the slab's rows
-  /// @param claimed      samples inside later meshes, in the same rows; empty if there is only one mesh
-  void Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab, const Buffer<cl_uint>& bits,
-    const Buffer<cl_uint>& claimed);
-
-  /// Queues the conversion of the slab's counts from whole samples to units of 1 / UnitsOfSample, including the
-  /// measurement for the last mesh. Also marks as claimed the samples in the slab's rows that lie outside its voxels.
-  void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts);
-
-private:
-  void Claim(const SampleSlab& slab, int row, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed);
-  cl_int4 VoxelsOf(const SampleSlab& slab) const;
-
-  Device& TheDevice;
-  std::array<int, 3> Size; ///< size of the grid
-  SampleColumns Bits;
-  int Words;
-  bool Several;
-  std::array<SampleColumns, 3> Columns; ///< along x, y and z
-  std::array<cl::Kernel, 3> MeasureAlong;
-  cl::Kernel RefineCounts, ClaimSamples;
-  std::array<Buffer<cl_uint4>, 3> Tiles;
-  Buffer<cl_int> Corrections;
-  Buffer<cl_ushort2> Taken;
+  /// Adds the results for other samples, with columns along x.
+  void Add(const WindingNumbers& others);
 };
 
 struct VoxelizationSettings

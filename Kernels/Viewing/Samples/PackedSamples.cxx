@@ -4,7 +4,7 @@
 #include "Device/OpenCL.h"
 #include "Device/Sizes.h"
 #include "Numerics/Vectors.h"
-#include "Refraction/Index/SquaredIndex.h"
+#include "Refraction/Index/IndexField.h"
 #include "TyndallKernelSources.h"
 #include "Viewing/Scene/ViewShared.h"
 

@@ -2,7 +2,7 @@
 
 #include "Medium/Medium.h"
 #include "Medium/VoxelBox.h"
-#include "Refraction/Index/IndexRange.h"
+#include "Refraction/Index/IndexField.h"
 #include "Viewing/Scene/GridBlock.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewSettings.h"

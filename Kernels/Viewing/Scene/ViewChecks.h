@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Refraction/Index/IndexRange.h"
+#include "Refraction/Index/IndexField.h"
 #include "Viewing/Scene/Camera.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewSettings.h"

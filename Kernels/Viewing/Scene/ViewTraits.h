@@ -3,7 +3,7 @@
 #include "Medium/FilledBricks.h"
 #include "Medium/Traits.h"
 #include "PhaseFunction/PhaseOfMedium.h"
-#include "Refraction/Index/IndexRange.h"
+#include "Refraction/Index/IndexField.h"
 #include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewSettings.h"
