@@ -5,6 +5,8 @@
 #include "Common/PhaseFunctionData.h"
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
+#include "Distribution/Domain.h"
+#include "Distribution/SharedMedium.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
 
@@ -465,6 +467,17 @@ MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image)
   input.g = ReadMeanCosines(image, input.sigma_s);
   input.medium.phase = ReadPhase(image, input.g, input.sigma_s);
   Check(input.medium);
+  return input;
+}
+
+MediumInput ReadMedium(vtkAlgorithm* filter, const Domain& domain, vtkImageData* own)
+{
+  MediumInput input;
+  domain.Collective([&] { input = own || domain.IsSerial() ? ReadMedium(filter, own) : input; });
+  if (!domain.IsSerial())
+  {
+    AgreeOnMeanCosine(domain.Comm(), own != nullptr, input.g, input.medium);
+  }
   return input;
 }
 

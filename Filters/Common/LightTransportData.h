@@ -43,6 +43,8 @@ class vtkPolyData;
 ///     }
 namespace tyndall
 {
+class Domain;
+
 /// The three values of a property, such as a colour or a position.
 inline std::array<double, 3> Triple(const double* values)
 {
@@ -174,6 +176,10 @@ struct MediumInput
 /// `g` (optional, 1 or 3 components) if the mean cosine varies by voxel, otherwise field data `g` (1 or 3 numbers;
 /// default 0); field data `phase_function` and the parameters in PhaseFunctionData.h (default Henyey-Greenstein).
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
+/// The same for a rank's block of a domain. Collective.
+/// @param own  the block's image; null if it has no voxels
+/// @throws InvalidInput, the same on all ranks, if ReadMedium throws on any
+MediumInput ReadMedium(vtkAlgorithm* filter, const Domain& domain, vtkImageData* own);
 
 /// Angular moments as WriteLight writes them; empty if the solver computed none or some of the arrays are missing.
 struct MomentsInput

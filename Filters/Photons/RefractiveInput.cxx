@@ -63,20 +63,45 @@ InputsKey KeyOf(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtk
 }
 }
 
-RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree)
+namespace
+{
+RefractiveInput ReadAll(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree, MediumInput&& input)
 {
   RefractiveInput read;
-  read.input = ReadMedium(filter, medium);
+  read.input = std::move(input);
   read.ior = ReadChosenCells(filter, RefractiveIndex, medium, "ior", Need::Optional, { 1 });
   read.levels = LevelsOf(octree, medium);
   return read;
 }
+}
 
-KeptMarcher::Found KeptMarcher::Find(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtkImageData* medium,
-  vtkImageData* octree, const MarchSettings& settings)
+RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree)
+{
+  return ReadAll(filter, medium, octree, ReadMedium(filter, medium));
+}
+
+RefractiveInput ReadRefractiveMedium(
+  vtkAlgorithm* filter, const Domain& domain, vtkImageData* medium, vtkImageData* octree)
+{
+  RefractiveInput read;
+  MediumInput input = ReadMedium(filter, domain, medium);
+  domain.Collective([&] { read = medium ? ReadAll(filter, medium, octree, std::move(input)) : std::move(read); });
+  return read;
+}
+
+KeptMarcher::Found KeptMarcher::Find(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, const Domain& domain,
+  vtkImageData* medium, vtkImageData* octree, const MarchSettings& settings)
 {
   Found found;
   found.marcher = std::move(this->Marcher);
+  if (!domain.IsSerial())
+  {
+    found.marcher.reset();
+    const RefractiveInput read = ReadRefractiveMedium(filter, domain, medium, octree);
+    found.marcher =
+      std::make_unique<PhotonMarcher>(*device, domain, read.input.medium, read.ior, settings, read.Levels());
+    return found;
+  }
   found.key = KeyOf(filter, device, medium, octree, settings);
   found.kept = found.marcher && found.key == this->Key;
   if (!found.kept)

@@ -27,6 +27,11 @@ struct RefractiveInput
 /// RefractiveIndex, and cells `octree_level`, if there are any, of `octree` or, if that is null, of the medium.
 /// @throws InvalidInput as ReadMedium, and if the octree's voxels differ from the medium's or it has no levels
 RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree = nullptr);
+/// The same for a rank's block of a domain. Collective.
+/// @param medium, octree  images of the block; null if it has no voxels
+/// @throws InvalidInput, the same on all ranks
+RefractiveInput ReadRefractiveMedium(
+  vtkAlgorithm* filter, const Domain& domain, vtkImageData* medium, vtkImageData* octree = nullptr);
 
 /// Cache of the PhotonMarcher of a filter's medium. It is prepared again only if something that it depends on has
 /// changed: what ReadRefractiveMedium reads, the settings or the device. It does not depend on lights and photons.
@@ -40,13 +45,14 @@ public:
     bool kept = false; ///< whether the cached marcher was still valid
   };
 
-  /// Returns the marcher for these settings, cached or newly prepared. The cache is empty until Keep, so that nothing
-  /// invalid remains after an error.
+  /// Returns the marcher for these settings: cached if the domain is serial, or newly prepared. The cache is empty until
+  /// Keep, so that nothing invalid remains after an error. Collective.
+  /// @param medium, octree  images of this rank's block; null if it has no voxels
   /// @throws InvalidInput as ReadRefractiveMedium and PhotonMarcher
   /// @throws DeviceError
-  Found Find(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, vtkImageData* medium, vtkImageData* octree,
-    const MarchSettings& settings);
-  void Keep(Found&& found);
+  Found Find(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, const Domain& domain, vtkImageData* medium,
+    vtkImageData* octree, const MarchSettings& settings);
+  void Keep(Found&& found); ///< of a serial domain
 
   /// Frees the marcher if a filter upstream of these ports has run. To be called in RequestUpdateExtent, too, so that
   /// device memory is free before upstream filters run, which may need it.

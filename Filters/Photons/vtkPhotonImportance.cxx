@@ -154,38 +154,25 @@ std::optional<tyndall::Illumination> vtkPhotonImportance::ReadLight(vtkInformati
   return illumination;
 }
 
-/// Computes the map with pilot photons that continue from rank to rank, each of which has its piece of the medium.
-/// Collective.
-/// @return nothing, on all ranks, if each rank is to work on the whole medium
-std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(
-  vtkMultiProcessController* ranks, vtkInformationVector** inputs)
+/// Computes the map with pilot photons that march through the ranks' blocks of the medium. Collective.
+tyndall::Importance vtkPhotonImportance::Find(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs)
 {
-  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const std::optional<tyndall::AgreedBlocks> agreed =
-    tyndall::AgreeOnBlocks(ranks, this, ranks != nullptr, inputs[MEDIUM]->GetInformationObject(0), image);
-  if (!agreed)
-  {
-    return {};
-  }
-  this->Kept->Forget();
-  tyndall::Communicator& communicator = *agreed->communicator;
-  const tyndall::PieceBlocks& pieces = *agreed->pieces;
-  std::optional<tyndall::Illumination> light;
+  const tyndall::Domain& domain = pieces.GetDomain();
+  this->Kept->ForgetIfRan(this, { MEDIUM });
   vtkSmartPointer<vtkImageData> own;
-  tyndall::RefractiveInput read;
+  std::optional<tyndall::Illumination> light;
   std::shared_ptr<tyndall::Device> device;
-  communicator.Collective([&] {
-    light = this->ReadLight(inputs);
-    device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget);
-    if (pieces.HasOwn())
+  domain.Collective([&] {
+    own = pieces.OwnImage(vtkImageData::GetData(inputs[MEDIUM]));
+    if (own || domain.IsSerial())
     {
-      own = pieces.OwnImage(image);
-      read = tyndall::ReadRefractiveMedium(this, own);
+      tyndall::GridOf(own); // before a warning that nothing shines
     }
+    light = this->ReadLight(inputs);
+    device = light ? tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget) : nullptr;
   });
-  tyndall::AgreeOnMeanCosine(communicator, pieces.HasOwn(), read.input.g, read.input.medium);
   const tyndall::ImportanceSettings settings = SettingsOf(this);
-  tyndall::RequireSame(communicator, "settings, or how many lights shine", true,
+  tyndall::RequireSame(domain.Comm(), "settings, or how many lights shine", true,
     { light ? 1.0 * static_cast<double>(light->lights.size()) : -1.0, light ? tyndall::Sum(light->sky) : 0.0,
       light ? 1.0 * light->environment.width : 0.0, 1.0 * static_cast<double>(settings.pilotCount),
       1.0 * settings.cells[0], 1.0 * settings.cells[1], 1.0 * settings.cells[2],
@@ -193,32 +180,16 @@ std::optional<tyndall::Importance> vtkPhotonImportance::FindInPieces(
       settings.luminanceThreshold, settings.background });
   if (!light)
   {
-    return tyndall::Importance();
-  }
-  tyndall::PhotonMarcher marcher(*device, tyndall::Domain(communicator, pieces.Partition()), read.input.medium,
-    read.ior, tyndall::MarchSettings{}, read.Levels());
-  tyndall::Importance importance =
-    tyndall::FindImportance(marcher, pieces.Partition().whole, *light, settings, tyndall::MonitorOf(this));
-  this->DeviceName = device->Name();
-  return importance;
-}
-
-tyndall::Importance vtkPhotonImportance::Find(vtkInformationVector** inputs)
-{
-  this->Kept->ForgetIfRan(this, { MEDIUM });
-  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const tyndall::Grid grid = tyndall::GridOf(image);
-  const std::optional<tyndall::Illumination> light = this->ReadLight(inputs);
-  if (!light)
-  {
     return {};
   }
-  tyndall::KeptMarcher::Found found = this->Kept->Find(this,
-    tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget), image, nullptr, tyndall::MarchSettings{});
+  tyndall::KeptMarcher::Found found = this->Kept->Find(this, device, domain, own, nullptr, tyndall::MarchSettings{});
   tyndall::Importance importance =
-    tyndall::FindImportance(*found.marcher, grid, *light, SettingsOf(this), tyndall::MonitorOf(this));
-  this->DeviceName = found.key.device->Name();
-  this->Kept->Keep(std::move(found));
+    tyndall::FindImportance(*found.marcher, domain.Whole(), *light, settings, tyndall::MonitorOf(this));
+  this->DeviceName = device->Name();
+  if (domain.IsSerial())
+  {
+    this->Kept->Keep(std::move(found));
+  }
   return importance;
 }
 
@@ -227,41 +198,32 @@ int vtkPhotonImportance::RequestData(
 {
   this->DeviceName.clear();
   this->Note({});
-  const tyndall::WorkOnPieces onPieces = { MEDIUM,
-    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      std::optional<tyndall::Importance> importance = this->FindInPieces(ranks, inputs);
-      if (importance)
-      {
-        this->Write(request, outputs, std::move(*importance));
-      }
-      return importance.has_value();
-    } };
-  return tyndall::Guarded(this, request, given, outputs, onPieces,
-    [&](vtkInformationVector** inputs) { this->Write(request, outputs, this->Find(inputs)); });
+  tyndall::WorkOnSubdomains work;
+  work.port = MEDIUM;
+  work.tellsExtents = true;
+  work.wantsPieces = [](vtkInformationVector**) { return true; };
+  work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
+    this->Write(outputs, this->Find(pieces, inputs));
+    return true;
+  };
+  return tyndall::Guarded(this, request, given, outputs, work);
 }
 
-void vtkPhotonImportance::Write(
-  vtkInformation* request, vtkInformationVector* outputs, tyndall::Importance&& importance)
+void vtkPhotonImportance::Write(vtkInformationVector* outputs, tyndall::Importance&& importance)
 {
   this->Note(importance);
-  vtkImageData* const map = vtkImageData::GetData(outputs, 0);
   vtkImageData* const pilot = vtkImageData::GetData(outputs, 1);
-  tyndall::WriteImportanceMap(importance, map);
+  tyndall::WriteImportanceMap(importance, vtkImageData::GetData(outputs, 0));
   const std::vector<std::string> leftOut = importance.leftOut;
   if (!importance.pilot.count.empty())
   {
     tyndall::WritePilotLight(std::move(importance), pilot);
   }
-  vtkInformation* const asking = tyndall::AskingPort(request, outputs);
   for (int port = 0; port < 2; ++port)
   {
     vtkImageData* const output = vtkImageData::GetData(outputs, port);
     tyndall::AddFact(output, "left_out", leftOut);
     tyndall::AddFact(output, "device", std::vector<std::string>{ this->DeviceName });
-    if (output->GetNumberOfCells() > 0) // else the announced extent stays, and the next update requests it
-    {
-      tyndall::TellExtentAndKeepWhatIsAskedFor(asking, outputs->GetInformationObject(port), output);
-    }
   }
 }
 

@@ -13,11 +13,10 @@ namespace tyndall
 {
 class Device;
 class KeptMarcher;
+class PieceBlocks;
 struct Illumination;
 struct Importance;
 }
-
-class vtkMultiProcessController;
 
 /**
  * @class vtkPhotonImportance
@@ -153,12 +152,9 @@ private:
   vtkPhotonImportance(const vtkPhotonImportance&) = delete;
   void operator=(const vtkPhotonImportance&) = delete;
 
-  /// Reads the inputs and computes the map on this rank alone.
-  /// @return the map, with the device's name; empty if there is no light
-  tyndall::Importance Find(vtkInformationVector** inputs);
-  std::optional<tyndall::Importance> FindInPieces(vtkMultiProcessController* ranks, vtkInformationVector** inputs);
+  tyndall::Importance Find(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs);
   std::optional<tyndall::Illumination> ReadLight(vtkInformationVector** inputs);
-  void Write(vtkInformation* request, vtkInformationVector* outputs, tyndall::Importance&& importance);
+  void Write(vtkInformationVector* outputs, tyndall::Importance&& importance);
   void Note(const tyndall::Importance& importance);
 
   std::string Device;

@@ -19,7 +19,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
@@ -27,7 +26,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -102,16 +100,15 @@ tyndall::PublishedSettings PublishedSettingsOf(vtkPhotonMarcher* filter)
 }
 
 /// Extends the light of a rank's block to all voxels of the output, ghost cells included. Collective.
-void SpreadToHeld(
-  tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, tyndall::PhotonLight& photons)
+void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::PhotonLight& photons)
 {
-  pieces.SpreadToHeld(communicator, photons.light.fluence, photons.light.channels);
-  pieces.SpreadToHeld(communicator, photons.light.fluenceDirect, photons.light.channels);
-  pieces.SpreadToHeld(communicator, photons.light.fluenceError, photons.light.channels);
-  pieces.SpreadToHeld(communicator, photons.batchFluence, photons.light.channels * photons.batches);
-  pieces.SpreadToHeld(communicator, photons.meanDirection, 3);
-  pieces.SpreadToHeld(communicator, photons.photonCount, 1);
-  pieces.SpreadToHeld(communicator, photons.photonWeight, 1);
+  pieces.SpreadToHeld(photons.light.fluence, photons.light.channels);
+  pieces.SpreadToHeld(photons.light.fluenceDirect, photons.light.channels);
+  pieces.SpreadToHeld(photons.light.fluenceError, photons.light.channels);
+  pieces.SpreadToHeld(photons.batchFluence, photons.light.channels * photons.batches);
+  pieces.SpreadToHeld(photons.meanDirection, 3);
+  pieces.SpreadToHeld(photons.photonCount, 1);
+  pieces.SpreadToHeld(photons.photonWeight, 1);
 }
 
 void WriteLightOf(tyndall::PhotonLight&& photons, vtkImageData* output)
@@ -144,14 +141,12 @@ void WriteLightOf(tyndall::PhotonLight&& photons, vtkImageData* output)
 }
 }
 
-/// Input of a rank's march: its piece of the medium and its photons.
-struct vtkPhotonMarcher::PieceOfMarch
+/// Input of a rank's march: its block of the medium and its photons.
+struct vtkPhotonMarcher::MarchInput
 {
-  vtkSmartPointer<vtkImageData> image; ///< owns the medium's arrays; null if this rank has no piece of it
-  tyndall::RefractiveInput read;
-  bool octreeElsewhere = false; ///< the octree's piece has other voxels than the medium's
+  vtkSmartPointer<vtkImageData> image,
+    octree; ///< of this rank's block; null if it has no voxels, or there is no octree
   tyndall::MarchSettings settings;
-  bool emits = false;                   ///< whether this rank's piece of the medium emits
   std::vector<tyndall::Photon> photons; ///< this rank's share of the photons
 };
 
@@ -290,44 +285,37 @@ vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkIm
   const vtkSmartPointer<vtkImageData> own = pieces.OwnImage(octree);
   return tyndall::AreSameVoxels(tyndall::GridOf(own), tyndall::GridOf(medium)) ? own : nullptr;
 }
-
-/// Whether any rank has photons of several batches. Collective.
-bool HaveBatches(tyndall::Communicator& communicator, const std::vector<tyndall::Photon>& photons)
-{
-  const bool own = std::any_of(photons.begin(), photons.end(), IsOfLaterBatch);
-  return tyndall::OnAnyRank(communicator, own);
-}
 }
 
-/// Reads this rank's piece of the medium and share of the photons. Collective.
-/// @return false, on all ranks, if photons cannot be marched through pieces, or a march through the whole is preferred
-bool vtkPhotonMarcher::ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces,
-  vtkInformationVector** inputs, bool needsPieces, PieceOfMarch& piece)
+/// Finds this rank's block of the medium and share of the photons. Collective.
+/// @return false, on all ranks, if the photons cannot be marched through pieces, or a march through the whole is
+///   preferred
+bool vtkPhotonMarcher::FindInput(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, MarchInput& input)
 {
-  bool rather = false; // march through the whole is preferred, though pieces are possible
-  std::vector<tyndall::Photon> photons =
-    tyndall::ShareOfPhotons(communicator, vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
-  const bool batches = HaveBatches(communicator, photons);
-  communicator.Collective([&] {
-    piece.photons = std::move(photons);
-    if (pieces.HasOwn())
+  const tyndall::Domain& domain = pieces.GetDomain();
+  vtkImageData* const medium = vtkImageData::GetData(inputs[MediumPort]);
+  vtkImageData* const octree = vtkImageData::GetData(inputs[OctreePort]);
+  input.photons =
+    tyndall::ShareOfPhotons(domain.Comm(), vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
+  const bool batches = domain.Any(std::any_of(input.photons.begin(), input.photons.end(), IsOfLaterBatch));
+  bool whole = false; // a march through the whole is preferred, or necessary
+  domain.Collective([&] {
+    input.image = pieces.OwnImage(medium);
+    input.settings = SettingsOf(this, input.image, batches);
+    input.octree = octree;
+    if (octree && pieces.IsDecomposed())
     {
-      piece.image = pieces.OwnImage(vtkImageData::GetData(inputs[MediumPort]));
-      vtkImageData* const given = vtkImageData::GetData(inputs[OctreePort]);
-      const vtkSmartPointer<vtkImageData> octree = given ? OctreeOf(pieces, given, piece.image) : nullptr;
-      piece.octreeElsewhere = given && !octree;
-      piece.read = tyndall::ReadRefractiveMedium(this, piece.image, octree);
+      input.octree = input.image ? OctreeOf(pieces, octree, input.image) : nullptr;
     }
-    piece.emits = piece.read.input.Emits();
-    piece.settings = SettingsOf(this, piece.image, batches);
-    rather = this->Decomposition == AUTOMATIC_DECOMPOSITION && piece.settings.byBricks && !needsPieces;
-    tyndall::Require(!piece.octreeElsewhere || this->Decomposition != BLOCKS,
+    const bool octreeElsewhere = octree && input.image && !input.octree;
+    tyndall::Require(!octreeElsewhere || this->Decomposition != BLOCKS,
       "Ranks cannot march photons through their pieces (Decomposition: blocks) with an octree that lies in other "
-      "pieces on ranks than the medium. Leave it out, or let each rank have the whole.");
+      "pieces on ranks than the medium. Leave it out, or let the first rank have the whole.");
+    const bool prefersWhole = this->Decomposition == AUTOMATIC_DECOMPOSITION && input.settings.byBricks &&
+      !tyndall::NeedsPieces(inputs[MediumPort], BytesOfVoxel);
+    whole = pieces.IsDecomposed() && (octreeElsewhere || prefersWhole);
   });
-  tyndall::MediumInput& input = piece.read.input;
-  tyndall::AgreeOnMeanCosine(communicator, pieces.HasOwn(), input.g, input.medium);
-  return !tyndall::OnAnyRank(communicator, piece.octreeElsewhere || rather);
+  return !domain.Any(whole);
 }
 
 /// Marches photons by the published scheme. Collective.
@@ -355,120 +343,65 @@ void vtkPhotonMarcher::MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Co
   }
 }
 
-/// Marches photons with one piece of the medium per rank. Collective.
-/// @return false, on all ranks, if each rank is to march through the whole medium
-bool vtkPhotonMarcher::MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks,
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
+/// Marches this rank's photons, and writes the light of its block. Collective.
+/// @return false, on all ranks, if the first rank is to march through the whole medium
+bool vtkPhotonMarcher::March(
+  const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  vtkImageData* const image = vtkImageData::GetData(inputs[MediumPort]);
-  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
-    ranks, this, this->WantsBlocks(request, inputs, outputs), tyndall::AskingPort(request, outputs), image);
-  if (!agreed)
+  const tyndall::Domain& domain = pieces.GetDomain();
+  MarchInput input;
+  if (!this->FindInput(pieces, inputs, input))
   {
     return false;
   }
-  tyndall::Communicator* const communicator = agreed->communicator.get();
-  const tyndall::PieceBlocks& pieces = *agreed->pieces;
-  PieceOfMarch piece;
-  const bool needsPieces = tyndall::NeedsPieces(request, inputs[MediumPort], outputs, BytesOfVoxel);
-  if (!this->ReadPiece(*communicator, pieces, inputs, needsPieces, piece))
-  {
-    return false;
-  }
-  this->Kept->Forget();
+  this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
   std::shared_ptr<tyndall::Device> device;
-  communicator->Collective([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
+  domain.Collective([&] { device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget); });
   tyndall::RequireSame(
-    *communicator, "Scheme or PathCount", true, { 1.0 * this->Scheme, static_cast<double>(this->PathCount) });
-  const tyndall::Domain domain(*communicator, pieces.Partition());
+    domain.Comm(), "Scheme or PathCount", true, { 1.0 * this->Scheme, static_cast<double>(this->PathCount) });
   Marched marched;
   if (this->Scheme == PUBLISHED)
   {
-    this->MarchAsPublished(*device, domain, piece.read, piece.photons, marched);
+    const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(this, domain, input.image, input.octree);
+    this->MarchAsPublished(*device, domain, read, input.photons, marched);
   }
   if (this->Scheme != PUBLISHED || this->PathCount > 0)
   {
-    tyndall::PhotonMarcher marcher(
-      *device, domain, piece.read.input.medium, piece.read.ior, piece.settings, piece.read.Levels());
-    this->MarchThrough(marcher, *communicator, piece.photons, marched);
-  }
-  this->WarnOfBox(inputs, pieces.Partition().whole);
-  this->Note(marched);
-  this->Ignored = tyndall::IgnoredEmission(tyndall::OnAnyRank(*communicator, piece.emits));
-  this->Warn(marched.light, tyndall::PlaceAmong(*communicator, piece.photons.size()).all);
-  SpreadToHeld(*communicator, pieces, marched.light);
-  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
-  tyndall::PassOn(image, output);
-  pieces.KeepHeld(output);
-  if (communicator->Rank() == 0)
-  {
-    tyndall::WritePaths(marched.paths, tyndall::OwnAxesOf(this), vtkPolyData::GetData(outputs, 1));
-  }
-  if (pieces.Held().VoxelCount() > 0)
-  {
-    this->Write(std::move(marched), image, output);
-  }
-  return true;
-}
-
-vtkPhotonMarcher::Marched vtkPhotonMarcher::March(
-  vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons)
-{
-  this->Kept->ForgetIfRan(this, { MediumPort, OctreePort });
-  const tyndall::MarchSettings settings = SettingsOf(
-    this, vtkImageData::GetData(inputs[MediumPort]), std::any_of(photons.begin(), photons.end(), IsOfLaterBatch));
-  Marched marched;
-  if (this->Scheme == PUBLISHED)
-  {
-    const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(
-      this, vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]));
-    this->MarchAsPublished(*tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget),
-      tyndall::Domain(read.input.medium.grid), read, photons, marched);
-    if (this->PathCount == 0)
+    tyndall::KeptMarcher::Found found =
+      this->Kept->Find(this, device, domain, input.image, input.octree, input.settings);
+    this->MarchThrough(*found.marcher, domain.Comm(), input.photons, marched);
+    this->MediumKept = found.kept;
+    if (domain.IsSerial())
     {
-      this->Kept->Forget();
-      return marched;
+      this->Kept->Keep(std::move(found));
     }
   }
-  tyndall::KeptMarcher::Found found =
-    this->Kept->Find(this, tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget),
-      vtkImageData::GetData(inputs[MediumPort]), vtkImageData::GetData(inputs[OctreePort]), settings);
-  tyndall::SingleRank single;
-  this->MarchThrough(*found.marcher, single, photons, marched);
-  this->MediumKept = found.kept;
-  this->Kept->Keep(std::move(found));
-  return marched;
+  else
+  {
+    this->Kept->Forget();
+  }
+  this->Write(pieces, input, std::move(marched), inputs, outputs);
+  return true;
 }
 
 int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({});
   this->MediumKept = false;
-  const tyndall::WorkOnPieces onPieces = { MediumPort,
-    [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-      this->IsFirstRank = !ranks || ranks->GetLocalProcessId() == 0;
-      return this->MarchPiece(request, ranks, inputs, outputs);
-    },
-    PhotonsPort, { OctreePort } };
-  return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
-    const std::vector<tyndall::Photon> photons =
-      tyndall::ReadPhotons(vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
-    this->WarnOfBox(inputs, tyndall::GridOf(vtkImageData::GetData(inputs[MediumPort])));
-    Marched marched = this->March(inputs, photons);
-
-    this->Note(marched);
-    vtkImageData* const medium = vtkImageData::GetData(inputs[MediumPort]);
-    this->Ignored = tyndall::IgnoredEmission(tyndall::IsUnusual(this, tyndall::Emission, medium, "emission", 0.0f));
-    this->Warn(marched.light, photons.size());
-    vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(medium, output);
-    if (tyndall::IsFirstPiece(request, outputs))
-    {
-      tyndall::WritePaths(marched.paths, tyndall::OwnAxesOf(this), vtkPolyData::GetData(outputs, 1));
-    }
-    this->Write(std::move(marched), medium, output);
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
-  });
+  tyndall::WorkOnSubdomains work;
+  work.port = MediumPort;
+  work.shares = PhotonsPort;
+  work.others = { OctreePort };
+  work.wantsPieces = [&](vtkInformationVector** inputs) { return this->WantsBlocks(request, inputs, outputs); };
+  work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
+    return this->March(pieces, inputs, outputs);
+  };
+  const int done = tyndall::Guarded(this, request, given, outputs, work);
+  if (!tyndall::IsFirstPiece(request, outputs) && !tyndall::AreEmptied(outputs))
+  {
+    vtkPolyData::GetData(outputs, 1)->Initialize(); // the first piece has the paths
+  }
+  return done;
 }
 
 void vtkPhotonMarcher::WarnOfBox(vtkInformationVector** inputs, const tyndall::Grid& medium)
@@ -480,8 +413,30 @@ void vtkPhotonMarcher::WarnOfBox(vtkInformationVector** inputs, const tyndall::G
   }
 }
 
-void vtkPhotonMarcher::Write(Marched&& marched, vtkImageData* medium, vtkImageData* output)
+/// Reports the result, and writes the light of this rank's block and, on the first rank, the paths. Collective.
+void vtkPhotonMarcher::Write(const tyndall::PieceBlocks& pieces, const MarchInput& input, Marched&& marched,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  const tyndall::Domain& domain = pieces.GetDomain();
+  this->Note(marched);
+  this->WarnOfBox(inputs, domain.Whole());
+  this->Ignored = tyndall::IgnoredEmission(
+    domain.Any(input.image && tyndall::IsUnusual(this, tyndall::Emission, input.image, "emission", 0.0f)));
+  const std::size_t photons = tyndall::PlaceAmong(domain.Comm(), input.photons.size()).all;
+  if (domain.Rank() == 0)
+  {
+    this->Warn(marched.light, photons);
+    tyndall::WritePaths(marched.paths, tyndall::OwnAxesOf(this), vtkPolyData::GetData(outputs, 1));
+  }
+  SpreadToHeld(pieces, marched.light);
+  vtkImageData* const medium = vtkImageData::GetData(inputs[MediumPort]);
+  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
+  tyndall::PassOn(medium, output);
+  pieces.KeepHeld(output);
+  if (pieces.Held().VoxelCount() == 0)
+  {
+    return;
+  }
   WriteLightOf(std::move(marched.light), output);
   tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), medium, output);
   if (!this->Ignored.empty())
@@ -508,13 +463,9 @@ void vtkPhotonMarcher::Note(const Marched& marched)
   this->LeftOut = tyndall::Lines(light.light.leftOut);
 }
 
-/// Issues warnings, on the first rank only, because all ranks share the result.
+/// Issues warnings, for the first rank: all ranks share the result.
 void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photons)
 {
-  if (!this->IsFirstRank)
-  {
-    return;
-  }
   if (!this->Ignored.empty())
   {
     vtkWarningMacro(<< tyndall::WarningOf(this->Ignored));

@@ -26,7 +26,6 @@ struct RefractiveInput;
 }
 
 class vtkImageData;
-class vtkMultiProcessController;
 
 /**
  * @class vtkPhotonMarcher
@@ -69,8 +68,8 @@ class vtkMultiProcessController;
  * is deleted. With BLOCKS the medium is prepared again for every march.
  *
  * In a parallel pipeline every rank marches photons through its piece of the medium, and photons continue from rank to
- * rank; or, depending on Decomposition, each rank marches all photons through the whole medium and returns the
- * requested piece. The paths are on the first rank, each in one piece.
+ * rank; or, depending on Decomposition, the first rank marches all photons through the whole medium and sends each rank
+ * the requested piece. The paths are on the first rank, each in one piece.
  *
  * Cells that `vtkGhostType` marks as hidden are empty.
  *
@@ -113,20 +112,20 @@ public:
   enum Decompositions
   {
     AUTOMATIC_DECOMPOSITION = 0, ///< BLOCKS for more than 64^3 voxels, if possible
-    WHOLE = 1,                   ///< each rank marches all photons through the whole medium
+    WHOLE = 1,                   ///< the first rank marches all photons through the whole medium
     BLOCKS = 2                   ///< each rank has its piece of the medium
   };
 
   ///@{
-  /// Domain decomposition over MPI ranks. WHOLE: each rank holds the whole medium and all photons. BLOCKS: each rank
-  /// holds its piece, a halo of the refractive index, and its share of the photons. A photon that leaves the piece,
+  /// Domain decomposition over MPI ranks. WHOLE: the first rank holds the whole medium and all photons. BLOCKS: each
+  /// rank holds its piece, a halo of the refractive index, and its share of the photons. A photon that leaves the piece,
   /// scattered or not, continues on the neighbouring rank with its full state (numerics.md, section 12.6). The light is
   /// bitwise that of one rank; in the published scheme except for the packing loss, which is not reproducible on one
   /// rank either. If all ranks have the same photons each takes a part of them, else the photons are those of rank 0,
   /// then rank 1, and so on. An octree whose pieces differ from the medium's is an error with BLOCKS. Light that
   /// EmptySpace would store by bricks is stored by voxels. AUTOMATIC_DECOMPOSITION (default): BLOCKS if each of several
   /// ranks is asked for its own piece and the scene allows it; else WHOLE. WHOLE also if EmptySpace asks for bricks,
-  /// unless one copy of the whole per rank of a machine exceeds the machine's available memory.
+  /// unless the whole exceeds the machine's available memory.
   tyndallRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   ///@}
 
@@ -265,19 +264,17 @@ private:
   void operator=(const vtkPhotonMarcher&) = delete;
 
   struct Marched;
-  Marched March(vtkInformationVector** inputs, const std::vector<tyndall::Photon>& photons);
+  struct MarchInput;
+  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
+  bool FindInput(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, MarchInput& input);
+  bool March(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs);
   void MarchAsPublished(tyndall::Device& device, const tyndall::Domain& domain, const tyndall::RefractiveInput& read,
     const std::vector<tyndall::Photon>& photons, Marched& marched);
   void MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Communicator& communicator,
     const std::vector<tyndall::Photon>& photons, Marched& marched);
-  struct PieceOfMarch;
-  bool WantsBlocks(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const;
-  bool ReadPiece(tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs,
-    bool needsPieces, PieceOfMarch& piece);
-  bool MarchPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
   void WarnOfBox(vtkInformationVector** inputs, const tyndall::Grid& medium);
-  void Write(Marched&& marched, vtkImageData* medium, vtkImageData* output);
+  void Write(const tyndall::PieceBlocks& pieces, const MarchInput& input, Marched&& marched,
+    vtkInformationVector** inputs, vtkInformationVector* outputs);
   void Note(const Marched& marched);
   void Warn(const tyndall::PhotonLight& light, std::size_t photons);
 
@@ -311,7 +308,6 @@ private:
   std::string DeviceName;
   std::string LeftOut;
   std::vector<std::string> Ignored; ///< arrays of the medium that the last update ignored
-  bool IsFirstRank = true;          ///< in the last update: whether this rank issues the warnings for all ranks
 };
 
 #endif

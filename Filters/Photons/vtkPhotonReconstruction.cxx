@@ -26,7 +26,6 @@
 #include <iterator>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -121,13 +120,6 @@ LightOfImage Read(vtkPhotonReconstruction* filter, vtkImageData* image)
   light.photonCount = of.count.Values();
   light.photonWeight = of.weight.Values();
   return of;
-}
-
-tyndall::ReconstructedLight Reconstruct(vtkPhotonReconstruction* filter, vtkImageData* image)
-{
-  const LightOfImage of = Read(filter, image);
-  return tyndall::Reconstruct(*tyndall::Device::Find(filter->GetDevice()), tyndall::Domain(of.light.grid), of.light,
-    SettingsOf(filter), tyndall::MonitorOf(filter));
 }
 
 /// The image's `left_out` with further entries appended.
@@ -237,67 +229,50 @@ int vtkPhotonReconstruction::RequestUpdateExtent(
   return 1;
 }
 
-/// Each rank smooths the light of its piece. Collective.
-/// @return false, on all ranks, if each rank is to work on the whole image
-bool vtkPhotonReconstruction::ReconstructPiece(vtkInformation* request, vtkMultiProcessController* ranks,
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
+/// Smooths the light of this rank's block. Collective.
+void vtkPhotonReconstruction::Reconstruct(const tyndall::PieceBlocks& pieces, vtkImageData* image, vtkImageData* output)
 {
-  vtkImageData* const image = vtkImageData::GetData(inputs[0]);
-  const std::optional<tyndall::AgreedBlocks> agreed = tyndall::AgreeOnBlocks(
-    ranks, this, tyndall::EachAsksForItsPiece(request, outputs), tyndall::AskingPort(request, outputs), image);
-  if (!agreed)
-  {
-    return false;
-  }
-  tyndall::Communicator& communicator = *agreed->communicator;
-  const tyndall::PieceBlocks& pieces = *agreed->pieces;
+  const tyndall::Domain& domain = pieces.GetDomain();
   vtkSmartPointer<vtkImageData> own;
   LightOfImage of;
   std::shared_ptr<tyndall::Device> device;
-  communicator.Collective([&] {
-    if (pieces.HasOwn())
+  domain.Collective([&] {
+    own = pieces.OwnImage(image);
+    if (own || domain.IsSerial())
     {
-      own = pieces.OwnImage(image);
       of = Read(this, own);
     }
     device = tyndall::Device::Find(this->Device);
   });
-  tyndall::ReconstructedLight light = tyndall::Reconstruct(
-    *device, tyndall::Domain(communicator, pieces.Partition()), of.light, SettingsOf(this), tyndall::MonitorOf(this));
+  tyndall::ReconstructedLight light =
+    tyndall::Reconstruct(*device, domain, of.light, SettingsOf(this), tyndall::MonitorOf(this));
   const std::vector<double> squares =
-    communicator.Sum({ SumOfSquares(light.fluence), SumOfSquares(light.fluenceError) });
+    domain.Comm().Sum({ SumOfSquares(light.fluence), SumOfSquares(light.fluenceError) });
   this->Note(light, squares[0], squares[1]);
-  const int channels = static_cast<int>(communicator.Largest({ 1.0 * of.fluence.Components() })[0]);
-  pieces.SpreadToHeld(communicator, light.fluence, channels);
-  pieces.SpreadToHeld(communicator, light.fluenceError, channels);
-  pieces.SpreadToHeld(communicator, light.meanDirection, 3);
-  pieces.SpreadToHeld(communicator, light.mipLevel, 1);
-  vtkImageData* const output = vtkImageData::GetData(outputs);
+  const int channels = static_cast<int>(domain.Max(of.fluence.Components()));
+  pieces.SpreadToHeld(light.fluence, channels);
+  pieces.SpreadToHeld(light.fluenceError, channels);
+  pieces.SpreadToHeld(light.meanDirection, 3);
+  pieces.SpreadToHeld(light.mipLevel, 1);
   tyndall::PassOn(image, output);
   pieces.KeepHeld(output);
   if (pieces.Held().VoxelCount() > 0)
   {
-    Write(std::move(light), output);
+    ::Write(std::move(light), output);
   }
-  return true;
 }
 
 int vtkPhotonReconstruction::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({}, 0.0, 0.0);
-  const tyndall::WorkOnPieces onPieces = { 0, [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-                                            return this->ReconstructPiece(request, ranks, inputs, outputs);
-                                          } };
-  return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
-    vtkImageData* const image = vtkImageData::GetData(inputs[0]);
-    tyndall::ReconstructedLight light = Reconstruct(this, image);
-    this->Note(light, SumOfSquares(light.fluence), SumOfSquares(light.fluenceError));
-    vtkImageData* const output = vtkImageData::GetData(outputs);
-    tyndall::PassOn(image, output);
-    Write(std::move(light), output);
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
-  });
+  tyndall::WorkOnSubdomains work;
+  work.wantsPieces = [&](vtkInformationVector**) { return tyndall::EachAsksForItsPiece(request, outputs); };
+  work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
+    this->Reconstruct(pieces, vtkImageData::GetData(inputs[0]), vtkImageData::GetData(outputs));
+    return true;
+  };
+  return tyndall::Guarded(this, request, given, outputs, work);
 }
 
 /// @param squares, ofErrors sums of squares of fluence and of its error over the voxels of all ranks

@@ -9,10 +9,11 @@
 
 namespace tyndall
 {
+class PieceBlocks;
 struct ReconstructedLight;
 }
 
-class vtkMultiProcessController;
+class vtkImageData;
 
 /**
  * @class vtkPhotonReconstruction
@@ -146,8 +147,7 @@ private:
   vtkPhotonReconstruction(const vtkPhotonReconstruction&) = delete;
   void operator=(const vtkPhotonReconstruction&) = delete;
 
-  bool ReconstructPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
+  void Reconstruct(const tyndall::PieceBlocks& pieces, vtkImageData* image, vtkImageData* output);
   void Note(const tyndall::ReconstructedLight& light, double squares, double ofErrors);
 
   int Scheme = CONSERVATIVE;

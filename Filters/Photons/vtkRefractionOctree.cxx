@@ -26,7 +26,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,21 +72,6 @@ Quantities Read(vtkRefractionOctree* filter, vtkImageData* image)
   read.medium.sigma_a = read.sigma_a;
   read.medium.sigma_s = read.sigma_s;
   return read;
-}
-
-tyndall::Octree Build(vtkRefractionOctree* filter, const tyndall::Domain& domain, const Quantities& read)
-{
-  return tyndall::BuildOctree(
-    domain, read.medium, read.index, SettingsOf(filter), filter->GetDevice(), tyndall::MonitorOf(filter));
-}
-
-/// Extends the levels of a rank's block to all voxels of its output, ghost cells included. Collective.
-std::vector<std::uint8_t> SpreadToHeld(
-  tyndall::Communicator& communicator, const tyndall::PieceBlocks& pieces, const std::vector<std::uint8_t>& levels)
-{
-  std::vector<float> values(levels.begin(), levels.end());
-  pieces.SpreadToHeld(communicator, values, 1);
-  return std::vector<std::uint8_t>(values.begin(), values.end());
 }
 
 /// Makes the trees whose roots begin in this rank's block. Collective. @return the number of nodes of all ranks
@@ -158,9 +142,8 @@ int vtkRefractionOctree::RequestUpdateExtent(
   return 1;
 }
 
-void vtkRefractionOctree::Write(vtkImageData* input, vtkInformationVector* outputs, tyndall::Octree&& octree)
+void vtkRefractionOctree::Write(vtkImageData* input, vtkImageData* output, tyndall::Octree&& octree)
 {
-  vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::NoteChoices(
     this, { { RefractiveIndex, "ior" }, { Absorption, "sigma_a" }, { Scattering, "sigma_s" } }, input, output);
   if (!octree.levels.empty())
@@ -174,41 +157,32 @@ void vtkRefractionOctree::Write(vtkImageData* input, vtkInformationVector* outpu
   this->LeftOut = tyndall::Lines(octree.leftOut);
 }
 
-/// Each rank computes the levels of its piece. Collective.
-/// @return false, on all ranks, if each rank is to work on the whole image
-bool vtkRefractionOctree::BuildPiece(vtkInformation* request, vtkMultiProcessController* ranks,
-  vtkInformationVector** inputs, vtkInformationVector* outputs)
+/// Computes the levels and trees of this rank's block. Collective.
+void vtkRefractionOctree::Build(const tyndall::PieceBlocks& pieces, vtkImageData* image, vtkInformationVector* outputs)
 {
-  vtkImageData* const image = vtkImageData::GetData(inputs[0]);
-  vtkInformation* const asking = tyndall::AskingPort(request, outputs);
-  const std::optional<tyndall::AgreedBlocks> agreed =
-    tyndall::AgreeOnBlocks(ranks, this, tyndall::EachAsksForItsPiece(request, outputs), asking, image);
-  if (!agreed)
-  {
-    return false;
-  }
-  tyndall::Communicator& communicator = *agreed->communicator;
-  const tyndall::PieceBlocks& pieces = *agreed->pieces;
+  const tyndall::Domain& domain = pieces.GetDomain();
   vtkSmartPointer<vtkImageData> own;
   Quantities read;
-  communicator.Collective([&] {
-    own = pieces.HasOwn() ? pieces.OwnImage(image) : nullptr;
-    if (own)
+  domain.Collective([&] {
+    own = pieces.OwnImage(image);
+    if (own || domain.IsSerial())
     {
       read = Read(this, own);
     }
   });
-  const tyndall::Domain domain(communicator, pieces.Partition());
-  tyndall::Octree octree = Build(this, domain, read);
-  vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
-  this->NodeCount = FillWithTrees(domain, octree, nodes);
-  octree.levels = SpreadToHeld(communicator, pieces, octree.levels);
-  tyndall::TellExtent(asking, outputs->GetInformationObject(1), nodes->GetExtent());
+  tyndall::Octree octree =
+    tyndall::BuildOctree(domain, read.medium, read.index, SettingsOf(this), this->Device, tyndall::MonitorOf(this));
+  this->NodeCount = FillWithTrees(domain, octree, vtkHyperTreeGrid::GetData(outputs, 1));
+  if (pieces.IsDecomposed())
+  {
+    std::vector<float> levels(octree.levels.begin(), octree.levels.end());
+    pieces.SpreadToHeld(levels, 1);
+    octree.levels.assign(levels.begin(), levels.end());
+  }
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   tyndall::PassOn(image, output);
   pieces.KeepHeld(output);
-  this->Write(image, outputs, std::move(octree));
-  return true;
+  this->Write(image, output, std::move(octree));
 }
 
 int vtkRefractionOctree::RequestData(
@@ -218,25 +192,25 @@ int vtkRefractionOctree::RequestData(
   this->Seconds = 0.0;
   this->DeviceName.clear();
   this->LeftOut.clear();
-  const tyndall::WorkOnPieces onPieces = { 0, [&](vtkMultiProcessController* ranks, vtkInformationVector** inputs) {
-                                            return this->BuildPiece(request, ranks, inputs, outputs);
-                                          } };
-  return tyndall::Guarded(this, request, given, outputs, onPieces, [&](vtkInformationVector** inputs) {
-    vtkImageData* image = vtkImageData::GetData(inputs[0]);
-    const tyndall::Domain domain(tyndall::GridOf(image));
-    tyndall::Octree octree = Build(this, domain, Read(this, image));
-
-    vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
-    if (tyndall::IsFirstPiece(request, outputs))
+  vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
+  const bool isAlone = !tyndall::RanksTogether(request, outputs);
+  tyndall::WorkOnSubdomains work;
+  work.wantsPieces = [&](vtkInformationVector**) { return tyndall::EachAsksForItsPiece(request, outputs); };
+  work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
+    this->Build(pieces, vtkImageData::GetData(inputs[0]), outputs);
+    if (isAlone && !tyndall::IsFirstPiece(request, outputs)) // that has all trees
     {
-      this->NodeCount = FillWithTrees(domain, octree, nodes);
+      nodes->Initialize();
+      this->NodeCount = 0;
     }
+    return true;
+  };
+  const int done = tyndall::Guarded(this, request, given, outputs, work);
+  if (!tyndall::AreEmptied(outputs))
+  {
     tyndall::TellExtent(tyndall::AskingPort(request, outputs), outputs->GetInformationObject(1), nodes->GetExtent());
-    vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(image, output);
-    this->Write(image, outputs, std::move(octree));
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
-  });
+  }
+  return done;
 }
 
 void vtkRefractionOctree::PrintSelf(ostream& os, vtkIndent indent)

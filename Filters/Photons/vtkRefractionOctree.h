@@ -9,11 +9,11 @@
 
 namespace tyndall
 {
+class PieceBlocks;
 struct Octree;
 }
 
 class vtkImageData;
-class vtkMultiProcessController;
 
 /**
  * @class vtkRefractionOctree
@@ -41,8 +41,8 @@ class vtkMultiProcessController;
  *
  * In a parallel pipeline every rank works on its piece, and ranks exchange data on nodes that span several pieces: the
  * levels are those of a serial run. Each rank's output 1 has the trees that begin in its piece. If the pieces do not
- * tile one grid, each rank works on the whole image and returns the requested piece of output 0; output 1 is then on
- * the first rank.
+ * tile one grid, the first rank works on the whole image and sends each rank the requested piece of output 0; output 1
+ * is then on the first rank.
  *
  * Cells that `vtkGhostType` marks as hidden are empty.
  *
@@ -114,9 +114,8 @@ private:
   vtkRefractionOctree(const vtkRefractionOctree&) = delete;
   void operator=(const vtkRefractionOctree&) = delete;
 
-  bool BuildPiece(vtkInformation* request, vtkMultiProcessController* ranks, vtkInformationVector** inputs,
-    vtkInformationVector* outputs);
-  void Write(vtkImageData* input, vtkInformationVector* outputs, tyndall::Octree&& octree);
+  void Build(const tyndall::PieceBlocks& pieces, vtkImageData* image, vtkInformationVector* outputs);
+  void Write(vtkImageData* input, vtkImageData* output, tyndall::Octree&& octree);
 
   int PointData = VOXELS_AROUND_POINTS;
   double Tolerance;

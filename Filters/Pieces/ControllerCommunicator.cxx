@@ -176,8 +176,8 @@ namespace
 constexpr int Conversations = 64, Works = 16; ///< numbers before tags are reused; tags of frames follow those of work
 int Work = 0, Conversation = 0, Frame = 0;
 
-std::unique_ptr<Communicator> Make(
-  vtkMultiProcessController* ranks, [[maybe_unused]] std::function<bool()> stopped, [[maybe_unused]] int conversation)
+std::unique_ptr<Communicator> Make(vtkMultiProcessController* ranks, [[maybe_unused]] std::function<bool()> stopped,
+  [[maybe_unused]] int conversation, [[maybe_unused]] double patience = SecondsToWait())
 {
   if (!ranks)
   {
@@ -186,7 +186,7 @@ std::unique_ptr<Communicator> Make(
 #ifdef TYNDALL_HAS_MPI
   if (auto* const mpi = vtkMPIController::SafeDownCast(ranks))
   {
-    return std::make_unique<ControllerCommunicator>(mpi, SecondsToWait(), std::move(stopped), conversation);
+    return std::make_unique<ControllerCommunicator>(mpi, patience, std::move(stopped), conversation);
   }
 #endif
   throw InvalidInput("Ranks that work together have to speak to each other by MPI, and VTK's controller does not.");
@@ -199,10 +199,11 @@ void BeginConversations()
   Conversation = 0;
 }
 
-std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped)
+std::unique_ptr<Communicator> CommunicatorOf(
+  vtkMultiProcessController* ranks, std::function<bool()> stopped, double patience)
 {
   Conversation = Conversation % (Conversations - 1) + 1;
-  return Make(ranks, std::move(stopped), Work * Conversations + Conversation);
+  return Make(ranks, std::move(stopped), Work * Conversations + Conversation, patience);
 }
 
 std::unique_ptr<Communicator> CommunicatorOfFrame(vtkMultiProcessController* ranks)

@@ -32,7 +32,9 @@ void BeginConversations();
 /// @param ranks    must outlive the communicator; null: this process is alone
 /// @param stopped  returns whether to stop waiting for other ranks; a pending receive then throws Aborted one second
 ///   later
-std::unique_ptr<Communicator> CommunicatorOf(vtkMultiProcessController* ranks, std::function<bool()> stopped = {});
+/// @param patience  timeout for waiting on another rank, seconds
+std::unique_ptr<Communicator> CommunicatorOf(
+  vtkMultiProcessController* ranks, std::function<bool()> stopped = {}, double patience = SecondsToWait());
 
 /// The same for ranks that render a frame together, outside WorkOnAllRanks. It uses a separate range of tags.
 std::unique_ptr<Communicator> CommunicatorOfFrame(vtkMultiProcessController* ranks);

@@ -1,5 +1,6 @@
 #include "Pieces/GatheredImage.h"
 
+#include "Common/Failure.h"
 #include "Common/InputsKey.h"
 #include "Common/PhaseFunctionData.h"
 #include "Device/Errors.h"
@@ -565,6 +566,7 @@ vtkSmartPointer<vtkDataArray> GatheredImage::Array(Kind kind, int index)
   vtkSmartPointer<vtkDataArray> whole;
   std::vector<char> buffer;
   vtkIdType size = 0;
+  Ending overlap;
   OnAllRanks(this->Controller, [&] {
     const Piece& first = this->Pieces[static_cast<std::size_t>(this->FirstWithCells())];
     const ArrayKind& array = first.Arrays[kind][static_cast<std::size_t>(index)];
@@ -592,26 +594,27 @@ vtkSmartPointer<vtkDataArray> GatheredImage::Array(Kind kind, int index)
       this->Layouts[kind]->Paste(
         rank, buffer.data(), static_cast<std::size_t>(size), static_cast<char*>(whole->GetVoidPointer(0)));
     }
+    if (this->IsFirstRank() && overlap.kind == Ending::Done)
+    {
+      overlap = EndingOf([&] { this->CheckOverlap(kind, rank, buffer.data(), whole); });
+    }
   }
-  if (this->Where == On::EveryRank)
-  {
-    OnAllRanks(this->Controller, [&] { this->CheckOverlap(kind, own, whole); });
-  }
+  OnAllRanks(this->Controller, [&] { Throw(overlap); });
   return this->IsHere() ? whole : nullptr;
 }
 
-/// @throws InvalidInput if this rank's piece owns a value that differs from the value in the gathered array
-void GatheredImage::CheckOverlap(Kind kind, vtkDataArray* own, vtkDataArray* whole) const
+/// @param values  the piece's array on `rank`; pieces of lower ranks are already in `whole`
+/// @throws InvalidInput if that piece owns a value that differs from the value in the gathered array
+void GatheredImage::CheckOverlap(Kind kind, int rank, const char* values, vtkDataArray* whole) const
 {
-  if (own == nullptr)
-  {
-    return;
-  }
-  this->Layouts[kind]->ForOverlap(this->Rank, [&](std::size_t value, std::size_t at) {
+  const auto own = vtkSmartPointer<vtkDataArray>::Take(whole->NewInstance());
+  own->SetNumberOfComponents(whole->GetNumberOfComponents());
+  own->SetVoidArray(const_cast<char*>(values), this->CountOf(kind, rank) * whole->GetNumberOfComponents(), 1);
+  this->Layouts[kind]->ForOverlap(rank, [&](std::size_t value, std::size_t at) {
     if (!SameValue(own, static_cast<vtkIdType>(value), whole, static_cast<vtkIdType>(at)))
     {
       throw InvalidInput(this->Refusal + ": where its pieces on " +
-        RanksInWords(this->Layouts[kind]->OwnerOf(at), this->Rank) + " overlap, " + KindNames[kind] + " array \"" +
+        RanksInWords(this->Layouts[kind]->OwnerOf(at), rank) + " overlap, " + KindNames[kind] + " array \"" +
         whole->GetName() +
         "\" has different values. Mark cells that another rank has, too, as duplicates "
         "(vtkGhostType), or give each rank cells of its own.");

@@ -113,7 +113,7 @@ private:
   vtkIdType CountOf(Kind kind, int rank) const;
   void Bring(const char* own, char* values, vtkIdType bytes, int from) const;
   vtkSmartPointer<vtkDataArray> Array(Kind kind, int index);
-  void CheckOverlap(Kind kind, vtkDataArray* own, vtkDataArray* whole) const;
+  void CheckOverlap(Kind kind, int rank, const char* values, vtkDataArray* whole) const;
 
   vtkMultiProcessController* Controller;
   On Where;

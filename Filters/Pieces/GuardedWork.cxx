@@ -7,6 +7,8 @@
 #include "Common/LightTransportWriting.h"
 #include "Device/CompilationListener.h"
 #include "Device/Device.h"
+#include "Pieces/ControllerCommunicator.h"
+#include "Pieces/GatheredImage.h"
 #include "Pieces/PieceBlocks.h"
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"
@@ -20,10 +22,13 @@
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationUnsignedLongKey.h"
 #include "vtkInformationVector.h"
+#include "vtkMatrix3x3.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkTimeStamp.h"
 #include "vtkVersionMacros.h"
 
@@ -306,17 +311,18 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
   });
 }
 
-int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
-  const std::function<void(vtkInformationVector** inputs)>& work)
+namespace
 {
-  return GuardedInPieces(filter, request, given, outputs, WholeInputs::NoPort,
-    [&](vtkMultiProcessController*, WholeInputs& inputs) { work(inputs.Vectors()); });
-}
+/// Inputs of a filter that stay in pieces.
+struct PortsInPieces
+{
+  int image = WholeInputs::NoPort, shares = WholeInputs::NoPort;
+  std::vector<int> others = {};
+};
 
-int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
-  vtkInformationVector* outputs, int port,
-  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work, int shares,
-  const std::vector<int>& others)
+int GuardedWithInputs(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
+  vtkInformationVector* outputs, const PortsInPieces& ports,
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work)
 {
   vtkMultiProcessController* const ranks = RanksTogether(request, outputs);
   return GuardedOn(ranks, filter, outputs, [&] {
@@ -329,53 +335,188 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
         CheckDuplicates(filter, outputs);
       }
     });
-    WholeInputs inputs(ranks, filter, given, outputs, port, shares, others);
+    WholeInputs inputs(ranks, filter, given, outputs, ports.image, ports.shares, ports.others);
     work(ranks, inputs);
-    TellAveraged(filter, outputs);
-    inputs.PutIntoScene(outputs);
   });
 }
 
-int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
-  const WorkOnPieces& onPieces, const std::function<void(vtkInformationVector** inputs)>& work)
+/// Completes the outputs of this rank: names of averaged arrays, and the axes of the scene.
+void Complete(vtkAlgorithm* filter, WholeInputs& inputs, vtkInformationVector* outputs)
 {
-  return GuardedInPieces(
-    filter, request, given, outputs, onPieces.port,
-    [&](vtkMultiProcessController* ranks, WholeInputs& inputs) {
-      if (!onPieces.work(ranks, inputs.Vectors()))
+  TellAveraged(filter, outputs);
+  inputs.PutIntoScene(outputs);
+}
+}
+
+int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
+  const std::function<void(vtkInformationVector** inputs)>& work)
+{
+  return GuardedInPieces(filter, request, given, outputs, WholeInputs::NoPort,
+    [&](vtkMultiProcessController*, WholeInputs& inputs) { work(inputs.Vectors()); });
+}
+
+int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
+  vtkInformationVector* outputs, int port,
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work)
+{
+  return GuardedWithInputs(
+    filter, request, given, outputs, { port }, [&](vtkMultiProcessController* ranks, WholeInputs& inputs) {
+      work(ranks, inputs);
+      Complete(filter, inputs, outputs);
+    });
+}
+
+namespace
+{
+constexpr int PartTag = 745205; ///< of messages with parts of outputs
+
+/// Crops the complete output of a port to what this rank is asked for.
+/// @param image  the extent of the complete output
+void KeepPart(const WorkOnSubdomains& work, vtkInformation* asking, vtkInformationVector* outputs, int port,
+  const std::array<int, 6>& image)
+{
+  vtkInformation* const information = outputs->GetInformationObject(port);
+  vtkImageData* const output = vtkImageData::GetData(outputs, port);
+  if (work.tellsExtents || port > 0)
+  {
+    TellExtentAndKeepWhatIsAskedFor(asking, information, output, image);
+  }
+  else
+  {
+    KeepWhatIsAskedFor(information, output, image);
+  }
+}
+
+void KeepParts(const WorkOnSubdomains& work, vtkInformation* asking, vtkInformationVector* outputs)
+{
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkImageData* const output = vtkImageData::GetData(outputs, port);
+    if (output && (output->GetNumberOfCells() > 0 || (port == 0 && !work.tellsExtents)))
+    {
+      std::array<int, 6> image;
+      output->GetExtent(image.data());
+      KeepPart(work, asking, outputs, port, image);
+    }
+  }
+}
+
+/// Gives each rank its part of an image that the first rank made. Collective.
+void DistributeImage(vtkMultiProcessController* ranks, const WorkOnSubdomains& work, vtkInformation* asking,
+  vtkInformationVector* outputs, int port)
+{
+  using Extent = std::array<int, 6>;
+  vtkImageData* const output = vtkImageData::GetData(outputs, port);
+  const bool isFirst = ranks->GetLocalProcessId() == 0;
+  Extent whole;
+  std::array<double, 9> direction;
+  output->GetExtent(whole.data());
+  std::copy_n(output->GetDirectionMatrix()->GetData(), 9, direction.begin());
+  ranks->Broadcast(whole.data(), 6, 0);
+  ranks->Broadcast(direction.data(), 9, 0);
+  const auto isEmpty = [](const int* extent) {
+    return extent[0] > extent[1] || extent[2] > extent[3] || extent[4] > extent[5];
+  };
+  if (isEmpty(whole.data()))
+  {
+    return;
+  }
+  vtkInformation* const information = outputs->GetInformationObject(port);
+  if (work.tellsExtents || port > 0)
+  {
+    TellExtent(asking, information, whole.data());
+    NotePartsOfRanks(information, {}, 0);
+  }
+  const Extent own = ExtentAskedFor(information, whole);
+  std::vector<int> asked(6 * static_cast<std::size_t>(ranks->GetNumberOfProcesses()));
+  ranks->AllGather(own.data(), asked.data(), 6);
+  for (int rank = 1; rank < ranks->GetNumberOfProcesses(); ++rank)
+  {
+    int* const extent = asked.data() + 6 * rank;
+    if (isEmpty(extent))
+    {
+      continue;
+    }
+    vtkNew<vtkImageData> part;
+    OnAllRanks(ranks, [&] {
+      if (isFirst)
       {
-        inputs.MakeWhole();
-        work(inputs.Vectors());
+        part->ShallowCopy(output);
+        part->Crop(extent);
       }
-      else if (!ranks)
-      {
-        KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
-      }
-    },
-    onPieces.shares, onPieces.others);
+    });
+    if (isFirst)
+    {
+      ranks->Send(part, rank, PartTag);
+    }
+    else if (ranks->GetLocalProcessId() == rank)
+    {
+      ranks->Receive(part, 0, PartTag);
+      part->SetDirectionMatrix(direction.data()); // VTK does not send it
+      output->ShallowCopy(part);
+    }
+  }
+  KeepPart(work, asking, outputs, port, whole);
+}
+
+/// Works on the first rank, which gathers the inputs, and distributes the outputs. Collective.
+void WorkOnFirstRank(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformation* asking,
+  vtkInformationVector* outputs, const WorkOnSubdomains& work, WholeInputs& inputs)
+{
+  const bool isFirst = !ranks || ranks->GetLocalProcessId() == 0;
+  inputs.MakeWhole(GatheredImage::On::FirstRank);
+  OnFirstRank(ranks, [&] {
+    work.work(PieceBlocks(vtkImageData::GetData(inputs.Vectors()[work.port])), inputs.Vectors());
+    Complete(filter, inputs, outputs);
+  });
+  if (!ranks)
+  {
+    KeepParts(work, asking, outputs);
+    return;
+  }
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkDataObject* const output = vtkDataObject::GetData(outputs, port);
+    if (vtkImageData::SafeDownCast(output))
+    {
+      DistributeImage(ranks, work, asking, outputs, port);
+    }
+    else if (port > 0 && output->IsA("vtkTable"))
+    {
+      ranks->Broadcast(output, 0);
+    }
+    vtkDataObject* const input = vtkDataObject::GetData(inputs.Vectors()[work.port]);
+    if (!isFirst && input)
+    {
+      output->GetInformation()->CopyEntry(input->GetInformation(), vtkDataObject::DATA_TIME_STEP());
+    }
+  }
+}
 }
 
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const WorkOnSubdomains& work)
 {
-  return GuardedInPieces(
-    filter, request, given, outputs, work.port,
-    [&](vtkMultiProcessController* ranks, WholeInputs& inputs) {
-      const auto image = [&] { return vtkImageData::GetData(inputs.Vectors()[work.port]); };
-      const std::optional<AgreedBlocks> agreed =
-        AgreeOnBlocks(ranks, filter, work.wantsPieces(inputs.Vectors()), AskingPort(request, outputs), image());
-      const bool decomposed = agreed && work.work(*agreed->pieces, inputs.Vectors());
-      if (!decomposed)
-      {
-        inputs.MakeWhole();
-        work.work(PieceBlocks(image()), inputs.Vectors());
-      }
-      if (!decomposed || !ranks)
-      {
-        KeepWhatIsAskedFor(outputs->GetInformationObject(0), vtkImageData::GetData(outputs, 0));
-      }
-    },
-    work.shares, work.others);
+  const auto run = [&](vtkMultiProcessController* ranks, WholeInputs& inputs) {
+    vtkInformation* const asking = AskingPort(request, outputs);
+    std::optional<AgreedBlocks> agreed;
+    if (ranks)
+    {
+      const bool wants = work.wantsPieces && work.wantsPieces(inputs.Vectors());
+      agreed = AgreeOnBlocks(ranks, filter, wants, asking, vtkImageData::GetData(inputs.Vectors()[work.port]));
+    }
+    if (!agreed || !work.work(*agreed->pieces, inputs.Vectors()))
+    {
+      WorkOnFirstRank(ranks, filter, asking, outputs, work, inputs);
+      return;
+    }
+    Complete(filter, inputs, outputs);
+    if (work.tellsExtents)
+    {
+      KeepParts(work, asking, outputs);
+    }
+  };
+  return GuardedWithInputs(filter, request, given, outputs, { work.port, work.shares, work.others }, run);
 }
 
 bool AreEmptied(vtkInformationVector* outputs)

@@ -38,18 +38,24 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const std::function<void(vtkInformationVector** inputs)>& work);
 
-/// Work on a decomposed domain. One function serves both cases: each rank has a piece of the image, or one rank has all
-/// of it.
+/// Work on an image that may lie in pieces on several ranks. One function serves every number of ranks.
+///
+/// If a rank wants pieces, and the pieces make up one grid, each rank works on its subdomain. Else the first rank works
+/// on the complete inputs, gathered there, and the outputs are distributed: each rank gets the part of each image that
+/// it is asked for, with its field data, and the tables at ports above 0; other data stay on the first rank. Members of
+/// the filter that report results are then set on the first rank only.
 struct WorkOnSubdomains
 {
   int port = 0;                 ///< port of the image that is decomposed; inputs at other ports are gathered
   int shares = -1;              ///< port of points that stay distributed among ranks; -1: none
   std::vector<int> others = {}; ///< further ports that stay in pieces
-  /// Whether this rank would work on its piece. One such rank suffices.
+  /// Whether this rank would work on its piece. One such rank suffices. Null: none would.
   std::function<bool(vtkInformationVector** inputs)> wantsPieces;
   /// Does the work. Collective if the domain is decomposed; it may then return false, on all ranks, to be called again
-  /// with the complete inputs on each rank. Output 0 is cropped to the requested extent unless several ranks made it.
+  /// on the first rank. Output 0 is cropped to the requested extent unless several ranks made it.
   std::function<bool(const PieceBlocks& pieces, vtkInformationVector** inputs)> work;
+  /// Whether the extents of the output images become known by the work only; each rank then makes them complete.
+  bool tellsExtents = false;
 };
 int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
   const WorkOnSubdomains& work);
@@ -58,26 +64,9 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 /// @param port  port of that input
 /// @param work  called with the controller (null: one rank) and the inputs, that of `port` still in pieces; it may call
 ///   WholeInputs::MakeWhole
-/// @param shares, others  as in WorkOnSubdomains
 int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, int port,
-  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work, int shares = -1,
-  const std::vector<int>& others = {});
-
-/// Work on each rank's piece of an input, such that no rank needs all of it.
-struct WorkOnPieces
-{
-  int port = 0; ///< port of the input that stays in pieces; inputs at other ports are gathered
-  /// Called first. Collective; returns the same value on all ranks: false if it did nothing.
-  /// @param ranks  null: this process is alone, and output 0 is cropped to the requested extent
-  std::function<bool(vtkMultiProcessController* ranks, vtkInformationVector** inputs)> work;
-  int shares = -1;              ///< as in WorkOnSubdomains
-  std::vector<int> others = {}; ///< as in WorkOnSubdomains
-};
-
-/// The same with WorkOnPieces. If onPieces.work returns false, `work` is called with the complete inputs.
-int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs,
-  const WorkOnPieces& onPieces, const std::function<void(vtkInformationVector** inputs)>& work);
+  const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work);
 
 /// After Guarded: whether the outputs are empty because the filter failed or was aborted.
 bool AreEmptied(vtkInformationVector* outputs);

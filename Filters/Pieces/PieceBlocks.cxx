@@ -176,7 +176,6 @@ PieceBlocks::PieceBlocks(vtkImageData* whole)
 }
 
 PieceBlocks::PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given)
-  : Decomposed(true)
 {
   const int rank = communicator.Rank(), ranks = communicator.Ranks();
   const std::vector<double> said = communicator.Sum(WordsOf(PieceOf(asked, given, rank, ranks), rank, ranks));
@@ -240,9 +239,13 @@ bool PieceBlocks::HasOwnOf(vtkImageData* image) const
 
 vtkSmartPointer<vtkImageData> PieceBlocks::OwnImage(vtkImageData* given) const
 {
-  if (!this->Decomposed || given->GetNumberOfCells() == static_cast<vtkIdType>(this->Own().VoxelCount()))
+  if (!this->IsDecomposed())
   {
     return given;
+  }
+  if (!this->HasOwn() || given->GetNumberOfCells() == static_cast<vtkIdType>(this->Own().VoxelCount()))
+  {
+    return this->HasOwn() ? given : nullptr;
   }
   const auto own = vtkSmartPointer<vtkImageData>::New();
   own->ShallowCopy(given);
@@ -267,8 +270,9 @@ void PieceBlocks::KeepHeld(vtkImageData* output) const
   }
 }
 
-void PieceBlocks::SpreadToHeld(Communicator& communicator, std::vector<float>& values, int components) const
+void PieceBlocks::SpreadToHeld(std::vector<float>& values, int components) const
 {
+  Communicator& communicator = this->OfRanks->Comm();
   const auto voxels = [](const std::vector<VoxelBox>& boxes) {
     return std::accumulate(boxes.begin(), boxes.end(), std::size_t{ 0 },
       [](std::size_t sum, const VoxelBox& box) { return sum + box.VoxelCount(); });
@@ -283,10 +287,6 @@ void PieceBlocks::SpreadToHeld(Communicator& communicator, std::vector<float>& v
 std::optional<AgreedBlocks> AgreeOnBlocks(
   vtkMultiProcessController* ranks, vtkAlgorithm* filter, bool wanted, vtkInformation* asked, vtkImageData* given)
 {
-  if (!ranks && !wanted)
-  {
-    return {};
-  }
   AgreedBlocks agreed;
   agreed.communicator = CommunicatorOf(ranks, [filter] { return IsStoppedByOthers(filter); });
   if (!OnAnyRank(*agreed.communicator, wanted))
@@ -300,21 +300,6 @@ std::optional<AgreedBlocks> AgreeOnBlocks(
 namespace
 {
 constexpr double FewVoxels = 64.0 * 64.0 * 64.0;
-
-/// Number of MPI processes on this machine according to the launcher's environment variables; otherwise the number of
-/// processes of VTK's global controller.
-int RanksOnThisMachine()
-{
-  for (const char* said : { "OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "PMI_LOCAL_SIZE" }) // Open MPI, MPICH, PMI
-  {
-    if (const char* const text = std::getenv(said); text && std::atoi(text) > 0)
-    {
-      return std::atoi(text);
-    }
-  }
-  vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
-  return all ? all->GetNumberOfProcesses() : 1;
-}
 
 /// Number of voxels that the source announces.
 double VoxelsOf(vtkInformationVector* image)
@@ -341,10 +326,8 @@ bool IsWorthPieces(vtkInformationVector* image)
   return voxels == 0.0 || voxels > (said ? NumberIn(said).value_or(0.0) : FewVoxels);
 }
 
-bool NeedsPieces(
-  vtkInformation* request, vtkInformationVector* image, vtkInformationVector* outputs, double bytesOfVoxel)
+bool NeedsPieces(vtkInformationVector* image, double bytesOfVoxel)
 {
-  const double bytes = bytesOfVoxel * VoxelsOf(image);
-  return EachAsksForItsPiece(request, outputs) && RanksOnThisMachine() * bytes > AvailableMemory();
+  return bytesOfVoxel * VoxelsOf(image) > AvailableMemory();
 }
 }

@@ -38,8 +38,8 @@ public:
   /// Whether the subdomains lie on one grid and contain each of its voxels exactly once. The same on all ranks; if
   /// false, no other member may be called.
   bool MakeUpTheWhole() const { return this->Tiled; }
-  /// Whether the domain is decomposed into pieces; otherwise it is serial.
-  bool IsDecomposed() const { return this->Decomposed; }
+  /// Whether the domain is decomposed into pieces of several ranks; otherwise it is serial.
+  bool IsDecomposed() const { return !this->OfRanks->IsSerial(); }
 
   const Domain& GetDomain() const { return *this->OfRanks; }
   const BlockPartition& Partition() const { return this->OfRanks->Partition(); }
@@ -52,8 +52,8 @@ public:
   /// Whether an image contains this rank's subdomain.
   bool HasOwnOf(vtkImageData* image) const;
 
-  /// The part of an image that is this rank's subdomain, with its arrays. Returns the image itself if it is the
-  /// subdomain, or if the domain is not decomposed. Only for ranks that have voxels.
+  /// The part of an image that is this rank's subdomain, with its arrays: the image itself if it is the subdomain, or
+  /// if the domain is not decomposed; null if the subdomain has no voxels.
   vtkSmartPointer<vtkImageData> OwnImage(vtkImageData* given) const;
 
   /// Selects the values of the subdomain's voxels from the values of all voxels of an image.
@@ -65,7 +65,7 @@ public:
   /// Extends values of the voxels Own() to the voxels Held(): ghost values come from the ranks that own these cells.
   /// Values stay empty if they are empty on all ranks. Collective.
   /// @param components  values per voxel, the same on all ranks
-  void SpreadToHeld(Communicator& communicator, std::vector<float>& values, int components) const;
+  void SpreadToHeld(std::vector<float>& values, int components) const;
 
 private:
   std::array<int, 6> ExtentOf(const VoxelBox& box) const;
@@ -73,7 +73,7 @@ private:
   std::shared_ptr<Domain> OfRanks;
   std::vector<VoxelBox> OfOutputs; ///< by rank
   std::array<int, 3> Base = {};    ///< index of the grid's first voxel in terms of VTK extents
-  bool Tiled = false, GivenAll = false, Decomposed = false;
+  bool Tiled = false, GivenAll = false;
 };
 
 /// Subdomains on which all ranks have agreed to work.
@@ -84,7 +84,6 @@ struct AgreedBlocks
 };
 
 /// Decides whether to work on subdomains. Collective.
-/// @param ranks   null: this process is alone
 /// @param wanted  whether this rank would work on its piece; one such rank suffices
 /// @return nothing, on all ranks, if no rank wants to, or if the pieces do not make up one grid
 std::optional<AgreedBlocks> AgreeOnBlocks(
@@ -95,10 +94,8 @@ std::optional<AgreedBlocks> AgreeOnBlocks(
 /// a rank whose source announces no voxels, which leaves the decision to the other ranks.
 bool IsWorthPieces(vtkInformationVector* image);
 
-/// In RequestUpdateExtent or RequestData: whether each rank requests its own piece, and one copy of the complete image
-/// for each rank of this machine does not fit its available memory (AvailableMemory.h). The result may differ between
-/// ranks.
+/// Whether the complete image does not fit the available memory of this machine (AvailableMemory.h). The result may
+/// differ between ranks.
 /// @param bytesOfVoxel  memory that a rank needs per voxel to work on the complete image
-bool NeedsPieces(
-  vtkInformation* request, vtkInformationVector* image, vtkInformationVector* outputs, double bytesOfVoxel);
+bool NeedsPieces(vtkInformationVector* image, double bytesOfVoxel);
 }

@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -226,6 +227,18 @@ void OnAllRanks(vtkMultiProcessController* controller, const std::function<void(
   const Ending own = EndingOf(act);
   const auto stopped = [controller] { return StopMessages(controller).Waits(); };
   EndTogether(*CommunicatorOf(IsOne(controller) ? nullptr : controller, stopped), own);
+}
+
+void OnFirstRank(vtkMultiProcessController* controller, const std::function<void()>& work)
+{
+  constexpr double endless = 1e8; // seconds
+  const bool isOne = IsOne(controller);
+  const auto stopped = [controller] { return StopMessages(controller).Waits(); };
+  Ending ending = isOne || controller->GetLocalProcessId() == 0 ? EndingOf(work) : Ending();
+  const std::unique_ptr<Communicator> communicator = CommunicatorOf(isOne ? nullptr : controller, stopped, endless);
+  ending.kind = static_cast<Ending::Kind>(std::lround(communicator->Largest({ 1.0 * ending.kind })[0]));
+  ending.why = WordsOfAny(*communicator, ending.why);
+  Throw(ending);
 }
 
 void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter, const std::function<void()>& work)

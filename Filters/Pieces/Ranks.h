@@ -38,6 +38,9 @@ bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs)
 /// @throws on every rank what `act` threw on any rank: InvalidInput with the same message, which names the rank unless
 ///   all ranks threw. An abort (Aborted) and a failure upstream (InputFailed) are not errors of this filter
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
+/// Runs long work on the first rank, for which the others wait. Collective.
+/// @throws on every rank what `work` threw, as Throw does (Common/Failure.h)
+void OnFirstRank(vtkMultiProcessController* controller, const std::function<void()>& work);
 
 /// The same for long work that can be stopped: if the work ends early on one rank, the filter's Monitor (MonitorOf)
 /// stops it on the other ranks. Calls may be nested.

@@ -456,8 +456,12 @@ void NoteExtentTold(vtkInformation* information)
 
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output)
 {
+  KeepWhatIsAskedFor(information, output, ExtentOf(output));
+}
+
+void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output, const Extent& image)
+{
   NoteExtentTold(information);
-  const Extent image = ExtentOf(output);
   const Part part = PartAskedFor(information, image);
   if (!part.divided && part.piece.own == image) // it may be larger than was announced
   {
@@ -485,10 +489,11 @@ void TellExtent(vtkInformation* asking, vtkInformation* information, const int e
   }
 }
 
-void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformation* information, vtkImageData* output)
+void TellExtentAndKeepWhatIsAskedFor(
+  vtkInformation* asking, vtkInformation* information, vtkImageData* output, const Extent& image)
 {
-  TellExtent(asking, information, output->GetExtent());
+  TellExtent(asking, information, image.data());
   NotePartsOfRanks(information, {}, 0);
-  KeepWhatIsAskedFor(information, output);
+  KeepWhatIsAskedFor(information, output, image);
 }
 }

@@ -155,6 +155,9 @@ std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<
 /// In RequestData: crops the output to the requested extent or piece. Ghost cells are flagged (vtkGhostType), so that
 /// sums over pieces count each cell once.
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);
+/// The same for an output of which this rank has only the requested part.
+/// @param image  extent of the complete output
+void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output, const std::array<int, 6>& image);
 
 /// In RequestData: announces the extent of an output that becomes known only when it is made. Otherwise the pipeline
 /// would run the filter again for the part of its guess that lies beyond this extent.
@@ -162,5 +165,6 @@ void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);
 void TellExtent(vtkInformation* asking, vtkInformation* information, const int extent[6]);
 
 /// The same for an image, which is then cropped to the requested piece.
-void TellExtentAndKeepWhatIsAskedFor(vtkInformation* asking, vtkInformation* information, vtkImageData* output);
+void TellExtentAndKeepWhatIsAskedFor(
+  vtkInformation* asking, vtkInformation* information, vtkImageData* output, const std::array<int, 6>& image);
 }

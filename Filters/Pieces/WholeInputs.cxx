@@ -4,7 +4,6 @@
 #include "Common/ImageInput.h"
 #include "Common/InputsKey.h"
 #include "Device/Errors.h"
-#include "Pieces/GatheredImage.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"
@@ -19,6 +18,7 @@
 #include "vtkInformationVector.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -177,9 +177,9 @@ void AddHidden(vtkDataSetAttributes* attributes, const std::vector<unsigned char
   }
 }
 
-/// Gathers an image on every rank.
-vtkSmartPointer<vtkDataObject> WholeImageOf(
-  vtkMultiProcessController* ranks, vtkImageData* piece, const OnRanks& summaries, const std::string& named)
+/// Gathers an image; where it is not gathered, the piece is returned.
+vtkSmartPointer<vtkDataObject> WholeImageOf(vtkMultiProcessController* ranks, vtkImageData* piece,
+  const OnRanks& summaries, const std::string& named, GatheredImage::On where)
 {
   const bool any = piece && piece->GetNumberOfCells() > 0;
   GatheredImage::Arrays cells, points;
@@ -188,9 +188,10 @@ vtkSmartPointer<vtkDataObject> WholeImageOf(
     cells = ArraysOf(piece->GetCellData(), piece->GetNumberOfCells());
     points = ArraysOf(piece->GetPointData(), piece->GetNumberOfPoints());
   }
-  GatheredImage gathered(ranks, piece, std::move(cells), std::move(points), GatheredImage::On::EveryRank,
+  GatheredImage gathered(ranks, piece, std::move(cells), std::move(points), where,
     named + " lies in pieces on several ranks, which make no whole");
-  vtkSmartPointer<vtkImageData> whole = gathered.Frame();
+  vtkNew<vtkImageData> unused;
+  vtkSmartPointer<vtkImageData> whole = gathered.Frame() ? gathered.Frame() : unused.Get();
   for (int i = 0; i < gathered.NumberOfCellArrays(); ++i)
   {
     whole->GetCellData()->AddArray(gathered.CellArray(i));
@@ -198,6 +199,10 @@ vtkSmartPointer<vtkDataObject> WholeImageOf(
   for (int i = 0; i < gathered.NumberOfPointArrays(); ++i)
   {
     whole->GetPointData()->AddArray(gathered.PointArray(i));
+  }
+  if (!gathered.Frame())
+  {
+    return piece;
   }
   AddHidden(whole->GetCellData(), gathered.HiddenCells());
   AddHidden(whole->GetPointData(), gathered.HiddenPoints());
@@ -249,7 +254,7 @@ void CheckExtent(const OnRanks& summaries, const std::string& named)
       (without.empty() ? ""
                        : " Of ranks " + without +
             " no piece came: a file has to be there for every rank, or where the filter has a Decomposition, set it to "
-            "whole on each rank."));
+            "whole on the first rank."));
 }
 
 /// Broadcasts data other than images from the one rank that has any.
@@ -306,8 +311,8 @@ vtkSmartPointer<vtkDataObject> AllShares(vtkMultiProcessController* ranks, vtkDa
   return together;
 }
 
-vtkSmartPointer<vtkDataObject> WholeOf(
-  vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries, const std::string& named)
+vtkSmartPointer<vtkDataObject> WholeOf(vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries,
+  const std::string& named, GatheredImage::On where)
 {
   const bool any =
     std::any_of(summaries.begin(), summaries.end(), [](const InputSummary& summary) { return summary.isThere; });
@@ -322,7 +327,7 @@ vtkSmartPointer<vtkDataObject> WholeOf(
     return FromOneRank(ranks, own, summaries, named);
   }
   CheckExtent(summaries, named);
-  return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), summaries, named);
+  return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), summaries, named, where);
 }
 
 /// Requires complete images if only one of several ranks updates: there are no ranks to gather the missing pieces from.
@@ -539,7 +544,7 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
     const bool also = std::find(alsoInPieces.begin(), alsoInPieces.end(), port) != alsoInPieces.end();
     if (port != inPieces && port != inShares && !also)
     {
-      this->MakeWhole(port);
+      this->MakeWhole(port, GatheredImage::On::EveryRank);
       continue;
     }
     for (int i = 0; i < this->AllSeen->all[0].connections[static_cast<std::size_t>(port)]; ++i)
@@ -689,7 +694,7 @@ void WholeInputs::Replace(vtkDataObject* data)
   this->Ports[port] = this->Kept[port];
 }
 
-void WholeInputs::MakeWhole()
+void WholeInputs::MakeWhole(GatheredImage::On where)
 {
   if (!this->AllSeen)
   {
@@ -697,25 +702,26 @@ void WholeInputs::MakeWhole()
   }
   if (this->AllSeen->inPieces != NoPort)
   {
-    this->MakeWhole(std::exchange(this->AllSeen->inPieces, NoPort));
+    this->MakeWhole(std::exchange(this->AllSeen->inPieces, NoPort), where);
   }
   if (this->AllSeen->inShares != NoPort)
   {
-    this->MakeWhole(this->AllSeen->inShares);
+    this->MakeWhole(this->AllSeen->inShares, where);
   }
   for (const int port : std::exchange(this->AllSeen->alsoInPieces, {}))
   {
-    this->MakeWhole(port);
+    this->MakeWhole(port, where);
   }
 }
 
-void WholeInputs::MakeWhole(int port)
+void WholeInputs::MakeWhole(int port, GatheredImage::On where)
 {
   const Seen& seen = *this->AllSeen;
   this->Change(port, [&](int connection, vtkDataObject* data) {
     const OnRanks summaries = SummariesOf(seen.all, port, connection);
-    vtkSmartPointer<vtkDataObject> whole = port == seen.inShares ? AllShares(seen.ranks, data, summaries)
-                                                                 : WholeOf(seen.ranks, data, summaries, Named(port));
+    vtkSmartPointer<vtkDataObject> whole = port == seen.inShares
+      ? AllShares(seen.ranks, data, summaries)
+      : WholeOf(seen.ranks, data, summaries, Named(port), where);
     const bool around =
       std::any_of(summaries.begin(), summaries.end(), [](const InputSummary& summary) { return summary.aroundPoints; });
     auto* const image = vtkImageData::SafeDownCast(whole);

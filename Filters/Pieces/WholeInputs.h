@@ -1,8 +1,8 @@
 #pragma once
 
 #include "Common/ImageInput.h"
+#include "Pieces/GatheredImage.h"
 
-#include "vtkNew.h"
 #include "vtkSmartPointer.h"
 
 #include <functional>
@@ -59,12 +59,13 @@ public:
   void Replace(vtkDataObject* data);
 
   /// Gathers the ports that have stayed in pieces. Collective.
+  /// @param where  ranks that get the complete data; on the others these ports keep their pieces
   /// @throws InvalidInput as the constructor does
-  void MakeWhole();
+  void MakeWhole(GatheredImage::On where = GatheredImage::On::EveryRank);
 
 private:
   struct Seen; ///< summaries of the inputs on all ranks
-  void MakeWhole(int port);
+  void MakeWhole(int port, GatheredImage::On where);
   using ToOther = std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>;
   void AlignGiven(vtkInformationVector** given);
   void AgreeOnAxes(vtkMultiProcessController* ranks);

@@ -18,12 +18,11 @@ struct SolverScene
 {
   /// Reads the medium; the caller adds the light sources later. Collective.
   /// @param given  the filter's input image, on this rank
-  /// @throws InvalidInput if ReadMedium throws on any rank: the same error on all ranks
+  /// @throws InvalidInput, the same on all ranks, if ReadMedium throws on any
   SolverScene(const PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given);
 
   const PieceBlocks& pieces;
   const Domain& domain;
-  bool decomposed; ///< whether the domain is divided into pieces; on one rank the domain is serial
 
   vtkSmartPointer<vtkImageData> image;      ///< owns the arrays that `medium` points to; null if the subdomain is empty
   vtkSmartPointer<vtkImageData> uncollided; ///< owns UncollidedLight's arrays; null if that is not read

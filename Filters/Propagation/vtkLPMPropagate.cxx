@@ -5,7 +5,6 @@
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
-#include "Pieces/UpdateExtent.h"
 #include "Propagation/LPMBuffers.h"
 
 #include "vtkFieldData.h"
@@ -101,56 +100,64 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
 {
   this->Order = 0;
   this->Bytes = 0.0;
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
-    vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
-    const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
-    const tyndall::FloatField unscattered = tyndall::ReadCells(image, "unscattered", tyndall::Need::Optional, {});
-    const tyndall::PropagationSettings settings = SettingsOf(this);
-    tyndall::Check(settings);
-    const bool refracts = tyndall::IsUnusual(this, tyndall::RefractiveIndex, image, "ior", 1.0f);
-    const std::vector<std::string> ignored = tyndall::IgnoredIndex(refracts);
-    const int channels = unscattered.IsThere() ? ChannelsOf(unscattered, settings.storedDirections) : 1;
+  tyndall::WorkOnSubdomains work;
+  work.port = MEDIUM;
+  work.work = [&](const tyndall::PieceBlocks&, vtkInformationVector** inputs) {
+    this->Propagate(inputs, vtkImageData::GetData(outputs, 0));
+    return true;
+  };
+  return tyndall::Guarded(this, request, given, outputs, work);
+}
 
-    tyndall::Illumination illumination = this->ReadIllumination(inputs);
-    tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
-    const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
-    tyndall::ParallelPropagation propagation(*device, input.medium, illumination, settings, 0, channels);
-    if (unscattered.IsThere())
-    {
-      if (propagation.Model().Channels() != channels)
-      {
-        throw tyndall::InvalidInput(
-          "Array 'unscattered' is grey, but the lights are coloured. Give LPMPropagate the same "
-          "lights in every order.");
-      }
-      const std::size_t values = input.medium.grid.VoxelCount() * static_cast<std::size_t>(unscattered.Components());
-      propagation.SetSource({ unscattered.Values(), unscattered.Values() + values });
-    }
-    std::array<std::vector<float>, 6> faces =
-      PropagateAll(propagation, input.medium.grid.VoxelCount(), tyndall::MonitorOf(this));
+/// Propagates one order through the complete medium.
+void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* output)
+{
+  vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);
+  const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
+  const tyndall::FloatField unscattered = tyndall::ReadCells(image, "unscattered", tyndall::Need::Optional, {});
+  const tyndall::PropagationSettings settings = SettingsOf(this);
+  tyndall::Check(settings);
+  const bool refracts = tyndall::IsUnusual(this, tyndall::RefractiveIndex, image, "ior", 1.0f);
+  const std::vector<std::string> ignored = tyndall::IgnoredIndex(refracts);
+  const int channels = unscattered.IsThere() ? ChannelsOf(unscattered, settings.storedDirections) : 1;
 
-    vtkImageData* output = vtkImageData::GetData(outputs, 0);
-    tyndall::PassOn(image, output);
-    for (int face = 0; face < 6; ++face)
+  tyndall::Illumination illumination = this->ReadIllumination(inputs);
+  tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
+  const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
+  tyndall::ParallelPropagation propagation(*device, input.medium, illumination, settings, 0, channels);
+  if (unscattered.IsThere())
+  {
+    if (propagation.Model().Channels() != channels)
     {
-      this->Bytes += faces[face].size() * sizeof(float);
-      tyndall::AddCells(output, tyndall::NamesOfT[face], std::move(faces[face]),
-        settings.directionsPerFace * propagation.Model().Channels());
+      throw tyndall::InvalidInput(
+        "Array 'unscattered' is grey, but the lights are coloured. Give LPMPropagate the same "
+        "lights in every order.");
     }
-    this->Order = unscattered.IsThere() ? static_cast<int>(tyndall::ReadFact(image, tyndall::OrderFact, 0.0)) + 1 : 0;
-    tyndall::AddFact(output, "directions", VectorsOf(propagation.Model().Directions()));
-    tyndall::AddFact(output, tyndall::MapResolutionFact, std::vector<double>{ 1.0 * settings.mapResolution });
-    tyndall::AddFact(output, tyndall::StoredDirectionsFact, std::vector<double>{ 1.0 * settings.storedDirections });
-    tyndall::AddFact(output, tyndall::OrderFact, std::vector<double>{ 1.0 * this->Order });
-    tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), image, output);
-    output->GetFieldData()->RemoveArray(tyndall::IgnoredFact);
-    if (refracts)
-    {
-      tyndall::AddFact(output, tyndall::IgnoredFact, ignored);
-      vtkWarningMacro(<< tyndall::WarningOf(ignored));
-    }
-    tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
-  });
+    const std::size_t values = input.medium.grid.VoxelCount() * static_cast<std::size_t>(unscattered.Components());
+    propagation.SetSource({ unscattered.Values(), unscattered.Values() + values });
+  }
+  std::array<std::vector<float>, 6> faces =
+    PropagateAll(propagation, input.medium.grid.VoxelCount(), tyndall::MonitorOf(this));
+
+  tyndall::PassOn(image, output);
+  for (int face = 0; face < 6; ++face)
+  {
+    this->Bytes += faces[face].size() * sizeof(float);
+    tyndall::AddCells(output, tyndall::NamesOfT[face], std::move(faces[face]),
+      settings.directionsPerFace * propagation.Model().Channels());
+  }
+  this->Order = unscattered.IsThere() ? static_cast<int>(tyndall::ReadFact(image, tyndall::OrderFact, 0.0)) + 1 : 0;
+  tyndall::AddFact(output, "directions", VectorsOf(propagation.Model().Directions()));
+  tyndall::AddFact(output, tyndall::MapResolutionFact, std::vector<double>{ 1.0 * settings.mapResolution });
+  tyndall::AddFact(output, tyndall::StoredDirectionsFact, std::vector<double>{ 1.0 * settings.storedDirections });
+  tyndall::AddFact(output, tyndall::OrderFact, std::vector<double>{ 1.0 * this->Order });
+  tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), image, output);
+  output->GetFieldData()->RemoveArray(tyndall::IgnoredFact);
+  if (refracts)
+  {
+    tyndall::AddFact(output, tyndall::IgnoredFact, ignored);
+    vtkWarningMacro(<< tyndall::WarningOf(ignored));
+  }
 }
 
 void vtkLPMPropagate::PrintSelf(ostream& os, vtkIndent indent)

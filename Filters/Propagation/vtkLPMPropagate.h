@@ -101,6 +101,8 @@ private:
   vtkLPMPropagate(const vtkLPMPropagate&) = delete;
   void operator=(const vtkLPMPropagate&) = delete;
 
+  void Propagate(vtkInformationVector** inputs, vtkImageData* output);
+
   std::string Device;
   int DirectionsPerFace;
   int MapResolution;

@@ -34,21 +34,11 @@ namespace tyndall
 SolverScene::SolverScene(const PieceBlocks& ofRanks, vtkAlgorithm* filter, vtkImageData* given)
   : pieces(ofRanks)
   , domain(ofRanks.GetDomain())
-  , decomposed(ofRanks.IsDecomposed())
 {
-  this->domain.Collective([&] {
-    if (!this->decomposed || this->pieces.HasOwn())
-    {
-      this->image = this->pieces.OwnImage(given);
-      this->input = ReadMedium(filter, this->image);
-    }
-  });
-  if (this->decomposed)
-  {
-    AgreeOnMeanCosine(this->domain.Comm(), this->pieces.HasOwn(), this->input.g, this->input.medium);
-  }
+  this->domain.Collective([&] { this->image = this->pieces.OwnImage(given); });
+  this->input = ReadMedium(filter, this->domain, this->image);
   this->medium = this->input.medium;
-  this->emits = this->domain.Any(this->pieces.HasOwn() && this->input.Emits());
+  this->emits = this->domain.Any(this->input.Emits());
 }
 }
 
@@ -57,10 +47,7 @@ namespace
 /// Extends a subdomain's solution to all voxels of the output, ghost cells included. Collective.
 void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light)
 {
-  tyndall::Communicator& communicator = pieces.GetDomain().Comm();
-  const auto spread = [&](std::vector<float>& values, int components) {
-    pieces.SpreadToHeld(communicator, values, components);
-  };
+  const auto spread = [&](std::vector<float>& values, int components) { pieces.SpreadToHeld(values, components); };
   const std::size_t voxels = std::max<std::size_t>(pieces.Own().VoxelCount(), 1);
   const int stored = std::max(static_cast<int>(light.storedDirections.size()), 1);
   spread(light.fluence, light.channels);
@@ -69,7 +56,7 @@ void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light
   spread(light.netFlux, 3 * light.channels);
   spread(light.scatteredRadiance, light.channels * stored);
   const std::vector<double> ofMoments =
-    communicator.Largest({ static_cast<double>(light.scatteredMoments.size() / voxels),
+    pieces.GetDomain().Max({ static_cast<double>(light.scatteredMoments.size() / voxels),
       static_cast<double>(light.straightOn.size() / voxels) }); // a rank without voxels does not know these numbers
   spread(light.scatteredMoments, static_cast<int>(ofMoments[0]));
   spread(light.straightOn, static_cast<int>(ofMoments[1]));
@@ -78,9 +65,9 @@ void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light
 tyndall::LitColor ColorOf(
   const tyndall::SolverScene& scene, const tyndall::FloatField& fluence, const tyndall::ToneMapping& tones)
 {
-  return scene.decomposed
-    ? tyndall::ColorLitMediumInBlocks(scene.domain.Comm(), scene.domain.Partition(), scene.medium, fluence, tones)
-    : tyndall::ColorLitMedium(scene.medium, fluence, tones);
+  return scene.domain.IsSerial()
+    ? tyndall::ColorLitMedium(scene.medium, fluence, tones)
+    : tyndall::ColorLitMediumInBlocks(scene.domain.Comm(), scene.domain.Partition(), scene.medium, fluence, tones);
 }
 }
 
@@ -164,6 +151,7 @@ int vtkScatteringSolver::RequestData(
   this->OverRanks = ranks != nullptr;
   this->IsFirstRank = !ranks || ranks->GetLocalProcessId() == 0;
   this->WholeFor.clear();
+  this->HasSolved = false;
   const bool chooses = this->Decomposition == AUTOMATIC_DECOMPOSITION && tyndall::EachAsksForItsPiece(request, outputs);
   tyndall::WorkOnSubdomains work;
   work.port = MEDIUM;
@@ -181,6 +169,12 @@ int vtkScatteringSolver::RequestData(
   if (tyndall::AreEmptied(outputs))
   {
     this->RestoreLightBefore(outputs);
+  }
+  else if (!this->HasSolved && vtkImageData::GetData(outputs, 0)->GetNumberOfCells() > 0)
+  {
+    this->Note({}); // the first rank solved, and sent this rank its piece, which RestoreLightBefore may need
+    this->Solved->Keep({}, {}, outputs);
+    this->SolvedInPieces = true;
   }
   return done;
 }
@@ -236,11 +230,6 @@ std::string vtkScatteringSolver::NotByBlocks(vtkInformationVector**) const
   return {};
 }
 
-std::string vtkScatteringSolver::NotInBlocks(const tyndall::SolverScene&)
-{
-  return {};
-}
-
 std::string vtkScatteringSolver::ReasonNotToDecompose(const tyndall::SolverScene&)
 {
   return {};
@@ -254,24 +243,28 @@ bool vtkScatteringSolver::IgnoresIndexOf(vtkImageData* medium)
 }
 
 /// Reads the light sources of the subdomain, or returns what rules out a decomposition.
+/// @throws InvalidInput if Decomposition is BLOCKS and there is such a reason
 std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
-  std::string refused = scene.decomposed ? this->NotByBlocks(inputs) : "";
+  const bool split = scene.pieces.IsDecomposed(), mustSplit = this->Decomposition == BLOCKS;
+  std::string refused = split || mustSplit ? this->NotByBlocks(inputs) : "";
   vtkImageData* const uncollided = vtkImageData::GetData(inputs[UNCOLLIDED]);
-  if (scene.decomposed && refused.empty() && uncollided && !scene.pieces.HasOwnOf(uncollided))
+  if (split && refused.empty() && uncollided && !scene.pieces.HasOwnOf(uncollided))
   {
     refused = "UncollidedLight in other pieces than the medium";
   }
+  tyndall::Require(refused.empty() || !mustSplit,
+    "Ranks cannot solve their pieces (Decomposition: blocks) with " + refused +
+      ". Leave it out, or let the first rank solve the whole.");
   if (refused.empty())
   {
     scene.shining = this->ReadShining(scene, inputs);
-    refused = scene.decomposed ? this->NotInBlocks(scene) : "";
   }
   return refused;
 }
 
 /// Reads the light sources of the subdomain. Collective.
-/// @return false, on all ranks, if each is to solve serially
+/// @return false, on all ranks, if the first rank is to solve the whole
 bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
   scene.share = this->PortOfShares() < 0 ? nullptr : vtkPolyData::GetData(inputs[this->PortOfShares()]);
@@ -280,12 +273,9 @@ bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformati
   scene.domain.Collective([&] {
     ignoresIndex = this->IgnoresIndexOf(scene.image);
     refused = this->ReadShiningOrRefuse(scene, inputs);
-    tyndall::Require(refused.empty() || this->Decomposition != BLOCKS,
-      "Ranks cannot solve their pieces (Decomposition: blocks) with " + refused +
-        ". Leave it out, or let each rank solve the whole.");
   });
   this->Ignored = tyndall::IgnoredIndex(scene.domain.Any(ignoresIndex));
-  if (!scene.decomposed)
+  if (scene.domain.IsSerial())
   {
     return true;
   }
@@ -300,7 +290,7 @@ bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformati
 }
 
 /// Returns this subdomain's cached solution if nothing has changed on any rank, or solves. Collective.
-/// @return false, on all ranks, if each is to solve serially
+/// @return false, on all ranks, if the first rank is to solve the whole
 bool vtkScatteringSolver::UpdateCachedOrSolve(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -337,6 +327,7 @@ bool vtkScatteringSolver::UpdateCachedOrSolve(
     this->SolvedInPieces = pieces.IsDecomposed();
   }
   this->Color(pieces, inputs, outputs);
+  this->HasSolved = true;
   return true;
 }
 
@@ -345,14 +336,15 @@ bool vtkScatteringSolver::UpdateCachedOrSolve(
 void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  if (this->OverRanks || pieces.IsDecomposed())
+  const bool blocks = pieces.IsDecomposed() || (!this->OverRanks && this->Decomposition == BLOCKS);
+  if (this->OverRanks || blocks)
   {
-    light.settingsUsed.push_back("Decomposition = " + std::to_string(pieces.IsDecomposed() ? BLOCKS : WHOLE));
+    light.settingsUsed.push_back("Decomposition = " + std::to_string(blocks ? BLOCKS : WHOLE));
   }
   tyndall::AddAveraged(this, light.settingsUsed);
   if (this->OverRanks && !this->WholeFor.empty())
   {
-    light.leftOut.push_back("pieces: each rank solved the whole, for " + this->WholeFor);
+    light.leftOut.push_back("pieces: the first rank solved the whole, for " + this->WholeFor);
   }
   this->Note(light);
   SpreadToHeld(pieces, light);
@@ -387,8 +379,8 @@ void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::Lig
 void vtkScatteringSolver::Color(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::Communicator& communicator = pieces.GetDomain().Comm();
-  tyndall::RequireSame(communicator, "LitColor, Exposure or ToneCurve", true,
+  const tyndall::Domain& domain = pieces.GetDomain();
+  tyndall::RequireSame(domain.Comm(), "LitColor, Exposure or ToneCurve", true,
     { this->LitColor ? 1.0 : 0.0, this->Exposure, 1.0 * this->ToneCurve });
   if (!this->LitColor)
   {
@@ -398,12 +390,9 @@ void vtkScatteringSolver::Color(
   const tyndall::SolverScene scene(pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
   vtkSmartPointer<vtkImageData> own; // may own the array of the fluence
   tyndall::FloatField fluence;
-  communicator.Collective([&] {
-    if (pieces.HasOwn())
-    {
-      own = pieces.OwnImage(output);
-      fluence = tyndall::ReadCells(own, "fluence", tyndall::Need::Required);
-    }
+  domain.Collective([&] {
+    own = pieces.OwnImage(output);
+    fluence = own ? tyndall::ReadCells(own, "fluence", tyndall::Need::Required) : fluence;
   });
   tyndall::ToneMapping tones;
   tones.exposure = this->Exposure;
@@ -412,7 +401,7 @@ void vtkScatteringSolver::Color(
   if (pieces.IsDecomposed())
   {
     std::vector<float> rgba(lit.rgba.begin(), lit.rgba.end());
-    pieces.SpreadToHeld(communicator, rgba, 4);
+    pieces.SpreadToHeld(rgba, 4);
     lit.rgba.assign(rgba.begin(), rgba.end());
   }
   if (pieces.Held().VoxelCount() > 0)

@@ -37,10 +37,11 @@ struct SolverScene;
  *
  * The last solution is cached and returned again for inputs with the same content, even if filters upstream have
  * recomputed them, if another piece is requested, and if only LitColor, Exposure or ToneCurve has changed. Each rank
- * caches the solution of the whole image, or of its piece if the domain is decomposed.
+ * caches the solution of its piece if the domain is decomposed, else the first rank that of the whole image.
  *
  * In a parallel pipeline light crosses the boundaries between pieces: each rank solves on its piece, and ranks exchange
- * light; or, depending on Decomposition, every rank solves on the whole domain and returns the requested piece.
+ * light; or, depending on Decomposition, the first rank solves on the whole domain and sends each rank the requested
+ * piece. Members that report on the solve are then set on the first rank only; field data are on all.
  *
  * With LitColor output 0 also has the cell array `lit_color`, unsigned char, 4 components: the display colour of each
  * voxel, red, green, blue, not multiplied by alpha, and its opacity. A volume mapper that uses these components
@@ -50,8 +51,8 @@ struct SolverScene;
  * `lit_color_exposure` is the factor by which radiance was multiplied.
  *
  * Field data `settings_used` of output 0 lists "Name = value" for each property that Quality chooses, and on several
- * ranks for Decomposition, with the value used. If Decomposition was automatic and each rank solved the whole domain,
- * `left_out` says why.
+ * ranks for Decomposition, with the value used. If Decomposition was automatic and the first rank solved the whole
+ * domain, `left_out` says why.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher
  */
@@ -75,13 +76,13 @@ public:
   enum Decompositions
   {
     AUTOMATIC_DECOMPOSITION = 0, ///< BLOCKS unless WHOLE is better
-    WHOLE = 1,                   ///< each rank solves the whole domain
+    WHOLE = 1,                   ///< the first rank solves the whole domain
     BLOCKS = 2                   ///< each rank solves its piece
   };
 
   ///@{
-  /// Domain decomposition over MPI ranks. WHOLE: each rank holds the whole domain and solves on it. BLOCKS: each rank
-  /// solves on its piece; ranks exchange light, and hold a halo of one or two voxels. On one rank the solve is the
+  /// Domain decomposition over MPI ranks. WHOLE: the first rank solves on the whole domain, for all ranks. BLOCKS: each
+  /// rank solves on its piece; ranks exchange light, and hold a halo of one or two voxels. On one rank the solve is the
   /// serial one. An error names the settings that cannot be used with BLOCKS; see the subclass. AUTOMATIC_DECOMPOSITION
   /// (default): BLOCKS if each of several ranks is asked for its own piece, the image has more than 64^3 voxels, the
   /// scene can be decomposed, and WHOLE would not be more accurate or much faster; else WHOLE.
@@ -173,8 +174,6 @@ protected:
 
   /// The properties and inputs that rule out a decomposition, as text for an error message; empty if there are none.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const;
-  /// What in this rank's scene rules out a decomposition, as NotByBlocks.
-  virtual std::string NotInBlocks(const tyndall::SolverScene& scene);
   /// Why the serial solver would be more accurate or much faster for a scene that can be decomposed, in words that
   /// follow "better for"; empty if it would not. Not for previews. Collective, the same on all ranks.
   virtual std::string ReasonNotToDecompose(const tyndall::SolverScene& scene);
@@ -216,11 +215,12 @@ private:
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
   bool SolvedInPieces = false; ///< whether Solved holds the outputs of this rank's piece only
+  bool HasSolved = false;      ///< whether this rank did the last update: its piece, or as first rank the whole
   // Of the current update:
   bool OverRanks = false;           ///< several ranks take part in it
   bool IsFirstRank = true;          ///< the rank that warns for all of them
   std::vector<std::string> Ignored; ///< arrays of the medium that the solver does not use
-  std::string WholeFor;             ///< why each rank solves serially although Decomposition was automatic
+  std::string WholeFor;             ///< why the first rank solves the whole although Decomposition was automatic
   vtkTimeStamp ColorsTime;          ///< last change of LitColor, Exposure, ToneCurve, which need no new solve
 };
 

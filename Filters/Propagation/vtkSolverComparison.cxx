@@ -291,36 +291,42 @@ int vtkSolverComparison::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({}, 0.0);
-  return tyndall::Guarded(this, request, given, outputs, [&](vtkInformationVector** inputs) {
-    const double start = tyndall::ClockSeconds();
-    const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(this, vtkImageData::GetData(inputs[MEDIUM]));
-    tyndall::ComparedScene scene;
-    scene.medium = read.input.medium;
-    scene.ior = read.ior;
-    scene.levels = read.Levels();
-    scene.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
-    tyndall::IlluminationInput shining = this->ReadAllIllumination(inputs, read.input.Emits());
-    scene.illumination = std::move(shining.illumination);
-    const std::optional<tyndall::ReferenceLight> reference = ReadReference(vtkImageData::GetData(inputs[REFERENCE]));
-    if (!tyndall::IsFirstPiece(request, outputs))
+  tyndall::WorkOnSubdomains work; // on the first rank alone: others would distort the timings
+  work.port = MEDIUM;
+  work.others = { REFERENCE };
+  work.work = [&](const tyndall::PieceBlocks&, vtkInformationVector** inputs) {
+    if (tyndall::IsFirstPiece(request, outputs))
     {
-      return; // ranks that run at the same time would distort each other's timings
+      this->Compare(inputs, outputs);
     }
-    tyndall::Comparison comparison = tyndall::CompareSolvers(*tyndall::Device::Find(this->Device), scene,
-      this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
-    TellOfDefaultSky(shining, comparison.leftOut);
-    Write(comparison, this->GetOutput());
-    this->TellOfIgnored(comparison, vtkImageData::GetData(inputs[MEDIUM]));
-    this->Note(comparison, tyndall::ClockSeconds() - start);
-    vtkImageData* const output = vtkImageData::GetData(outputs, REFERENCE_OUTPUT);
-    Write(std::move(comparison.reference), reference.has_value(), output);
-    tyndall::TellExtentAndKeepWhatIsAskedFor(
-      tyndall::AskingPort(request, outputs), outputs->GetInformationObject(REFERENCE_OUTPUT), output);
-    for (const std::string& warning : comparison.warnings)
-    {
-      vtkWarningMacro(<< warning);
-    }
-  });
+    return true;
+  };
+  return tyndall::Guarded(this, request, given, outputs, work);
+}
+
+void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  const double start = tyndall::ClockSeconds();
+  const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(this, vtkImageData::GetData(inputs[MEDIUM]));
+  tyndall::ComparedScene scene;
+  scene.medium = read.input.medium;
+  scene.ior = read.ior;
+  scene.levels = read.Levels();
+  scene.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
+  tyndall::IlluminationInput shining = this->ReadAllIllumination(inputs, read.input.Emits());
+  scene.illumination = std::move(shining.illumination);
+  const std::optional<tyndall::ReferenceLight> reference = ReadReference(vtkImageData::GetData(inputs[REFERENCE]));
+  tyndall::Comparison comparison = tyndall::CompareSolvers(*tyndall::Device::Find(this->Device), scene,
+    this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
+  TellOfDefaultSky(shining, comparison.leftOut);
+  Write(comparison, this->GetOutput());
+  this->TellOfIgnored(comparison, vtkImageData::GetData(inputs[MEDIUM]));
+  this->Note(comparison, tyndall::ClockSeconds() - start);
+  Write(std::move(comparison.reference), reference.has_value(), vtkImageData::GetData(outputs, REFERENCE_OUTPUT));
+  for (const std::string& warning : comparison.warnings)
+  {
+    vtkWarningMacro(<< warning);
+  }
 }
 
 /// Warns if the medium's refractive index varies, because some of the compared methods ignore it.

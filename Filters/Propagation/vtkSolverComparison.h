@@ -205,6 +205,7 @@ private:
   void operator=(const vtkSolverComparison&) = delete;
 
   tyndall::ComparisonSettings Settings() const;
+  void Compare(vtkInformationVector** inputs, vtkInformationVector* outputs);
   void TellOfIgnored(const tyndall::Comparison& comparison, vtkImageData* medium);
   void Note(const tyndall::Comparison& comparison, double seconds);
 

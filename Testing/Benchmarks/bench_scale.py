@@ -29,7 +29,7 @@ import tempfile
 
 WORKER = "TYNDALL_BENCH_SCALE"  # for what runs on each rank: its arguments, as JSON
 GOAL, MOST_COMPARED = 1.3, 128
-WORDS = {"whole": "Whole on each rank", "blocks": "Blocks"}
+WORDS = {"whole": "Whole on the first rank", "blocks": "Blocks"}
 
 
 def report(**values):

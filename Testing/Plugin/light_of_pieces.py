@@ -113,7 +113,7 @@ def tetrahedra():
 
 def adaptive():
     """Asked for by pieces, ParaView's AMR has other values on other numbers of ranks; each rank gets all of what it is."""
-    keep("adaptive", resampled(ImageDataToAMR(Input=Wavelet(WholeExtent=SIZE)), Decomposition="Whole on each rank"))
+    keep("adaptive", resampled(ImageDataToAMR(Input=Wavelet(WholeExtent=SIZE)), Decomposition="Whole on the first rank"))
 
 
 def pvti():
@@ -133,7 +133,7 @@ def turned():
         writer.SetFileName(path)
         writer.SetInputData(image)
         writer.Write()
-        light = solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"], Decomposition="Whole on each rank")
+        light = solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"], Decomposition="Whole on the first rank")
         keep(case, light)
         if ranks == 1:  # a writer asks for what was told before
             SaveData(path, proxy=light)
@@ -155,7 +155,7 @@ def series():
     module.GetGlobalController().Barrier()
     reader = VDBReader(FileName=files)
     medium = ParticipatingMedium(Input=reader, DensityArray=["CELLS", "RTData"], ExtinctionScale=0.2, MinimumDensity=0, MaximumDensity=277)
-    whole, blocks = ({"Decomposition": how} for how in ("Whole on each rank", "Blocks"))
+    whole, blocks = ({"Decomposition": how} for how in ("Whole on the first rank", "Blocks"))
     lights = {"whole": LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **whole),
               "blocks": LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, **(blocks if ranks > 1 else whole)),
               "lattice": LatticeBoltzmannLighting(Input=medium, SkyColor=[1, 1, 1], Tolerance=1e-8)}
@@ -254,8 +254,8 @@ def blocks_estimated():
 
 
 def whole_estimated():
-    keep("whole_estimated", wavelet("Whole on each rank", EstimateError=1, **PLAIN), array="fluence_error")
-    keep("whole_target", wavelet("Whole on each rank", TargetError=0.2, **PLAIN), array="fluence_error")
+    keep("whole_estimated", wavelet("Whole on the first rank", EstimateError=1, **PLAIN), array="fluence_error")
+    keep("whole_target", wavelet("Whole on the first rank", TargetError=0.2, **PLAIN), array="fluence_error")
 
 
 def blocks_budget():
@@ -297,7 +297,7 @@ def blocks_photons():
 
 
 def whole_photons():
-    keep("whole_photons", photons("Whole on each rank"))
+    keep("whole_photons", photons("Whole on the first rank"))
 
 
 def blocks_scattered():
@@ -305,7 +305,7 @@ def blocks_scattered():
 
 
 def whole_scattered():
-    keep("whole_scattered", photons("Whole on each rank", MaximumOrders=0))
+    keep("whole_scattered", photons("Whole on the first rank", MaximumOrders=0))
 
 
 def photons_differ():
@@ -354,7 +354,7 @@ def blocks_plain():
 
 
 def whole_plain():
-    light = wavelet("Whole on each rank", Acceleration="None (as published)", Source="Constant (as published)", EmissionError=0)
+    light = wavelet("Whole on the first rank", Acceleration="None (as published)", Source="Constant (as published)", EmissionError=0)
     keep("whole_plain", light)
 
 
@@ -379,7 +379,7 @@ def blocks_turbid():
 
 
 def whole_turbid():
-    keep("whole_turbid", turbid("Whole on each rank", **ONE_BY_ONE))
+    keep("whole_turbid", turbid("Whole on the first rank", **ONE_BY_ONE))
 
 
 def facts_of(light, name):
@@ -472,7 +472,7 @@ def whole_where_few():
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4)
         light.UpdatePipeline()
         assert how in facts_of(light, "settings_used"), (high, facts_of(light, "settings_used"))
-        assert high == 12 or "pieces: each rank solved the whole, for a medium of few voxels" in facts_of(light, "left_out")
+        assert high == 12 or "pieces: the first rank solved the whole, for a medium of few voxels" in facts_of(light, "left_out")
     os.environ["TYNDALL_PIECES_FROM"] = few
 
 
@@ -486,7 +486,7 @@ def whole_where_better():
         errors = errors_of(light)
         light.UpdatePipeline()
         used, left = facts_of(light, "settings_used"), facts_of(light, "left_out")
-        assert "Decomposition = 1" in used and "pieces: each rank solved the whole, for " + why in left, (why, used, left)
+        assert "Decomposition = 1" in used and "pieces: the first rank solved the whole, for " + why in left, (why, used, left)
         seconds = seconds_of(light)
         light.LitColor = 1
         light.UpdatePipeline()
@@ -509,7 +509,7 @@ def blocks_absorbing():
 
 
 def whole_absorbing():
-    absorbing("whole_absorbing", "Whole on each rank")
+    absorbing("whole_absorbing", "Whole on the first rank")
 
 
 def blocks_ghosts():
@@ -574,7 +574,7 @@ def lattice_exact():
 
 
 def lattice_whole():
-    settings = {"Decomposition": "Whole on each rank", "Tolerance": 1e-7}
+    settings = {"Decomposition": "Whole on the first rank", "Tolerance": 1e-7}
     keep("lattice_whole", on_lattice(Wavelet(WholeExtent=SIZE), ["POINTS", "RTData"], full=277, **settings))
 
 
@@ -654,7 +654,7 @@ def lattice_photons_few():
 
 
 def lattice_photons_whole():
-    keep("lattice_photons_whole", lattice_of_photons(Decomposition="Whole on each rank"))
+    keep("lattice_photons_whole", lattice_of_photons(Decomposition="Whole on the first rank"))
 
 
 def lattice_turns():
@@ -663,7 +663,7 @@ def lattice_turns():
     keep("lattice_turns", light)
     if ranks > 1 and light.GetClientSideObject().GetOutputDataObject(0).GetNumberOfCells() > 0:
         left = facts_of(light, "left_out")
-        assert "pieces: each rank solved the whole, for BlockSize" in left, left
+        assert "pieces: the first rank solved the whole, for BlockSize" in left, left
 
 
 def by_ordinates(density, array, full=1, **settings):
@@ -733,7 +733,7 @@ def previews():
 def previews_whole():
     for name, solve, settings in PREVIEWED:
         keep("preview_%s_whole" % name, solve(Wavelet(WholeExtent=EVEN), ["POINTS", "RTData"], full=277, Preview=1,
-                                              Decomposition="Whole on each rank", **settings))
+                                              Decomposition="Whole on the first rank", **settings))
 
 
 def warm_by_blocks(case, solver, **settings):
@@ -853,7 +853,7 @@ def fails(case, piece, said, filters=(lambda density: ParticipatingMedium(Input=
                                                                           DensityArray=["CELLS", "density"]),)):
     """One error, with the same words on every rank, and an empty output; that of the filter after it is empty, too."""
     medium = filters[0](source_of(piece))
-    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, Decomposition="Whole on each rank")
+    light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1], DirectionsPerFace=4, Decomposition="Whole on the first rank")
     errors, later = errors_of(medium), errors_of(light)
     light.UpdatePipeline()
     assert len(errors) == 1 and said in errors[0] and not later, (case, rank, errors, later)
@@ -936,7 +936,7 @@ def no_file():
         writer.SetFileName(path)
         writer.SetInputData(piece_of([0, 12, 0, 5, 0, 4]))
         writer.Write()
-    keep("no_file", solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"], Decomposition="Whole on each rank"))
+    keep("no_file", solved(XMLImageDataReader(FileName=[path]), ["CELLS", "density"], Decomposition="Whole on the first rank"))
     if ranks > 1:
         medium = ParticipatingMedium(Input=XMLImageDataReader(FileName=[path]), DensityArray=["CELLS", "density"])
         light = LightPropagationMaps(Input=medium, SkyColor=[1, 1, 1])
