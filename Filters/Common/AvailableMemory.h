@@ -1,9 +1,55 @@
 #pragma once
 
+#include "Device/Device.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+/// Memory that filters may take: on this machine, and on the device.
 namespace tyndall
 {
 /// Memory that this process can still allocate, bytes: the smallest of three limits, which are the machine's free or
 /// reclaimable memory, the allowance of its container (cgroup 2) and its remaining address space (RLIMIT_AS). Infinity
 /// if none of them is known.
 double AvailableMemory();
+
+// The filters' property MemoryBudget.
+
+/// @param mebibytes  limit, MiB; 0: only the device's own limit
+/// @param spills  true: data beyond the limit are kept in host memory; false: exceeding it is an error
+inline MemoryBudget BudgetOf(int mebibytes, bool spills)
+{
+  MemoryBudget budget;
+  if (mebibytes > 0)
+  {
+    budget.bytes = static_cast<std::size_t>(mebibytes) << 20;
+    budget.spills = spills;
+  }
+  return budget;
+}
+
+/// Finds the device for a filter that keeps buffers on it between updates. Exceeding the memory budget is an error.
+/// @param kept  member of the filter that caches the returned device; reused while name and budget are unchanged
+inline std::shared_ptr<Device> FindWithin(std::shared_ptr<Device>& kept, const std::string& name, int mebibytes)
+{
+  struct Part
+  {
+    std::shared_ptr<Device> whole;
+    Device within;
+  };
+  std::shared_ptr<Device> whole = Device::Find(name);
+  if (mebibytes == 0)
+  {
+    kept.reset();
+    return whole;
+  }
+  const MemoryBudget budget = BudgetOf(mebibytes, false);
+  if (!kept || kept->Name() != whole->Name() || kept->MemoryLimit() != std::min(budget.bytes, whole->MemoryLimit()))
+  {
+    const std::shared_ptr<Part> part(new Part{ whole, { *whole, budget } });
+    kept = std::shared_ptr<Device>(part, &part->within);
+  }
+  return kept;
+}
 }

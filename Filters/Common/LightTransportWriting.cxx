@@ -1,6 +1,6 @@
 #include "Common/LightTransportWriting.h"
 
-#include "Common/VectorArray.h"
+#include "Common/ArrayRanges.h"
 #include "Device/Errors.h"
 #include "Medium/BoxFaces.h"
 #include "Medium/Medium.h"

@@ -63,6 +63,16 @@ constexpr const char* StraightOnArray = "straight_on";
 constexpr const char* LampsApartFact = "lamps_apart";
 constexpr int LampComponents = 13;
 
+// Names of arrays and field data that vtkLPMPropagate writes and vtkLPMCollect reads.
+
+/// The arrays that hold T, by the face that light travels towards.
+constexpr const char* const NamesOfT[6] = { "T_xmin", "T_xmax", "T_ymin", "T_ymax", "T_zmin", "T_zmax" };
+
+/// Field data: settings of the propagation.
+constexpr const char* const MapResolutionFact = "map_resolution";
+constexpr const char* const StoredDirectionsFact = "stored_directions_count";
+constexpr const char* const OrderFact = "scattering_order";
+
 /// Joins texts with line breaks, for ParaView's panel.
 std::string Lines(const std::vector<std::string>& texts);
 

@@ -1,8 +1,8 @@
 #include "Common/PhaseFunctionData.h"
 
+#include "Common/ArrayRanges.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
-#include "Common/VectorArray.h"
 #include "Numerics/NumberText.h"
 #include "PhaseFunction/UsedCosines.h"
 

@@ -2,7 +2,6 @@
 
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
-#include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
 #include "Pieces/ControllerCommunicator.h"
 #include "Pieces/GuardedWork.h"

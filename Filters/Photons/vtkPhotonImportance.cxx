@@ -1,11 +1,10 @@
 #include "vtkPhotonImportance.h"
 
-#include "Common/DeviceBudget.h"
+#include "Common/AvailableMemory.h"
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
-#include "Photons/ImportanceData.h"
 #include "Photons/PhotonData.h"
 #include "Photons/RefractiveInput.h"
 #include "Pieces/GuardedWork.h"

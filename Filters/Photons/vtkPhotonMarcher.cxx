@@ -1,6 +1,6 @@
 #include "vtkPhotonMarcher.h"
 
-#include "Common/DeviceBudget.h"
+#include "Common/AvailableMemory.h"
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"

@@ -1,6 +1,6 @@
 #include "vtkDiscreteOrdinates.h"
 
-#include "Common/DeviceBudget.h"
+#include "Common/AvailableMemory.h"
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"

@@ -2,12 +2,12 @@
 
 #include "Common/ImageInput.h"
 #include "Common/LightTransportData.h"
+#include "Common/LightTransportWriting.h"
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/WholeInputs.h"
-#include "Propagation/LPMBuffers.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

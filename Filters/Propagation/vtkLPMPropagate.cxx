@@ -1,11 +1,11 @@
 #include "vtkLPMPropagate.h"
 
 #include "Common/LightTransportData.h"
+#include "Common/LightTransportWriting.h"
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
-#include "Propagation/LPMBuffers.h"
 
 #include "vtkFieldData.h"
 #include "vtkImageData.h"

@@ -1,6 +1,6 @@
 #include "vtkLatticeBoltzmannLighting.h"
 
-#include "Common/DeviceBudget.h"
+#include "Common/AvailableMemory.h"
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
 #include "Device/Clock.h"

@@ -1,8 +1,8 @@
 #include "PictureWriting.h"
 
+#include "Common/ArrayRanges.h"
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"
-#include "Common/VectorArray.h"
 
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"

@@ -1,8 +1,8 @@
 #include "ViewedInputs.h"
 
+#include "Common/ArrayRanges.h"
 #include "Common/InputsKey.h"
 #include "Common/PhaseFunctionData.h"
-#include "Common/VectorArray.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
 #include "Medium/BoxFaces.h"

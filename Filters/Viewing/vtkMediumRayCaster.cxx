@@ -4,7 +4,7 @@
 #include "BlocksOfRanks.h"
 #include "CasterProperties.h"
 #include "CasterScene.h"
-#include "Common/DeviceBudget.h"
+#include "Common/AvailableMemory.h"
 #include "Common/Failure.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"

@@ -7,7 +7,7 @@
 #include "vtkImageData.h"
 #include "vtkMeshVoxelizer.h"
 
-// Visible, as in Filters/OpenVDB.h, which says why.
+// Visible, as in Filters/IO/VDB/VDBBytes.h, which says why.
 #pragma GCC visibility push(default)
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>

@@ -5,7 +5,7 @@
 #include "vtksys/SystemTools.hxx"
 #include "vtkTestUtilities.h"
 
-// Visible, as in Filters/OpenVDB.h, which says why.
+// Visible, as in Filters/IO/VDB/VDBBytes.h, which says why.
 #pragma GCC visibility push(default)
 #include <openvdb/openvdb.h>
 #pragma GCC visibility pop

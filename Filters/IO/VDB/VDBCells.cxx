@@ -2,8 +2,8 @@
 
 #include "Common/LightTransportData.h"
 #include "Device/Errors.h"
-#include "IO/VDB/OpenVDB.h"
-#include "IO/VDB/VDBGrid.h"
+#include "IO/VDB/VDBBytes.h"
+#include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "IO/VDB/VDBTreeWalk.h"
 #include "Numerics/NumberText.h"

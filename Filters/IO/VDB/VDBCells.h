@@ -1,6 +1,6 @@
 #pragma once
 
-#include "IO/VDB/OpenVDB.h"
+#include "IO/VDB/VDBBytes.h"
 
 #include <string>
 #include <vector>

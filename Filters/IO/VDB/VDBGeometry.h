@@ -1,6 +1,6 @@
 #pragma once
 
-#include "IO/VDB/VDBGrid.h"
+#include "IO/VDB/VDBFile.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "IO/VDB/VDBMetadata.h"
 
 #include "Common/LightTransportData.h"
+#include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBGeometry.h"
-#include "IO/VDB/VDBGrid.h"
 #include "Numerics/NumberText.h"
 
 #include "vtkDataObject.h"

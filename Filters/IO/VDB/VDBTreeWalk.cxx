@@ -1,6 +1,5 @@
 #include "IO/VDB/VDBTreeWalk.h"
 
-#include "IO/VDB/OpenVDB.h"
 #include "IO/VDB/VDBBytes.h"
 
 #include <algorithm>
