@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Common/ImageInput.h"
+#include "Common/CellArrays.h"
 #include "Common/LightTransportWriting.h"
 #include "Device/Errors.h"
 #include "Lights/Lights.h"
@@ -51,74 +51,6 @@ inline std::array<double, 3> Triple(const double* values)
   return { values[0], values[1], values[2] };
 }
 
-/// The grid of an image's cells; the image's extent may start anywhere.
-/// @throws InvalidInput if there is no image or no cell, if a spacing is not a positive number, or if the image is
-///   rotated
-Grid GridOf(vtkImageData* image);
-
-/// The array itself if it is a vtkFloatArray, otherwise a converted copy; null for null.
-vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array);
-
-/// An array of floats together with shared ownership of its memory.
-class FloatField
-{
-public:
-  FloatField() = default; ///< a quantity that is zero everywhere
-  explicit FloatField(vtkSmartPointer<vtkFloatArray> array)
-    : Array(std::move(array))
-  {
-  }
-
-  bool IsThere() const { return this->Array != nullptr; }
-  int Components() const { return this->Array ? this->Array->GetNumberOfComponents() : 1; }
-  const float* Values() const { return this->Array ? this->Array->GetPointer(0) : nullptr; }
-  operator Field() const { return { this->Values(), this->Components() }; }
-
-private:
-  vtkSmartPointer<vtkFloatArray> Array;
-};
-
-enum class Need
-{
-  Required, ///< a missing array is an error
-  Optional, ///< a missing array is an empty FloatField, unless the user chose that array
-};
-
-/// Names of arrays, for messages: 'a', 'b', or none.
-std::string NamesOf(vtkDataSetAttributes* attributes);
-
-/// Numbers of components that an array may have; empty: any.
-using Components = std::initializer_list<int>;
-
-/// Reads values of the image's cells from the cell array `name`, or from the point array `name` averaged to cells. (If
-/// voxels are around points, Guarded has already turned point arrays into cell arrays, ImageInput.h.) Float arrays are
-/// used in place, other types are converted. Hidden cells (ImageInput.h) read as 0, or as refractive index 1.
-/// @throws InvalidInput naming the array and its number of components, or the arrays that exist
-FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
-
-/// The same for the array that SetInputArrayToProcess selected as number `index`, by name or by attribute. If a point
-/// array was selected, it takes precedence over a cell array of the same name. If nothing was selected (SCALARS in VTK,
-/// "" in ParaView before it knows the input), or the name `otherwise`, the function reads the array that the filter
-/// upstream used for this quantity (NoteChoices), or else the array `otherwise`, where "" stands for the active
-/// scalars. An array selected by another name is never optional.
-FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
-  Need need, Components components = { 1, 3 });
-
-/// The array that ReadChosenCells would read, or null. Its type and shape are not checked.
-vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise);
-
-/// Names of the arrays that a filter reads from an image, among those that the image has.
-struct ArraysRead
-{
-  std::vector<std::string> ofCells, ofPoints;
-};
-ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image);
-
-/// Whether some arrays are selected by SetInputArrayToProcess, or announced as active, and all of these are point
-/// arrays.
-/// @param chosen  VoxelArrays::chosen
-bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& chosen, vtkInformation* input);
-
 /// Relative density of fog inside a level set as a function of the signed distance from its surface, negative inside: 1
 /// in the interior, falling linearly to 0 at the surface within the last voxel, 0 outside. Equals OpenVDB's
 /// sdfToFogVolume with that cutoff.
@@ -138,22 +70,7 @@ enum MediumArray
 /// The index for the refractive index, in filters that use it.
 constexpr int RefractiveIndex = 3;
 
-/// Indices for SetInputArrayToProcess with the names of the default arrays.
-using Quantities = std::vector<std::pair<int, std::string>>;
 Quantities QuantitiesOfMedium(); ///< those of MediumArray, and RefractiveIndex
-
-/// Records in the output's field data which of its arrays the filter used for these quantities, so that filters
-/// downstream use the same ones: `sigma_a_array` and so on, a text with the array's name, followed by "points" if the
-/// point array takes precedence over a cell array of that name. Nothing is recorded for a default array.
-/// @param input  the filter's input, whose arrays the output has
-void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
-
-/// Removes what the input recorded, for a filter that computes a medium's arrays itself.
-void ForgetChoices(vtkImageData* output);
-
-/// Whether the array that ReadChosenCells would read exists and differs from the value `usual` in a cell that is not
-/// hidden. For filters that ignore the quantity; nothing else is checked.
-bool IsUnusual(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& name, float usual);
 
 /// Texts for field data `ignored` (IgnoredFact): for a filter that ignores refraction, and for one that ignores the
 /// medium's emission because its photons start from lights only. Empty if nothing is ignored.
@@ -212,10 +129,6 @@ UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium);
 /// @throws InvalidInput if an array has the wrong shape
 MomentsInput ReadMoments(vtkImageData* image);
 
-/// Reads one number from field data `name`; returns `missing` if there is no such field data.
-/// @throws InvalidInput if it is not exactly one number
-double ReadFact(vtkDataObject* data, const char* name, double missing);
-
 /// Reads lights as LightRig writes them, and checks them: point data `light_type` and `power` (1 or 3 components);
 /// `direction`, `size` and `angle` if the types need them. Hidden and duplicate points are skipped. Returns no lights
 /// without polydata or points.
@@ -239,11 +152,4 @@ void AddDiffuse(Illumination& illumination, const double* sky, const double* fac
 /// Adds reflecting boundaries: one albedo for each face, multiplied by red, green and blue factors for each face. The
 /// values are checked.
 void AddFaceAlbedo(Illumination& illumination, const double* albedo, const double* colour);
-
-/// Whether the voxels of a grid have the same corners as those of the medium, up to rounding.
-bool AreSameVoxels(const Grid& grid, const Grid& medium);
-
-/// @param whose, remedy  parts of the message, e.g. "The octree", "Make the octree of the same medium."
-/// @throws InvalidInput unless the voxels of the grid have the same corners as those of the medium, up to rounding
-void CheckSameVoxels(const Grid& grid, const Grid& medium, const std::string& whose, const std::string& remedy);
 }

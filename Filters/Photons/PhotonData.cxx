@@ -63,9 +63,10 @@ std::int32_t BatchOf(double number, vtkIdType photon)
   return static_cast<std::int32_t>(number);
 }
 
-vtkSmartPointer<vtkFloatArray> NewFloats(const char* name, int components, std::size_t tuples)
+template <class Array>
+vtkSmartPointer<Array> NewArray(const char* name, int components, std::size_t tuples)
 {
-  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  auto array = vtkSmartPointer<Array>::New();
   array->SetName(name);
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(static_cast<vtkIdType>(tuples));
@@ -153,15 +154,11 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, const OwnAxes&
   vtkNew<BoundedPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(static_cast<vtkIdType>(count));
-  const vtkSmartPointer<vtkFloatArray> direction = NewFloats("direction", 3, count);
-  const vtkSmartPointer<vtkFloatArray> power = NewFloats("power", 3, count);
-  const vtkSmartPointer<vtkFloatArray> weight = NewFloats("weight", 1, count);
-  vtkNew<vtkIntArray> light;
-  light->SetName("light");
-  light->SetNumberOfTuples(static_cast<vtkIdType>(count));
-  vtkNew<vtkIntArray> batch;
-  batch->SetName("batch");
-  batch->SetNumberOfTuples(static_cast<vtkIdType>(count));
+  const auto direction = NewArray<vtkFloatArray>("direction", 3, count);
+  const auto power = NewArray<vtkFloatArray>("power", 3, count);
+  const auto weight = NewArray<vtkFloatArray>("weight", 1, count);
+  const auto light = NewArray<vtkIntArray>("light", 1, count);
+  const auto batch = NewArray<vtkIntArray>("batch", 1, count);
   vtkNew<vtkIdTypeArray> starts, numbers; // cells: one vertex per photon
   starts->SetNumberOfValues(static_cast<vtkIdType>(count) + 1);
   numbers->SetNumberOfValues(static_cast<vtkIdType>(count));

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "Common/ImageInput.h"
+#include "Pieces/AlignedInputs.h"
 #include "Pieces/GatheredImage.h"
 
 #include "vtkSmartPointer.h"
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -26,9 +25,7 @@ namespace tyndall
 /// lights, are broadcast from the rank that has them. Points that are distributed among ranks are appended in the order
 /// of ranks.
 ///
-/// Images that a filter reads as voxels are aligned with the world axes if their axes are a permutation of these. If
-/// the first input is rotated otherwise, the filter works in the axes of that image (OwnAxes), the same on all ranks.
-/// Images of which point arrays are read get a voxel around each point (Common/ImageInput.h), also on a single rank;
+/// Images are aligned first (AlignedInputs.h). Images of which point arrays are read get a voxel around each point (Common/ImageInput.h), also on a single rank;
 /// where pieces share a plane of points, its voxels belong to the lowest rank.
 ///
 /// Memory per rank: the complete image, and one piece of one array.
@@ -53,7 +50,7 @@ public:
   vtkInformationVector** Vectors() { return this->Ports.data(); }
 
   /// Rotates outputs from the medium axes back to the scene axes.
-  void PutIntoScene(vtkInformationVector* outputs);
+  void PutIntoScene(vtkInformationVector* outputs) { this->Aligned.PutIntoScene(outputs); }
 
   /// Replaces the data at the port that stays in pieces, until MakeWhole.
   void Replace(vtkDataObject* data);
@@ -66,18 +63,9 @@ public:
 private:
   struct Seen; ///< summaries of the inputs on all ranks
   void MakeWhole(int port, GatheredImage::On where);
-  using ToOther = std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>;
-  void AlignGiven(vtkInformationVector** given);
-  void AgreeOnAxes(vtkMultiProcessController* ranks);
-  void TurnGiven();
-  void NoteAveragedArrays();
-  void Change(int port, const ToOther& change);
+  void Change(int port, const ChangeOfData& change);
 
-  vtkAlgorithm* Filter;
-  std::vector<vtkSmartPointer<vtkInformationVector>> Given; ///< by port, images with aligned axes
-  OwnAxes Axes;                                             ///< axes of the first port's image
-  vtkSmartPointer<vtkDataObject> Medium;                    ///< that image in scene axes; null: none
-
+  AlignedInputs Aligned;
   std::unique_ptr<Seen> AllSeen; ///< null: this process is alone
   std::vector<vtkSmartPointer<vtkInformationVector>> Kept;
   std::vector<vtkInformationVector*> Ports;
