@@ -205,6 +205,10 @@ int vtkPhotonImportance::RequestData(
     this->Write(outputs, this->Find(pieces, inputs));
     return true;
   };
+  work.shareResults = [this](tyndall::Communicator& ranks) {
+    tyndall::TakeFromFirstRank(ranks, this->Even, this->UsedGradientThreshold, this->UsedLuminanceThreshold,
+      this->Seconds, this->LeftOut, this->DeviceName);
+  };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 

@@ -396,6 +396,10 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
     return this->March(pieces, inputs, outputs);
   };
+  work.shareResults = [this](tyndall::Communicator& ranks) {
+    tyndall::TakeFromFirstRank(ranks, this->PackingLoss, this->Deposits, this->Steps, this->Missed, this->Scatterings,
+      this->BalanceError, this->MediumKept, this->Seconds, this->DeviceName, this->LeftOut);
+  };
   const int done = tyndall::Guarded(this, request, given, outputs, work);
   if (!tyndall::IsFirstPiece(request, outputs) && !tyndall::AreEmptied(outputs))
   {

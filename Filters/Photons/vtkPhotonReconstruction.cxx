@@ -272,6 +272,9 @@ int vtkPhotonReconstruction::RequestData(
     this->Reconstruct(pieces, vtkImageData::GetData(inputs[0]), vtkImageData::GetData(outputs));
     return true;
   };
+  work.shareResults = [this](tyndall::Communicator& ranks) {
+    tyndall::TakeFromFirstRank(ranks, this->Bias, this->MeanError, this->Seconds, this->DeviceName, this->LeftOut);
+  };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 

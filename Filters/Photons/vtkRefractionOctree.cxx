@@ -443,6 +443,9 @@ int vtkRefractionOctree::RequestData(
     }
     return true;
   };
+  work.shareResults = [this](tyndall::Communicator& ranks) {
+    tyndall::TakeFromFirstRank(ranks, this->NodeCount, this->Seconds, this->DeviceName, this->LeftOut);
+  };
   const int done = tyndall::Guarded(this, request, given, outputs, work);
   if (!tyndall::AreEmptied(outputs))
   {

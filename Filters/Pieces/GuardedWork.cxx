@@ -474,6 +474,10 @@ void WorkOnFirstRank(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtk
     KeepParts(work, asking, outputs);
     return;
   }
+  if (work.shareResults)
+  {
+    work.shareResults(*CommunicatorOf(ranks, [filter] { return IsStoppedByOthers(filter); }));
+  }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkDataObject* const output = vtkDataObject::GetData(outputs, port);

@@ -13,6 +13,7 @@ class vtkMultiProcessController;
 /// Runs the work of a filter that may fail or be stopped, and reports progress.
 namespace tyndall
 {
+class Communicator;
 class PieceBlocks;
 class WholeInputs;
 
@@ -42,8 +43,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 ///
 /// If a rank wants pieces, and the pieces make up one grid, each rank works on its subdomain. Else the first rank works
 /// on the complete inputs, gathered there, and the outputs are distributed: each rank gets the part of each image that
-/// it is asked for, with its field data, and the tables at ports above 0; other data stay on the first rank. Members of
-/// the filter that report results are then set on the first rank only.
+/// it is asked for, with its field data, and the tables at ports above 0; other data stay on the first rank.
 struct WorkOnSubdomains
 {
   int port = 0;                 ///< port of the image that is decomposed; inputs at other ports are gathered
@@ -54,6 +54,8 @@ struct WorkOnSubdomains
   /// Does the work. Collective if the domain is decomposed; it may then return false, on all ranks, to be called again
   /// on the first rank. Output 0 is cropped to the requested extent unless several ranks made it.
   std::function<bool(const PieceBlocks& pieces, vtkInformationVector** inputs)> work;
+  /// Gives the other ranks the results that the filter's members report, after the first rank has worked. Collective.
+  std::function<void(Communicator& ranks)> shareResults;
   /// Whether the extents of the output images become known by the work only; each rank then makes them complete.
   bool tellsExtents = false;
 };

@@ -23,6 +23,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -260,6 +261,16 @@ void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter,
   senders[static_cast<std::size_t>(communicator->Rank())] = sent ? 1.0 : 0.0;
   messages.Receive(communicator->Sum(senders));
   EndTogether(*communicator, own);
+}
+
+double OfFirstRank(Communicator& ranks, double own)
+{
+  return ranks.Largest({ ranks.Rank() == 0 ? own : -std::numeric_limits<double>::infinity() })[0];
+}
+
+std::string OfFirstRank(Communicator& ranks, const std::string& own)
+{
+  return WordsOfAny(ranks, ranks.Rank() == 0 ? own : "");
 }
 
 bool IsStoppedByOthers(vtkAlgorithm* filter)

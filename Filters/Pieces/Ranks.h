@@ -22,6 +22,8 @@ class vtkInformationVector;
 /// one rank that updates alone, ranks neither communicate nor wait.
 namespace tyndall
 {
+class Communicator;
+
 /// In RequestUpdateExtent: informs filters upstream of a port whether all ranks make this request together, even though
 /// each requests the complete input.
 void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
@@ -130,6 +132,15 @@ std::vector<Struct> AllGather(vtkMultiProcessController* ranks, Struct own)
     StreamedMembers(streams[rank], true)(all[rank]);
   }
   return all;
+}
+
+double OfFirstRank(Communicator& ranks, double own);
+std::string OfFirstRank(Communicator& ranks, const std::string& own);
+/// Sets numbers and texts to those of the first rank. Collective.
+template <class... Values>
+void TakeFromFirstRank(Communicator& ranks, Values&... values)
+{
+  ((values = static_cast<Values>(OfFirstRank(ranks, values))), ...);
 }
 
 /// Whether the filter's work has ended early on another rank, within WorkOnAllRanks.

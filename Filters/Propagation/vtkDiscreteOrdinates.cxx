@@ -8,6 +8,7 @@
 #include "DiscreteOrdinates/OrdinatesQuality.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Pieces/GuardedWork.h"
+#include "Pieces/Ranks.h"
 
 #include "Propagation/LastOutputs.h"
 #include "Propagation/SolverScene.h"
@@ -122,6 +123,12 @@ void vtkDiscreteOrdinates::Note(const tyndall::LightField& light)
   this->DeviceName = light.device;
   this->LeftOut = tyndall::Lines(light.leftOut);
   this->SettingsUsed = tyndall::Lines(light.settingsUsed);
+}
+
+void vtkDiscreteOrdinates::ShareResults(tyndall::Communicator& ranks)
+{
+  tyndall::TakeFromFirstRank(ranks, this->Orders, this->SweepsSaved, this->Residual, this->Seconds, this->BalanceError,
+    this->HalfRangeFlux, this->DeviceName, this->LeftOut, this->SettingsUsed);
 }
 
 void vtkDiscreteOrdinates::PrintSelf(ostream& os, vtkIndent indent)

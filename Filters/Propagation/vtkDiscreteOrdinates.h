@@ -156,6 +156,7 @@ protected:
   ~vtkDiscreteOrdinates() override;
 
   void Note(const tyndall::LightField& light) override;
+  void ShareResults(tyndall::Communicator& ranks) override;
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
   tyndall::LightField Solve(const tyndall::SolverScene& scene) override;
 

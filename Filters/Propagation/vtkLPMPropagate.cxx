@@ -6,6 +6,7 @@
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
+#include "Pieces/Ranks.h"
 
 #include "vtkFieldData.h"
 #include "vtkImageData.h"
@@ -106,6 +107,8 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
     this->Propagate(inputs, vtkImageData::GetData(outputs, 0));
     return true;
   };
+  work.shareResults = [this](
+                        tyndall::Communicator& ranks) { tyndall::TakeFromFirstRank(ranks, this->Order, this->Bytes); };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 

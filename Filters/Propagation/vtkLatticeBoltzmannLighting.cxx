@@ -11,6 +11,7 @@
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Photons/PhotonData.h"
 #include "Pieces/GuardedWork.h"
+#include "Pieces/Ranks.h"
 #include "Propagation/SolverScene.h"
 
 #include "vtkDataObject.h"
@@ -183,6 +184,12 @@ void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)
   this->LeftOut = tyndall::Lines(light.leftOut);
   this->SettingsUsed = tyndall::Lines(light.settingsUsed);
   this->Seconds = any ? this->Seconds : 0.0;
+}
+
+void vtkLatticeBoltzmannLighting::ShareResults(tyndall::Communicator& ranks)
+{
+  tyndall::TakeFromFirstRank(ranks, this->Steps, this->Residual, this->BalanceError, this->DeviceName, this->LeftOut,
+    this->SettingsUsed, this->Seconds);
 }
 
 void vtkLatticeBoltzmannLighting::PrintSelf(ostream& os, vtkIndent indent)

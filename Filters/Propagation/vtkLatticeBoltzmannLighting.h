@@ -165,6 +165,7 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* information) override;
   void Note(const tyndall::LightField& light) override;
+  void ShareResults(tyndall::Communicator& ranks) override;
   bool KnowsIndex() const override { return this->Scheme == CONSERVATIVE; }
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
   tyndall::LightField Solve(const tyndall::SolverScene& scene) override;

@@ -14,6 +14,7 @@
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 #include "Pieces/GuardedWork.h"
+#include "Pieces/Ranks.h"
 
 #include "Propagation/LastOutputs.h"
 #include "Propagation/SolverScene.h"
@@ -222,6 +223,13 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
   this->LeftOut = tyndall::Lines(light.leftOut);
   this->SettingsUsed = tyndall::Lines(light.settingsUsed);
   this->Solves = any ? light.solves : 0;
+}
+
+void vtkLightPropagationMaps::ShareResults(tyndall::Communicator& ranks)
+{
+  tyndall::TakeFromFirstRank(ranks, this->Orders, this->SweepsSaved, this->Residual, this->Seconds,
+    this->EstimatedError, this->BalanceError, this->HalfRangeFlux, this->DeviceName, this->LeftOut, this->SettingsUsed,
+    this->Solves);
 }
 
 void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)

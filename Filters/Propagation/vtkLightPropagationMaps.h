@@ -243,6 +243,7 @@ protected:
   ~vtkLightPropagationMaps() override;
 
   void Note(const tyndall::LightField& light) override;
+  void ShareResults(tyndall::Communicator& ranks) override;
   bool ReadsQuality() const override { return this->TargetError == 0.0 && this->Superclass::ReadsQuality(); }
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
   std::string ReasonNotToDecompose(const tyndall::SolverScene& scene) override;

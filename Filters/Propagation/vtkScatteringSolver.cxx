@@ -165,6 +165,7 @@ int vtkScatteringSolver::RequestData(
     }
     return this->UpdateCachedOrSolve(pieces, inputs, outputs);
   };
+  work.shareResults = [this](tyndall::Communicator& all) { this->ShareResults(all); };
   const int done = tyndall::Guarded(this, request, given, outputs, work);
   if (tyndall::AreEmptied(outputs))
   {
@@ -172,8 +173,7 @@ int vtkScatteringSolver::RequestData(
   }
   else if (!this->HasSolved && vtkImageData::GetData(outputs, 0)->GetNumberOfCells() > 0)
   {
-    this->Note({}); // the first rank solved, and sent this rank its piece, which RestoreLightBefore may need
-    this->Solved->Keep({}, {}, outputs);
+    this->Solved->Keep({}, {}, outputs); // the first rank's light, which RestoreLightBefore may need
     this->SolvedInPieces = true;
   }
   return done;

@@ -16,6 +16,7 @@ namespace tyndall
 {
 struct IlluminationInput;
 struct LightField;
+class Communicator;
 class LastOutputs;
 class PieceBlocks;
 struct SolverScene;
@@ -41,7 +42,7 @@ struct SolverScene;
  *
  * In a parallel pipeline light crosses the boundaries between pieces: each rank solves on its piece, and ranks exchange
  * light; or, depending on Decomposition, the first rank solves on the whole domain and sends each rank the requested
- * piece. Members that report on the solve are then set on the first rank only; field data are on all.
+ * piece.
  *
  * With LitColor output 0 also has the cell array `lit_color`, unsigned char, 4 components: the display colour of each
  * voxel, red, green, blue, not multiplied by alpha, and its opacity. A volume mapper that uses these components
@@ -163,6 +164,9 @@ protected:
   /// Solves on this rank's subdomain. Collective.
   /// @return the light in this subdomain's voxels, with settingsUsed set
   virtual tyndall::LightField Solve(const tyndall::SolverScene& scene) = 0;
+
+  /// Sets the read-only properties to those of the first rank, which has solved for all. Collective.
+  virtual void ShareResults(tyndall::Communicator& ranks) = 0;
 
   /// Sets the read-only properties that report on a solve. Called with an empty `light` before a solve, so these stay
   /// empty if it fails.

@@ -507,6 +507,9 @@ int vtkParticipatingMedium::RequestData(
     this->MakeMedium(pieces, inputs, vtkImageData::GetData(outputs));
     return true;
   };
+  work.shareResults = [this](tyndall::Communicator& ranks) {
+    tyndall::TakeFromFirstRank(ranks, this->PhysicalExtent, this->OpticalThickness, this->MeanFreePath);
+  };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 

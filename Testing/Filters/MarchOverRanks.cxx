@@ -331,7 +331,7 @@ bool HasTheSameLight(vtkMPIController* controller, const Asked& asked)
   return right;
 }
 
-/// What blocks cannot do is one error that names it.
+/// What blocks cannot do is one error that names it; on one rank the octree is simply another one.
 bool NamesWhatItCannot(vtkMPIController* controller)
 {
   struct Note : vtkCommand
@@ -347,7 +347,9 @@ bool NamesWhatItCannot(vtkMPIController* controller)
   scene.Marcher->AddObserver(vtkCommand::ErrorEvent, errors);
   vtkImageData* const light = scene.Update();
   const int rank = controller->GetLocalProcessId();
-  return Expect(errors->said.find("an octree that lies in other pieces") != std::string::npos, errors->said, rank) &&
+  const char* const why = controller->GetNumberOfProcesses() > 1 ? "an octree that lies in other pieces"
+                                                                 : "Make the octree of the same medium";
+  return Expect(errors->said.find(why) != std::string::npos, errors->said, rank) &&
     Expect(light->GetNumberOfCells() == 0, "light", rank);
 }
 

@@ -40,7 +40,7 @@ def same_facts(ranks, what, tolerance):
 for ranks in (int(count) for count in sys.argv[1:]):
     more = ["whole_plain", "whole_turbid", "whole_photons", "whole_scattered", "whole_thick", "whole_absorbing", "blocks_estimated", "whole_estimated"] if ranks == 1 else \
         ["whole_where_better", "whole_where_few", "blocks_errors", "blocks_of_wrong_pieces", "blocks_abort", "blocks_ignored", "photons_abort", "photons_differ", "blocks_estimated", "blocks_budget"] if ranks == 3 else []
-    code, said = runs.run(ranks, *CASES, *more)
+    code, said = runs.run(ranks, *CASES, "first_published", "first_compares", *more)
     assert code == 0 and said.count("is done") == ranks, said
     ghost_cells_are_the_neighbours(ranks)
     for case in WRONG if ranks == 3 else []:
@@ -62,6 +62,8 @@ for ranks in (int(count) for count in sys.argv[1:]):
     same_facts(ranks, "surface", 1e-6)
     same_facts(ranks, "lit_facts", 1e-5)
 
+published = [runs.whole(ranks, "first_published", "light")[0] for ranks in (1, int(sys.argv[-1]))]
+assert difference(*published) == 0, "the first rank's light is not that of one rank"
 blocks, whole = runs.whole(1, "blocks_plain", "light")[0], runs.whole(1, "whole_plain", "light")[0]
 print("blocks and the whole, order by order: %.1e" % difference(blocks, whole))
 assert difference(blocks, whole) < 1e-5

@@ -495,6 +495,27 @@ def whole_where_better():
         assert not errors and output.GetNumberOfCells() < 16 * 14 * 12, (why, errors)
 
 
+def first_published():
+    """A scheme as published is solved by the first rank, which sends each rank its piece of the light."""
+    light = wavelet("Automatic", Scheme=0)
+    keep("first_published", light)
+    assert light.GetClientSideObject().GetOrders() > 0, "the first rank's results are not reported on rank %d" % rank
+    assert ranks == 1 or "pieces: the first rank solved the whole, for Scheme as published" in facts_of(light, "left_out")
+
+
+def first_compares():
+    """Solvers are compared on the first rank, which has the table, and sends each rank its piece of the reference."""
+    medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"], MaximumDensity=277)
+    compared = SolverComparison(Input=medium, SkyColor=[1, 1, 1], Directions=[4], Coarsenings=[1], Orders=[1], MapResolutions=[1],
+                                PhotonCounts=[1000], Repeats=1, MonteCarloReference=0)
+    errors = errors_of(compared)
+    compared.UpdatePipeline()
+    filter = compared.GetClientSideObject()
+    table, reference = filter.GetOutputDataObject(0), filter.GetOutputDataObject(1)
+    assert not errors and (table.GetNumberOfRows() > 0) == (rank == 0), (rank, errors)
+    assert 0 < reference.GetNumberOfCells() and (ranks == 1 or reference.GetNumberOfCells() < 16 * 14 * 12), rank
+
+
 def absorbing(case, decomposition):
     """Thick voxels that absorb much: they shine by octant."""
     medium = ParticipatingMedium(Input=Wavelet(WholeExtent=SIZE), DensityArray=["POINTS", "RTData"], ExtinctionScale=2,
