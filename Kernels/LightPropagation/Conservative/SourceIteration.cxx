@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <utility>
 
 namespace tyndall
@@ -136,21 +135,20 @@ void SourceIteration::LetEscape()
   }
 }
 
+/// Adds all uncollided light that does not belong to the first sweep. Lamps come first, because the light that they
+/// scatter first is stored apart.
 void SourceIteration::AddUncollided(const Monitor& monitor)
 {
-  LightSources::Sources sources = this->Parts.Lights.LampSources();
-  const auto append = [&sources](LightSources::Sources more) {
-    std::move(more.begin(), more.end(), std::back_inserter(sources));
+  const LightSources& lights = this->Parts.Lights;
+  const LightSources::Sources lamps = lights.LampSources(), traced = lights.OtherSources(),
+                              vacuum = lights.VacuumSources();
+  const double all = static_cast<double>(lamps.size() + traced.size() + vacuum.size()) +
+    (lights.FineBoundary ? 1.0 : 0.0) + (lights.Finer.correctsEscape ? 1.0 : 0.0);
+  double done = 0.0;
+  const auto next = [&] {
+    done += 1.0;
+    return OfPart(monitor, (done - 1.0) / all, done / all);
   };
-  append(this->Parts.Lights.OtherSources());
-  const std::size_t alongRays = sources.size(); // sources that are traced; the others are swept
-  if (this->Parts.Lights.FineBoundary)
-  {
-    sources.push_back(std::make_unique<UncollidedBoundary>(this->Settings, *this->Parts.Lights.FineBoundary));
-  }
-  append(this->Parts.Lights.VacuumSources());
-  const bool escapes = this->Parts.Lights.Finer.correctsEscape;
-  const double all = static_cast<double>(sources.size() + (escapes ? 1 : 0));
   SweepTally tally;
   Buffer<float> firstMoments;
   this->TheDomain.Collective([&] {
@@ -158,29 +156,25 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
       this->Parts.TheDevice, this->Settings.firstMoments ? this->Parts.Layout.Floats(6) : 1, "where light is lost");
     firstMoments.Fill(0.0f);
   });
-  for (std::size_t i = 0; i < sources.size(); ++i)
+  for (const std::unique_ptr<UncollidedSource>& lamp : lamps)
   {
-    const Monitor ofSource = OfPart(monitor, i / all, (i + 1) / all);
-    const bool isLamp = i < this->Parts.Lights.Lamps.size();
-    if (this->AtFaces && isLamp) // never if moments are stored
-    {
-      Add(tally, this->AddLamp(*sources[i], ofSource));
-      continue;
-    }
-    const bool isSwept = i >= alongRays;
-    Deposit deposit = isSwept ? this->DepositOfSweep() : this->Parts.WholeDeposit();
-    deposit.firstMoments = this->Settings.firstMoments && isLamp ? &firstMoments : nullptr;
-    Add(tally, this->Parts.AddUncollided(*sources[i], deposit, ofSource));
-    if (this->AtFaces && isSwept)
-    {
-      const bool ofVacuum = this->Parts.Lights.OfVacuum && i + 1 == sources.size();
-      this->TheDomain.Collective(
-        [&] { this->AtFaces->TakeIncoming(ofVacuum ? *this->Parts.Lights.OfVacuum : *this->Parts.Lights.Fine); });
-    }
-    if (i + 1 == this->Parts.Lights.Lamps.size())
-    {
-      this->ShowLamps();
-    }
+    Add(tally, this->AddLamp(*lamp, firstMoments, next()));
+  }
+  if (!lamps.empty())
+  {
+    this->ShowLamps();
+  }
+  for (const std::unique_ptr<UncollidedSource>& source : traced)
+  {
+    Add(tally, this->Parts.AddUncollided(*source, this->Parts.WholeDeposit(), next()));
+  }
+  if (lights.FineBoundary)
+  {
+    Add(tally, this->AddSwept(UncollidedBoundary(this->Settings, *lights.FineBoundary), *lights.Fine, next()));
+  }
+  for (const std::unique_ptr<UncollidedSource>& source : vacuum)
+  {
+    Add(tally, this->AddSwept(*source, *lights.OfVacuum, next()));
   }
   this->TheDomain.Collective([&] {
     if (this->Settings.firstMoments)
@@ -195,15 +189,20 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   });
   this->Result.ledger.Count(tally);
   this->ToCome.stranded = tally.onTheWay;
-  if (escapes)
+  if (lights.Finer.correctsEscape)
   {
-    // Needed for any light source, because contributions of sources add up.
-    const TransportParts::EvenSky sky = this->Parts.FindEvenSky(OfPart(monitor, sources.size() / all, 1.0));
-    this->TheDomain.Collective([&] {
-      this->Escaping.emplace(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Problem.Scattering(),
-        this->Parts.OnDevice.SigmaT(), sky.fine.path, sky.usual.path);
-    });
+    this->PrepareEscape(next());
   }
+}
+
+/// Needed with any light source, because contributions of sources add up.
+void SourceIteration::PrepareEscape(const Monitor& monitor)
+{
+  const TransportParts::EvenSky sky = this->Parts.FindEvenSky(monitor);
+  this->TheDomain.Collective([&] {
+    this->Escaping.emplace(this->Parts.TheDevice, this->Parts.Layout, this->Parts.Problem.Scattering(),
+      this->Parts.OnDevice.SigmaT(), sky.fine.path, sky.usual.path);
+  });
 }
 
 /// Stores the first-scattered light of lamps, before any other light is added.
@@ -217,14 +216,33 @@ void SourceIteration::ShowLamps()
   });
 }
 
-/// Adds the uncollided light of a lamp, and the first moments of its deposit in thick voxels.
-SweepTally SourceIteration::AddLamp(const UncollidedSource& lamp, const Monitor& monitor)
+/// Adds the uncollided light of a lamp. Sources by octant take its path integrals and first moments for themselves;
+/// there are none if angular moments are stored.
+SweepTally SourceIteration::AddLamp(
+  const UncollidedSource& lamp, const Buffer<float>& firstMoments, const Monitor& monitor)
 {
-  const Deposit whole = this->Parts.WholeDeposit();
-  const Deposit ofLamp = { &this->AtFaces->LampPath(), whole.flux, nullptr, &this->AtFaces->LampMoments(),
-    whole.faceOut, whole.spreadsAside };
-  const SweepTally tally = this->Parts.AddUncollided(lamp, ofLamp, monitor);
+  Deposit deposit = this->Parts.WholeDeposit();
+  if (!this->AtFaces)
+  {
+    deposit.firstMoments = this->Settings.firstMoments ? &firstMoments : nullptr;
+    return this->Parts.AddUncollided(lamp, deposit, monitor);
+  }
+  deposit.path = &this->AtFaces->LampPath();
+  deposit.firstMoments = &this->AtFaces->LampMoments();
+  const SweepTally tally = this->Parts.AddUncollided(lamp, deposit, monitor);
   this->TheDomain.Collective([&] { this->AtFaces->TakeLamp(this->Parts.Path); });
+  return tally;
+}
+
+/// Adds uncollided light that is swept along directions of its own.
+SweepTally SourceIteration::AddSwept(
+  const UncollidedSource& source, const SweptDirections& along, const Monitor& monitor)
+{
+  const SweepTally tally = this->Parts.AddUncollided(source, this->DepositOfSweep(), monitor);
+  if (this->AtFaces)
+  {
+    this->TheDomain.Collective([&] { this->AtFaces->TakeIncoming(along); });
+  }
   return tally;
 }
 

@@ -53,7 +53,9 @@ private:
   void LetEscape();
   void AddUncollided(const Monitor& monitor);
   void ShowLamps();
-  SweepTally AddLamp(const UncollidedSource& lamp, const Monitor& monitor);
+  void PrepareEscape(const Monitor& monitor);
+  SweepTally AddLamp(const UncollidedSource& lamp, const Buffer<float>& firstMoments, const Monitor& monitor);
+  SweepTally AddSwept(const UncollidedSource& source, const SweptDirections& along, const Monitor& monitor);
   Deposit DepositOfSweep() const;
   void SweepOrder(const Monitor& monitor);
   void ReflectOrder();
