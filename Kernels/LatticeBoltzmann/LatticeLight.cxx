@@ -94,11 +94,9 @@ void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, 
       "There is not a block for each rank.");
     CheckOwnBlock(domain, medium, ior, illumination, settings);
   });
-  const bool has = !domain.IsEmpty();
-  RequireSame(domain.Comm(), domain.Partition());
-  RequireSame(domain.Comm(), has, medium, illumination, AsPropagation(settings, 0));
+  RequireSame(domain, medium, illumination, AsPropagation(settings, 0));
   RequireSameLattice(domain, ior, illumination, settings);
-  RequireSink(LightEndsOnAny(domain.Comm(), has, medium, illumination), illumination, AsPropagation(settings));
+  RequireSink(domain, medium, illumination, AsPropagation(settings));
 }
 
 bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)

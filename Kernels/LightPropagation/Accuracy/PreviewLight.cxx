@@ -133,11 +133,9 @@ void SceneOnFirst::Spread(LightField& light) const
 
 void RequireSame(const SceneBlock& scene, const PropagationSettings& alike)
 {
-  Communicator& comm = scene.domain.Comm();
-  const bool has = !scene.domain.IsEmpty();
-  RequireSame(comm, scene.domain.Partition());
-  RequireSame(comm, has, scene.medium, scene.illumination, alike);
-  RequireSame(comm, "whether there is a refractive index", has, { scene.index.values ? 1.0 : 0.0 });
+  RequireSame(scene.domain, scene.medium, scene.illumination, alike);
+  RequireSame(scene.domain.Comm(), "whether there is a refractive index", !scene.domain.IsEmpty(),
+    { scene.index.values ? 1.0 : 0.0 });
 }
 
 /// Interpolates light from the coarse grid to this rank's voxels.
@@ -178,10 +176,7 @@ LightField SolvePreview(const SceneBlock& scene, const PropagationSettings& alik
   const PreviewSolver& solve, std::size_t small)
 {
   const Domain& domain = scene.domain;
-  if (!domain.IsSerial())
-  {
-    RequireSame(scene, alike);
-  }
+  RequireSame(scene, alike);
   const CoarseBlocks blocks(domain.Comm(), domain.Partition(), coarse);
   const CoarseScene averages(blocks, scene);
   if (domain.IsSerial() || coarse.VoxelCount() > small)

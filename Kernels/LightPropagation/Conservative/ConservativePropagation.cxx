@@ -294,7 +294,7 @@ LightField SolveConservative(Device& device, const Domain& domain, const Medium&
   {
     return Solve(device, domain, medium, illumination, settings, monitor, kept);
   }
-  Check(medium, illumination, settings); // before axes are permuted, so that messages name the user's axes
+  Check(domain, medium, illumination, settings); // before axes are permuted, so that messages name the user's axes
   const Medium turned = turn.Of(medium);
   LightField light =
     Solve(device, Domain(turned.grid), turned, turn.Of(illumination), turn.Of(settings), monitor, kept);

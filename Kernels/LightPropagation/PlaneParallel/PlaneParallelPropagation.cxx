@@ -295,7 +295,7 @@ bool IsPlaneParallel(const Medium& medium, const Illumination& illumination, con
 LightField SolvePlaneParallel(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {
-  Check(medium, illumination, settings);
+  Check(Domain(medium.grid), medium, illumination, settings);
   EquiangularDirections(settings.directionsPerFace); // not used, but must be a valid number
   const double start = ClockSeconds();
   const MediumTraits traits = TraitsOf(medium, true);

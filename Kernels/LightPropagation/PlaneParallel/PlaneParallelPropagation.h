@@ -25,7 +25,7 @@ bool IsPlaneParallel(const Medium& medium, const Illumination& illumination, con
 /// layers; leftOut says so. Reports one iteration, without a residual.
 ///
 /// @param settings  only netFlux, facePower, storeMoments, polarNodes and periodic are used
-/// @throws InvalidInput  from Check(medium, illumination, settings)
+/// @throws InvalidInput  from Check(domain, medium, illumination, settings)
 LightField SolvePlaneParallel(const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor = {});
 }

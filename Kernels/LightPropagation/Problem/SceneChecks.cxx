@@ -3,6 +3,8 @@
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
 
+#include <array>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -10,11 +12,50 @@ namespace tyndall
 namespace
 {
 constexpr int MomentsLookedAt = 8; ///< moments of phase functions that are compared between ranks
+
+/// Sinks and sources of light within a medium, by channel.
+struct LightEnds
+{
+  std::array<bool, 3> absorbs = {}; ///< any voxel absorbs
+  /// Any voxel emits, or scatters light of lamps inside the box or uncollided light that is given as input.
+  std::array<bool, 3> begins = {};
+};
+
+LightEnds LightEndsIn(const Medium& medium, const Illumination& illumination)
+{
+  LightEnds ends;
+  const auto any = [&](const Field& field, int channel) {
+    bool found = false;
+    for (std::size_t i = 0; i < medium.grid.VoxelCount() && field.values && !found; ++i)
+    {
+      found = field.At(i, channel) > 0.0f;
+    }
+    return found;
+  };
+  for (int c = 0; c < 3; ++c)
+  {
+    bool meets = illumination.uncollided.IsThere();
+    for (const Light& light : illumination.lights)
+    {
+      meets = meets || (light.type != LightType::Directional && light.power[c] > 0.0);
+    }
+    ends.absorbs[c] = any(medium.sigma_a, c);
+    ends.begins[c] = !ends.absorbs[c] && (any(medium.emission, c) || (meets && any(medium.sigma_s, c)));
+  }
+  return ends;
+}
 }
 
-void RequireSame(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination,
-  const PropagationSettings& settings)
+void RequireSame(
+  const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
+  if (domain.IsSerial())
+  {
+    return;
+  }
+  Communicator& communicator = domain.Comm();
+  const bool has = !domain.IsEmpty();
+  RequireSame(communicator, domain.Partition());
   const auto components = [](const Field& field) { return field.values ? field.components : 0; };
   RequireSame(communicator, "the components of sigma_a, sigma_s or emission, or one has no emission", has,
     { 1.0 * components(medium.sigma_a), 1.0 * components(medium.sigma_s), 1.0 * components(medium.emission) });
@@ -59,47 +100,13 @@ void RequireSame(Communicator& communicator, bool has, const Medium& medium, con
   RequireSame(communicator, "what shines on it", true, light);
 }
 
-LightEnds LightEndsOnAny(Communicator& communicator, bool has, const Medium& medium, const Illumination& illumination)
+void RequireSink(
+  const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
-  const LightEnds own = has ? LightEndsIn(medium, illumination) : LightEnds();
+  const LightEnds own = domain.IsEmpty() ? LightEnds() : LightEndsIn(medium, illumination);
   std::vector<double> any(own.absorbs.begin(), own.absorbs.end());
   any.insert(any.end(), own.begins.begin(), own.begins.end());
-  any = communicator.Largest(any);
-  LightEnds ends;
-  for (std::size_t c = 0; c < 3; ++c)
-  {
-    ends.absorbs[c] = any[c] > 0.0;
-    ends.begins[c] = any[3 + c] > 0.0;
-  }
-  return ends;
-}
-
-LightEnds LightEndsIn(const Medium& medium, const Illumination& illumination)
-{
-  LightEnds ends;
-  const auto any = [&](const Field& field, int channel) {
-    bool found = false;
-    for (std::size_t i = 0; i < medium.grid.VoxelCount() && field.values && !found; ++i)
-    {
-      found = field.At(i, channel) > 0.0f;
-    }
-    return found;
-  };
-  for (int c = 0; c < 3; ++c)
-  {
-    bool meets = illumination.uncollided.IsThere();
-    for (const Light& light : illumination.lights)
-    {
-      meets = meets || (light.type != LightType::Directional && light.power[c] > 0.0);
-    }
-    ends.absorbs[c] = any(medium.sigma_a, c);
-    ends.begins[c] = !ends.absorbs[c] && (any(medium.emission, c) || (meets && any(medium.sigma_s, c)));
-  }
-  return ends;
-}
-
-void RequireSink(const LightEnds& ends, const Illumination& illumination, const PropagationSettings& settings)
-{
+  any = domain.Max(any);
   const std::array<bool, 3>& periodic = settings.periodic;
   const bool anyFace = !periodic[0] || !periodic[1] || !periodic[2];
   for (int c = 0; c < 3; ++c)
@@ -109,12 +116,12 @@ void RequireSink(const LightEnds& ends, const Illumination& illumination, const 
     {
       closed = closed && (periodic[face / 2] || illumination.faceAlbedo[face][c] >= 1.0);
     }
-    if (closed && anyFace && !ends.absorbs[c])
+    if (closed && anyFace && any[c] == 0.0)
     {
       throw InvalidInput("Every face gives back all light (FaceAlbedo 1) and the medium absorbs none: light would grow "
                          "without end. Give a face an albedo below 1, or the medium some sigma_a.");
     }
-    if (!anyFace && !ends.absorbs[c] && ends.begins[c] && settings.maximumOrders == 0)
+    if (!anyFace && any[c] == 0.0 && any[3 + c] > 0.0 && settings.maximumOrders == 0)
     {
       throw InvalidInput("All three axes are periodic and the medium absorbs no light: what begins in it would grow "
                          "without end. Leave an axis open, give the medium some sigma_a, or set MaximumOrders.");
@@ -122,42 +129,26 @@ void RequireSink(const LightEnds& ends, const Illumination& illumination, const 
   }
 }
 
-void CheckBlock(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
-{
-  Check(medium);
-  Check(illumination);
-  Check(illumination.uncollided, medium);
-  Check(settings);
-  CheckFaceAlbedo(illumination, settings.periodic);
-}
-
-void Check(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
-{
-  CheckBlock(medium, illumination, settings);
-  RequireSink(LightEndsIn(medium, illumination), illumination, settings);
-}
-
 void Check(
   const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
-  if (domain.IsSerial())
-  {
-    Check(medium, illumination, settings);
-    return;
-  }
-  Communicator& comm = domain.Comm();
-  const bool has = !domain.IsEmpty();
   domain.Collective([&] {
-    domain.Partition().Check();
-    if (has)
+    if (!domain.IsSerial())
     {
-      CheckBlock(medium, illumination, settings);
-      Require(medium.grid.size == domain.OwnGrid().size,
+      domain.Partition().Check();
+    }
+    if (!domain.IsEmpty() || domain.IsSerial()) // a serial grid without voxels is an error
+    {
+      Check(medium);
+      Check(illumination);
+      Check(illumination.uncollided, medium);
+      Check(settings);
+      CheckFaceAlbedo(illumination, settings.periodic);
+      Require(medium.grid.size == domain.Own().size,
         "The medium of rank " + std::to_string(domain.Rank()) + " does not have the size of its block.");
     }
   });
-  RequireSame(comm, domain.Partition());
-  RequireSame(comm, has, medium, illumination, settings);
-  RequireSink(LightEndsOnAny(comm, has, medium, illumination), illumination, settings);
+  RequireSame(domain, medium, illumination, settings);
+  RequireSink(domain, medium, illumination, settings);
 }
 }

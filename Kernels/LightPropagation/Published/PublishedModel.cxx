@@ -358,7 +358,7 @@ PublishedModel::PublishedModel(
   : ChannelCount(std::max(channels, ChannelsOf(medium, illumination)))
   , Isotropic(medium.phase.IsIsotropic())
 {
-  Check(medium, illumination, settings);
+  Check(Domain(medium.grid), medium, illumination, settings);
   CheckPublished(medium, illumination);
   this->Set = PublishedDirections(settings.directionsPerFace);
   this->BoundaryRadiances = BoundaryOf(this->Set, illumination, settings.periodic);
