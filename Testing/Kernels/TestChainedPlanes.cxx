@@ -112,7 +112,7 @@ TEST_F(ChainedPlanes, AreTheSameBitForBitWhereTheyAreStreamed)
   const NoCache none(" host_memory");
   const LightField whole = scene.Solve(GetDevice());
   const PropagationProblem problem(scene.medium, scene.light, scene.settings);
-  const std::size_t bytes = BytesOfSolve(GetDevice(), ExtentOf(problem, ChooseIterationScheme(problem)));
+  const std::size_t bytes = BytesOfSolve(GetDevice(), problem, ChooseIterationScheme(problem));
   for (const int part : { 2, 5, 8 })
   {
     SCOPED_TRACE("within a part of " + std::to_string(part));

@@ -97,7 +97,7 @@ protected:
     const std::size_t taken = device.PeakBytes() - before;
     EXPECT_EQ(whole.device, device.Name());
     const PropagationProblem problem(scene.medium, scene.light, scene.settings);
-    const std::size_t bytes = BytesOfSolve(device, ExtentOf(problem, ChooseIterationScheme(problem)));
+    const std::size_t bytes = BytesOfSolve(device, problem, ChooseIterationScheme(problem));
     EXPECT_TRUE(!device.IsCpu() || taken <= bytes) << taken << " of " << bytes;
     for (const int part : parts)
     {

@@ -252,7 +252,7 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
 {
   const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
   const IterationScheme how = ChooseIterationScheme(problem);
-  Device ofSolve(device, BudgetOfSolve(device, ExtentOf(problem, how)));
+  Device ofSolve(device, BudgetOfSolve(device, problem, how));
   const std::unique_ptr<TransportParts> parts = MakeParts(ofSolve, problem, how);
   IterationResult found = MakeIteration(*parts, kept)->Run(monitor);
   const bool warm = found.warm;

@@ -65,6 +65,37 @@ SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& come
   return problem.Traits().emits && problem.Settings().emissionError > 0.0 && has ? Split(problem.TheMedium(), comesIn)
                                                                                  : SplitEmission();
 }
+
+/// The part of the boundary source that uses the finer directions. Its lights and environment are not to be used.
+Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining)
+{
+  Illumination part = finer.perFace > 0 ? shining : Illumination();
+  part.sky = finer.ofFacesAlone ? Rgb{} : part.sky;
+  return part;
+}
+
+/// The remainder, which uses the quadrature of scattered light.
+Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& shining)
+{
+  Illumination part = shining;
+  if (finer.perFace > 0)
+  {
+    part.faces = {};
+    part.sky = finer.ofFacesAlone ? shining.sky : Rgb{};
+  }
+  return part;
+}
+
+/// Directions along which that light is swept.
+/// @param accelerated  solved with DSA: finer directions are swept in addition to the usual ones, and unmodified
+std::unique_ptr<const SweptDirections> FinerDirections(
+  const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated)
+{
+  DirectionSet set = FittedDirections(perFace, "UncollidedDirections");
+  const bool asAsked = accelerated || !set.orbits.empty();
+  const RayStarts starts = settings.staggeredRays || !asAsked ? RayStarts::Staggered : RayStarts::Middle;
+  return std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
+}
 }
 
 UncollidedDirections UncollidedDirectionsFor(
@@ -101,33 +132,6 @@ UncollidedDirections UncollidedDirectionsFor(
     }
   }
   return found;
-}
-
-Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining)
-{
-  Illumination part = finer.perFace > 0 ? shining : Illumination();
-  part.sky = finer.ofFacesAlone ? Rgb{} : part.sky;
-  return part;
-}
-
-Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& shining)
-{
-  Illumination part = shining;
-  if (finer.perFace > 0)
-  {
-    part.faces = {};
-    part.sky = finer.ofFacesAlone ? shining.sky : Rgb{};
-  }
-  return part;
-}
-
-std::unique_ptr<const SweptDirections> FinerDirections(
-  const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated)
-{
-  DirectionSet set = FittedDirections(perFace, "UncollidedDirections");
-  const bool asAsked = accelerated || !set.orbits.empty();
-  const RayStarts starts = settings.staggeredRays || !asAsked ? RayStarts::Staggered : RayStarts::Middle;
-  return std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
 }
 
 LightSources::LightSources(const PropagationProblem& problem, bool byBalance, const VolumeLayout& layout,

@@ -40,16 +40,6 @@ struct UncollidedDirections
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how);
 
-/// The part of the boundary source that uses the finer directions. Its lights and environment are not to be used.
-Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining);
-/// The remainder, which uses the quadrature of scattered light.
-Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& shining);
-
-/// Directions along which that light is swept.
-/// @param accelerated  solved with DSA: finer directions are swept in addition to the usual ones, and unmodified
-std::unique_ptr<const SweptDirections> FinerDirections(
-  const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated);
-
 /// The light sources of a problem, each assigned to the way it is transported: traced along exact rays until its first
 /// collision, swept along a finer quadrature until then, or swept along the usual quadrature with scattered light.
 /// Boundary sources are those of the whole domain, emission is of the block.

@@ -5,11 +5,34 @@
 #include "LightPropagation/ThickVoxels/OctantSources.h"
 
 #include <algorithm>
+#include <array>
 
 namespace tyndall
 {
 namespace
 {
+/// Parameters that determine the memory of a solve.
+struct SolveExtent
+{
+  std::array<int, 3> size; ///< voxels of the domain or of a rank's block
+  const PropagationSettings& settings;
+  int channels = 1;
+  int degree = 0; ///< of angular moments
+  IterationScheme how = IterationScheme::SourceIteration;
+  bool byOctant = false; ///< the source of a voxel differs between octants
+  bool byCells = false;  ///< light is stored by cell of the box faces
+  bool ofBlock = false;  ///< of a rank's block, swept one bundle of rays at a time
+};
+SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how)
+{
+  SolveExtent solve = { problem.TheGrid().size, problem.Settings(), problem.Channels(), problem.Scattering().Degree(),
+    how };
+  solve.byOctant = OctantSources::Matter(problem);
+  solve.ofBlock = !problem.TheDomain().IsSerial();
+  solve.byCells = Reflects(problem.Shining()) || problem.Settings().facePower;
+  return solve;
+}
+
 /// Values per voxel and channel for the medium and the light in sweeps.
 std::size_t ArraysOfLight(const SolveExtent& solve)
 {
@@ -72,19 +95,8 @@ std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
   const std::size_t beside = solve.ofBlock || solve.byCells ? 2 * MostBesidePlanes(solve) : 0;
   return values * rays * (LargestPlane(solve) * (solve.degree > 0 ? 3 : 2) + beside);
 }
-}
 
-SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how)
-{
-  SolveExtent solve = { problem.TheGrid().size, problem.Settings(), problem.Channels(), problem.Scattering().Degree(),
-    how };
-  solve.byOctant = OctantSources::Matter(problem);
-  solve.ofBlock = !problem.TheDomain().IsSerial();
-  solve.byCells = Reflects(problem.Shining()) || problem.Settings().facePower;
-  return solve;
-}
-
-std::size_t BytesOfSolve(const Device& device, const SolveExtent& solve)
+std::size_t BytesOf(const Device& device, const SolveExtent& solve)
 {
   std::array<int, 3> size = solve.size;
   size[0] = solve.degree > 0 ? RoundUp(size[0], int{ MomentGroup }) : size[0];
@@ -92,6 +104,7 @@ std::size_t BytesOfSolve(const Device& device, const SolveExtent& solve)
   return sizeof(float) * layout.Values() * (ArraysOfLight(solve) + ArraysOfOrders(solve)) + BytesOfSweep(device, solve);
 }
 
+/// The budget without regard to what the solve needs.
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
 {
   MemoryBudget budget;
@@ -103,12 +116,19 @@ MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
   }
   return budget;
 }
+}
 
-MemoryBudget BudgetOfSolve(const Device& device, const SolveExtent& solve)
+std::size_t BytesOfSolve(const Device& device, const PropagationProblem& problem, IterationScheme how)
 {
+  return BytesOf(device, ExtentOf(problem, how));
+}
+
+MemoryBudget BudgetOfSolve(const Device& device, const PropagationProblem& problem, IterationScheme how)
+{
+  const SolveExtent solve = ExtentOf(problem, how);
   MemoryBudget budget = BudgetAskedFor(device, solve.settings.memoryBudget);
   const bool streams = !(solve.ofBlock && device.IsCpu()); // otherwise kernels work on host memory in place
-  if (streams && budget.spills && BytesOfSolve(device, solve) > budget.bytes)
+  if (streams && budget.spills && BytesOf(device, solve) > budget.bytes)
   {
     budget.hostFrom = sizeof(float) * Grid{ solve.size }.VoxelCount();
   }

@@ -140,9 +140,7 @@ double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std
 {
   const Grid& grid = medium.grid;
   const double sigma = medium.TransportSigmaT(cell.voxel, channel);
-  const std::array<int, 3> at = { static_cast<int>(cell.voxel % grid.size[0]),
-    static_cast<int>(cell.voxel / grid.size[0] % grid.size[1]),
-    static_cast<int>(cell.voxel / grid.size[0] / grid.size[1]) };
+  const std::array<int, 3> at = grid.VoxelAt(cell.voxel);
   double expected = 0.0; // power per volume
   for (int face = 0; face < 6; ++face)
   {
@@ -163,8 +161,8 @@ double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std
   return expected > 0.0 ? std::clamp(sigma * fluence / expected, 1.0 / MostUneven, MostUneven) : 1.0;
 }
 
-}
-
+/// Whether any voxel at these faces has an optical thickness across the face above ThickAtSurface in any channel. Only
+/// then is SurfaceRadiance more accurate than radiance computed from the light of the voxels.
 bool IsThickAtFaces(const Medium& medium, const std::array<bool, 6>& faces, int channels)
 {
   bool thick = false;
@@ -176,6 +174,7 @@ bool IsThickAtFaces(const Medium& medium, const std::array<bool, 6>& faces, int 
     }
   });
   return thick;
+}
 }
 
 double HalfSpaceH(double albedo, double mu)

@@ -31,10 +31,6 @@ std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 
 std::vector<float> SurfaceRadiance(const Domain& domain, const std::array<bool, 3>& periodic, const Medium& medium,
   int channels, const std::vector<Light>& lamps, const std::vector<SurfacePowers>& powers);
 
-/// Whether any voxel at these faces has an optical thickness across the face above ThickAtSurface in any channel. Only
-/// then is SurfaceRadiance more accurate than radiance computed from the light of the voxels.
-bool IsThickAtFaces(const Medium& medium, const std::array<bool, 6>& faces, int channels);
-
 /// Chandrasekhar's H function H(mu) for isotropic scattering, accurate to 1% (B. Hapke, Icarus 157 (2002), equation 13;
 /// numerics.md, Eq. (78)).
 double HalfSpaceH(double albedo, double mu);

@@ -53,6 +53,50 @@ Eigen::MatrixXd Ratio(const LayerModes& modes, const Eigen::ArrayXd& a, const Ei
   const Eigen::MatrixXd other = modes.y * (b * scale).matrix().asDiagonal();
   return (one + other).transpose().partialPivLu().solve((one - other).transpose()).transpose();
 }
+
+/// tanh(x) / x; 1 at 0.
+double TanhOver(double x)
+{
+  return x < 1e-4 ? 1.0 - x * x / 3.0 : std::tanh(x) / x;
+}
+
+/// (1 - tanh(x / 2) / (x / 2)) / x^2; 1/12 at 0. This is the mean over [0, 1] of the solution of a'' = x^2 a - 1 with a
+/// = 0 at both ends.
+double MeanOfEvenSource(double x)
+{
+  return x < 0.02 ? (1.0 - 0.1 * x * x) / 12.0 : (1.0 - TanhOver(0.5 * x)) / (x * x);
+}
+
+/// Integrals of the solution of a'' = x^2 a - exp(-r s) on [0, 1] with a = 0 at both ends: a mode with decay rate x,
+/// driven by a beam that is attenuated by exp(-r) across a layer. x, r >= 0.
+struct BeamIntegrals
+{
+  BeamIntegrals(double x, double r);
+
+  double slopeAtEntry; ///< a'(0)
+  double slopeAtExit;  ///< -a'(1)
+  double mean;         ///< of a
+  double meanBeam;     ///< of exp(-r s)
+};
+
+BeamIntegrals::BeamIntegrals(double x, double r)
+{
+  this->meanBeam = MeanOfExponential(r);
+  if (x < Thin)
+  {
+    const double first = r < 1.0 ? SeriesOfMoment(1, r) : (this->meanBeam - std::exp(-r)) / r;
+    const double second = r < 1.0 ? SeriesOfMoment(2, r) : (2.0 * first - std::exp(-r)) / r;
+    this->slopeAtEntry = this->meanBeam - first;
+    this->slopeAtExit = first;
+    this->mean = 0.5 * (first - second);
+    return;
+  }
+  const double e = std::exp(-x), one = -std::expm1(-2.0 * x);
+  const double along = MeanOfExponential(x + r), against = MeanOfBoth(x, r);
+  this->slopeAtEntry = (along - e * against) / one;
+  this->slopeAtExit = (against - e * along) / one;
+  this->mean = (this->meanBeam - this->slopeAtEntry - this->slopeAtExit) / (x * x);
+}
 }
 
 HalfRangeQuadrature::HalfRangeQuadrature(int count)
@@ -86,35 +130,6 @@ std::vector<double> NormalisedLegendre(int degree, int order, double x)
     p[l] = ((2.0 * l - 1.0) * x * p[l - 1] - two) / std::sqrt((l - m) * (l + m));
   }
   return p;
-}
-
-double TanhOver(double x)
-{
-  return x < 1e-4 ? 1.0 - x * x / 3.0 : std::tanh(x) / x;
-}
-
-double MeanOfEvenSource(double x)
-{
-  return x < 0.02 ? (1.0 - 0.1 * x * x) / 12.0 : (1.0 - TanhOver(0.5 * x)) / (x * x);
-}
-
-BeamIntegrals::BeamIntegrals(double x, double r)
-{
-  this->meanBeam = MeanOfExponential(r);
-  if (x < Thin)
-  {
-    const double first = r < 1.0 ? SeriesOfMoment(1, r) : (this->meanBeam - std::exp(-r)) / r;
-    const double second = r < 1.0 ? SeriesOfMoment(2, r) : (2.0 * first - std::exp(-r)) / r;
-    this->slopeAtEntry = this->meanBeam - first;
-    this->slopeAtExit = first;
-    this->mean = 0.5 * (first - second);
-    return;
-  }
-  const double e = std::exp(-x), one = -std::expm1(-2.0 * x);
-  const double along = MeanOfExponential(x + r), against = MeanOfBoth(x, r);
-  this->slopeAtEntry = (along - e * against) / one;
-  this->slopeAtExit = (against - e * along) / one;
-  this->mean = (this->meanBeam - this->slopeAtEntry - this->slopeAtExit) / (x * x);
 }
 
 Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, int order)
