@@ -1,5 +1,6 @@
 #include "LightPropagation/Accuracy/TargetError.h"
 
+#include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Light/Quality.h"
 #include "LightPropagation/Accuracy/DirectionForecast.h"
@@ -8,7 +9,6 @@
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -279,8 +279,7 @@ private:
     found.met = light.relativeError <= this->Target; // false if NaN (not known)
     found.divided = this->InHalves;
     found.solves = this->Solves;
-    const std::chrono::duration<double> own = std::chrono::steady_clock::now() - this->Start;
-    found.seconds = this->TheScene.domain.Max(own.count());
+    found.seconds = this->TheScene.domain.Max(ClockSeconds() - this->Start);
     if (!found.met)
     {
       light.doubts.push_back(this->WordsOfMiss(light.relativeError, found));
@@ -309,7 +308,7 @@ private:
   const PropagationSolver& Solver;
   CoarseBlocks Blocks;
   CoarseScene Coarse;
-  std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
+  const double Start = ClockSeconds();
 
   std::optional<DirectionForecast> Forecast;
   PropagationSettings Used;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "Device/Clock.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 
 #include <array>
+#include <vector>
 
 namespace tyndall
 {
@@ -38,5 +40,22 @@ public:
 private:
   EnergyBalance Sums;
   std::array<Rgb, 6> Faces = {};
+};
+
+/// The rows of the `convergence` table, with the time since construction.
+class ConvergenceRecord
+{
+public:
+  void Add(double residual, double change, const EnergyLedger& ledger)
+  {
+    const EnergyBalance& balance = ledger.Balance();
+    this->Rows.push_back({ static_cast<int>(this->Rows.size()), ClockSeconds() - this->Start, residual, change,
+      Sum(balance.absorbed), Sum(balance.escaped), Sum(balance.leftOver) });
+  }
+  const std::vector<ConvergenceRow>& All() const { return this->Rows; }
+
+private:
+  double Start = ClockSeconds();
+  std::vector<ConvergenceRow> Rows;
 };
 }

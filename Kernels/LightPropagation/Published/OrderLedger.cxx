@@ -21,7 +21,6 @@ OrderLedger::OrderLedger(const Medium& medium, int channels, const PropagationSe
   : TheMedium(medium)
   , Settings(settings)
   , Channels(channels)
-  , Start(std::chrono::steady_clock::now())
 {
   const double power = 4.0 * Pi * medium.grid.VoxelVolume();
   for (std::size_t voxel = 0; voxel < medium.grid.VoxelCount(); ++voxel)
@@ -65,11 +64,8 @@ void OrderLedger::CloseOrder(const std::vector<float>& fluence)
       GoesOnToItsEnd(this->Settings.maximumOrders, this->CarriedBefore[c], this->Carried[c], next) >
         Negligible * leftOver;
   }
-  const EnergyBalance& balance = this->Powers.Balance();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
   const double residual = goesOn ? this->EstimateResidual(sum) : 0.0;
-  this->Rows.push_back(
-    { this->Orders(), seconds, residual, 0.0, Sum(balance.absorbed), Sum(balance.escaped), Sum(balance.leftOver) });
+  this->Record.Add(residual, 0.0, this->Powers);
   this->LastSum = sum;
   this->CarriedBefore = std::exchange(this->Carried, {});
   this->Finished = residual == 0.0 ||
@@ -80,7 +76,7 @@ void OrderLedger::CloseOrder(const std::vector<float>& fluence)
 /// Estimates the remainder of the orders, which decrease like a geometric series in the end.
 double OrderLedger::EstimateResidual(const Rgb& orderSum) const
 {
-  double residual = this->Rows.empty() ? 1.0 : 0.0;
+  double residual = this->Orders() == 0 ? 1.0 : 0.0;
   for (int c = 0; c < this->Channels; ++c)
   {
     if (orderSum[c] > 0.0 && this->LastSum[c] > 0.0)
@@ -94,7 +90,7 @@ double OrderLedger::EstimateResidual(const Rgb& orderSum) const
 
 double OrderLedger::Progress(double fractionOfOrder) const
 {
-  const double residual = this->Rows.empty() ? 1.0 : this->Rows.back().residual;
+  const double residual = this->Orders() == 0 ? 1.0 : this->Record.All().back().residual;
   return ProgressOf(this->Settings, residual, this->Orders() + fractionOfOrder);
 }
 
@@ -102,6 +98,6 @@ void OrderLedger::WriteTo(LightField& field) const
 {
   field.balance = this->Powers.Balance();
   field.facePowerOut = this->Powers.FacePowerOut();
-  field.convergence = this->Rows;
+  field.convergence = this->Record.All();
 }
 }

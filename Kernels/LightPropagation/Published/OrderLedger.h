@@ -5,7 +5,6 @@
 #include "LightPropagation/PropagationSettings.h"
 #include "Medium/Medium.h"
 
-#include <chrono>
 #include <vector>
 
 namespace tyndall
@@ -24,7 +23,7 @@ public:
   void CloseOrder(const std::vector<float>& fluence);
 
   bool Done() const { return this->Finished; }
-  int Orders() const { return static_cast<int>(this->Rows.size()); }
+  int Orders() const { return static_cast<int>(this->Record.All().size()); }
   /// Fraction of the solve that is done, given the fraction of the current order that is done.
   double Progress(double fractionOfOrder) const;
 
@@ -41,7 +40,6 @@ private:
   Rgb Carried = {};       ///< W that wraps around periodic axes in this order
   Rgb CarriedBefore = {}; ///< the same of the order before
   Rgb TotalSum = {}, LastSum = {};
-  std::vector<ConvergenceRow> Rows;
-  std::chrono::steady_clock::time_point Start;
+  ConvergenceRecord Record;
 };
 }
