@@ -67,6 +67,8 @@ struct PropagationSettings
   /// do not fit, they stay in host memory and are streamed, with bit-identical results.
   std::size_t memoryBudget = 0;
   bool leaveOut = true; ///< skip work the scene does not need; false: compute all, to measure the saving
+
+  bool IsPeriodic() const { return this->periodic[0] || this->periodic[1] || this->periodic[2]; } ///< along any axis
 };
 
 /// @throws InvalidInput if a number is out of range (numbers of directions are checked by the direction sets)

@@ -318,6 +318,12 @@ bool Shines(const Illumination& illumination)
     illumination.uncollided.IsThere();
 }
 
+bool AnyHasPosition(const std::vector<Light>& lights)
+{
+  return std::any_of(
+    lights.begin(), lights.end(), [](const Light& light) { return light.type != LightType::Directional; });
+}
+
 bool ShinesThroughFaces(const Illumination& illumination)
 {
   return Sum(illumination.sky) > 0.0 || !illumination.environment.Empty() || AnyShines(illumination.faces);

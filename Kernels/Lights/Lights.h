@@ -101,6 +101,9 @@ Environment Turned(const Environment& environment, int up, double degrees);
 /// @throws InvalidInput if `rotation` is not orthogonal
 Environment Turned(const Environment& environment, const Rotation& rotation);
 
+/// Whether any of the lights has a position, next to which light decreases steeply: it is not a parallel beam.
+bool AnyHasPosition(const std::vector<Light>& lights);
+
 /// Whether any light source has a power or radiance above 0.
 bool Shines(const Illumination& illumination);
 /// Whether there is a boundary source: faces, sky or environment, as opposed to lamps.

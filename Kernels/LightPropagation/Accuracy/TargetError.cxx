@@ -42,13 +42,6 @@ struct CoarseLight
   }
 };
 
-/// Whether there are lamps with a position, next to which light decreases steeply.
-bool HasLampsNearby(const Illumination& illumination)
-{
-  return std::any_of(illumination.lights.begin(), illumination.lights.end(),
-    [](const Light& light) { return light.type != LightType::Directional; });
-}
-
 /// The search; all ranks take the same steps.
 class TargetSearch
 {
@@ -146,7 +139,7 @@ private:
                                                                    : nullptr;
     const CoarseLight& other = solved == &this->AlongMore ? this->AlongFew : this->AlongMore;
     const double error = this->Forecast->Error(settings);
-    const double order = HasLampsNearby(this->TheScene.illumination) ? OrderBesideLamps : OrderOfClouds;
+    const double order = AnyHasPosition(this->TheScene.illumination.lights) ? OrderBesideLamps : OrderOfClouds;
     if (!solved && this->IsMetAtMost(other.fluence, error, order))
     {
       return;

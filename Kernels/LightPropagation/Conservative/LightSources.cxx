@@ -59,9 +59,7 @@ void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
 /// there would be infinitely many images, nor cross between blocks.
 SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& comesIn)
 {
-  const std::array<bool, 3>& periodic = problem.Settings().periodic;
-  const bool endless = periodic[0] || periodic[1] || periodic[2];
-  const bool has = problem.TheDomain().IsSerial() && !endless;
+  const bool has = problem.TheDomain().IsSerial() && !problem.Settings().IsPeriodic();
   return problem.Traits().emits && problem.Settings().emissionError > 0.0 && has ? Split(problem.TheMedium(), comesIn)
                                                                                  : SplitEmission();
 }

@@ -12,11 +12,6 @@ constexpr int FewPlanes = 256;        ///< that a ray crosses around a periodic 
 constexpr double MostlyLit = 0.75;    ///< fraction of rays above which a separate sweep does not pay
 constexpr double MostlyFilled = 0.75; ///< the same for voxels
 constexpr int OrdersExpected = 6;     ///< assumed when deciding whether to sweep empty slabs only at the end
-
-bool IsPeriodic(const PropagationSettings& settings)
-{
-  return settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
-}
 }
 
 OrderSweeps::OrderSweeps(
@@ -37,7 +32,7 @@ OrderSweeps::OrderSweeps(
     this->Filled = parts.Transport.MakeSweep(
       { { &parts.Path, nullptr, nullptr, nullptr }, parts.AllRays(), parts.Problem.Traits().filled });
   }
-  if (settings.leaveOut && parts.Lights.SweepCarriesBoundarySource() && !shines && !IsPeriodic(settings))
+  if (settings.leaveOut && parts.Lights.SweepCarriesBoundarySource() && !shines && !settings.IsPeriodic())
   {
     this->MakeLitSweep(deposit);
   }
@@ -51,7 +46,7 @@ bool OrderSweeps::MayOmitEmptySlabs() const
   const PropagationSettings& settings = this->Parts.Problem.Settings();
   const MediumTraits& traits = this->Parts.Problem.Traits();
   if (!this->Parts.Transport.SweepsParts() || !settings.leaveOut || !traits.scatters ||
-    !this->Parts.Scattering->CanScatterAllOrders() || IsPeriodic(settings) || this->Parts.Faces)
+    !this->Parts.Scattering->CanScatterAllOrders() || settings.IsPeriodic() || this->Parts.Faces)
   {
     return false;
   }

@@ -42,8 +42,7 @@ std::size_t ArraysOfLight(const SolveExtent& solve)
   const std::size_t flux = solve.settings.netFlux ? 3 : 0;
   const std::size_t shown = degree > 0 && solve.settings.storeMoments ? moments : 0;
   const std::size_t beams = degree > 0 ? 5 : 0;
-  const std::array<bool, 3>& periodic = solve.settings.periodic;
-  const std::size_t lost = periodic[0] || periodic[1] || periodic[2] ? moments : 0; // by rounding
+  const std::size_t lost = solve.settings.IsPeriodic() ? moments : 0; // by rounding
   return medium + 2 * moments + lost + 1 + flux + shown + beams + (solve.settings.firstMoments ? 6 : 0);
 }
 

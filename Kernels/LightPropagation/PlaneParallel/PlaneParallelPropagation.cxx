@@ -286,10 +286,8 @@ bool IsPlaneParallel(const Medium& medium, const Illumination& illumination, con
   const bool asked = settings.source == PropagationSource::Automatic &&
     settings.acceleration == PropagationAcceleration::Automatic && settings.adaptDirections && settings.leaveOut &&
     settings.maximumOrders == 0 && settings.angularDegree < 0 && !settings.firstMoments;
-  const bool near = std::any_of(illumination.lights.begin(), illumination.lights.end(),
-    [](const Light& light) { return light.type != LightType::Directional; });
-  return axis >= 0 && medium.grid.size[axis] <= MostLayers && asked && !near && illumination.environment.Empty() &&
-    !illumination.uncollided.IsThere() && IsLayered(medium, axis);
+  return axis >= 0 && medium.grid.size[axis] <= MostLayers && asked && !AnyHasPosition(illumination.lights) &&
+    illumination.environment.Empty() && !illumination.uncollided.IsThere() && IsLayered(medium, axis);
 }
 
 LightField SolvePlaneParallel(

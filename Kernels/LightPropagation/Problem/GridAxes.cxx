@@ -17,12 +17,6 @@ constexpr double Width =
 constexpr int EdgeInSlabs = 12;
 /// An even number of rows with directions of cosine 0, whose light would wrap around forever
 constexpr int EdgeWithCosineZero = 10;
-
-bool AnyIsNear(const std::vector<Light>& lights)
-{
-  return std::any_of(
-    lights.begin(), lights.end(), [](const Light& light) { return light.type != LightType::Directional; });
-}
 }
 
 AxisPermutation::AxisPermutation(
@@ -193,7 +187,7 @@ void AxisPermutation::Undo(LightField& light, const Grid& grid) const
 
 UnvaryingAxes::UnvaryingAxes(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings)
 {
-  if (settings.source == PropagationSource::Constant || AnyIsNear(SeenFrom(grid, illumination.lights)))
+  if (settings.source == PropagationSource::Constant || AnyHasPosition(SeenFrom(grid, illumination.lights)))
   {
     return;
   }

@@ -344,8 +344,7 @@ bool MayBeAccelerated(const PropagationSettings& settings, bool scatters)
 /// Scheme that a distributed solve uses in place of the serial one: cells do not wrap around periodic axes.
 IterationScheme AvailableInBlocks(IterationScheme serial, const PropagationSettings& settings)
 {
-  const bool wraps = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
-  return serial == IterationScheme::CoarseMeshDsa && wraps ? IterationScheme::SourceIteration : serial;
+  return serial == IterationScheme::CoarseMeshDsa && settings.IsPeriodic() ? IterationScheme::SourceIteration : serial;
 }
 }
 
