@@ -26,7 +26,9 @@ Field Gather(const CoarseBlocks& blocks, const Field& field, Arrays& arrays)
   }
   const std::size_t voxels = blocks.Fine().blocks[blocks.Comm().Rank()].VoxelCount();
   const std::vector<float> own(field.values, field.values + voxels * static_cast<std::size_t>(field.components));
-  return Keep(arrays, blocks.Around(own, field.components), field.components);
+  Field gathered = field;
+  gathered.values = Keep(arrays, blocks.Around(own, field.components), field.components).values;
+  return gathered;
 }
 
 std::array<int, 3> PartsOf(const Grid& whole, const std::array<bool, 3>& periodic)
@@ -107,7 +109,8 @@ void CoarseScene::AverageMedium(const Coarsening& coarsening)
   {
     if (field->values)
     {
-      *field = Keep(this->Means, coarsening.Average(field->values, field->components), field->components);
+      std::vector<float> means = coarsening.Average(field->values, field->components);
+      field->values = Keep(this->Means, std::move(means), field->components).values;
     }
   }
 }
