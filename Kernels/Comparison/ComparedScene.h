@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Accuracy/ResampledScene.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
 #include "Medium/Medium.h"
@@ -13,15 +14,11 @@
 /// Transfer of fields between grids whose voxel sizes differ by integer factors.
 namespace tyndall
 {
-/// Fine voxels per coarse voxel along each axis, at least 1.
-using Factors = std::array<int, 3>;
-
 /// Factors for voxels `factor` times as large; axes with a single voxel are not coarsened.
 /// @return nothing if `factor` does not divide the size of an axis
 std::optional<Factors> CoarseningBy(int factor, const Grid& grid);
 
 Grid Coarsened(const Grid& fine, const Factors& factors);
-Grid Refined(const Grid& coarse, const Factors& factors);
 
 /// Voxels of `fine` per voxel of `coarse` along each axis; nothing if they are not integers, or the boxes differ by
 /// more than a thousandth of a voxel.
@@ -30,10 +27,6 @@ std::optional<Factors> FactorsBetween(const Grid& fine, const Grid& coarse);
 /// Means over coarse voxels; NaN if a fine value is.
 /// @param values  `components` per voxel of `fine`, x fastest
 std::vector<float> Averaged(const float* values, int components, const Grid& fine, const Factors& factors);
-
-/// Copies each coarse value to all of its fine voxels.
-/// @param values  `components` per voxel of `coarse`, x fastest
-std::vector<float> Repeated(const float* values, int components, const Grid& coarse, const Factors& factors);
 
 /// The scene that all solvers are given. Refers to arrays that it does not own.
 struct ComparedScene
@@ -49,27 +42,5 @@ struct ComparedScene
   /// Why photons cannot simulate this scene; empty if they can.
   /// @param all  including scattered light
   std::string WhyNotByPhotons(bool all) const;
-};
-
-/// A scene on a coarser or finer grid: coefficients are averaged over voxels, or repeated; the mean cosine is averaged
-/// with weight sigma_s.
-class RescaledScene
-{
-public:
-  enum class To
-  {
-    Coarser,
-    Finer
-  };
-  RescaledScene(const ComparedScene& scene, To to, const Factors& factors);
-  RescaledScene(const RescaledScene&) = delete;
-
-  const ComparedScene& Scene() const { return this->TheScene; }
-
-private:
-  std::vector<float> Rescaled(const Field& field, To to, const Factors& factors, const Grid& from) const;
-
-  std::vector<float> SigmaA, SigmaS, Emission, G;
-  ComparedScene TheScene;
 };
 }

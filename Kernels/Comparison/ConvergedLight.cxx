@@ -65,9 +65,11 @@ ReferenceLight AsReference(LightField&& light, const Grid& grid)
 ReferenceLight Climb(Device& device, const ComparedScene& scene, const Rung& rung, const Monitor& monitor)
 {
   const double start = device.Now();
-  const RescaledScene fine(scene, RescaledScene::To::Finer, RefinementBy(rung.refinement, scene.medium.grid));
-  ReferenceLight reference =
-    AsReference(Propagate(device, fine.Scene(), SettingsOf(rung), monitor), fine.Scene().medium.grid);
+  const DividedScene divided(
+    { Domain(scene.medium.grid), scene.medium, scene.illumination }, RefinementBy(rung.refinement, scene.medium.grid));
+  ComparedScene fine = scene;
+  fine.medium = divided.Scene().medium;
+  ReferenceLight reference = AsReference(Propagate(device, fine, SettingsOf(rung), monitor), fine.medium.grid);
   reference.text = InWords(rung, reference.grid, device.Now() - start);
   return reference;
 }

@@ -51,18 +51,21 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
   {
     const std::optional<Factors> factors = CoarseningBy(coarsening, scene.medium.grid);
     const bool coarse = coarsening > 1;
-    if (!factors || !HasCubicVoxels(Coarsened(scene.medium.grid, *factors)))
+    const Grid grid = factors ? Coarsened(scene.medium.grid, *factors) : Grid();
+    if (!factors || !HasCubicVoxels(grid))
     {
       continue;
     }
-    const auto scaled = coarse ? std::make_shared<RescaledScene>(scene, RescaledScene::To::Coarser, *factors) : nullptr;
-    const ComparedScene* const solved = scaled ? &scaled->Scene() : &scene;
-    ComparedRun run = RunOf(directions, solved->medium.grid);
+    // Lattices on coarser grids have a constant refractive index.
+    const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination,
+      coarse ? Field() : scene.ior };
+    const auto scaled = coarse ? std::make_shared<CoarseScene>(given, grid) : nullptr;
+    ComparedRun run = RunOf(directions, grid);
     run.setting += coarse ? ", voxels x " + std::to_string(coarsening) : "";
     run.solve = [=, &device](bool, const Monitor& monitor) {
-      (void)scaled; // captured to keep the scene's arrays alive
+      const SceneBlock solved = scaled ? scaled->Scene() : given;
       return SolveLatticeBoltzmann(
-        device, Domain(solved->medium.grid), solved->medium, solved->ior, solved->illumination, of, monitor);
+        device, solved.domain, solved.medium, solved.index, solved.illumination, of, monitor);
     };
     runs.push_back(std::move(run));
   }

@@ -118,7 +118,8 @@ std::vector<ComparedRun> PropagationRunsOf(
       continue;
     }
     const bool coarse = setting.coarsening > 1;
-    const auto scaled = coarse ? std::make_shared<RescaledScene>(scene, RescaledScene::To::Coarser, *factors) : nullptr;
+    const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination };
+    const auto scaled = coarse ? std::make_shared<CoarseScene>(given, Coarsened(scene.medium.grid, *factors)) : nullptr;
     const PropagationSettings of = SettingsOf(method, setting, settings);
     ComparedRun run;
     run.method = method;
@@ -130,8 +131,7 @@ std::vector<ComparedRun> PropagationRunsOf(
     run.solve = [=, &scene](bool estimate, const Monitor& monitor) {
       PropagationSettings now = of;
       now.periodic = scene.periodic;
-      const Medium& medium = scaled ? scaled->Scene().medium : scene.medium;
-      const SceneBlock solved = { Domain(medium.grid), medium, scene.illumination };
+      const SceneBlock solved = scaled ? scaled->Scene() : given;
       return estimate ? SolveWithErrorEstimate(solved, now, monitor, solver) : solver(solved, now, monitor);
     };
     runs.push_back(std::move(run));

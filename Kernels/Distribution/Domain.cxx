@@ -25,6 +25,13 @@ Domain Domain::WithGrid(const Grid& whole) const
   return other;
 }
 
+Domain Domain::WithBlocks(BlockPartition partition) const
+{
+  Domain other = *this;
+  other.Blocks = std::move(partition);
+  return other;
+}
+
 double Domain::Sum(double own) const
 {
   return this->Ranks->Sum({ own })[0];

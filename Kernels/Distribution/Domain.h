@@ -24,6 +24,8 @@ public:
 
   /// The same blocks of the same voxels, with another origin and spacing.
   Domain WithGrid(const Grid& whole) const;
+  /// Another grid on the same ranks.
+  Domain WithBlocks(BlockPartition partition) const;
 
   const Grid& Whole() const { return this->Blocks.whole; }
   const BlockPartition& Partition() const { return this->Blocks; }

@@ -51,14 +51,15 @@ double ErrorOf(const std::vector<float>& found, const std::vector<float>& exact)
 /// In voxels of half the edge, along so many directions that these leave a tenth of a percent.
 std::vector<float> Exact(Device& device, const TargetScene& scene)
 {
-  const DividedScene divided(scene.medium, scene.light, {});
+  const Grid& grid = scene.medium.grid;
+  const DividedScene divided({ Domain(grid), scene.medium, scene.light }, DividedScene::Halves(grid, {}));
   PropagationSettings settings;
   settings.directionsPerFace = 400;
   settings.uncollidedDirections = 1600;
   settings.staggeredRays = true;
   settings.tolerance = 1e-5;
   settings.emissionError = 0.005;
-  LightField light = SolveConservative(device, divided.TheMedium(), divided.Shining(), settings);
+  LightField light = SolveConservative(device, divided.Scene().medium, divided.Scene().illumination, settings);
   divided.Undo(light);
   return light.fluence;
 }

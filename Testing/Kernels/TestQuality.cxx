@@ -145,9 +145,12 @@ TEST_F(LightInDividedVoxels, IsThatOfTheScene)
   PropagationSettings settings;
   settings.netFlux = settings.facePower = true;
   const LightField whole = SolveConservative(this->GetDevice(), scene.medium, scene.light, settings);
-  const DividedScene divided(scene.medium, scene.light, settings.periodic);
-  EXPECT_EQ(divided.Parts(), 8.0);
-  LightField light = SolveConservative(this->GetDevice(), divided.TheMedium(), divided.Shining(), settings);
+  const Grid& grid = scene.medium.grid;
+  const DividedScene divided(
+    { Domain(grid), scene.medium, scene.light }, DividedScene::Halves(grid, settings.periodic));
+  EXPECT_EQ(divided.Scene().medium.grid.VoxelCount(), 8 * grid.VoxelCount());
+  LightField light =
+    SolveConservative(this->GetDevice(), divided.Scene().medium, divided.Scene().illumination, settings);
   divided.Undo(light);
   ASSERT_EQ(light.fluence.size(), whole.fluence.size());
   ASSERT_EQ(light.netFlux.size(), whole.netFlux.size());

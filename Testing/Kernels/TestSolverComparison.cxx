@@ -69,18 +69,20 @@ TEST(GridTransfer, AveragesWhatItRepeats)
   EXPECT_EQ(Averaged(repeated.data(), 1, fine, *factors), means);
 }
 
-TEST(RescaledScene, WeighsTheMeanCosineByScattering)
+TEST(ResampledScene, WeighsTheMeanCosineByScattering)
 {
   const std::vector<float> sigma_s = { 1.0f, 3.0f, 0.0f, 0.0f }, g = { 0.8f, 0.4f, 0.7f, -0.7f };
-  ComparedScene scene;
-  scene.medium.grid.size = { 4, 1, 1 };
-  scene.medium.sigma_s = { sigma_s.data() };
-  scene.medium.phase = PhaseOfMedium(PhaseFunction::Schlick(0.0), Field{ g.data() });
-  const RescaledScene coarser(scene, RescaledScene::To::Coarser, { 2, 1, 1 });
+  Medium medium;
+  medium.grid.size = { 4, 1, 1 };
+  medium.sigma_s = { sigma_s.data() };
+  medium.phase = PhaseOfMedium(PhaseFunction::Schlick(0.0), Field{ g.data() });
+  const Illumination dark;
+  const SceneBlock scene = { Domain(medium.grid), medium, dark };
+  const CoarseScene coarser(scene, Coarsened(medium.grid, { 2, 1, 1 }));
   EXPECT_NEAR(coarser.Scene().medium.phase.MeanCosine(0, 0), (0.8 + 3.0 * 0.4) / 4.0, 1e-6);
   EXPECT_EQ(coarser.Scene().medium.phase.MeanCosine(1, 0), 0.0) << "where nothing scatters";
   EXPECT_EQ(coarser.Scene().medium.phase.At(0, 0).TheKind(), PhaseFunction::Kind::Schlick);
-  const RescaledScene finer(scene, RescaledScene::To::Finer, { 2, 1, 1 });
+  const DividedScene finer(scene, { 2, 1, 1 });
   EXPECT_EQ(finer.Scene().medium.phase.MeanCosine(3, 0), 0.4f);
   EXPECT_EQ(finer.Scene().medium.phase.MeanCosine(4, 0), 0.7f);
 }

@@ -40,13 +40,14 @@ PropagationSolver SolverOn(Device& device)
 
 std::vector<float> Exact(Device& device, const Scene& scene)
 {
-  const DividedScene divided(scene.medium, scene.light, {});
+  const Grid& grid = scene.medium.grid;
+  const DividedScene divided({ Domain(grid), scene.medium, scene.light }, DividedScene::Halves(grid, {}));
   PropagationSettings settings;
   settings.directionsPerFace = 256;
   settings.uncollidedDirections = 1600;
   settings.staggeredRays = true;
   settings.tolerance = 1e-5;
-  LightField light = SolveConservative(device, divided.TheMedium(), divided.Shining(), settings);
+  LightField light = SolveConservative(device, divided.Scene().medium, divided.Scene().illumination, settings);
   divided.Undo(light);
   return light.fluence;
 }

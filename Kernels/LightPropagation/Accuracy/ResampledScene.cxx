@@ -30,30 +30,10 @@ Field Gather(const CoarseBlocks& blocks, const Field& field, Arrays& arrays)
   gathered.values = Keep(arrays, blocks.Around(own, field.components), field.components).values;
   return gathered;
 }
-
-std::array<int, 3> PartsOf(const Grid& whole, const std::array<bool, 3>& periodic)
-{
-  std::array<int, 3> parts = {};
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    parts[axis] = whole.size[axis] == 1 && periodic[axis] ? 1 : 2;
-  }
-  return parts;
-}
-
-Grid Divide(Grid grid, const std::array<int, 3>& parts)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    grid.size[axis] *= parts[axis];
-    grid.spacing[axis] /= parts[axis];
-  }
-  return grid;
-}
 }
 
 CoarseScene::CoarseScene(const CoarseBlocks& blocks, const SceneBlock& fine)
-  : TheDomain(blocks.Comm(), blocks.Coarse())
+  : TheDomain(fine.domain.WithBlocks(blocks.Coarse()))
   , Averaged(fine.medium)
   , Light(fine.illumination)
 {
@@ -172,60 +152,22 @@ Field CoarseScene::AveragedDirections(const Field& mean, const Field& fluence, c
   return Keep(this->Means, std::move(directions), 3);
 }
 
-DividedScene::DividedScene(const Medium& medium, const Illumination& illumination, const std::array<bool, 3>& periodic)
-  : DividedScene(medium, illumination, periodic, medium.grid)
+Grid Refined(const Grid& coarse, const Factors& factors)
 {
+  Grid fine = coarse;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    fine.size[axis] = coarse.size[axis] * factors[axis];
+    fine.spacing[axis] = coarse.spacing[axis] / factors[axis];
+  }
+  return fine;
 }
 
-DividedScene::DividedScene(
-  const Medium& part, const Illumination& illumination, const std::array<bool, 3>& periodic, const Grid& whole)
-  : Whole(whole)
-  , Given(part.grid)
-  , Along(PartsOf(whole, periodic))
-  , Divided(part)
-  , Light(illumination)
+std::vector<float> Repeated(const float* values, int components, const Grid& coarse, const Factors& factors)
 {
-  this->Divided.grid = Divide(part.grid, this->Along);
-  for (Field* field : { &this->Divided.sigma_a, &this->Divided.sigma_s, &this->Divided.emission,
-         &this->Light.uncollided.fluence, &this->Light.uncollided.meanDirection })
-  {
-    *field = this->Repeated(*field);
-  }
-  if (part.phase.Varies())
-  {
-    this->Divided.phase = part.phase.WithG(this->Repeated(part.phase.G()));
-  }
-}
-
-BlockPartition DividedScene::BlocksOf(const BlockPartition& given) const
-{
-  BlockPartition divided = { Divide(given.whole, this->Along), given.blocks };
-  for (VoxelBox& block : divided.blocks)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      block.first[axis] *= this->Along[axis];
-      block.size[axis] *= this->Along[axis];
-    }
-  }
-  return divided;
-}
-
-double DividedScene::Parts() const
-{
-  return this->Along[0] * this->Along[1] * this->Along[2];
-}
-
-Field DividedScene::Repeated(const Field& field)
-{
-  if (!field.values)
-  {
-    return field;
-  }
-  const Grid& fine = this->Divided.grid;
-  const std::array<int, 3>& parts = this->Along;
-  std::vector<float> values;
-  values.reserve(fine.VoxelCount() * field.components);
+  const Grid fine = Refined(coarse, factors);
+  std::vector<float> repeated;
+  repeated.reserve(fine.VoxelCount() * components);
   for (int z = 0; z < fine.size[2]; ++z)
   {
     for (int y = 0; y < fine.size[1]; ++y)
@@ -233,20 +175,68 @@ Field DividedScene::Repeated(const Field& field)
       for (int x = 0; x < fine.size[0]; ++x)
       {
         const float* const from =
-          field.values + this->Given.IndexOf({ x / parts[0], y / parts[1], z / parts[2] }) * field.components;
-        values.insert(values.end(), from, from + field.components);
+          values + coarse.IndexOf({ x / factors[0], y / factors[1], z / factors[2] }) * components;
+        repeated.insert(repeated.end(), from, from + components);
       }
     }
   }
-  this->Arrays.push_back(std::move(values));
+  return repeated;
+}
+
+Factors DividedScene::Halves(const Grid& whole, const std::array<bool, 3>& periodic)
+{
+  Factors parts = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    parts[axis] = whole.size[axis] == 1 && periodic[axis] ? 1 : 2;
+  }
+  return parts;
+}
+
+DividedScene::DividedScene(const SceneBlock& scene, const Factors& parts)
+  : Whole(scene.domain.Whole())
+  , Given(scene.medium.grid)
+  , Along(parts)
+  , TheDomain(scene.domain)
+  , Divided(scene.medium)
+  , Light(scene.illumination)
+{
+  BlockPartition blocks = { Refined(this->Whole, parts), scene.domain.Partition().blocks };
+  for (VoxelBox& block : blocks.blocks)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      block.first[axis] *= parts[axis];
+      block.size[axis] *= parts[axis];
+    }
+  }
+  this->TheDomain = scene.domain.WithBlocks(std::move(blocks));
+  this->Divided.grid = Refined(this->Given, parts);
+  for (Field* field : { &this->Divided.sigma_a, &this->Divided.sigma_s, &this->Divided.emission,
+         &this->Light.uncollided.fluence, &this->Light.uncollided.meanDirection })
+  {
+    *field = this->Repeated(*field);
+  }
+  if (scene.medium.phase.Varies())
+  {
+    this->Divided.phase = scene.medium.phase.WithG(this->Repeated(scene.medium.phase.G()));
+  }
+}
+
+Field DividedScene::Repeated(const Field& field)
+{
   Field repeated = field;
-  repeated.values = this->Arrays.back().data();
+  if (field.values)
+  {
+    std::vector<float> values = tyndall::Repeated(field.values, field.components, this->Given, this->Along);
+    repeated.values = Keep(this->Arrays, std::move(values), field.components).values;
+  }
   return repeated;
 }
 
 void DividedScene::UndoCells(std::vector<float>& values) const
 {
-  const Grid fine = Divide(this->Whole, this->Along);
+  const Grid fine = Refined(this->Whole, this->Along);
   const std::size_t components = values.size() / BoxFaceCellCount(fine);
   if (components == 0)
   {

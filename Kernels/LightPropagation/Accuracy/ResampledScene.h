@@ -29,9 +29,12 @@ class CoarseScene
 {
 public:
   /// Collective.
-  /// @param blocks  must outlive this
-  /// @param fine  of this rank's block, with the same kinds of fields on all ranks; its domain must outlive this
+  /// @param fine  of this rank's block, with the same kinds of fields on all ranks
   CoarseScene(const CoarseBlocks& blocks, const SceneBlock& fine);
+  CoarseScene(const SceneBlock& fine, const Grid& coarse)
+    : CoarseScene(CoarseBlocks(fine.domain.Comm(), fine.domain.Partition(), coarse), fine)
+  {
+  }
   CoarseScene(const CoarseScene&) = delete;
   CoarseScene& operator=(const CoarseScene&) = delete;
 
@@ -51,25 +54,27 @@ private:
   std::deque<std::vector<float>> Means; ///< the fields refer to them
 };
 
-/// A scene refined to voxels of half the edge, with its own arrays: the same medium, for a more accurate solve. A
-/// periodic axis of a single voxel is not refined, because nothing varies along it.
+/// Fine voxels per coarse voxel along each axis, at least 1.
+using Factors = std::array<int, 3>;
+Grid Refined(const Grid& coarse, const Factors& factors);
+/// Copies each coarse value to all of its fine voxels.
+/// @param values  `components` per voxel of `coarse`, x fastest
+std::vector<float> Repeated(const float* values, int components, const Grid& coarse, const Factors& factors);
+
+/// A scene on a finer grid, with its own arrays: the same medium, for a more accurate solve.
 class DividedScene
 {
 public:
-  DividedScene(const Medium& medium, const Illumination& illumination, const std::array<bool, 3>& periodic);
-  /// Refines one part (block) of a scene.
-  /// @param whole  grid of the whole scene
-  DividedScene(
-    const Medium& part, const Illumination& illumination, const std::array<bool, 3>& periodic, const Grid& whole);
+  /// @param scene  its fields, but not its index, are repeated; must outlive this
+  /// @param parts  of an edge of the voxels
+  DividedScene(const SceneBlock& scene, const Factors& parts);
   DividedScene(const DividedScene&) = delete;
   DividedScene& operator=(const DividedScene&) = delete;
 
-  const Medium& TheMedium() const { return this->Divided; }
-  const Illumination& Shining() const { return this->Light; }
-  double Parts() const; ///< number of refined voxels per voxel
-  /// The same partition, in refined voxels.
-  /// @param given  partition of the whole scene
-  BlockPartition BlocksOf(const BlockPartition& given) const;
+  /// Halves each edge, except along periodic axes of a single voxel, on which nothing varies.
+  static Factors Halves(const Grid& whole, const std::array<bool, 3>& periodic);
+
+  SceneBlock Scene() const { return { this->TheDomain, this->Divided, this->Light }; }
 
   /// Averages the light of the refined scene to the voxels of the original scene, and to the cells of all of the box's
   /// faces.
@@ -79,10 +84,11 @@ private:
   Field Repeated(const Field& field);
   void UndoCells(std::vector<float>& values) const;
 
-  Grid Whole, Given; ///< grids of the whole scene and of the part, not refined
-  std::array<int, 3> Along;
+  Grid Whole, Given; ///< grids of the whole scene and of this rank's block, not refined
+  Factors Along;
+  Domain TheDomain;
   Medium Divided;
   Illumination Light;
-  std::vector<std::vector<float>> Arrays; ///< owned by this object; the refined scene refers to them
+  std::deque<std::vector<float>> Arrays; ///< the fields refer to them
 };
 }

@@ -224,16 +224,12 @@ private:
   {
     std::optional<DividedScene> divided;
     LightField light;
-    this->TheScene.domain.Collective([&] {
-      divided.emplace(
-        this->TheScene.medium, this->TheScene.illumination, this->Asked.periodic, this->TheScene.domain.Whole());
-    });
-    const BlockPartition blocks = divided->BlocksOf(this->TheScene.domain.Partition());
+    const Domain& domain = this->TheScene.domain;
+    domain.Collective(
+      [&] { divided.emplace(this->TheScene, DividedScene::Halves(domain.Whole(), this->Asked.periodic)); });
     try
     {
-      const Domain halves(this->TheScene.domain.Comm(), blocks);
-      light = this->Count(
-        { halves, divided->TheMedium(), divided->Shining() }, this->Used, OfPart(this->TheMonitor, 0.6, 1.0));
+      light = this->Count(divided->Scene(), this->Used, OfPart(this->TheMonitor, 0.6, 1.0));
     }
     catch (const DeviceError& error) // thrown on all ranks
     {
