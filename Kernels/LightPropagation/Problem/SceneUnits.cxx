@@ -41,6 +41,20 @@ void Divide(Rgb& values, double unit)
   }
 }
 
+/// Replaces a field by a copy in `values`, each value changed.
+template <class Change>
+void Copy(Field& field, std::size_t voxels, std::vector<float>& values, const Change& change)
+{
+  if (!field.values || voxels == 0)
+  {
+    return;
+  }
+  values.resize(voxels * static_cast<std::size_t>(field.components));
+  std::transform(field.values, field.values + values.size(), values.begin(),
+    [&](float value) { return static_cast<float>(change(value)); });
+  field.values = values.data();
+}
+
 void Multiply(std::vector<float>& values, double unit, const char* name)
 {
   const auto isBeyond = [=](float value) { return std::abs(value * unit) > std::numeric_limits<float>::max(); };
@@ -122,14 +136,9 @@ SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, d
   : medium(inWatts)
   , illumination(shining)
 {
-  if (inWatts.emission.values && inWatts.grid.VoxelCount() > 0)
-  {
-    const std::size_t count = inWatts.grid.VoxelCount() * static_cast<std::size_t>(inWatts.emission.components);
-    this->emission.resize(count);
-    std::transform(inWatts.emission.values, inWatts.emission.values + count, this->emission.begin(),
-      [=](float value) { return static_cast<float>(value / unit); });
-    this->medium.emission.values = this->emission.data();
-  }
+  const std::size_t voxels = inWatts.grid.VoxelCount();
+  const auto inUnits = [=](float value) { return value / unit; };
+  Copy(this->medium.emission, voxels, this->emission, inUnits);
   for (Light& light : this->illumination.lights)
   {
     Divide(light.power, unit);
@@ -143,21 +152,12 @@ SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, d
   {
     pixel = static_cast<float>(pixel / unit);
   }
-  this->TakeUncollided(unit);
-}
-
-void SceneInUnits::TakeUncollided(double unit)
-{
   UncollidedImage& image = this->illumination.uncollided;
-  const std::size_t count = this->medium.grid.VoxelCount() * static_cast<std::size_t>(image.fluence.components);
-  if (!image.IsThere() || count == 0) // on a rank without voxels the image is there, but without values
+  if (!image.IsThere() || voxels == 0) // on a rank without voxels the image is there, but without values
   {
     return;
   }
-  this->uncollided.resize(count);
-  std::transform(image.fluence.values, image.fluence.values + count, this->uncollided.begin(),
-    [=](float value) { return static_cast<float>(value / unit); });
-  image.fluence.values = this->uncollided.data();
+  Copy(image.fluence, voxels, this->uncollided, inUnits);
   for (Rgb& face : image.escaped)
   {
     Divide(face, unit);
@@ -184,20 +184,13 @@ SceneInLengths::SceneInLengths(const Medium& inLengths, const Illumination& shin
   : medium(inLengths)
   , illumination(shining)
 {
-  const Grid& grid = this->medium.grid = InUnit(inLengths.grid, unit);
-  const auto scale = [&](Field& field, std::vector<float>& values) {
-    if (field.values)
-    {
-      values.resize(grid.VoxelCount() * static_cast<std::size_t>(field.components));
-      std::transform(field.values, field.values + values.size(), values.begin(),
-        [=](float perLength) { return static_cast<float>(perLength * unit); });
-      field.values = values.data();
-    }
-  };
-  scale(this->medium.sigma_a, this->sigma_a);
-  scale(this->medium.sigma_s, this->sigma_s);
-  scale(this->medium.emission, this->emission);
-  if (grid.VoxelCount() > 0)
+  this->medium.grid = InUnit(inLengths.grid, unit);
+  const std::size_t voxels = this->medium.grid.VoxelCount();
+  const auto perUnit = [=](float perLength) { return perLength * unit; };
+  Copy(this->medium.sigma_a, voxels, this->sigma_a, perUnit);
+  Copy(this->medium.sigma_s, voxels, this->sigma_s, perUnit);
+  Copy(this->medium.emission, voxels, this->emission, perUnit);
+  if (voxels > 0)
   {
     Check(this->medium); // scaled values may overflow floats
   }

@@ -35,9 +35,6 @@ struct SceneInUnits
   std::vector<float> emission, uncollided;
   Medium medium;             ///< refers to `emission`
   Illumination illumination; ///< refers to `uncollided`
-
-private:
-  void TakeUncollided(double unit);
 };
 
 /// Converts light from the unit of power back to W.
