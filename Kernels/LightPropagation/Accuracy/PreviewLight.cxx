@@ -179,7 +179,7 @@ LightField SolvePreview(const SceneBlock& scene, const PropagationSettings& alik
   RequireSame(scene, alike);
   const CoarseBlocks blocks(domain.Comm(), domain.Partition(), coarse);
   const CoarseScene averages(blocks, scene);
-  if (domain.IsSerial() || coarse.VoxelCount() > small)
+  if (coarse.VoxelCount() > small)
   {
     return Shown(solve(averages.Scene()), blocks);
   }
