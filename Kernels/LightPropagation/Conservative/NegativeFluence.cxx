@@ -19,9 +19,8 @@ public:
     : Around(around)
     , Sigma(sigma_a)
     , Fluence(fluence)
-    , Own(around.Own())
-    , Known(around.Known())
-    , Owed(this->Own.VoxelCount(), 0.0)
+    , Known(around.KnownGrid())
+    , Owed(around.Own().VoxelCount(), 0.0)
   {
     for (std::size_t i = 0; i < this->Owed.size(); ++i)
     {
@@ -72,40 +71,27 @@ private:
   template <class Act>
   void ForOwn(const Act& act) const
   {
-    const std::array<int, 3>& n = this->Own.size;
-    std::array<int, 3> to = {};
-    for (int axis = 0; axis < 3; ++axis)
+    const VoxelBox &own = this->Around.Own(), &known = this->Around.Known();
+    for (std::size_t i = 0; i < this->Owed.size(); ++i)
     {
-      to[axis] = this->Own.first[axis] - this->Known.first[axis];
-    }
-    std::size_t i = 0;
-    for (int z = 0; z < n[2]; ++z)
-    {
-      for (int y = 0; y < n[1]; ++y)
+      std::array<int, 3> at = Grid{ own.size }.VoxelAt(i);
+      for (int axis = 0; axis < 3; ++axis)
       {
-        for (int x = 0; x < n[0]; ++x, ++i)
-        {
-          const std::array<int, 3> at = { x + to[0], y + to[1], z + to[2] };
-          act(i, this->Step(2) * at[2] + this->Step(1) * at[1] + at[0], at);
-        }
+        at[axis] += own.first[axis] - known.first[axis];
       }
+      act(i, this->Known.IndexOf(at), at);
     }
-  }
-
-  std::size_t Step(int axis) const
-  {
-    const std::size_t row = this->Known.size[0];
-    return axis == 0 ? 1 : axis == 1 ? row : row * this->Known.size[1];
   }
 
   /// Sum of `values` over the neighbours of a voxel in the box with halo.
   double SumBeside(const std::vector<float>& values, std::size_t known, const std::array<int, 3>& at) const
   {
+    const std::array<std::size_t, 3> step = this->Known.Strides();
     double sum = 0.0;
     for (int axis = 0; axis < 3; ++axis)
     {
-      sum += at[axis] > 0 ? values[known - this->Step(axis)] : 0.0;
-      sum += at[axis] + 1 < this->Known.size[axis] ? values[known + this->Step(axis)] : 0.0;
+      sum += at[axis] > 0 ? values[known - step[axis]] : 0.0;
+      sum += at[axis] + 1 < this->Known.size[axis] ? values[known + step[axis]] : 0.0;
     }
     return sum;
   }
@@ -113,7 +99,7 @@ private:
   const Halo& Around;
   const std::function<double(std::size_t)> Sigma;
   float* Fluence;
-  const VoxelBox Own, Known;
+  const Grid Known;         ///< the block with its halo
   std::vector<double> Owed; ///< W / length^3
 };
 }
