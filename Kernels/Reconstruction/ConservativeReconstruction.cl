@@ -8,7 +8,7 @@
 // Fields of a pyramid level: the light of each batch (sum of channels), then the smoothed quantities: the light's
 // channels and its flux (light times mean direction).
 
-#include "Reconstruction/ConservativeReconstructionShared.h"
+#include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.cl"
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
@@ -193,9 +193,10 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
 inline light_pair load_light(
   const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
 {
-#if FINEST
-  return load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
-#else
+  if (FINEST)
+  {
+    return load_voxels(fine, directions, size, ((size_t)z * size.y + y) * size.w + x, scale);
+  }
   const __global float* row = fine + row_of(size, 0, y, z) + x;
   const size_t field = field_of(size);
   light_pair light;
@@ -210,7 +211,6 @@ inline light_pair load_light(
     light.carried[c] = load_pair((BATCHES + c) * field, row);
   }
   return light;
-#endif
 }
 
 // Measures how far the details of the batches agree, in cells of 2 x 2 x 2 (numerics.md, Eq. (101)): field 0 is the
@@ -447,20 +447,17 @@ inline __attribute__((always_inline)) void store_voxels(
 // Computes the result of a level: the interpolated result of the level above plus the gain times this level's details.
 //   fine, fine_size, directions, scale   this level's light
 //   coarse, results, gains               of the level above, `size`
-//   to          rows of RESULTS fields of this level; not used with FINEST
+//   to          rows of RESULTS fields of this level; with FINEST the fluence of the grid's voxels
 //   number      number of this level
-//   fluence, mean_direction, blended     with FINEST: output arrays over the grid's voxels
+//   mean_direction, blended     with FINEST: further output arrays over the grid's voxels
 __kernel void blend_level(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, const __global float* results, const __global float* gains, int4 size, float number,
-  __global float* to, __global float* fluence, __global float* mean_direction, __global float* blended)
+  __global float* to, __global float* mean_direction, __global float* blended)
 {
   const int y = ROW_Y, z = ROW_Z;
   const size_t field = field_of(size);
-#if FINEST
   const float unit = 1.0f / scale;
-#else
   const size_t fine_field = field_of(fine_size);
-#endif
   for (int k = 0; k < 4; ++k) // outer loop, because hardware prefetches a few rows, but not four of every quantity
   {
     const rows_about rows = rows_for_children(size, y, z, k);
@@ -486,10 +483,13 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
       const children above = interpolate(results + BLENDED * field, &rows, x);
       const pair level =
         woven(above.even + gain.even * (number - above.even), above.odd + gain.odd * (number - above.odd));
-#if FINEST
-      store_voxels(kept, unit, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, fluence, mean_direction);
-      store_pair(level, ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x, blended);
-#else
+      if (FINEST)
+      {
+        const size_t voxel = ((size_t)fz * fine_size.y + fy) * fine_size.w + 2 * x;
+        store_voxels(kept, unit, voxel, to, mean_direction);
+        store_pair(level, voxel, blended);
+        continue;
+      }
       __global float* row = to + row_of(fine_size, 0, fy, fz) + 2 * x;
       const children squared = interpolate(gains + ErrorField * field, &rows, x);
 #pragma unroll
@@ -503,7 +503,6 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
       {
         repeat_ends(row - 2 * x + f * fine_field, 2 * x, 2 * REAL_WIDTH, fine_size.x);
       }
-#endif
     }
   }
 }

@@ -1,11 +1,10 @@
-#include "Reconstruction/ConservativeReconstruction.h"
+#include "Reconstruction/Reconstruction.h"
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
 #include "Distribution/BoxExchange.h"
 #include "Numerics/PyramidLayout.h"
-#include "Reconstruction/ConservativeReconstructionShared.h"
 #include "Reconstruction/LightPyramid.h"
 #include "TyndallKernelSources.h"
 
@@ -223,7 +222,7 @@ void ConservativePasses::Build()
   for (int level = this->First; level < this->Top; ++level)
   {
     const LightRows &fine = this->At(level).light, &coarse = this->At(level + 1).light;
-    With(down, fine.Values(), fine.Layout(), coarse.Values(), coarse.Layout(), cl_int(fine.Fields()));
+    With(down, fine.Values(), fine.Layout(), coarse.Values(), coarse.Layout(), cl_int(fine.Fields()), 0.375f, 0.125f);
     this->Kernels.Run(down, coarse.Cells());
   }
 }
@@ -265,10 +264,10 @@ void ConservativePasses::Blend(int level)
 {
   const ConservativeLevel& above = this->At(level + 1);
   cl::Kernel blend = this->Kernel("blend_level", level == 0);
-  const cl::Buffer& to = level > 0 ? this->At(level).results.Values().Handle() : above.across.Values().Handle();
+  const cl::Buffer& to = level > 0 ? this->At(level).results.Values().Handle() : this->Fluence.Handle();
   With(blend, this->LightAt(level), this->Direction.Handle(), this->LayoutAt(level), this->ScaleAt(level),
     above.light.Values(), above.results.Values(), above.gains.Values(), above.light.Layout(), cl_float(level), to,
-    this->Fluence.Handle(), this->MeanDirection.Handle(), this->MipLevel.Handle());
+    this->MeanDirection.Handle(), this->MipLevel.Handle());
   this->RunAbove(level, blend, 0.5, 0.9);
 }
 

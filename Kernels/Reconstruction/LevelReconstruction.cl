@@ -132,13 +132,16 @@ inline real populated(const __global float* counts, const rows_between* rows_of_
       level = select(level, (real)l, here);
       if (any_of(here))
       {
-#if PUBLISHED
-        found[0] = select(found[0], sample(wanted, rows + l, l, x), here);
-#else
-        real channels[CHANNELS];
-        sample_light(wanted, rows + l, l, x, channels);
-        take(found, channels, here);
-#endif
+        if (PUBLISHED)
+        {
+          found[0] = select(found[0], sample(wanted, rows + l, l, x), here);
+        }
+        else
+        {
+          real channels[CHANNELS];
+          sample_light(wanted, rows + l, l, x, channels);
+          take(found, channels, here);
+        }
       }
       open = more;
     }
@@ -152,9 +155,8 @@ inline real by_surround(const __global float* light, const rows_between* rows, r
 {
   real level = 0.0f;
   sample_light(light, rows, 0, x, taken);
-#if TOP > 2
   integer climbing = highest >= 1.0f;
-  if (!any_of(climbing))
+  if (TOP <= 2 || !any_of(climbing))
   {
     return level;
   }
@@ -180,7 +182,6 @@ inline real by_surround(const __global float* light, const rows_between* rows, r
       difference = next_difference;
     }
   }
-#endif
   return level;
 }
 
@@ -221,24 +222,27 @@ __kernel void choose_level(const __global float* light, const __global PyramidLe
   for (int l = 0; l <= TOP; ++l)
   {
     rows[l] = rows_beside(where, l, y, z);
-#if !CONSTANT_RADIUS
-    rows_of_counts[l] = rows_beside(where_counts, l, y, z);
-#endif
+    rows_of_counts[l] = rows_beside(CONSTANT_RADIUS ? where : where_counts, l, y, z);
   }
   const size_t begin = ((size_t)z * voxels.y + y) * voxels.w;
   FOR_CELLS(x, voxels.x)
   {
     real taken[CHANNELS] = { 0.0f };
-#if PUBLISHED
-    real weight = 0.0f;
-    populated(counts, rows_of_counts, 1.0f, weights, rows_of_counts, x, &weight);
-    const real level = by_surround(light, rows, weight / parameter, x, taken);
-#elif CONSTANT_RADIUS
-    const real level = TOP;
-    sample_light(light, rows + TOP, TOP, x, taken);
-#else
-    const real level = populated(counts, rows_of_counts, parameter, light, rows, x, taken);
-#endif
+    real level = TOP;
+    if (PUBLISHED)
+    {
+      real weight[CHANNELS] = { 0.0f };
+      populated(counts, rows_of_counts, 1.0f, weights, rows_of_counts, x, weight);
+      level = by_surround(light, rows, weight[0] / parameter, x, taken);
+    }
+    else if (CONSTANT_RADIUS)
+    {
+      sample_light(light, rows + TOP, TOP, x, taken);
+    }
+    else
+    {
+      level = populated(counts, rows_of_counts, parameter, light, rows, x, taken);
+    }
 #if CHANNELS == 3
     store_reals_of_three(taken[0], taken[1], taken[2], begin + x, fluence);
 #else

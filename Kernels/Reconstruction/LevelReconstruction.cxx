@@ -1,4 +1,4 @@
-#include "Reconstruction/LevelReconstruction.h"
+#include "Reconstruction/Reconstruction.h"
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"

@@ -1,17 +1,6 @@
-// Computes a level of a light pyramid from the next finer one, one work-item per row (or cell). The host gives
-//   GAUSS        1: Gaussian filter of 4 cells along each axis; 0: weights 1 3 3 1
-//   MEAN_OF_LIT  1: mean of the nonzero cells; 0 (and no GAUSS): sum
+// Computes a level of a light pyramid from the next finer one, one work-item per row (or cell).
 
 #include "Reconstruction/LightRows.cl"
-
-#if GAUSS
-// exp(-x^2 / (2 * 4)) at 0.5 and 1.5, normalised so that the four weights add up to 1 (Pfeuti 2009, section 3.2.4)
-#define NEAR 0.281088549f
-#define FAR 0.218911451f
-#else
-#define NEAR 0.375f
-#define FAR 0.125f
-#endif
 
 // Copies voxels of 1 or 3 components from the host's layout, with rows of `pitch` voxels, to the rows of a level, from
 // field `first` on.
@@ -42,10 +31,12 @@ __kernel void split_voxels(
   }
 }
 
-// Filters 4 x 4 x 4 finer cells with a separable kernel.
-__kernel void smooth_down(const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields)
+// Filters 4 x 4 x 4 finer cells with a separable kernel: along each axis, the weight of the two inner cells is `near`,
+// that of the two outer cells `far`.
+__kernel void smooth_down(
+  const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields, float near, float far)
 {
-  const float weights[4] = { FAR, NEAR, NEAR, FAR };
+  const float weights[4] = { far, near, near, far };
   const int y = ROW_Y, z = ROW_Z;
   size_t rows[16];
   for (int k = 0; k < 16; ++k)
@@ -67,14 +58,15 @@ __kernel void smooth_down(const __global float* fine, int4 fine_size, __global f
         left += w * load_pair(-1, cells);
         right += w * load_pair(1, cells);
       }
-      store_real((real)FAR * (left.even + right.odd) + (real)NEAR * (left.odd + right.even), x, row);
+      store_real((real)far * (left.even + right.odd) + (real)near * (left.odd + right.even), x, row);
       repeat_ends(row, x, REAL_WIDTH, size.x);
     }
   }
 }
 
-// Joins 2 x 2 x 2 finer cells to their sum or, with MEAN_OF_LIT, to the mean of those that are not 0 (listing B.2).
-__kernel void join_down(const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields)
+// Joins 2 x 2 x 2 finer cells to their sum or, with `mean`, to the mean of those that are not 0 (listing B.2).
+__kernel void join_down(
+  const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields, int mean)
 {
   const int y = ROW_Y, z = ROW_Z;
   for (int f = 0; f < fields; ++f)
@@ -93,12 +85,13 @@ __kernel void join_down(const __global float* fine, int4 fine_size, __global flo
           lit += select((real)0.0f, (real)1.0f, cells.even > 0.0f) + select((real)0.0f, (real)1.0f, cells.odd > 0.0f);
         }
       }
-#if MEAN_OF_LIT
-      sum = select((real)0.0f, sum / lit, lit > 0.0f);
-#endif
+      if (mean)
+      {
+        sum = select((real)0.0f, sum / lit, lit > 0.0f);
+      }
       store_real(sum, x, row);
-#if !MEAN_OF_LIT
-      if (x + REAL_WIDTH >= size.x && 2 * size.x > fine_size.x) // counts the last cell once, without its repetition
+      if (!mean && x + REAL_WIDTH >= size.x &&
+        2 * size.x > fine_size.x) // counts the last cell once, without its repetition
       {
         float last = 0.0f;
         for (int k = 0; k < 4; ++k)
@@ -111,7 +104,6 @@ __kernel void join_down(const __global float* fine, int4 fine_size, __global flo
         }
         row[size.x - 1] = last;
       }
-#endif
       repeat_ends(row, x, REAL_WIDTH, size.x);
     }
   }

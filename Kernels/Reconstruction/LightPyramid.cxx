@@ -247,8 +247,18 @@ void LightPyramid::Fill(const WholeRows& voxels, int components, int first)
 
 void LightPyramid::Build(Down down)
 {
-  cl::Kernel kernel = this->Kernels.Kernel(down == Down::Gauss ? "smooth_down" : "join_down",
-    kernel_source::LightPyramid, Define("GAUSS", down == Down::Gauss) + Define("MEAN_OF_LIT", down == Down::MeanOfLit));
+  // exp(-x^2 / (2 * 4)) at 0.5 and 1.5, normalised so that the four weights add up to 1 (Pfeuti 2009, section 3.2.4)
+  constexpr cl_float near = 0.281088549f, far = 0.218911451f;
+  cl::Kernel kernel =
+    this->Kernels.Kernel(down == Down::Gauss ? "smooth_down" : "join_down", kernel_source::LightPyramid);
+  if (down == Down::Gauss)
+  {
+    SetFrom(kernel, 5, near, far);
+  }
+  else
+  {
+    SetFrom(kernel, 5, cl_int(down == Down::MeanOfLit));
+  }
   const std::size_t end = std::min(this->Parts.size(), static_cast<std::size_t>(this->Part.shared) + 1);
   for (std::size_t level = 1; level < end; ++level)
   {

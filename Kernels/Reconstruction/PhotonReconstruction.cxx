@@ -7,8 +7,6 @@
 #include "Light/LeftOut.h"
 #include "Medium/Medium.h"
 #include "Numerics/NumberText.h"
-#include "Reconstruction/ConservativeReconstruction.h"
-#include "Reconstruction/LevelReconstruction.h"
 #include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/Reconstruction.h"
 

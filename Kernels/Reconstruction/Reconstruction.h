@@ -69,4 +69,14 @@ private:
   NoisyLight Gathered(const NoisyLight& given);
   void Check(const NoisyLight& given);
 };
+
+/// Computes the mean light of all batches; the detail of each pyramid level is kept as far as the batches agree on it
+/// (Estimator::Conservative). Collective.
+/// @param result  its arrays must have the size of the box (Reconstruction::MakeRoom)
+void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result);
+
+/// Computes the light of each voxel from one level of its pyramid (all other estimators). Collective.
+/// @param ownWeights  mean photon weight of each voxel of the block, if the estimator needs it
+/// @param result      its arrays must have the size of the box (Reconstruction::MakeRoom)
+void ReconstructFromLevels(const Reconstruction& task, const float* ownWeights, ReconstructedLight& result);
 }

@@ -92,7 +92,8 @@ cl::Kernel MarchedLight::SumsKernel(
   const char* name, const PackedPhotons& packed, const MarchSums& target, const LightField& light) const
 {
   return this->Medium.SumsKernel(name, packed.channels,
-    Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COLOURS", light.channels));
+    Define("DIRECTIONS", target.directions) + Define("COUNTS", target.counts) + Define("COLOURS", light.channels) +
+      Define("CARRIES", 0));
 }
 
 cl::Kernel MarchedLight::Show(

@@ -276,13 +276,13 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
 // Limits a displacement, in voxels, to the integrator's look-ahead.
 static real looked_ahead(const MarchInfo* info, real way)
 {
-#if LEVELS && ORDER == 2
-  return way; // up to a node's wall; all nodes are known
-#else
+  if (LEVELS && ORDER == 2)
+  {
+    return way; // up to a node's wall; all nodes are known
+  }
   const float steps = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
   const float most = LEVELS ? greater(steps, (float)(1 << YoshidaLevel)) : steps;
   return lesser(greater(way, (real)-most), (real)most);
-#endif
 }
 
 // The voxels of arbitrary positions; beyond the region with a known index, those of the padding.
@@ -290,16 +290,12 @@ static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxe
 {
   FOR_AXES(a)
   {
-#if NODE_BRICKS
-    const int least = -1, size = info->whole.size[a];
-#else
-    const int least = info->knownFirst[a] - 1, size = info->known.size[a];
-#endif
+    const int least = NODE_BRICKS ? -1 : info->knownFirst[a] - 1;
+    const int size = NODE_BRICKS ? info->whole.size[a] : info->known.size[a];
     voxel[a] = clamp(to_integer(p[a] + (real)1.0f) - 1, (integer)least, (integer)(least + size + 1));
   }
 }
 
-#if NODE_BRICKS
 #define NODE_BRICK 8 // voxels of an edge, BrickedBytes::Edge
 
 static int node_of_whole(const march_arrays* arrays, int3 voxel)
@@ -315,12 +311,16 @@ static int node_of_whole(const march_arrays* arrays, int3 voxel)
     (ulong)((in.z * NODE_BRICK + in.y) * NODE_BRICK + in.x);
   return brick >= 0 ? brick : arrays->nodes[(ulong)bricks.x * bricks.y * bricks.z * sizeof(int) + uneven];
 }
-#endif
 
 // Nodes (encoding: march_arrays) of the voxels of the photons in a mask; 0 outside the mask.
 static integer nodes_of(const march_arrays* arrays, integer mask, const integer* voxel)
 {
-#if NODE_BRICKS
+  if (!NODE_BRICKS)
+  {
+    const MarchInfo* info = arrays->info;
+    const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel); // outside the mask: the padding
+    return to_integer(gather(uchar, arrays->nodes, at));
+  }
   LANES(int, node);
   LANES_3(int, place);
   PUT_INTEGERS(node, (integer)0);
@@ -333,11 +333,6 @@ static integer nodes_of(const march_arrays* arrays, integer mask, const integer*
     node[k] = node_of_whole(arrays, (int3)(place[0][k], place[1][k], place[2][k]));
   }
   return INTEGERS(node);
-#else
-  const MarchInfo* info = arrays->info;
-  const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel); // outside the mask: the padding
-  return to_integer(gather(uchar, arrays->nodes, at));
-#endif
 }
 
 // Duration of the next steps of the photons in a mask, from p in `voxel`; 0 where the index does not vary.
@@ -350,15 +345,10 @@ static real times_of_steps(
   const real shortest =
     (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);
   real time = shortest;
-#if LEVELS
-  if (anywhere(truth(node > 1)))
+  if (LEVELS && anywhere(truth(node > 1)))
   {
     // Until the photon leaves the octree's node, or a cube within it, and slightly enters the next one.
-#if ORDER == 4
-    const integer level = min(max(node, 1) - 1, YoshidaLevel);
-#else
-    const integer level = max(node, 1) - 1;
-#endif
+    const integer above = max(node, 1) - 1, level = ORDER == 4 ? min(above, YoshidaLevel) : above;
     real out = NEVER;
     FOR_AXES(a)
     {
@@ -369,7 +359,6 @@ static real times_of_steps(
     }
     time = node > 1 ? greater((real)1.001f * out, shortest) : shortest;
   }
-#endif
   return node == 0 ? (real)0.0f : time;
 }
 

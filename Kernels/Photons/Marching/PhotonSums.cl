@@ -1,6 +1,6 @@
 // Converts the sums of photons' deposits to light. The host defines
 //   CHANNELS, DIRECTIONS, COUNTS  as in PhotonMarch.cl
-//   CARRIES                 if defined, fractions of a unit of a voxel's absorbed power are carried to the next voxel
+//   CARRIES                 1: fractions of a unit of a voxel's absorbed power are carried to the next voxel
 //                           of the row. Needed if units are large: half a unit per voxel would be lost otherwise
 //   BRICKS                  1: the sums are stored by bricks (MarchMedium.h)
 //   COLOURS                 channels of the output: 3 also if one channel stands for three (CHANNELS 1)
@@ -16,14 +16,15 @@
 // Writes the fluence of one channel, from its power times path in diagonals, to the output channels that it stands for.
 static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c, float path)
 {
-#if CHANNELS == COLOURS
-  voxel[c] = ldexp(path * info->fluence, info->exponent);
-#else
+  if (CHANNELS == COLOURS)
+  {
+    voxel[c] = ldexp(path * info->fluence, info->exponent);
+    return;
+  }
   for (int out = 0; out < COLOURS; ++out)
   {
     voxel[out] = ldexp(path * info->fluence * info->colour[out], info->exponent);
   }
-#endif
 }
 
 // Units of power in a voxel's sum that are due to one coefficient, sigma_a or sigma_s, as a part of extinction. In an
@@ -32,13 +33,12 @@ static long taken_by(const LightSumsInfo* info, float sum, float coefficient, fl
 {
   const float thickness = info->diagonal * extinction;
   const float taken = sum * (thickness > 1.0f ? coefficient / extinction : info->diagonal * coefficient);
-#ifdef CARRIES
-  const float all = taken + *carried;
-  *carried = all - trunc(all);
+  const float all = CARRIES ? taken + *carried : taken;
+  if (CARRIES)
+  {
+    *carried = all - trunc(all);
+  }
   return (long)all;
-#else
-  return (long)taken;
-#endif
 }
 
 // Adds up a batch's copies of a voxel's record, and zeroes them. Returns false if all were zero.
@@ -158,10 +158,8 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
   }
   for (int c = 0; c < CHANNELS; ++c)
   {
-#ifdef CARRIES
-    absorbed[c] += carried[0][c] >= 0.5f;
-    scattered[c] += carried[1][c] >= 0.5f;
-#endif
+    absorbed[c] += CARRIES && carried[0][c] >= 0.5f;
+    scattered[c] += CARRIES && carried[1][c] >= 0.5f;
     taken[(r * 2 + 0) * CHANNELS + c] = absorbed[c];
     taken[(r * 2 + 1) * CHANNELS + c] = scattered[c];
   }

@@ -142,9 +142,8 @@ static float3 extinction(const __global float* sigma_a, const __global float* si
 static float step_length(const PublishedMarchInfo* info, const __global uchar* levels, float3 p, float3 u)
 {
   const float voxel = rsqrt(dot(u, u));
-#if LEVELS
   const int3 v = convert_int3_rtn(p);
-  const int level = levels[index_of(info, v)];
+  const int level = LEVELS ? levels[index_of(info, v)] : 0;
   if (level > 0)
   {
     const int3 low = (v >> level) << level;
@@ -153,7 +152,6 @@ static float step_length(const PublishedMarchInfo* info, const __global uchar* l
     const float3 out = u == 0.0f ? (float3)(1e30f) : fmax((walls - p) / u, 0.0f);
     return fmax(1.001f * fmin(fmin(out.x, out.y), out.z), 0.01f * voxel);
   }
-#endif
   return voxel;
 }
 
