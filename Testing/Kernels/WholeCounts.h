@@ -26,6 +26,7 @@ inline WholeCounts CountWhole(tyndall::Device& device, const tyndall::Grid& grid
       std::copy(begin, begin + inside.length, whole.counts[inside.mesh].begin() + inside.first + run * inside.stride);
     }
   };
-  whole.windings = tyndall::CountSamplesInside(device, grid, meshes, settings, take, monitor);
+  whole.windings =
+    tyndall::CountSamplesInside(device, grid, tyndall::CountedVoxels::All(grid), meshes, settings, take, monitor);
   return whole;
 }

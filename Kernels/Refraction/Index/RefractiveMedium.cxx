@@ -9,7 +9,7 @@
 #include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
-#include "Refraction/Voxelization/MaterialsShared.h"
+#include "Refraction/Voxelization/VoxelizationShared.h"
 #include "Refraction/Voxelization/MeshChecks.h"
 #include "TyndallKernelSources.h"
 

@@ -5,7 +5,7 @@
 //   NOISE     1 if materials are perturbed
 //   VARIED_G  1 if scattering materials differ in their mean cosines
 
-#include "Refraction/Voxelization/MaterialsShared.h"
+#include "Refraction/Voxelization/VoxelizationShared.h"
 
 // Gradient noise of Perlin (Improving noise, SIGGRAPH 2002) with a hash in place of his table, so that a seed chooses
 // one of 2^32 patterns.

@@ -21,18 +21,11 @@
 #define UNITS_OF_COUNT (65535 / SAMPLES_OF_VOXEL)
 #define LEAST_WEIGHT (1.0f / 1024.0f)
 
-// Layout of the rows of samples in a buffer, one bit per sample.
-typedef struct
-{
-  int words, columns; // words per column; columns per row
-  int firstRow;
-} bit_rows;
-
-inline uint is_set(__global const uint* bits, bit_rows rows, int3 sample)
+inline uint is_set(__global const uint* bits, const SampleRows* rows, int3 sample)
 {
   const int3 at = BY_COLUMNS(sample, BIT_AXIS);
-  const ulong column = (ulong)(UP(at) - rows.firstRow) * rows.columns + ACROSS(at);
-  return (bits[column * rows.words + ALONG(at) / BITS] >> (ALONG(at) % BITS)) & 1;
+  const ulong column = (ulong)(UP(at) - rows->firstRow) * rows->columns + ACROSS(at);
+  return (bits[column * rows->words + ALONG(at) / BITS] >> (ALONG(at) % BITS)) & 1;
 }
 
 inline int3 place(int along, int across, int up, int axis)
@@ -56,7 +49,7 @@ inline float weight_along(long3 normal)
 }
 
 // Whether a crossing is hidden: an adjacent sample belongs to a later mesh.
-inline int is_hidden(__global const uint* claimed, bit_rows rows, int3 before, int3 after, int first, int last)
+inline int is_hidden(__global const uint* claimed, const SampleRows* rows, int3 before, int3 after, int first, int last)
 {
   return (!first && is_set(claimed, rows, before)) || (!last && is_set(claimed, rows, after));
 }
@@ -66,7 +59,8 @@ inline int is_hidden(__global const uint* claimed, bit_rows rows, int3 before, i
 // samples, and the orientation of the triangle decides.
 //   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation; 0 if that is unknown
 //   first, last  whether the column begins after the crossing, or ends before it
-inline int side_of(__global const uint* bits, bit_rows rows, int3 before, int3 after, int first, int last, int turned)
+inline int side_of(
+  __global const uint* bits, const SampleRows* rows, int3 before, int3 after, int first, int last, int turned)
 {
   const uint inBefore = first ? 1 - is_set(bits, rows, after) : is_set(bits, rows, before);
   const uint inAfter = last ? 1 - inBefore : is_set(bits, rows, after);
@@ -76,15 +70,14 @@ inline int side_of(__global const uint* bits, bit_rows rows, int3 before, int3 a
 // Sums the corrections of a slab's voxels.
 //   tiles          as in mark_crossings
 //   samples        samples in a column
-//   bits, claimed  samples inside this mesh, and inside later ones; claimed and taken are not read if several is 0
+//   bits, claimed  samples inside this mesh, and inside later ones; claimed and taken are read only if there are several
+//                  meshes
 //   taken          see refine_counts: hidden crossings still count in voxels that later meshes fill completely
-//   firstVoxel     first row of the slab's voxels, along the `up` axis of `bits`; voxels: size of the slab
 //   orientation    1, -1 or 0, see OrientedMesh
 //   corrections    output, one per voxel of the slab, x fastest, in UNITS per sample
 __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
-  __global const int* triangles, int pitch, int samples, __global const uint* bits, int several,
-  __global const uint* claimed, __global const ushort2* taken, int words, int columns, int firstRow, int firstVoxel,
-  int4 voxels, int orientation, __global int* corrections)
+  __global const int* triangles, int pitch, int samples, SampleRows rows, __global const uint* bits,
+  __global const uint* claimed, __global const ushort2* taken, int orientation, __global int* corrections)
 {
   const int id = get_global_id(0);
   if (id >= tileCount)
@@ -104,8 +97,8 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
   }
   const float scale = weight * (0.5f * UNITS) / (float)s.step;
   const int turned = s.leaving * orientation;
-  const bit_rows rows = { words, columns, firstRow };
-  const int3 begin = place(0, 0, firstVoxel, BIT_AXIS); // first voxel of the slab
+  const int4 voxels = rows.voxels;
+  const int3 begin = place(0, 0, rows.firstVoxel, BIT_AXIS); // first voxel of the slab
   const int tileColumns = tile.w >> 16;
   const int tileRows = tile.w & 0xffff;
   int target = -1; // voxel of the last crossing; `sum` is its pending correction
@@ -134,8 +127,8 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
             const int3 after = place(number, across, up, AXIS);
             const int first = number == 0;
             const int last = number == samples;
-            const int counts =
-              !several || taken[index].x == SAMPLES_OF_VOXEL || !is_hidden(claimed, rows, before, after, first, last);
+            const int counts = !rows.several || taken[index].x == SAMPLES_OF_VOXEL ||
+              !is_hidden(claimed, &rows, before, after, first, last);
             if (index != target)
             {
               if (sum != 0)
@@ -147,7 +140,7 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
             }
             if (counts)
             {
-              sum += side_of(bits, rows, before, after, first, last, turned) * convert_int_rte(scale * (float)twice);
+              sum += side_of(bits, &rows, before, after, first, last, turned) * convert_int_rte(scale * (float)twice);
             }
           }
         }
@@ -166,7 +159,7 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
 }
 
 // Number of a voxel's samples inside the mesh, including those claimed by later meshes.
-inline int samples_in_voxel(__global const uint* bits, bit_rows rows, int3 voxel)
+inline int samples_in_voxel(__global const uint* bits, const SampleRows* rows, int3 voxel)
 {
   int number = 0;
   for (int k = 0; k < SAMPLES_OF_VOXEL; ++k)
@@ -189,12 +182,13 @@ inline long divided(long number, long by)
 // distributed: a mesh gets a share in proportion to its part of the samples that are left. If none are left, the space
 // of later meshes is taken from this mesh as far as their samples are its own: a mesh that contains them gets the rest,
 // and so does one that touches them.
-//   taken    samples and units of later meshes; not read if several is 0
+//   taken    samples and units of later meshes; read only if there are several meshes
 //   counts   counts of the slab's voxels, updated
-__kernel void refine_counts(int4 voxels, __global const int* corrections, int several, __global ushort2* taken,
-  __global const uint* bits, int words, int columns, int firstRow, int firstVoxel, __global ushort* counts)
+__kernel void refine_counts(SampleRows rows, __global const int* corrections, __global ushort2* taken,
+  __global const uint* bits, __global ushort* counts)
 {
   const int id = get_global_id(0);
+  const int4 voxels = rows.voxels;
   if (id >= voxels.x * voxels.y * voxels.z)
   {
     return;
@@ -202,7 +196,7 @@ __kernel void refine_counts(int4 voxels, __global const int* corrections, int se
   const int number = counts[id];
   long units = (long)number * UNITS_OF_COUNT + divided((long)corrections[id] * UNITS_OF_COUNT, UNITS);
   long room = SAMPLES_OF_VOXEL * UNITS_OF_COUNT;
-  if (several)
+  if (rows.several)
   {
     const ushort2 later = taken[id];
     const int left = SAMPLES_OF_VOXEL - later.x;
@@ -215,8 +209,7 @@ __kernel void refine_counts(int4 voxels, __global const int* corrections, int se
     else if (room > 0)
     {
       const int3 voxel = (int3)(id % voxels.x, id / voxels.x % voxels.y, id / voxels.x / voxels.y);
-      const bit_rows rows = { words, columns, firstRow };
-      const long own = samples_in_voxel(bits, rows, voxel + place(0, 0, firstVoxel, BIT_AXIS));
+      const long own = samples_in_voxel(bits, &rows, voxel + place(0, 0, rows.firstVoxel, BIT_AXIS));
       units += own * UNITS_OF_COUNT - divided(own * later.y, SAMPLES_OF_VOXEL);
     }
     units = clamp(units, 0L, room);

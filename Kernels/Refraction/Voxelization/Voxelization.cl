@@ -13,6 +13,7 @@
 // The host defines SAMPLES, samples per edge of a voxel; WINDING, 1 to count crossings with their sign instead.
 
 #pragma once
+#include "Refraction/Voxelization/VoxelizationShared.h"
 
 // Reorder a point to the axes of columns along axis 0 to 2, (along, across, up), and back.
 #define BY_COLUMNS(p, axis) ((axis) == 0 ? (p) : (axis) == 1 ? (p).yxz : (p).zxy)
@@ -174,11 +175,10 @@ inline void next_row(sheet* s)
 //   axis           axis of the columns
 //   from_above     1: samples after a crossing are toggled instead; not used with WINDING
 //   pitch          distance of samples, in units of the lattice
-//   samples        samples per column; columns: per row; words: per column
-//   firstRow       first row of columns in `marks`
+//   samples        samples per column
 //   sums           signed sum of the weights of each column's crossings, see fill_columns; not used with WINDING
 __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
-  __global const int* triangles, int axis, int pitch, int samples, int from_above, int columns, int words, int firstRow,
+  __global const int* triangles, int axis, int pitch, int samples, int from_above, SampleRows rows,
   __global uint* marks, __global uint* sums)
 {
   const int id = get_global_id(0);
@@ -194,8 +194,8 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
   }
   const int tileColumns = tile.w >> 16;
   const int tileRows = tile.w & 0xffff;
-  const ulong firstColumn = (ulong)(tile.z - firstRow) * columns + tile.y;
-  __global uint* row = marks + firstColumn * words;
+  const ulong firstColumn = (ulong)(tile.z - rows.firstRow) * rows.columns + tile.y;
+  __global uint* row = marks + firstColumn * rows.words;
 #if WINDING
   __global uint* rowOfSums = sums;
 #else
@@ -208,7 +208,7 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
     {
       if ((v0 | v1 | v2) >= 0)
       {
-        mark_crossing(row + (ulong)i * words, rowOfSums + i, samples_before(excess, s.step, samples), samples,
+        mark_crossing(row + (ulong)i * rows.words, rowOfSums + i, samples_before(excess, s.step, samples), samples,
           s.leaving, from_above);
       }
       v0 += s.e0.across;
@@ -217,9 +217,9 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
       excess -= s.excessAcross;
     }
     next_row(&s);
-    row += (ulong)columns * words;
+    row += (ulong)rows.columns * rows.words;
 #if !WINDING
-    rowOfSums += columns;
+    rowOfSums += rows.columns;
 #endif
   }
 }
@@ -334,23 +334,21 @@ __kernel void fill_columns(int columnCount, int columns, int words, int from_abo
 
 // Counts the samples of each voxel that are inside, and not claimed by a later mesh. One work-item per column of
 // voxels.
-//   voxels    voxels per column; columns, rows: columns of voxels in `bits`
-//   skipped   rows of samples in `bits` before those of the first voxels
-//   claimed   in the layout of `bits`: samples of later meshes; those of this one are added. Not read if claims is 0
-//   counts    counts of the slab's voxels, times `units`; strides: from voxel to voxel along, across and up
-__kernel void count_samples(int voxels, int columns, int rows, int words, int skipped, __global const uint* bits,
-  __global uint* claimed, int claims, __global ushort* counts, int units, int strideAlong, int strideAcross,
-  int strideUp)
+//   claimed   in the layout of `bits`: samples of later meshes; those of this one are added. Read only if how.claims
+//   counts    counts of the slab's voxels, times how.units
+__kernel void count_samples(
+  SampleCounts how, __global const uint* bits, __global uint* claimed, __global ushort* counts)
 {
+  const int columns = how.columns, words = how.words, claims = how.claims;
   const int across = get_global_id(0);
   const int up = get_global_id(1);
-  if (across >= columns || up >= rows)
+  if (across >= columns || up >= how.rows)
   {
     return;
   }
   const ulong rowOfColumns = (ulong)columns * SAMPLES * words;
-  const ulong corner = (((ulong)up * SAMPLES + skipped) * columns + across) * SAMPLES * words;
-  __global ushort* target = counts + (ulong)across * strideAcross + (ulong)up * strideUp;
+  const ulong corner = (((ulong)up * SAMPLES + how.skipped) * columns + across) * SAMPLES * words;
+  __global ushort* target = counts + (ulong)across * how.across + (ulong)up * how.up;
   for (int w = 0; w < words; ++w)
   {
     uint any = 0;
@@ -391,9 +389,9 @@ __kernel void count_samples(int voxels, int columns, int rows, int words, int sk
         }
       }
     }
-    for (int cell = 0; cell < CELLS && w * CELLS + cell < voxels; ++cell)
+    for (int cell = 0; cell < CELLS && w * CELLS + cell < how.voxels; ++cell)
     {
-      target[(ulong)(w * CELLS + cell) * strideAlong] = (ushort)(number[cell] * units);
+      target[(ulong)(w * CELLS + cell) * how.along] = (ushort)(number[cell] * how.units);
     }
   }
 }

@@ -4,6 +4,7 @@
 #include "Device/Sizes.h"
 #include "Medium/GridOfBox.h"
 #include "Refraction/Voxelization/SampleLattice.h"
+#include "Refraction/Voxelization/VoxelizationShared.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -81,7 +82,8 @@ public:
     }
     With(this->Kernel, static_cast<cl_int>(tiles.size()), this->Tiles.Upload(this->TheDevice, tiles), mesh.Points(),
       mesh.Triangles(), this->Columns.axis, this->Columns.pitch, this->Columns.samples,
-      static_cast<cl_int>(this->FromAbove), this->Columns.count[0], this->Words, firstRow, marks, sums);
+      static_cast<cl_int>(this->FromAbove), SampleRows{ {}, this->Words, this->Columns.count[0], firstRow, 0, 0 },
+      marks, sums);
     RunCrossings(this->TheDevice, this->Kernel, tiles.size());
   }
 
@@ -256,9 +258,8 @@ public:
       }
       cl::Kernel& kernel = this->MeasureAlong[axis];
       With(kernel, static_cast<cl_int>(tiles.size()), this->Tiles[axis].Upload(this->TheDevice, tiles), mesh.Points(),
-        mesh.Triangles(), columns.pitch, columns.samples, bits, static_cast<cl_int>(this->Several), claimed,
-        this->Taken, this->Words, this->Bits.count[0], slab.firstRow, slab.firstVoxel, this->VoxelsOf(slab),
-        orientation, this->Corrections);
+        mesh.Triangles(), columns.pitch, columns.samples, this->RowsOf(slab), bits, claimed, this->Taken, orientation,
+        this->Corrections);
       RunCrossings(this->TheDevice, kernel, tiles.size());
     }
   }
@@ -267,10 +268,9 @@ public:
   /// measurement for the last mesh. Also marks as claimed the samples in the slab's rows that lie outside its voxels.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts)
   {
-    const cl_int4 voxels = this->VoxelsOf(slab);
-    With(this->RefineCounts, voxels, this->Corrections, static_cast<cl_int>(this->Several), this->Taken, bits,
-      this->Words, this->Bits.count[0], slab.firstRow, slab.firstVoxel, counts);
-    RunCrossings(this->TheDevice, this->RefineCounts, Count(voxels.s[0]) * voxels.s[1] * voxels.s[2]);
+    const SampleRows rows = this->RowsOf(slab);
+    With(this->RefineCounts, rows, this->Corrections, this->Taken, bits, counts);
+    RunCrossings(this->TheDevice, this->RefineCounts, Count(rows.voxels.s[0]) * rows.voxels.s[1] * rows.voxels.s[2]);
     if (this->Several)
     {
       for (int row = slab.firstRow; row < slab.firstVoxel * this->Bits.samplesOfVoxel; ++row)
@@ -291,11 +291,12 @@ private:
     With(this->ClaimSamples, static_cast<cl_ulong>(row - slab.firstRow) * words, words, bits, claimed);
     RunCrossings(this->TheDevice, this->ClaimSamples, Count(words));
   }
-  cl_int4 VoxelsOf(const SampleSlab& slab) const
+  SampleRows RowsOf(const SampleSlab& slab) const
   {
-    cl_int4 voxels = { { this->Size[0], this->Size[1], this->Size[2], 0 } };
-    voxels.s[this->Bits.up] = slab.endVoxel - slab.firstVoxel;
-    return voxels;
+    SampleRows rows = { { { this->Size[0], this->Size[1], this->Size[2], 0 } }, this->Words, this->Bits.count[0],
+      slab.firstRow, slab.firstVoxel, this->Several };
+    rows.voxels.s[this->Bits.up] = slab.endVoxel - slab.firstVoxel;
+    return rows;
   }
 
   Device& TheDevice;
@@ -475,9 +476,9 @@ private:
     const std::array<int, 3>& size = this->TheGrid.size;
     const std::array<int, 3> stride = { 1, size[0], size[0] * (this->Columns.up == 1 ? rows : size[1]) };
     const int columns = size[this->Columns.across];
-    With(this->Count, size[this->Columns.axis], columns, rows, this->Words, skipped, this->Bits, this->Claimed,
-      static_cast<cl_int>(this->Claimed.Size() > 0), this->Counts, units, stride[this->Columns.axis],
-      stride[this->Columns.across], stride[this->Columns.up]);
+    const SampleCounts how = { size[this->Columns.axis], columns, rows, this->Words, skipped, this->Claimed.Size() > 0,
+      units, stride[this->Columns.axis], stride[this->Columns.across], stride[this->Columns.up] };
+    With(this->Count, how, this->Bits, this->Claimed, this->Counts);
     this->TheDevice.Queue().enqueueNDRangeKernel(this->Count, cl::NullRange,
       cl::NDRange(RoundUp(static_cast<std::size_t>(columns), CrossingGroup), static_cast<std::size_t>(rows)),
       cl::NDRange(CrossingGroup, 1));
@@ -550,12 +551,5 @@ std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
   Voxelization voxelization(device, grid, counted, meshes, settings);
   voxelization.Run(take, monitor);
   return voxelization.Windings(monitor ? [&monitor](double) { return monitor(1.0); } : Monitor());
-}
-
-std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
-  const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
-  const std::function<void(const SamplesInside&)>& take, const Monitor& monitor)
-{
-  return CountSamplesInside(device, grid, CountedVoxels::All(grid), meshes, settings, take, monitor);
 }
 }

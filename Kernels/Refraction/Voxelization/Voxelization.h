@@ -108,8 +108,4 @@ struct CountedVoxels
 std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid, const CountedVoxels& counted,
   const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
   const std::function<void(const SamplesInside&)>& take, const Monitor& monitor = {});
-/// The same for the whole grid.
-std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid,
-  const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
-  const std::function<void(const SamplesInside&)>& take, const Monitor& monitor = {});
 }
