@@ -45,7 +45,7 @@ LightField TraceAllOrders(
   marching.seed = emission.seed + 1;
   marching.meanDirection = false;
   marching.errorBatches = estimate ? Batches : 0;
-  PhotonMarcher marcher(device, scene.medium, scene.ior, marching, scene.levels);
+  PhotonMarcher marcher(device, Domain(scene.medium.grid), scene.medium, scene.ior, marching, scene.levels);
   const EmittedPhotons emitted =
     EmitPhotons(scene.medium.grid, scene.illumination, emission, OfPart(monitor, 0.0, 0.1));
   LightField light = marcher.March(emitted.photons, OfPart(monitor, 0.1, 1.0)).light;
@@ -89,7 +89,7 @@ LightField Trace(
   }
   MarchSettings marching;
   marching.batches = true;
-  PhotonMarcher marcher(device, scene.medium, scene.ior, marching, scene.levels);
+  PhotonMarcher marcher(device, Domain(scene.medium.grid), scene.medium, scene.ior, marching, scene.levels);
   Importance importance;
   if (method == ComparedMethod::AdaptivePhotons)
   {
@@ -149,7 +149,7 @@ LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t p
   EmissionSettings emission;
   emission.photonCount = photons;
   emission.seed = seed;
-  PhotonMarcher marcher(device, scene.medium, scene.ior, marching, scene.levels);
+  PhotonMarcher marcher(device, Domain(scene.medium.grid), scene.medium, scene.ior, marching, scene.levels);
   const EmittedPhotons emitted =
     EmitPhotons(scene.medium.grid, scene.illumination, emission, OfPart(monitor, 0.0, 0.3));
   return marcher.March(emitted.photons, OfPart(monitor, 0.3, 1.0)).light;

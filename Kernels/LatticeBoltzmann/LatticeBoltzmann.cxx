@@ -43,7 +43,7 @@ LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Med
   march.meanDirection = settings.netFlux || domain.Any(needs);
   if (settings.interleaves)
   {
-    PhotonMarcher marcher(device, medium, ior, march);
+    PhotonMarcher marcher(device, domain, medium, ior, march);
     return InterleavedLattice(device, domain, medium, ior, illumination, settings).Solve(marcher, photons, monitor);
   }
   const PhotonLight found = PhotonMarcher(device, domain, medium, ior, march).March(photons, OfPart(monitor, 0.0, 0.5));

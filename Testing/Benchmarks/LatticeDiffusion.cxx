@@ -105,7 +105,8 @@ Truth ByPhotons(Device& device, const Cube& cube, std::size_t count)
   Truth truth;
   const double start = WallSeconds();
   const EmittedPhotons emitted = EmitPhotons(cube.medium.grid, cube.light, emission);
-  LightField light = PhotonMarcher(device, cube.medium, {}, marching).March(emitted.photons).light;
+  LightField light =
+    PhotonMarcher(device, Domain(cube.medium.grid), cube.medium, {}, marching).March(emitted.photons).light;
   truth.seconds = WallSeconds() - start;
   truth.grid = cube.medium.grid;
   truth.powers = PowersOf(cube, light);

@@ -110,10 +110,12 @@ void CompareOne(const PhotonBench& bench, Table& table, double index, double tau
   emission.photonCount = bench.quick ? 20000 : 2000000;
   const std::vector<Photon> photons = EmitPhotons(grid, sun, emission).photons;
   MarchSettings march;
-  const PhotonLight uncollided = PhotonMarcher(bench.device, medium, scene.Index(), march).March(photons);
+  const PhotonLight uncollided =
+    PhotonMarcher(bench.device, Domain(medium.grid), medium, scene.Index(), march).March(photons);
   march.maximumOrders = 0;
   march.errorBatches = 8;
-  const PhotonLight reference = PhotonMarcher(bench.device, medium, scene.Index(), march).March(photons);
+  const PhotonLight reference =
+    PhotonMarcher(bench.device, Domain(medium.grid), medium, scene.Index(), march).March(photons);
   Illumination given;
   given.uncollided.fluence = { uncollided.light.fluence.data(), uncollided.light.channels };
   given.uncollided.meanDirection = { uncollided.meanDirection.data(), 3 };

@@ -73,8 +73,8 @@ Medium PaperScene::Medium() const
 
 PhotonMarcher PaperScene::Marcher(Device& device, const MarchSettings& marchSettings, bool withOctree) const
 {
-  return PhotonMarcher(
-    device, this->Medium(), this->Index(), marchSettings, withOctree ? this->octree.levels.data() : nullptr);
+  return PhotonMarcher(device, Domain(this->Medium().grid), this->Medium(), this->Index(), marchSettings,
+    withOctree ? this->octree.levels.data() : nullptr);
 }
 
 PaperScene MeshInFog(const std::string& name, TriangleMesh mesh, int edge)

@@ -253,7 +253,8 @@ TraitCase Marching(Device& device, const std::string& name, int edge, bool glass
   return { name, "PhotonMarcher", scene->GridName(), Everything, [&device, scene, ior, photons](bool leaveOut) {
             MarchSettings settings;
             settings.leaveOut = leaveOut;
-            PhotonMarcher marcher(device, scene->medium, { ior->empty() ? nullptr : ior->data(), 1 }, settings);
+            PhotonMarcher marcher(
+              device, Domain(scene->medium.grid), scene->medium, { ior->empty() ? nullptr : ior->data(), 1 }, settings);
             return marcher.March(*photons).light.fluence;
           } };
 }

@@ -83,8 +83,8 @@ struct PhotonScene
 
   tyndall::PhotonMarcher Marcher(tyndall::Device& device)
   {
-    return tyndall::PhotonMarcher(
-      device, this->Medium(), this->Index(), this->settings, this->levels.empty() ? nullptr : this->levels.data());
+    return tyndall::PhotonMarcher(device, tyndall::Domain(this->Medium().grid), this->Medium(), this->Index(),
+      this->settings, this->levels.empty() ? nullptr : this->levels.data());
   }
 
   tyndall::PhotonLight March(tyndall::Device& device, const std::vector<tyndall::Photon>& photons)

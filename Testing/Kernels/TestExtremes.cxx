@@ -368,7 +368,8 @@ TEST_F(Extremes, PhotonsKeepTheirPowerInOpaqueVoxels)
     PhotonScene scene(9, 1.0, 0.0f, 0.0f);
     scene.sigma_a[scene.sigma_a.size() / 2] = sigma;
     scene.sigma_s[scene.sigma_s.size() / 2] = sigma;
-    PhotonMarcher marcher(this->GetDevice(), scene.Medium(), scene.Index(), scene.settings, nullptr);
+    PhotonMarcher marcher(
+      this->GetDevice(), Domain(scene.Medium().grid), scene.Medium(), scene.Index(), scene.settings, nullptr);
     std::vector<Photon> photons(100);
     for (std::size_t i = 0; i < photons.size(); ++i)
     {
@@ -386,7 +387,8 @@ TEST_F(Extremes, PhotonsLightIsInProportionToTheirPower)
 {
   const auto march = [&](float power) {
     PhotonScene scene(9, 1.0, 0.3f, 0.3f);
-    PhotonMarcher marcher(this->GetDevice(), scene.Medium(), scene.Index(), scene.settings, nullptr);
+    PhotonMarcher marcher(
+      this->GetDevice(), Domain(scene.Medium().grid), scene.Medium(), scene.Index(), scene.settings, nullptr);
     Photon photon;
     photon.position = { 0.3, 0.01, 1.0 };
     photon.direction = { 0.1f, 0.2f, -1.0f };

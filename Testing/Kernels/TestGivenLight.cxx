@@ -255,7 +255,8 @@ TEST_F(GivenLightTest, OfPhotonsConservesTheirPower)
   const std::vector<Photon> photons = EmitPhotons(scene.medium.grid, scene.light, emission).photons;
   MarchSettings march;
   march.meanDirection = true;
-  const PhotonLight marched = PhotonMarcher(this->GetDevice(), scene.medium, {}, march).March(photons);
+  const PhotonLight marched =
+    PhotonMarcher(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, march).March(photons);
   Illumination given;
   given.uncollided.fluence = { marched.light.fluence.data(), marched.light.channels };
   given.uncollided.meanDirection = { marched.meanDirection.data(), 3 };

@@ -154,7 +154,7 @@ TEST_F(LatticeBoltzmann, GuessesWhereLightThatIsHandedOnIsFirstScattered)
     MarchSettings all;
     all.maximumOrders = 0;
     const PhotonLight truth =
-      PhotonMarcher(this->GetDevice(), scene.medium, {}, all)
+      PhotonMarcher(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, all)
         .March(EmitPhotons(scene.medium.grid, scene.light, { 400000, Sampler::Hammersley, 1 }).photons);
     scene.light = {};
     scene.light.uncollided.fluence = { own.fluenceDirect.data(), own.channels };

@@ -44,7 +44,7 @@ protected:
       queue.enqueueReadBuffer(fluence.Handle(), CL_TRUE, 0, values.size() * sizeof(float), values.data());
       shown.fluence.push_back(values);
     };
-    PhotonMarcher marcher(device, scene.Medium(), scene.Index(), scene.settings);
+    PhotonMarcher marcher(device, Domain(scene.Medium().grid), scene.Medium(), scene.Index(), scene.settings);
     return marcher.MarchByTurns(photons, turns, shown.times, monitor);
   }
 };

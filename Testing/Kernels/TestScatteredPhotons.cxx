@@ -67,7 +67,7 @@ class ScatteredPhotonsTest : public DeviceTest
 protected:
   PhotonLight March(const Scene& scene, const std::vector<Photon>& photons, const MarchSettings& settings)
   {
-    return PhotonMarcher(this->GetDevice(), scene.medium, {}, settings).March(photons);
+    return PhotonMarcher(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, settings).March(photons);
   }
 };
 
@@ -304,7 +304,7 @@ TEST_F(ScatteredPhotonsTest, ReportAndStop)
 {
   const Scene scene = Cube(8, 200.0, 1.0);
   const std::vector<Photon> photons = ThroughTheBottom(scene.medium.grid, 20000, true, 4);
-  PhotonMarcher marcher(this->GetDevice(), scene.medium, {}, AllOrders());
+  PhotonMarcher marcher(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, AllOrders());
   double last = 0.0;
   int reports = 0;
   EXPECT_THROW(marcher.March(photons,
@@ -322,10 +322,10 @@ TEST_F(ScatteredPhotonsTest, RefuseSettingsThatMeanNothing)
   const Scene scene = Cube(2, 1.0, 1.0);
   MarchSettings settings;
   settings.maximumOrders = -1;
-  EXPECT_THROW(PhotonMarcher(this->GetDevice(), scene.medium, {}, settings), InvalidInput);
+  EXPECT_THROW(PhotonMarcher(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, settings), InvalidInput);
   settings = AllOrders();
   settings.errorBatches = 65;
-  EXPECT_THROW(PhotonMarcher(this->GetDevice(), scene.medium, {}, settings), InvalidInput);
+  EXPECT_THROW(PhotonMarcher(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, settings), InvalidInput);
 }
 
 /// Sums in private copies or by atomics: who takes which photon, and when, makes no difference.
@@ -430,8 +430,9 @@ protected:
     for (unsigned part = 0; part < Parts; ++part)
     {
       settings.seed = 100 + part;
-      const PhotonLight light = PhotonMarcher(this->GetDevice(), scene.medium, { ior.data(), 1 }, settings)
-                                  .March(FurnacePhotons(2000, 20261123 + part));
+      const PhotonLight light =
+        PhotonMarcher(this->GetDevice(), Domain(scene.medium.grid), scene.medium, { ior.data(), 1 }, settings)
+          .March(FurnacePhotons(2000, 20261123 + part));
       double found = 0.0, exact = 0.0;
       for (std::size_t i = 0; i < ior.size(); ++i)
       {

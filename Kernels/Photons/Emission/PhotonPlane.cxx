@@ -1,6 +1,7 @@
 #include "Photons/Emission/PhotonPlane.h"
 
 #include "Numerics/Constants.h"
+#include "Photons/Emission/SampleSequence.h"
 
 #include <glm/geometric.hpp>
 
@@ -69,18 +70,10 @@ double HeightAt(const std::vector<glm::dvec2>& chain, double x, bool fromLeft)
   return chain.back().y;
 }
 
-/// Finds the slice that contains the fraction u of the total, from cumulative sums `below`, and the position within it.
-std::size_t Choose(const std::vector<double>& below, double u, double& part)
+/// Finds the step that contains the fraction u of the total, and the position within it.
+std::size_t Choose(const std::vector<double>& cumulative, double u, double& part)
 {
-  const double wanted = u * below.back();
-  std::size_t slice = 0;
-  while (slice + 1 < below.size() && below[slice] <= wanted)
-  {
-    ++slice;
-  }
-  const double before = slice > 0 ? below[slice - 1] : 0.0;
-  part = std::min(std::max((wanted - before) / (below[slice] - before), 0.0), 1.0);
-  return slice;
+  return static_cast<std::size_t>(FindStep(cumulative.data(), static_cast<int>(cumulative.size()) - 1, u, part));
 }
 
 glm::dvec3 Corner(const Grid& grid, int which)
@@ -131,7 +124,7 @@ ConvexPolygon::ConvexPolygon(std::vector<glm::dvec2> points)
       HeightAt(high, xs[i - 1], true), HeightAt(high, xs[i], false) };
     const double area = 0.5 * (slice.x1 - slice.x0) * ((slice.high0 - slice.low0) + (slice.high1 - slice.low1));
     this->Slices.push_back(slice);
-    this->Below.push_back((this->Below.empty() ? 0.0 : this->Below.back()) + area);
+    this->Below.push_back(this->Below.back() + area);
   }
 }
 

@@ -17,7 +17,7 @@ public:
   /// The convex hull of the points.
   explicit ConvexPolygon(std::vector<glm::dvec2> points);
 
-  double Area() const { return this->Below.empty() ? 0.0 : this->Below.back(); }
+  double Area() const { return this->Below.back(); }
   glm::dvec2 At(double u, double v) const;
 
 private:
@@ -27,7 +27,7 @@ private:
     double x0, x1, low0, low1, high0, high1;
   };
   std::vector<Slice> Slices;
-  std::vector<double> Below; ///< cumulative area up to the end of each slice
+  std::vector<double> Below = { 0.0 }; ///< cumulative area up to the end of each slice
 };
 
 /// The photon plane of parallel light: perpendicular to its direction, bounded by the outline of the volume.
@@ -79,12 +79,12 @@ class VisibleFaces
 public:
   VisibleFaces(const Grid& grid, const glm::dvec3& eye);
 
-  double SolidAngle() const { return this->Below.empty() ? 0.0 : this->Below.back(); }
+  double SolidAngle() const { return this->Below.back(); }
   glm::dvec3 At(double u, double v) const; ///< a point on these faces, uniform in solid angle
 
 private:
   std::vector<SphericalRectangle> Faces;
-  std::vector<double> Below; ///< cumulative solid angle up to each face
+  std::vector<double> Below = { 0.0 }; ///< cumulative solid angle up to the end of each face
 };
 
 /// The directions from a lamp into the volume: the whole sphere inside it, half of that on a face, a quarter on an

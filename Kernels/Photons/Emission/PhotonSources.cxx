@@ -2,7 +2,6 @@
 
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
-#include "Photons/Emission/CumulativeTable.h"
 #include "Photons/Emission/PhotonPlane.h"
 #include "Photons/Emission/SampleSequence.h"
 #include "Photons/Importance/ImportanceMap.h"
@@ -340,40 +339,26 @@ public:
     , Constant(sky)
     , Width(environment.Empty() ? 64 : environment.width)
     , Height(environment.Empty() ? 32 : environment.height)
+    , Pixels(this->Width, this->Height, this->Weights())
   {
-    const std::vector<double> weights = this->Weights();
-    this->Rows.assign(this->Height + 1, 0.0);
-    this->Pixels.assign(static_cast<std::size_t>(this->Height) * (this->Width + 1), 0.0);
-    for (int j = 0; j < this->Height; ++j)
-    {
-      double* row = this->Pixels.data() + static_cast<std::size_t>(j) * (this->Width + 1);
-      for (int i = 0; i < this->Width; ++i)
-      {
-        row[i + 1] = row[i] + weights[static_cast<std::size_t>(j) * this->Width + i];
-      }
-      this->Rows[j + 1] = this->Rows[j] + row[this->Width];
-    }
   }
 
   std::optional<Shot> Shoot(const PhotonSample& u) const
   {
-    if (this->Rows.back() == 0.0)
+    if (this->Pixels.Total() == 0.0)
     {
       return {};
     }
-    double v, h;
-    const int j = FindStep(this->Rows.data(), this->Height, u[2], v);
-    const double* row = this->Pixels.data() + static_cast<std::size_t>(j) * (this->Width + 1);
-    const int i = FindStep(row, this->Width, u[3], h);
-    const double bottom = this->CosineBelow(j), top = this->CosineBelow(j + 1);
-    const double cosine = bottom + v * (top - bottom);
+    const DensityTable::Place at = this->Pixels.At(u[3], u[2]);
+    const double bottom = this->CosineBelow(at.row), top = this->CosineBelow(at.row + 1);
+    const double cosine = bottom + at.along * (top - bottom);
     const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
-    const double azimuth = 2.0 * Pi * (i + h) / this->Width;
+    const double azimuth = 2.0 * Pi * (at.column + at.across) / this->Width;
     const glm::dvec3 seen =
       Vector(this->Picture.ToScene({ sine * std::cos(azimuth), sine * std::sin(azimuth), cosine }));
 
     const double angle = 2.0 * Pi / this->Width * (top - bottom);
-    const double density = (row[i + 1] - row[i]) / (this->Rows.back() * angle);
+    const double density = this->Pixels.WeightOf(at.column, at.row) / (this->Pixels.Total() * angle);
     return Shot{ this->OnOutline(seen, u), -seen, Times(this->Radiance(seen), this->Outline(seen) / density) };
   }
 
@@ -448,7 +433,7 @@ private:
   Environment Picture;
   Rgb Constant;
   int Width, Height;
-  std::vector<double> Rows, Pixels; ///< cumulative, each with a leading zero
+  DensityTable Pixels;
 };
 }
 

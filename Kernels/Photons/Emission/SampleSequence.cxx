@@ -111,4 +111,48 @@ std::array<double, 4> SampleSequence::operator[](std::size_t i) const
   }
   return point;
 }
+
+int FindStep(const double* table, int count, double u, double& part)
+{
+  const double wanted = u * table[count];
+  int step = static_cast<int>(std::upper_bound(table + 1, table + count, wanted) - table) - 1;
+  while (step > 0 && table[step + 1] == table[step]) // if rounding raised `wanted` to the total
+  {
+    --step;
+  }
+  part = std::min(
+    // Keeps step + part below step + 1 after rounding.
+    (wanted - table[step]) / (table[step + 1] - table[step]), 1.0 - 0x1p-40);
+  return step;
+}
+
+DensityTable::DensityTable(int width, int height, const std::vector<double>& weights)
+  : Width(width)
+  , Height(height)
+  , Rows(static_cast<std::size_t>(height) + 1, 0.0)
+  , Columns(static_cast<std::size_t>(height) * (width + 1), 0.0)
+{
+  auto weight = weights.begin();
+  auto column = this->Columns.begin();
+  for (std::size_t row = 0; row < static_cast<std::size_t>(height); ++row, weight += width, column += width + 1)
+  {
+    std::partial_sum(weight, weight + width, column + 1);
+    this->Rows[row + 1] = this->Rows[row] + column[width];
+  }
+}
+
+DensityTable::Place DensityTable::At(double u, double v) const
+{
+  Place place;
+  place.row = FindStep(this->Rows.data(), this->Height, v, place.along);
+  const double* const columns = this->Columns.data() + static_cast<std::size_t>(place.row) * (this->Width + 1);
+  place.column = FindStep(columns, this->Width, u, place.across);
+  return place;
+}
+
+double DensityTable::WeightOf(int column, int row) const
+{
+  const double* const columns = this->Columns.data() + static_cast<std::size_t>(row) * (this->Width + 1);
+  return columns[column + 1] - columns[column];
+}
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace tyndall
 {
@@ -41,5 +42,37 @@ private:
   std::size_t Rows;
   std::size_t Stride; ///< step through the cells of the second grid
   std::array<double, 4> Shift = {};
+};
+
+/// Inverts a cumulative table: the step at which the fraction u of the total is reached. Never returns a step of zero
+/// height.
+/// @param table  count + 1 non-decreasing values, the first 0, the last above 0
+/// @param u      [0, 1)
+/// @param part   output: position within that step, [0, 1)
+int FindStep(const double* table, int count, double u, double& part);
+
+/// Maps the unit square to the cells of an image so that uniform points get its density: rows by their marginal
+/// distribution, then columns by the row's conditional distribution.
+class DensityTable
+{
+public:
+  /// @param weights  of the cells, columns fastest
+  DensityTable(int width, int height, const std::vector<double>& weights);
+
+  /// A point in a cell.
+  struct Place
+  {
+    int column, row;
+    double across, along; ///< position within the cell, [0, 1)
+  };
+  /// @param u, v  coordinates that choose the column and the row, [0, 1); the total must be above 0
+  Place At(double u, double v) const;
+
+  double Total() const { return this->Rows.back(); }
+  double WeightOf(int column, int row) const;
+
+private:
+  int Width, Height;
+  std::vector<double> Rows, Columns; ///< cumulative, each with a leading zero
 };
 }

@@ -2,7 +2,6 @@
 
 #include "Device/Errors.h"
 #include "Numerics/NumberText.h"
-#include "Photons/Emission/CumulativeTable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,31 +101,18 @@ void Check(const ImportanceMap& map)
 
 ImportanceSampler::ImportanceSampler(const float* density, int size, double most)
   : Size(size)
-  , Rows(static_cast<std::size_t>(size) + 1, 0.0)
-  , Columns(static_cast<std::size_t>(size) * (size + 1), 0.0)
+  , Table(size, size, Capped(density, static_cast<std::size_t>(size) * static_cast<std::size_t>(size), most))
 {
-  const std::size_t edge = static_cast<std::size_t>(size);
-  const std::vector<double> capped = Capped(density, edge * edge, most);
-  for (std::size_t j = 0; j < edge; ++j)
-  {
-    double* row = this->Columns.data() + j * (edge + 1);
-    std::partial_sum(capped.begin() + j * edge, capped.begin() + (j + 1) * edge, row + 1);
-    this->Rows[j + 1] = this->Rows[j] + row[size];
-  }
 }
 
 ImportanceSampler::Place ImportanceSampler::At(double u, double v) const
 {
-  double across, along;
-  const int row = FindStep(this->Rows.data(), this->Size, v, along);
-  const double* columns = this->Columns.data() + static_cast<std::size_t>(row) * (this->Size + 1);
-  const int column = FindStep(columns, this->Size, u, across);
-  return { (column + across) / this->Size, (row + along) / this->Size, this->DensityOf(column, row) };
+  const DensityTable::Place at = this->Table.At(u, v);
+  return { (at.column + at.across) / this->Size, (at.row + at.along) / this->Size, this->DensityOf(at.column, at.row) };
 }
 
 double ImportanceSampler::DensityOf(int column, int row) const
 {
-  const double* columns = this->Columns.data() + static_cast<std::size_t>(row) * (this->Size + 1);
-  return (columns[column + 1] - columns[column]) * this->Size * this->Size / this->Rows.back();
+  return this->Table.WeightOf(column, row) * this->Size * this->Size / this->Table.Total();
 }
 }

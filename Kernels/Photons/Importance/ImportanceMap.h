@@ -1,6 +1,7 @@
 #pragma once
 
-#include <array>
+#include "Photons/Emission/SampleSequence.h"
+
 #include <cstddef>
 #include <vector>
 
@@ -26,8 +27,7 @@ struct ImportanceMap
 void Check(const ImportanceMap& map);
 
 /// Importance sampling for one light's square of the map: warps the unit square onto itself so that uniform points get
-/// the map's density (Pfeuti 2009, section 3.2.3), rows by their marginal distribution, then columns by the row's
-/// conditional distribution.
+/// the map's density (Pfeuti 2009, section 3.2.3).
 class ImportanceSampler
 {
 public:
@@ -47,6 +47,6 @@ public:
 
 private:
   int Size;
-  std::vector<double> Rows, Columns; ///< cumulative distributions, each with a leading zero
+  DensityTable Table;
 };
 }

@@ -1,6 +1,7 @@
 #include "Photons/Importance/PilotGathering.h"
 
 #include "Device/Clock.h"
+#include "Device/Sizes.h"
 #include "Distribution/Rounds.h"
 #include "Photons/Marching/MarchRun.h"
 #include "Photons/Marching/PhotonPacking.h"
@@ -103,55 +104,17 @@ PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, i
   return light;
 }
 
-/// Sums of the pilot photons' deposits in cells.
-class PilotSums
+/// Sums of the copies of the cells' records.
+std::vector<std::int64_t> SumOfCopies(const Buffer<cl_long>& memory, std::size_t size)
 {
-public:
-  /// @param cellOfVoxel  MarchMedium::Cells; must outlive this
-  PilotSums(
-    const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells);
-  PilotSums(const PilotSums&) = delete;
-  PilotSums& operator=(const PilotSums&) = delete;
-
-  const MarchSums& Target() const { return this->Into; }
-  std::vector<std::int64_t> AddUp() const; ///< NumbersOfCell numbers for each cell
-
-private:
-  MarchSums Into;
-  Buffer<cl_long> Memory;
-};
-
-PilotSums::PilotSums(
-  const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells)
-  : Memory(medium.device, 0, "sums of the pilot photons' light")
-{
-  this->Into.records = cells;
-  this->Into.numbers = packed.channels + OriginNumbers;
-  this->Into.cells = &cellOfVoxel;
-  this->Into.shares = ShareSums(medium, this->Into.records, this->Into.numbers, 1, 0);
-  this->Memory = Buffer<cl_long>(medium.device,
-    cells * static_cast<std::size_t>(this->Into.numbers) * static_cast<std::size_t>(this->Into.shares.copies),
-    "sums of the pilot photons' light");
-  this->Memory.Fill(0);
-  this->Into.sums = &this->Memory;
-}
-
-std::vector<std::int64_t> PilotSums::AddUp() const
-{
-  const std::vector<cl_long> read = this->Memory.Read();
-  std::vector<std::int64_t> copies(read.begin(), read.end());
-  const std::size_t size = this->Into.records * static_cast<std::size_t>(this->Into.numbers);
-  for (std::size_t i = size; i < copies.size(); ++i)
+  const std::vector<cl_long> read = memory.Read();
+  std::vector<std::int64_t> sums(read.begin(), read.end());
+  for (std::size_t i = size; i < sums.size(); ++i)
   {
-    copies[i % size] += copies[i];
+    sums[i % size] += sums[i];
   }
-  copies.resize(size);
-  return copies;
-}
-
-std::size_t NumbersOfCell(const PackedPhotons& packed)
-{
-  return static_cast<std::size_t>(packed.channels + OriginNumbers);
+  sums.resize(size);
+  return sums;
 }
 
 /// Converts such sums to light.
@@ -187,19 +150,6 @@ void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const P
   }
 }
 
-/// March of one rank's photons through its block.
-struct PilotMarch
-{
-  PilotMarch(
-    const MarchMedium& medium, const PackedPhotons& packed, const Buffer<cl_int>& cellOfVoxel, std::size_t cells)
-    : sums(medium, packed, cellOfVoxel, cells)
-    , run(medium, this->sums.Target(), packed.channels)
-  {
-  }
-
-  const PilotSums sums;
-  MarchRun run;
-};
 }
 
 PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
@@ -210,11 +160,15 @@ PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std:
   const Grid& whole = domain.Whole();
   PackedPhotons all, own;
   PilotLight light;
-  std::unique_ptr<PilotMarch> pilots;
+  MarchSums into;
+  Buffer<cl_long> memory;
+  std::unique_ptr<MarchRun> run;
   domain.Collective([&] {
     CheckOrigins(photons, origins);
     all = Pack(photons, whole, this->Traits.Channels(this->Settings) == 3, MarchEventLimit(whole, this->Settings));
     light = DarkPilotLight(whole, cells, this->Traits.ColoursOf(all));
+    into.records = light.grid.VoxelCount();
+    into.numbers = all.channels + OriginNumbers;
     if (!this->Through)
     {
       return;
@@ -225,21 +179,27 @@ PilotLight PilotGathering::Gather(const std::vector<Photon>& photons, const std:
       this->Cells = light.grid.size;
     }
     own = ThoseIn(domain.Own(), whole, all);
-    pilots = std::make_unique<PilotMarch>(*this->Through, own, this->CellOfVoxel, light.grid.VoxelCount());
+    into.cells = &this->CellOfVoxel;
+    into.shares = ShareSums(*this->Through, into.records, into.numbers, 1, 0);
+    memory = Buffer<cl_long>(
+      this->Through->device, into.Stride() * Count(into.shares.copies), "sums of the pilot photons' light");
+    memory.Fill(0);
+    into.sums = &memory;
+    run = std::make_unique<MarchRun>(*this->Through, into, own.channels);
   });
   Rounds rounds(domain.Comm(), domain.Partition());
   rounds.UntilAllEnd<PhotonOnItsWay>(
     [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor& ofRound) {
-      if (!pilots)
+      if (!run)
       {
         return std::vector<PhotonOnItsWay>();
       }
-      return round == 0 ? pilots->run.Start(own, MarksOfOrigins(origins, own), ofRound).gone
-                        : pilots->run.Resume(std::move(arrived), ofRound).gone;
+      return round == 0 ? run->Start(own, MarksOfOrigins(origins, own), ofRound).gone
+                        : run->Resume(std::move(arrived), ofRound).gone;
     },
     monitor);
-  std::vector<std::int64_t> sums(light.grid.VoxelCount() * NumbersOfCell(all), 0);
-  domain.Collective([&] { sums = pilots ? pilots->sums.AddUp() : sums; });
+  std::vector<std::int64_t> sums(into.Stride(), 0);
+  domain.Collective([&] { sums = run ? SumOfCopies(memory, into.Stride()) : sums; });
   const double diagonal = std::hypot(whole.spacing[0], whole.spacing[1], whole.spacing[2]);
   PutCells(SumExactly(domain.Comm(), sums), whole, all, all.unit * diagonal, light);
   light.seconds = ClockSeconds() - start;

@@ -12,7 +12,6 @@
 
 namespace tyndall
 {
-
 /// Marches photons along curved rays through a medium, and deposits light in every voxel that they cross.
 ///
 /// Paths follow Pfeuti 2009, Eq. 2.7 (numerics.md, Eqs. (89) to (92)), by a symplectic integrator on a tricubic
@@ -39,7 +38,7 @@ class PhotonMarcher
 {
 public:
   /// Collective, as are all member functions.
-  /// @param domain  the grid
+  /// @param domain  the grid; `Domain(grid)` for a serial march
   /// @param medium  the medium in the rank's block, on the grid domain.OwnGrid(). Arrays are read in the constructor
   ///   only
   /// @param ior     refractive index, one component per voxel; null values: 1 everywhere
@@ -49,12 +48,6 @@ public:
   ///   DeviceError
   PhotonMarcher(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
     const MarchSettings& settings = {}, const std::uint8_t* levels = nullptr);
-  /// Serial.
-  PhotonMarcher(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings = {},
-    const std::uint8_t* levels = nullptr)
-    : PhotonMarcher(device, Domain(medium.grid), medium, ior, settings, levels)
-  {
-  }
   ~PhotonMarcher();
   PhotonMarcher(PhotonMarcher&&) noexcept;
 

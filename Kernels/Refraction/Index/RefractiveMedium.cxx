@@ -9,8 +9,8 @@
 #include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
-#include "Refraction/Voxelization/VoxelizationShared.h"
 #include "Refraction/Voxelization/MeshChecks.h"
+#include "Refraction/Voxelization/VoxelizationShared.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

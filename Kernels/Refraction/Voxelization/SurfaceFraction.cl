@@ -70,8 +70,7 @@ inline int side_of(
 // Sums the corrections of a slab's voxels.
 //   tiles          as in mark_crossings
 //   samples        samples in a column
-//   bits, claimed  samples inside this mesh, and inside later ones; claimed and taken are read only if there are several
-//                  meshes
+//   bits, claimed  samples inside this mesh, and inside later ones; claimed and taken are only read with several meshes
 //   taken          see refine_counts: hidden crossings still count in voxels that later meshes fill completely
 //   orientation    1, -1 or 0, see OrientedMesh
 //   corrections    output, one per voxel of the slab, x fastest, in UNITS per sample
