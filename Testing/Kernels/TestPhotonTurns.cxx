@@ -45,7 +45,9 @@ protected:
       shown.fluence.push_back(values);
     };
     PhotonMarcher marcher(device, Domain(scene.Medium().grid), scene.Medium(), scene.Index(), scene.settings);
-    return marcher.MarchByTurns(photons, turns, shown.times, monitor);
+    const PhotonLight found = marcher.MarchByTurns(photons, turns, monitor);
+    shown.times = turns.times;
+    return found;
   }
 };
 }

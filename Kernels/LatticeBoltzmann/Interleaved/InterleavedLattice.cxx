@@ -131,8 +131,8 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   turns.meanwhile = [this](const cl::CommandQueue& queue) { return this->Step(queue); };
   turns.take = [this](const cl::CommandQueue& queue, const Buffer<float>& fluence) { this->Take(queue, fluence); };
   const double start = ClockSeconds();
-  TurnTimes times;
-  const PhotonLight found = marcher.MarchByTurns(photons, turns, times, OfPart(monitor, 0.0, 0.3));
+  const PhotonLight found = marcher.MarchByTurns(photons, turns, OfPart(monitor, 0.0, 0.3));
+  const TurnTimes& times = turns.times;
   this->TakeAll(found);
   const double marched =
     (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // rows sum over channels

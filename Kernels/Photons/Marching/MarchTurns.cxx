@@ -119,11 +119,11 @@ void AddTimes(const cl::Event& marched, const std::array<cl::Event, 2>& meanwhil
 }
 }
 
-TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
-  const MarchSums& target, const MarchTurns& turns,
+void MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
+  const MarchSums& target, MarchTurns& turns,
   const std::function<const Buffer<float>&(const cl::CommandQueue& queue)>& show, const Monitor& monitor)
 {
-  TurnTimes times;
+  TurnTimes& times = turns.times = {};
   const cl::CommandQueue mine = medium.device.AnotherQueue();
   const cl::CommandQueue theirs = turns.sideBySide ? medium.device.AnotherQueue() : mine;
   TurnsOfPhotons all(medium, photons, target, packed.channels);
@@ -148,6 +148,5 @@ TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, c
     left = all.StillGoing(mine);
     Report(monitor, 1.0 - static_cast<double>(left) / static_cast<double>(packed.Count()));
   }
-  return times;
 }
 }

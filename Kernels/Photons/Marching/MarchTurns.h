@@ -8,6 +8,15 @@
 
 namespace tyndall
 {
+/// Device times of a march in turns.
+struct TurnTimes
+{
+  int turns = 0;
+  double marching = 0.0;  ///< s
+  double meanwhile = 0.0; ///< s, of the work queued by `meanwhile`
+  double together = 0.0;  ///< s, in which both were running
+};
+
 /// Callbacks for photons that march a few voxels per turn, so that the light deposited so far is used while they march
 /// on (Bernabei et al., section III-A).
 struct MarchTurns
@@ -23,21 +32,13 @@ struct MarchTurns
   /// Queues the transfer of the light accumulated since the first turn.
   /// @param fluence  W / length^2, [voxel][channel]
   std::function<void(const cl::CommandQueue& queue, const Buffer<float>& fluence)> take;
-};
-
-/// Device times of a march in turns.
-struct TurnTimes
-{
-  int turns = 0;
-  double marching = 0.0;  ///< s
-  double meanwhile = 0.0; ///< s, of the work queued by `meanwhile`
-  double together = 0.0;  ///< s, in which both were running
+  TurnTimes times; ///< output
 };
 
 /// Marches photons to their ends in turns.
 /// @param show  queues the conversion of the sums so far to fluence
 /// @throws DeviceError if packets of photons do not fit; Aborted: the sums then hold only a part of the paths
-TurnTimes MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
-  const MarchSums& target, const MarchTurns& turns,
+void MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
+  const MarchSums& target, MarchTurns& turns,
   const std::function<const Buffer<float>&(const cl::CommandQueue& queue)>& show, const Monitor& monitor);
 }

@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -86,17 +85,10 @@ public:
   Implementation(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
     const MarchSettings& settings, const std::uint8_t* levels);
 
-  /// Follows photons to their first collision, and tallies what became of them.
-  using Way = std::function<void(
-    const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor)>;
-  PhotonLight March(const std::vector<Photon>& share, const Way& way, const Monitor& monitor);
-  void AtOnce(
-    const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor) const;
-  void ByTurns(const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const MarchTurns& turns,
-    TurnTimes& times, const Monitor& monitor) const;
+  /// @param turns  null: photons march to their ends at once
+  PhotonLight March(const std::vector<Photon>& share, MarchTurns* turns, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const;
-  /// @throws InvalidInput if turns are not possible, or light is stored by bricks
-  void RequireTurns() const;
+  /// @throws InvalidInput if light is stored by bricks
   void RequireVoxels(const char* what) const;
 
   const Domain TheDomain;
@@ -111,14 +103,16 @@ private:
   void ShareNodes(const std::uint8_t* levels);
   void PrepareScattering(const Medium& medium, const Field& index, const std::uint8_t* levels);
   PhotonLight MarchThese(
-    const std::vector<Photon>& share, const PhotonNumbers& numbers, const Way& way, const Monitor& monitor);
-  PhotonLight MarchInBatches(
-    const std::vector<Photon>& share, const PlaceOfShare& place, const Way& way, const Monitor& monitor);
-  void FollowUncollided(const StartingPhotons& starting, const Way& way, PhotonLight& result, const Monitor& monitor);
+    const std::vector<Photon>& share, const PhotonNumbers& numbers, MarchTurns* turns, const Monitor& monitor);
+  PhotonLight MarchInBatches(const std::vector<Photon>& share, const PlaceOfShare& place, const Monitor& monitor);
+  void FollowUncollided(
+    const StartingPhotons& starting, MarchTurns* turns, PhotonLight& result, const Monitor& monitor);
+  void AtOnce(
+    const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& monitor) const;
+  void ByTurns(const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, MarchTurns& turns,
+    const Monitor& monitor) const;
   void AddScattered(const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor) const;
   ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor) const;
-  cl::Kernel Show(
-    const StartingPhotons& starting, const MarchSums& target, const PhotonLight& result, Buffer<float>& fluence) const;
 
   Device& TheDevice;
   const bool Divided;                            ///< whether the grid is divided among ranks
@@ -199,13 +193,9 @@ VoxelBox PhotonMarcher::Implementation::KnownOf(const VoxelBox& block, int reach
 Field PhotonMarcher::Implementation::IndexAround(const Field& ior, int reach, std::vector<float>& values) const
 {
   const Domain& domain = this->TheDomain;
-  if (!this->Divided)
+  if (reach == 0 || !this->Divided)
   {
-    return ior;
-  }
-  if (reach == 0)
-  {
-    return {};
+    return reach == 0 ? Field() : ior;
   }
   std::vector<VoxelBox> known;
   for (const VoxelBox& block : domain.Partition().blocks)
@@ -252,14 +242,6 @@ void PhotonMarcher::Implementation::PrepareScattering(
   });
 }
 
-void PhotonMarcher::Implementation::RequireTurns() const
-{
-  const MarchSettings& settings = this->Settings;
-  Require(settings.maximumOrders == 1 && !settings.batches && settings.errorBatches == 0,
-    "Photons march in turns up to where they are first scattered, and without batches.");
-  this->RequireVoxels("Photons march in turns");
-}
-
 void PhotonMarcher::Implementation::RequireVoxels(const char* what) const
 {
   Require(!this->Through || !this->Through->bricks.AreThere(),
@@ -287,28 +269,20 @@ void PhotonMarcher::Implementation::AtOnce(
     monitor);
 }
 
-/// Creates a kernel that converts the sums so far to fluence.
-cl::Kernel PhotonMarcher::Implementation::Show(
-  const StartingPhotons& starting, const MarchSums& target, const PhotonLight& result, Buffer<float>& fluence) const
-{
-  fluence =
-    Buffer<float>(this->TheDevice, this->TheDomain.Own().VoxelCount() * static_cast<std::size_t>(result.light.channels),
-      "fluence of photons on their way");
-  return this->Light->Show(starting.packed, target, result.light, fluence);
-}
-
 void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, const MarchSums& target,
-  PhotonLight& result, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor) const
+  PhotonLight& result, MarchTurns& turns, const Monitor& monitor) const
 {
-  Buffer<float> fluence;
-  const cl::Kernel show = this->Show(starting, target, result, fluence);
-  const PhotonsOnDevice onDevice(this->TheDevice, starting.packed, starting.marks);
   const std::array<int, 3>& size = this->TheDomain.Own().size;
+  const std::size_t rows = Count(size[1]) * Count(size[2]);
+  const Buffer<float> fluence(
+    this->TheDevice, rows * Count(size[0]) * Count(result.light.channels), "fluence of photons on their way");
+  const cl::Kernel show = this->Light->Show(starting.packed, target, result.light, fluence);
+  const PhotonsOnDevice onDevice(this->TheDevice, starting.packed, starting.marks);
   turns.begin(starting.packed, result.light.channels);
-  times = MarchInTurns(
+  MarchInTurns(
     *this->Through, starting.packed, onDevice, target, turns,
     [&](const cl::CommandQueue& queue) -> const Buffer<float>& {
-      queue.enqueueNDRangeKernel(show, cl::NullRange, cl::NDRange(Count(size[1]) * Count(size[2])));
+      queue.enqueueNDRangeKernel(show, cl::NullRange, cl::NDRange(rows));
       return fluence;
     },
     monitor);
@@ -317,13 +291,20 @@ void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, con
 
 /// Follows photons to their first collision.
 void PhotonMarcher::Implementation::FollowUncollided(
-  const StartingPhotons& starting, const Way& way, PhotonLight& result, const Monitor& monitor)
+  const StartingPhotons& starting, MarchTurns* turns, PhotonLight& result, const Monitor& monitor)
 {
   MarchSums target;
   try
   {
     this->TheDomain.Collective([&] { target = this->Light ? this->Light->Prepare(starting.packed) : target; });
-    way(starting, target, result, monitor);
+    if (turns)
+    {
+      this->ByTurns(starting, target, result, *turns, monitor);
+    }
+    else
+    {
+      this->AtOnce(starting, target, result, monitor);
+    }
   }
   catch (...)
   {
@@ -383,7 +364,7 @@ void PhotonMarcher::Implementation::AddScattered(
 
 /// @param numbers  indices of the photons among all
 PhotonLight PhotonMarcher::Implementation::MarchThese(
-  const std::vector<Photon>& share, const PhotonNumbers& numbers, const Way& way, const Monitor& monitor)
+  const std::vector<Photon>& share, const PhotonNumbers& numbers, MarchTurns* turns, const Monitor& monitor)
 {
   const double start = ClockSeconds();
   const StartingPhotons starting =
@@ -398,7 +379,7 @@ PhotonLight PhotonMarcher::Implementation::MarchThese(
   result.missed = packed.missed;
   result.batches = static_cast<int>(this->TheDomain.Max(BatchesOf(share)));
   result.secondsMarching = -ClockSeconds();
-  this->FollowUncollided(starting, way, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
+  this->FollowUncollided(starting, turns, result, this->Scattering ? OfPart(monitor, 0.0, 0.05) : monitor);
   PutIntoColours(packed, colours, result);
   this->AddScattered(packed, result, OfPart(monitor, 0.05, 1.0));
   if (this->Settings.batches && packed.Batches() == 1)
@@ -410,7 +391,7 @@ PhotonLight PhotonMarcher::Implementation::MarchThese(
 }
 
 PhotonLight PhotonMarcher::Implementation::MarchInBatches(
-  const std::vector<Photon>& share, const PlaceOfShare& place, const Way& way, const Monitor& monitor)
+  const std::vector<Photon>& share, const PlaceOfShare& place, const Monitor& monitor)
 {
   const auto batches = static_cast<std::size_t>(this->Settings.errorBatches);
   MarchedBatches all;
@@ -425,26 +406,26 @@ PhotonLight PhotonMarcher::Implementation::MarchInBatches(
       some.push_back(share[number - place.first]);
     }
     const double parts = static_cast<double>(batches);
-    all.Add(this->MarchThese(some, own, way, OfPart(monitor, b / parts, (b + 1) / parts)));
+    all.Add(this->MarchThese(some, own, nullptr, OfPart(monitor, b / parts, (b + 1) / parts)));
   }
   return std::move(all).Sum();
 }
 
 PhotonLight PhotonMarcher::Implementation::March(
-  const std::vector<Photon>& share, const Way& way, const Monitor& monitor)
+  const std::vector<Photon>& share, MarchTurns* turns, const Monitor& monitor)
 {
   this->TheRounds = std::make_unique<Rounds>(this->TheDomain.Comm(), this->TheDomain.Partition());
   const PlaceOfShare place = PlaceAmong(this->TheDomain.Comm(), share.size());
   PhotonLight result;
   if (this->Settings.errorBatches > 0)
   {
-    result = this->MarchInBatches(share, place, way, monitor);
+    result = this->MarchInBatches(share, place, monitor);
   }
   else
   {
     PhotonNumbers numbers(share.size());
     std::iota(numbers.begin(), numbers.end(), place.first);
-    result = this->MarchThese(share, numbers, way, monitor);
+    result = this->MarchThese(share, numbers, turns, monitor);
   }
   this->Handed = this->TheRounds->Traffic();
   JudgeBalance(result.light, this->TheDomain, Medium());
@@ -471,25 +452,17 @@ PhotonMarcher::PhotonMarcher(PhotonMarcher&&) noexcept = default;
 
 PhotonLight PhotonMarcher::March(const std::vector<Photon>& share, const Monitor& monitor)
 {
-  return this->Inside->March(
-    share,
-    [this](const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& ofPart) {
-      this->Inside->AtOnce(starting, target, result, ofPart);
-    },
-    monitor);
+  return this->Inside->March(share, nullptr, monitor);
 }
 
-PhotonLight PhotonMarcher::MarchByTurns(
-  const std::vector<Photon>& photons, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor)
+PhotonLight PhotonMarcher::MarchByTurns(const std::vector<Photon>& photons, MarchTurns& turns, const Monitor& monitor)
 {
-  this->Inside->RequireTurns();
+  const MarchSettings& settings = this->Inside->Settings;
+  Require(settings.maximumOrders == 1 && !settings.batches && settings.errorBatches == 0,
+    "Photons march in turns up to where they are first scattered, and without batches.");
+  this->Inside->RequireVoxels("Photons march in turns");
   Require(this->Inside->TheDomain.IsSerial(), "Photons march in turns on one rank.");
-  return this->Inside->March(
-    photons,
-    [&](const StartingPhotons& starting, const MarchSums& target, PhotonLight& result, const Monitor& ofPart) {
-      this->Inside->ByTurns(starting, target, result, turns, times, ofPart);
-    },
-    monitor);
+  return this->Inside->March(photons, &turns, monitor);
 }
 
 std::vector<PhotonPath> PhotonMarcher::Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen)

@@ -60,11 +60,10 @@ public:
   PhotonLight March(const std::vector<Photon>& share, const Monitor& monitor = {});
 
   /// March in turns: the same light, with callbacks between turns. For one rank and one order, without batches.
-  /// @param times  output: duration of the turns
+  /// @param turns  its `times` are set
   /// @throws InvalidInput if the settings ask for batches or for other orders than 1, or light is stored by bricks; as
   ///   March
-  PhotonLight MarchByTurns(
-    const std::vector<Photon>& photons, const MarchTurns& turns, TurnTimes& times, const Monitor& monitor = {});
+  PhotonLight MarchByTurns(const std::vector<Photon>& photons, MarchTurns& turns, const Monitor& monitor = {});
 
   /// Light of a few photons in coarse cells, and the mean origin of the photons in each cell (Pfeuti 2009, section
   /// 3.2.2). Photons take the same paths as in March, through the medium's own voxels. Voxel i of an axis belongs to

@@ -8,7 +8,6 @@
 #include "Photons/Marching/PhotonPacking.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -17,31 +16,17 @@ namespace tyndall
 {
 namespace
 {
-/// The path of a packed photon.
-PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<cl_float4>& corners)
+/// A vertex of a path: where its photon starts, changes direction and ends.
+struct PathVertex
 {
-  const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;
-  const float whole = std::accumulate(power, power + packed.channels, 0.0f);
-  PhotonPath path;
-  path.photon = packed.numbers[i];
-  for (const cl_float4& corner : corners)
-  {
-    std::array<double, 3> point;
-    for (int a = 0; a < 3; ++a)
-    {
-      point[a] = grid.origin[a] + corner.s[a] * grid.spacing[a];
-    }
-    path.points.push_back(point);
-    path.left.push_back(whole > 0.0f ? corner.s[3] / whole : 1.0f);
-  }
-  return path;
-}
+  cl_ulong photon = 0;  ///< mark that identifies the photon
+  cl_ulong round = 0;   ///< in which this part of the path was traced
+  cl_float4 place = {}; ///< position in voxels, remaining power
 
-/// Corners of a photon's path in a rank's block: where it starts, changes direction and ends.
-struct PathPart
-{
-  cl_ulong photon = 0; ///< mark that identifies the photon
-  std::vector<cl_float4> corners;
+  bool operator<(const PathVertex& other) const
+  {
+    return this->photon < other.photon || (this->photon == other.photon && this->round < other.round);
+  }
 };
 
 /// Traces the paths of photons through a rank's block of a grid.
@@ -59,34 +44,36 @@ public:
   }
 
   /// Traces photons that start here, or have arrived from other blocks. @return those that continue in other blocks
-  std::vector<PhotonOnItsWay> Start(
-    const PackedPhotons& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts)
+  std::vector<PhotonOnItsWay> Start(const PackedPhotons& photons)
   {
-    return this->Trace(PhotonsOnDevice(this->Medium.device, photons, marks), marks, parts);
+    const std::vector<cl_ulong> marks(photons.numbers.begin(), photons.numbers.end());
+    return this->Trace(PhotonsOnDevice(this->Medium.device, photons, marks), marks);
   }
-  std::vector<PhotonOnItsWay> Resume(const std::vector<PhotonOnItsWay>& arrived, std::vector<PathPart>& parts)
+  std::vector<PhotonOnItsWay> Resume(const std::vector<PhotonOnItsWay>& arrived)
   {
     std::vector<cl_ulong> marks;
     for (const PhotonOnItsWay& photon : arrived)
     {
       marks.push_back(photon.mark);
     }
-    return this->Trace(PhotonsOnDevice(this->Medium.device, arrived, 1, this->Channels), marks, parts);
+    return this->Trace(PhotonsOnDevice(this->Medium.device, arrived, 1, this->Channels), marks);
   }
 
+  std::vector<PathVertex> vertices; ///< of all paths so far, each part in order
+
 private:
-  std::vector<PhotonOnItsWay> Trace(
-    const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts);
+  std::vector<PhotonOnItsWay> Trace(const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks);
 
   const MarchMedium& Medium;
   int Channels;
   cl::Kernel Kernel;
+  cl_ulong Round = 0;
 };
 
-/// Runs the kernel twice: it counts corners, then writes them.
-std::vector<PhotonOnItsWay> PathRun::Trace(
-  const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks, std::vector<PathPart>& parts)
+/// Runs the kernel twice: it counts vertices, then writes them.
+std::vector<PhotonOnItsWay> PathRun::Trace(const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks)
 {
+  ++this->Round;
   std::vector<PhotonOnItsWay> into;
   if (marks.empty())
   {
@@ -122,7 +109,10 @@ std::vector<PhotonOnItsWay> PathRun::Trace(
   const std::vector<cl_float4> all = corners.Read();
   for (std::size_t i = 0; i < marks.size(); ++i)
   {
-    parts.push_back({ marks[i], { all.begin() + begin[i], all.begin() + begin[i + 1] } });
+    for (cl_int k = begin[i]; k < begin[i + 1]; ++k)
+    {
+      this->vertices.push_back({ marks[i], this->Round, all[static_cast<std::size_t>(k)] });
+    }
   }
   if (medium.IsBlock())
   {
@@ -131,62 +121,45 @@ std::vector<PhotonOnItsWay> PathRun::Trace(
   return into;
 }
 
-/// Identifies a part of a path: its photon's mark, and the round in which it was traced.
-using PartKey = std::pair<cl_ulong, cl_ulong>;
-
-/// The parts on one rank.
-struct PathParts
-{
-  std::vector<cl_ulong> keys; ///< photon, round and number of corners of each
-  std::vector<cl_float4> corners;
-
-  void Add(const std::vector<PathPart>& parts, int round)
-  {
-    for (const PathPart& part : parts)
-    {
-      this->keys.insert(
-        this->keys.end(), { part.photon, static_cast<cl_ulong>(round), static_cast<cl_ulong>(part.corners.size()) });
-      this->corners.insert(this->corners.end(), part.corners.begin(), part.corners.end());
-    }
-  }
-  void PutInto(std::map<PartKey, std::vector<cl_float4>>& all) const
-  {
-    auto corner = this->corners.begin();
-    for (std::size_t i = 0; i < this->keys.size(); i += 3)
-    {
-      const auto end = corner + static_cast<std::ptrdiff_t>(this->keys[i + 2]);
-      all[{ this->keys[i], this->keys[i + 1] }].assign(corner, end);
-      corner = end;
-    }
-  }
-};
-
-/// Traces the parts of all paths in this rank's block. Collective.
+/// The vertices of all paths in this rank's block. Collective.
 /// @param packed  the same on all ranks
-PathParts TraceParts(const Domain& domain, const MarchMedium* through, const PackedPhotons& packed)
+std::vector<PathVertex> TraceVertices(const Domain& domain, const MarchMedium* through, const PackedPhotons& packed)
 {
-  PathParts found;
   std::unique_ptr<PathRun> block;
   Rounds rounds(domain.Comm(), domain.Partition());
   rounds.UntilAllEnd<PhotonOnItsWay>(
     [&](int round, std::vector<PhotonOnItsWay>&& arrived, const Monitor&) {
-      std::vector<PhotonOnItsWay> gone;
-      std::vector<PathPart> parts;
       if (through && round == 0)
       {
-        const PackedPhotons starting = ThoseIn(domain.Own(), domain.Whole(), packed);
         block = std::make_unique<PathRun>(*through, packed.channels);
-        gone = block->Start(starting, { starting.numbers.begin(), starting.numbers.end() }, parts);
+        return block->Start(ThoseIn(domain.Own(), domain.Whole(), packed));
       }
-      else if (through)
-      {
-        gone = block->Resume(arrived, parts);
-      }
-      found.Add(parts, round);
-      return gone;
+      return block ? block->Resume(arrived) : std::vector<PhotonOnItsWay>();
     },
     {});
-  return found;
+  return block ? std::move(block->vertices) : std::vector<PathVertex>();
+}
+
+/// The path of packed photon i.
+/// @param all  vertices of all paths, sorted
+PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<PathVertex>& all)
+{
+  const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;
+  const float whole = std::accumulate(power, power + packed.channels, 0.0f);
+  const cl_ulong photon = packed.numbers[i];
+  PhotonPath path;
+  for (auto vertex = std::lower_bound(all.begin(), all.end(), PathVertex{ photon });
+       vertex != all.end() && vertex->photon == photon; ++vertex)
+  {
+    std::array<double, 3> point;
+    for (int a = 0; a < 3; ++a)
+    {
+      point[a] = grid.origin[a] + vertex->place.s[a] * grid.spacing[a];
+    }
+    path.points.push_back(point);
+    path.left.push_back(whole > 0.0f ? vertex->place.s[3] / whole : 1.0f);
+  }
+  return path;
 }
 }
 
@@ -194,34 +167,24 @@ std::vector<PhotonPath> TracePaths(const Domain& domain, const MarchMedium* thro
   const std::vector<std::size_t>& numbers, int eventLimit)
 {
   PackedPhotons packed;
-  domain.Comm().Collective([&] { packed = Pack(photons, domain.Whole(), true, eventLimit); });
-  const PathParts own = TraceParts(domain, through, packed);
-  if (domain.Comm().Rank() > 0)
+  domain.Collective([&] { packed = Pack(photons, domain.Whole(), true, eventLimit); });
+  std::vector<PathVertex> all = TraceVertices(domain, through, packed);
+  if (domain.Rank() > 0)
   {
-    domain.Comm().Send(0, MessageTag::CornersOfPaths, own.keys);
-    domain.Comm().Send(0, MessageTag::CornersOfPaths, own.corners);
+    domain.Comm().Send(0, MessageTag::CornersOfPaths, all);
     return {};
   }
-  std::map<PartKey, std::vector<cl_float4>> all;
-  own.PutInto(all);
   for (int rank = 1; rank < domain.Comm().Ranks(); ++rank)
   {
-    PathParts others;
-    others.keys = domain.Comm().Receive<cl_ulong>(rank, MessageTag::CornersOfPaths);
-    others.corners = domain.Comm().Receive<cl_float4>(rank, MessageTag::CornersOfPaths);
-    others.PutInto(all);
+    const std::vector<PathVertex> more = domain.Comm().Receive<PathVertex>(rank, MessageTag::CornersOfPaths);
+    all.insert(all.end(), more.begin(), more.end());
   }
+  std::stable_sort(all.begin(), all.end());
   std::vector<PhotonPath> paths;
   for (std::size_t i = 0; i < packed.Count(); ++i)
   {
-    const cl_ulong photon = packed.numbers[i];
-    std::vector<cl_float4> corners;
-    for (auto part = all.lower_bound({ photon, 0 }); part != all.end() && part->first.first == photon; ++part)
-    {
-      corners.insert(corners.end(), part->second.begin(), part->second.end());
-    }
-    paths.push_back(PathOf(domain.Whole(), packed, i, corners));
-    paths.back().photon = numbers[paths.back().photon];
+    paths.push_back(PathOf(domain.Whole(), packed, i, all));
+    paths.back().photon = numbers[packed.numbers[i]];
   }
   std::sort(paths.begin(), paths.end(), [](const PhotonPath& a, const PhotonPath& b) { return a.photon < b.photon; });
   return paths;
