@@ -3,7 +3,7 @@
 #include "WholeCounts.h"
 
 #include "Refraction/Index/RefractiveMedium.h"
-#include "Refraction/Voxelization/MeshChecks.h"
+#include "Refraction/Voxelization/TriangleMesh.h"
 
 #include <gmock/gmock.h>
 

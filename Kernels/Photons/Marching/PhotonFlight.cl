@@ -199,8 +199,6 @@ static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, int
 }
 
 #if BLOCKS
-#include "Photons/Marching/WaysOnward.cl"
-
 static void keep_owed(photon_lanes* lanes, const photon_flight* flight)
 {
   FOR_CHANNELS(c)

@@ -11,7 +11,6 @@
 #include "Photons/Marching/MarchedLight.h"
 #include "Photons/Marching/MarchRun.h"
 #include "Photons/Marching/PhotonPacking.h"
-#include "Photons/Marching/PhotonPaths.h"
 #include "Photons/Scattering/PhotonScattering.h"
 
 #include <algorithm>

@@ -1,10 +1,9 @@
-#include "Photons/Marching/PhotonPaths.h"
+#include "Photons/Marching/MarchRun.h"
 
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
 #include "Distribution/MessageTags.h"
 #include "Distribution/Rounds.h"
-#include "Photons/Marching/MarchRun.h"
 #include "Photons/Marching/PhotonPacking.h"
 
 #include <algorithm>

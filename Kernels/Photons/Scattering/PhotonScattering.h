@@ -3,7 +3,6 @@
 #include "Device/Monitor.h"
 #include "Photons/Marching/MarchMedium.h"
 #include "Photons/Marching/MarchRun.h"
-#include "Photons/Scattering/ScatterShared.h"
 
 #include <array>
 #include <cstdint>

@@ -14,7 +14,6 @@
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Philox.cl"
 #include "Photons/Marching/PhotonSteps.cl"
-#include "Photons/Scattering/ScatterShared.h"
 
 #define RECORD (1 + 3 * GATHERS)
 #define PHOTON_FLOATS 7
@@ -111,8 +110,6 @@ typedef struct
 } scattered_flight;
 
 #if BLOCKS
-#include "Photons/Marching/WaysOnward.cl"
-
 // Whether a scattered photon is, by rounding, in another block's voxel. If so, stores position and direction as its
 // path state; it starts there.
 static bool sets_off_elsewhere(const march_arrays* arrays, photon_lanes* lanes, float3 place, float3 direction)

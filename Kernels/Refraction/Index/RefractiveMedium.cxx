@@ -9,7 +9,6 @@
 #include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
-#include "Refraction/Voxelization/MeshChecks.h"
 #include "Refraction/Voxelization/VoxelizationShared.h"
 #include "TyndallKernelSources.h"
 
