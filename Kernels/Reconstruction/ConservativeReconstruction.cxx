@@ -137,9 +137,9 @@ BatchedLight::BatchedLight(const RowKernels& kernels, const HostMappedBuffer<flo
   const std::size_t rows = Count(light.grid.size[1]) * Count(light.grid.size[2]);
   this->Apart =
     Buffer<float>(kernels.On(), rows * Count(pitch) * Count(light.batches * light.channels), "light of batches");
-  cl::Kernel copy = kernels.Kernel("copy_batches", kernel_source::LightPyramid);
-  With(copy, given.Handle(), cl_int(light.grid.size[0]), this->Apart, cl_int(pitch), cl_int(light.batches),
-    cl_int(light.channels));
+  cl::Kernel copy = kernels.Kernel("copy_rows", kernel_source::LightPyramid);
+  const cl_int voxels = light.grid.size[0];
+  With(copy, given.Handle(), voxels, voxels, this->Apart, cl_int(pitch), cl_int(light.batches), cl_int(light.channels));
   kernels.On().Queue().enqueueNDRangeKernel(copy, cl::NullRange, cl::NDRange(rows), cl::NullRange);
 }
 

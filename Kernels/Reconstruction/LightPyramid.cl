@@ -109,13 +109,13 @@ __kernel void join_down(
   }
 }
 
-// Copies rows of voxels from the host's layout [voxel][batch][channel] to [batch][voxel][channel] with another pitch;
-// padding repeats the last voxel.
-__kernel void copy_batches(
-  const __global float* from, int count, __global float* to, int to_row, int batches, int channels)
+// Copies rows of `count` voxels, from_row voxels apart, to rows of to_row voxels; padding repeats the last voxel. The
+// layout changes from [voxel][batch][channel] to [batch][voxel][channel].
+__kernel void copy_rows(
+  const __global float* from, int count, int from_row, __global float* to, int to_row, int batches, int channels)
 {
   const size_t row = get_global_id(0), rows = get_global_size(0);
-  const __global float* values = from + row * count * batches * channels;
+  const __global float* values = from + row * from_row * batches * channels;
   for (int b = 0; b < batches; ++b)
   {
     __global float* out = to + (b * rows + row) * to_row * channels;
@@ -125,21 +125,6 @@ __kernel void copy_batches(
       {
         out[x * channels + c] = values[(min(x, count - 1) * batches + b) * channels + c];
       }
-    }
-  }
-}
-
-// Copies rows of voxels with `components` each to rows of another pitch; padding repeats the last voxel.
-__kernel void copy_rows(
-  const __global float* from, int count, int from_row, __global float* to, int to_row, int components)
-{
-  const __global float* values = from + get_global_id(0) * (size_t)from_row * components;
-  __global float* out = to + get_global_id(0) * (size_t)to_row * components;
-  for (int x = 0; x < to_row; ++x)
-  {
-    for (int c = 0; c < components; ++c)
-    {
-      out[x * components + c] = values[min(x, count - 1) * components + c];
     }
   }
 }

@@ -160,7 +160,7 @@ void WholeRows::Fetch() const
 void WholeRows::Copy(const cl::Buffer& from, int fromRow, const cl::Buffer& to, int toRow) const
 {
   cl::Kernel kernel = this->Kernels.Kernel("copy_rows", kernel_source::LightPyramid);
-  With(kernel, from, cl_int(this->Voxels), cl_int(fromRow), to, cl_int(toRow), cl_int(this->Components));
+  With(kernel, from, cl_int(this->Voxels), cl_int(fromRow), to, cl_int(toRow), cl_int(1), cl_int(this->Components));
   this->Kernels.On().Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(this->Rows), cl::NullRange);
 }
 

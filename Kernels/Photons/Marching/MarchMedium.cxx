@@ -97,10 +97,14 @@ int MarchTraits::Channels(const MarchSettings& settings) const
   return settings.leaveOut && this->grey ? 1 : 3;
 }
 
-MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior, const FilledBricks& filled)
+MarchTraits MarchTraitsOf(const Domain& domain, const Medium& medium, const Field& ior, const FilledBricks& filled)
 {
-  return { { TraitsOf(medium, filled) }, medium.sigma_a.HasColour() || medium.sigma_s.HasColour(),
-    IndexRangeOf(ior, medium.grid) };
+  const bool has = !domain.IsEmpty();
+  MarchTraits traits;
+  static_cast<MediumTraits&>(traits) = TraitsOfAll(domain.Comm(), has ? TraitsOf(medium, filled) : MediumTraits());
+  traits.coloured = domain.Any(has && (medium.sigma_a.HasColour() || medium.sigma_s.HasColour()));
+  traits.index = IndexRangeOfAll(domain, has ? IndexRangeOf(ior, medium.grid) : IndexRange());
+  return traits;
 }
 
 PhotonBricks::PhotonBricks(Device& device, const FilledBricks& bricks, const Grid& grid)
@@ -185,8 +189,8 @@ int MarchEventLimit(const Grid& whole, const MarchSettings& settings)
   return static_cast<int>(std::min(1e9, RoundsAtMost * edges * std::max(1.0, 1.0 / settings.stepSize)));
 }
 
-MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const MarchSettings& with, const MarchTraits& ofAll,
-  const MarchedPart& ofGrid, bool haveLevels)
+MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with,
+  const MarchTraits& ofAll, const MarchedPart& ofGrid, const FilledBricks* filled, const std::uint8_t* levels)
   : device(onDevice)
   , grid(medium.grid)
   , block(ofGrid)
@@ -194,15 +198,9 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const MarchSett
   , traits(ofAll)
   , channels(ofAll.Channels(with))
   , bends(!with.leaveOut || ofAll.index.Varies())
-  , hasLevels(haveLevels && this->bends)
+  , hasLevels(levels && this->bends)
   , AComponents(ComponentsOf(medium.sigma_a, !with.leaveOut || this->traits.absorbs))
   , SComponents(ComponentsOf(medium.sigma_s, !with.leaveOut || this->traits.scatters))
-{
-}
-
-MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& ior, const MarchSettings& with,
-  const MarchTraits& ofAll, const MarchedPart& ofGrid, const FilledBricks* filled, const std::uint8_t* levels)
-  : MarchMedium(onDevice, medium, with, ofAll, ofGrid, levels != nullptr)
 {
   if (filled && !this->IsBlock())
   {
@@ -267,8 +265,10 @@ void MarchMedium::PackBricks(const Medium& medium)
 void MarchMedium::PackVoxels(const Medium& medium, const Field& ior, const std::uint8_t* levels)
 {
   const std::size_t voxels = this->grid.VoxelCount(), known = this->block.known.VoxelCount();
-  this->sigmaA = this->Upload(medium.sigma_a.values, voxels, this->AComponents, "sigma_a");
-  this->sigmaS = this->Upload(medium.sigma_s.values, voxels, this->SComponents, "sigma_s");
+  this->sigmaA =
+    Buffer<float>(this->device, medium.sigma_a.values, voxels * tyndall::Count(this->AComponents), "sigma_a");
+  this->sigmaS =
+    Buffer<float>(this->device, medium.sigma_s.values, voxels * tyndall::Count(this->SComponents), "sigma_s");
   const std::size_t padded = this->bends ? Count(Padded(this->block.known.size, 4)) : 0;
   Buffer<float> low(this->device, padded, "range of the index");
   Buffer<float> high(this->device, padded, "range of the index");
@@ -280,7 +280,7 @@ void MarchMedium::PackVoxels(const Medium& medium, const Field& ior, const std::
     Grid ofIndex = this->grid;
     ofIndex.size = this->block.known.size;
     this->coefficients = SquaredIndexCoefficients(
-      this->device, ofIndex, this->Upload(ior.values ? ior.values : even.data(), known, 1, "ior"));
+      this->device, ofIndex, Buffer<float>(this->device, ior.values ? ior.values : even.data(), known, "ior"));
     this->FindRanges(low, high);
     this->PackNodes(low, high, levels);
   }
@@ -336,12 +336,6 @@ MarchMedium::Size MarchMedium::Padded(const std::array<int, 3>& size, int by)
     padded[a] = static_cast<std::size_t>(size[a] + by);
   }
   return padded;
-}
-
-Buffer<float> MarchMedium::Upload(const float* values, std::size_t voxels, int components, const char* what) const
-{
-  const std::size_t count = voxels * static_cast<std::size_t>(components);
-  return count > 0 ? Buffer<float>(this->device, values, count, what) : Buffer<float>(this->device, 0, what);
 }
 
 void MarchMedium::Launch(const cl::Kernel& kernel, const cl::NDRange& range, const cl::NDRange& local) const

@@ -48,7 +48,8 @@ void RequireSameMedium(const Domain& domain, const Medium& medium, const Field& 
 /// The range of the refractive index over all blocks. Collective.
 IndexRange IndexRangeOfAll(const Domain& domain, const IndexRange& own);
 
-MarchTraits MarchTraitsOf(const Medium& medium, const Field& ior, const FilledBricks& filled);
+/// Collective. @param filled  bricks of the rank's medium
+MarchTraits MarchTraitsOf(const Domain& domain, const Medium& medium, const Field& ior, const FilledBricks& filled);
 
 /// Memory layout by bricks, for the medium and for the sums of deposits: a filled brick has a record for each of its
 /// voxels, x fastest; an empty brick has a single record. Record 0 stands for everything outside the grid.
@@ -165,9 +166,6 @@ private:
   static cl::NDRange Range(const Size& size) { return { size[0], size[1], size[2] }; }
   static Size Padded(const std::array<int, 3>& size, int by);
   Size Padded(int by) const { return Padded(this->grid.size, by); }
-  MarchMedium(Device& device, const Medium& medium, const MarchSettings& settings, const MarchTraits& traits,
-    const MarchedPart& block, bool hasLevels);
-  Buffer<float> Upload(const float* values, std::size_t voxels, int components, const char* what) const;
   cl::Kernel MediumKernel(const char* name) const;
   void FindRanges(Buffer<float>& low, Buffer<float>& high) const;
   void PackVoxels(const Medium& medium, const Field& ior, const std::uint8_t* levels);

@@ -96,7 +96,6 @@ public:
   std::unique_ptr<PilotGathering> Pilots;
 
 private:
-  MarchTraits TraitsOfAllRanks(const Medium& medium, const Field& ior, const FilledBricks& filled) const;
   VoxelBox KnownOf(const VoxelBox& block, int reach) const;
   Field IndexAround(const Field& ior, int reach, std::vector<float>& values) const;
   void ShareNodes(const std::uint8_t* levels);
@@ -138,7 +137,7 @@ PhotonMarcher::Implementation::Implementation(Device& device, const Domain& doma
   });
   RequireSameMedium(domain, medium, ior);
   RequireSame(domain, settings);
-  this->Traits = this->TraitsOfAllRanks(medium, ior, filled);
+  this->Traits = MarchTraitsOf(domain, medium, ior, filled);
   const bool bends = !settings.leaveOut || this->Traits.index.Varies();
   const int reach = bends ? ReachOfIndex(settings, octree) : 0;
   std::vector<float> around;
@@ -167,17 +166,6 @@ PhotonMarcher::Implementation::Implementation(Device& device, const Domain& doma
     this->PrepareScattering(medium, index, levels);
   }
   this->Pilots = std::make_unique<PilotGathering>(this->TheDomain, this->Through.get(), this->Traits, this->Settings);
-}
-
-MarchTraits PhotonMarcher::Implementation::TraitsOfAllRanks(
-  const Medium& medium, const Field& ior, const FilledBricks& filled) const
-{
-  const Domain& domain = this->TheDomain;
-  MarchTraits traits = domain.IsEmpty() ? MarchTraits() : MarchTraitsOf(medium, ior, filled);
-  static_cast<MediumTraits&>(traits) = TraitsOfAll(domain.Comm(), traits);
-  traits.coloured = domain.Any(traits.coloured);
-  traits.index = IndexRangeOfAll(domain, traits.index);
-  return traits;
 }
 
 /// The voxels in which a rank needs the index.
