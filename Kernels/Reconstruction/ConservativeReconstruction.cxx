@@ -30,12 +30,12 @@ struct ConservativeLevel
 class BatchedLight
 {
 public:
-  BatchedLight(const RowKernels& kernels, const HostMappedBuffer<float>& given, const NoisyLight& light);
+  BatchedLight(const RowKernels& kernels, const NoisyLight& light);
 
   const cl::Buffer& Handle() const { return this->Apart.Size() > 0 ? this->Apart.Handle() : this->Given.Handle(); }
 
 private:
-  const HostMappedBuffer<float>& Given;
+  HostMappedBuffer<float> Given;
   Buffer<float> Apart;
 };
 
@@ -81,7 +81,6 @@ private:
   RowKernels Kernels;
   float Scale;
   cl_int4 Voxels;
-  HostMappedBuffer<float> BatchesIn, DirectionsIn, FluenceOut, DirectionOut, MipLevelOut, ErrorOut;
   BatchedLight Light;
   WholeRows Direction, Fluence, MeanDirection, MipLevel, Error;
   int First, Top; ///< lowest and highest level in Levels
@@ -126,8 +125,9 @@ float ScaleOf(float largest)
   return std::ldexp(1.0f, -std::clamp(largest > 0.0f ? std::ilogb(largest) : 0, -126, 126));
 }
 
-BatchedLight::BatchedLight(const RowKernels& kernels, const HostMappedBuffer<float>& given, const NoisyLight& light)
-  : Given(given)
+BatchedLight::BatchedLight(const RowKernels& kernels, const NoisyLight& light)
+  : Given(kernels.On(), light.batchFluence,
+      light.batchFluence ? light.grid.VoxelCount() * Count(light.batches * light.channels) : 0, "fluence")
 {
   if (!light.batchFluence || AreWoven(light, kernels.Width()))
   {
@@ -139,7 +139,8 @@ BatchedLight::BatchedLight(const RowKernels& kernels, const HostMappedBuffer<flo
     Buffer<float>(kernels.On(), rows * Count(pitch) * Count(light.batches * light.channels), "light of batches");
   cl::Kernel copy = kernels.Kernel("copy_rows", kernel_source::LightPyramid);
   const cl_int voxels = light.grid.size[0];
-  With(copy, given.Handle(), voxels, voxels, this->Apart, cl_int(pitch), cl_int(light.batches), cl_int(light.channels));
+  With(copy, this->Given.Handle(), voxels, voxels, this->Apart, cl_int(pitch), cl_int(light.batches),
+    cl_int(light.channels));
   kernels.On().Queue().enqueueNDRangeKernel(copy, cl::NullRange, cl::NDRange(rows), cl::NullRange);
 }
 
@@ -151,20 +152,12 @@ ConservativePasses::ConservativePasses(
       Options(task, RowWidth(task.device, task.domain.Whole())))
   , Scale(ScaleOf(task.largest))
   , Voxels(VoxelLayout(this->Size, this->Kernels.Width()))
-  , BatchesIn(task.device, light.batchFluence,
-      light.batchFluence ? light.grid.VoxelCount() * Count(light.batches * light.channels) : 0, "fluence")
-  , DirectionsIn(
-      task.device, light.meanDirection, light.meanDirection ? 3 * light.grid.VoxelCount() : 0, "mean directions")
-  , FluenceOut(task.device, result.fluence.data(), result.fluence.size(), "fluence")
-  , DirectionOut(task.device, result.meanDirection.data(), result.meanDirection.size(), "mean directions")
-  , MipLevelOut(task.device, result.mipLevel.data(), result.mipLevel.size(), "levels")
-  , ErrorOut(task.device, result.fluenceError.data(), result.fluenceError.size(), "errors")
-  , Light(Kernels, BatchesIn, light)
-  , Direction(Kernels, DirectionsIn, Size, light.meanDirection ? 1 : 0, 3, false, "mean directions")
-  , Fluence(Kernels, FluenceOut, Size, first == 0 ? 1 : 0, light.channels, true, "fluence")
-  , MeanDirection(Kernels, DirectionOut, Size, light.meanDirection ? 1 : 0, 3, true, "mean directions")
-  , MipLevel(Kernels, MipLevelOut, Size, first == 0 ? 1 : 0, 1, true, "levels")
-  , Error(Kernels, ErrorOut, Size, first == 0 ? 1 : 0, light.channels, true, "errors")
+  , Light(Kernels, light)
+  , Direction(Kernels, light.meanDirection, Size, 3, "mean directions")
+  , Fluence(Kernels, result.fluence, Size, light.channels, "fluence")
+  , MeanDirection(Kernels, result.meanDirection, Size, 3, "mean directions")
+  , MipLevel(Kernels, result.mipLevel, Size, 1, "levels")
+  , Error(Kernels, result.fluenceError, Size, light.channels, "errors")
   , First(std::max(first, 1))
   , Top(top)
   , FromVoxels(light.batchFluence != nullptr)
@@ -290,10 +283,7 @@ void ConservativePasses::Finish(const std::array<float, 3>& factors)
   this->Fluence.Fetch();
   this->Error.Fetch();
   this->MipLevel.Fetch();
-  if (this->Task.directions)
-  {
-    this->MeanDirection.Fetch();
-  }
+  this->MeanDirection.Fetch();
 }
 }
 

@@ -2,7 +2,6 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
-#include "Device/HostMappedBuffer.h"
 #include "Device/HostThreads.h"
 #include "Device/Sizes.h"
 #include "Reconstruction/LightPyramid.h"
@@ -24,11 +23,6 @@ constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels in the first l
 constexpr LightPyramid::Down Downs[] = { LightPyramid::Down::Gauss, LightPyramid::Down::Sum,
   LightPyramid::Down::MeanOfLit };
 
-std::size_t CountOf(const Reconstruction& task, const float* values, int components)
-{
-  return values ? task.light.grid.VoxelCount() * Count(components) : 0;
-}
-
 /// Computes the light of each voxel from one level of its pyramid (all estimators except the conservative one).
 class LevelPasses
 {
@@ -44,7 +38,7 @@ public:
   void Choose(double weightStep); ///< light, levels and directions of the result
 
 private:
-  void Fill(std::size_t pyramid, const HostMappedBuffer<float>& array, int components, int first, const char* what);
+  void Fill(std::size_t pyramid, const float* values, int components, int first, const char* what);
   void InParts(const cl::Kernel& kernel) const;
   cl::Kernel Kernel(const char* name) const;
 
@@ -53,8 +47,7 @@ private:
   const std::array<int, 3>& Size;
   RowKernels Kernels;
   const PartOfPyramid Part;
-  std::vector<LightPyramid> Pyramids;                         ///< those of FieldsOfPyramids
-  HostMappedBuffer<float> Light, Directions, Counts, Weights; ///< of photons; without values where not needed
+  std::vector<LightPyramid> Pyramids; ///< those of FieldsOfPyramids
 };
 
 /// The increment of photon weight per level. If it is not given, the mean weight of lit voxels, reduced by the rounding
@@ -89,10 +82,6 @@ LevelPasses::LevelPasses(const Reconstruction& task, ReconstructedLight& result)
   , Size(task.light.grid.size)
   , Kernels(task.device, RowWidth(task.device, task.domain.Whole()))
   , Part{ task.domain.Whole().size, task.blocks.Box().first, task.blocks.Shared() }
-  , Light(task.device, task.light.fluence, CountOf(task, task.light.fluence, task.light.channels), "fluence")
-  , Directions(task.device, task.light.meanDirection, CountOf(task, task.light.meanDirection, 3), "mean directions")
-  , Counts(task.device, task.light.photonCount, CountOf(task, task.light.photonCount, 1), "photon_count")
-  , Weights(task.device, task.light.photonWeight, CountOf(task, task.light.photonWeight, 1), "photon_weight")
 {
   const char* const what[] = { "the pyramid of light", "the pyramid of photon counts", "the pyramid of weights" };
   for (const int fields : FieldsOfPyramids(task))
@@ -111,27 +100,26 @@ cl::Kernel LevelPasses::Kernel(const char* name) const
       Define("CONSTANT_RADIUS", estimator == Estimator::ConstantRadius) + Define("TOP", this->Task.top));
 }
 
-void LevelPasses::Fill(
-  std::size_t pyramid, const HostMappedBuffer<float>& array, int components, int first, const char* what)
+void LevelPasses::Fill(std::size_t pyramid, const float* values, int components, int first, const char* what)
 {
-  this->Pyramids[pyramid].Fill({ this->Kernels, array, this->Size, 1, components, false, what }, components, first);
+  this->Pyramids[pyramid].Fill({ this->Kernels, values, this->Size, components, what }, components, first);
 }
 
 void LevelPasses::Build()
 {
-  const int channels = this->Task.light.channels;
-  this->Fill(0, this->Light, channels, 0, "fluence");
+  const NoisyLight& light = this->Task.light;
+  this->Fill(0, light.fluence, light.channels, 0, "fluence");
   if (this->Task.directions)
   {
-    this->Fill(0, this->Directions, 3, channels, "mean directions");
+    this->Fill(0, light.meanDirection, 3, light.channels, "mean directions");
   }
   if (this->Pyramids.size() > 1)
   {
-    this->Fill(1, this->Counts, 1, 0, "photon counts");
+    this->Fill(1, light.photonCount, 1, 0, "photon counts");
   }
   if (this->Pyramids.size() > 2)
   {
-    this->Fill(2, this->Weights, 1, 0, "weights");
+    this->Fill(2, light.photonWeight, 1, 0, "weights");
   }
   for (std::size_t pyramid = 0; pyramid < this->Pyramids.size(); ++pyramid)
   {
@@ -156,17 +144,10 @@ void LevelPasses::InParts(const cl::Kernel& kernel) const
 
 void LevelPasses::Choose(double weightStep)
 {
-  Device& device = this->Task.device;
-  std::vector<float>& ways = this->Result.meanDirection;
-  std::vector<float>& levels = this->Result.mipLevel;
-  std::vector<float>& fluence = this->Result.fluence;
-  const HostMappedBuffer<float> found(device, fluence.data(), fluence.size(), "fluence");
-  const HostMappedBuffer<float> direction(device, ways.data(), ways.size(), "directions");
-  const HostMappedBuffer<float> chosen(device, levels.data(), levels.size(), "levels");
-  const int volumes = this->Task.directions ? 1 : 0;
-  const WholeRows fluenceRows(this->Kernels, found, this->Size, 1, this->Task.light.channels, true, "fluence");
-  const WholeRows directionRows(this->Kernels, direction, this->Size, volumes, 3, true, "mean directions");
-  const WholeRows chosenRows(this->Kernels, chosen, this->Size, 1, 1, true, "levels");
+  ReconstructedLight& result = this->Result;
+  const WholeRows fluence(this->Kernels, result.fluence, this->Size, this->Task.light.channels, "fluence");
+  const WholeRows direction(this->Kernels, result.meanDirection, this->Size, 3, "mean directions");
+  const WholeRows chosen(this->Kernels, result.mipLevel, this->Size, 1, "levels");
 
   // Arguments that an estimator does not use may be any buffer.
   const LightPyramid& light = this->Pyramids.front();
@@ -175,14 +156,11 @@ void LevelPasses::Choose(double weightStep)
   cl::Kernel choose = this->Kernel("choose_level");
   With(choose, light.Values(), light.Levels(), photons.Values(), heavy.Values(), photons.Levels(),
     cl_float(this->Task.settings.estimator == Estimator::Published ? weightStep : this->Task.settings.nearest),
-    fluenceRows.Handle(), directionRows.Handle(), chosenRows.Handle(), VoxelLayout(this->Size, this->Kernels.Width()));
+    fluence.Handle(), direction.Handle(), chosen.Handle(), VoxelLayout(this->Size, this->Kernels.Width()));
   this->InParts(choose);
-  fluenceRows.Fetch();
-  chosenRows.Fetch();
-  if (this->Task.directions)
-  {
-    directionRows.Fetch();
-  }
+  fluence.Fetch();
+  chosen.Fetch();
+  direction.Fetch();
 }
 
 /// Computes the pyramids from the shared level on.

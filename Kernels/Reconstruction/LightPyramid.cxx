@@ -129,22 +129,34 @@ void RowKernels::Run(
   }
 }
 
-WholeRows::WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size,
-  int volumes, int components, bool written, const char* what)
+WholeRows::WholeRows(
+  const RowKernels& kernels, const float* values, const std::array<int, 3>& size, int components, const char* what)
   : Kernels(kernels)
-  , Own(array)
+  , Own(kernels.On(), values, values ? Count(size[0]) * Count(size[1]) * Count(size[2]) * Count(components) : 0, what)
   , Voxels(size[0])
   , Components(components)
-  , Rows(Count(size[1]) * Count(size[2]) * Count(volumes))
+  , Rows(values ? Count(size[1]) * Count(size[2]) : 0)
+  , Pitch(WholeVectors(size[0], kernels.Width()))
+{
+  if (this->Pitch != this->Voxels && this->Rows > 0)
+  {
+    this->Wide = Buffer<float>(kernels.On(), this->Rows * Count(this->Pitch) * Count(components), what);
+    this->Copy(this->Own.Handle(), this->Voxels, this->Wide.Handle(), this->Pitch);
+  }
+}
+
+WholeRows::WholeRows(const RowKernels& kernels, std::vector<float>& values, const std::array<int, 3>& size,
+  int components, const char* what)
+  : Kernels(kernels)
+  , Own(kernels.On(), values.data(), values.size(), what)
+  , Voxels(size[0])
+  , Components(components)
+  , Rows(values.empty() ? 0 : Count(size[1]) * Count(size[2]))
   , Pitch(WholeVectors(size[0], kernels.Width()))
 {
   if (this->Pitch != this->Voxels)
   {
     this->Wide = Buffer<float>(kernels.On(), this->Rows * Count(this->Pitch) * Count(components), what);
-    if (!written)
-    {
-      this->Copy(this->Own.Handle(), this->Voxels, this->Wide.Handle(), this->Pitch);
-    }
   }
 }
 

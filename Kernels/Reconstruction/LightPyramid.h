@@ -75,16 +75,17 @@ private:
   std::string Options;
 };
 
-/// A voxel array whose rows are whole vectors: the host's own array if its rows are, else a copy with longer rows,
-/// padded with the row's last voxel.
+/// A voxel array on the device whose rows are whole vectors: the host's own array if its rows are, else a copy with
+/// longer rows, padded with the row's last voxel. The host's array must outlive this.
 class WholeRows
 {
 public:
-  /// @param array    values of `volumes` grids of `size` voxels, x fastest, `components` per voxel; must outlive this
-  ///   object
-  /// @param written  true: kernels write the array, and Fetch() copies it back; false: kernels read it
-  WholeRows(const RowKernels& kernels, const HostMappedBuffer<float>& array, const std::array<int, 3>& size,
-    int volumes, int components, bool written, const char* what);
+  /// An array that kernels read: values of a grid of `size` voxels, x fastest, `components` per voxel. Null: none.
+  WholeRows(
+    const RowKernels& kernels, const float* values, const std::array<int, 3>& size, int components, const char* what);
+  /// An array that kernels write and Fetch copies back; may be empty.
+  WholeRows(const RowKernels& kernels, std::vector<float>& values, const std::array<int, 3>& size, int components,
+    const char* what);
 
   const cl::Buffer& Handle() const { return this->Wide.Size() > 0 ? this->Wide.Handle() : this->Own.Handle(); }
 
@@ -95,7 +96,7 @@ private:
   void Copy(const cl::Buffer& from, int fromRow, const cl::Buffer& to, int toRow) const;
 
   const RowKernels& Kernels;
-  const HostMappedBuffer<float>& Own;
+  HostMappedBuffer<float> Own;
   int Voxels, Components;
   std::size_t Rows;
   int Pitch;

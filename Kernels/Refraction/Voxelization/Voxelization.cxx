@@ -355,7 +355,6 @@ public:
     , Whole(grid)
     , Counted(counted)
     , TheGrid(GridOfBox(counted.box, grid))
-    , Samples(settings.samples)
     , Lattice(grid, settings.samples, TrianglesOf(meshes))
     , Columns(TheGrid, settings.columnAxis, settings.samples, this->Lattice.Pitch())
     , Words(WordsOf(TheGrid, settings.columnAxis, 32 / settings.samples))
@@ -373,8 +372,8 @@ public:
       this->Meshes.emplace_back(device, this->Lattice.From(counted.box.first), *mesh.mesh);
     }
     const std::size_t voxels = this->Rows * VoxelsOfRow(this->Columns, this->TheGrid);
-    const auto columns =
-      static_cast<std::size_t>(this->Columns.count[0]) * (this->Rows * this->Samples + 2 * RowsAround(settings));
+    const auto columns = static_cast<std::size_t>(this->Columns.count[0]) *
+      (this->Rows * this->Columns.samplesOfVoxel + 2 * RowsAround(settings));
     this->Bits = Buffer<cl_uint>(device, columns * this->Words, "a slab of the fine grid");
     this->Sums = Buffer<cl_uint>(device, columns, "sums of crossings");
     // With a single mesh nothing is ever claimed, and the kernel receives an empty buffer.
@@ -425,15 +424,16 @@ private:
       return {};
     }
     const LatticeMesh onLattice(this->TheDevice, this->Lattice.From(own.first), *mesh.mesh);
-    const SampleColumns columns(GridOfBox(own, this->Whole), this->Columns.axis, this->Samples, this->Columns.pitch);
+    const SampleColumns columns(
+      GridOfBox(own, this->Whole), this->Columns.axis, this->Columns.samplesOfVoxel, this->Columns.pitch);
     return FindWindings(this->TheDevice, this->Whole, own, onLattice, columns, rows, mesh.orientation < 0, monitor);
   }
 
   SampleSlab RowsOf(int first, int end) const
   {
     const int around = this->Fractions ? 1 : 0;
-    return { first, end, std::max(first * this->Samples - around, 0),
-      std::min(end * this->Samples + around, this->Columns.count[1]) };
+    return { first, end, std::max(first * this->Columns.samplesOfVoxel - around, 0),
+      std::min(end * this->Columns.samplesOfVoxel + around, this->Columns.count[1]) };
   }
 
   void RunSlab(int first, int end, const std::function<void(const SamplesInside&)>& take)
@@ -471,8 +471,8 @@ private:
   void CountSlab(const SampleSlab& slab)
   {
     const int rows = slab.endVoxel - slab.firstVoxel;
-    const int skipped = slab.firstVoxel * this->Samples - slab.firstRow;
-    const int units = this->Fractions ? 1 : UnitsOfSample(this->Samples);
+    const int skipped = slab.firstVoxel * this->Columns.samplesOfVoxel - slab.firstRow;
+    const int units = this->Fractions ? 1 : UnitsOfSample(this->Columns.samplesOfVoxel);
     const std::array<int, 3>& size = this->TheGrid.size;
     const std::array<int, 3> stride = { 1, size[0], size[0] * (this->Columns.up == 1 ? rows : size[1]) };
     const int columns = size[this->Columns.across];
@@ -497,7 +497,6 @@ private:
   const Grid& Whole;
   const CountedVoxels Counted;
   const Grid TheGrid; ///< the box whose samples are counted
-  int Samples;
   SampleLattice Lattice;
   SampleColumns Columns;
   int Words;
