@@ -84,6 +84,61 @@ static void put_direction(__global float* mean_direction, const long* sum, float
 }
 #endif
 
+// Power, in units, that is absorbed and scattered, of each channel; `carried` are fractions of a unit.
+typedef struct
+{
+  long units[2][CHANNELS];
+  float carried[2][CHANNELS];
+} taken_power;
+
+static taken_power nothing_taken()
+{
+  taken_power taken;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    taken.units[0][c] = taken.units[1][c] = 0;
+    taken.carried[0][c] = taken.carried[1][c] = 0.0f;
+  }
+  return taken;
+}
+
+// Stores such powers: [absorbed, scattered][CHANNELS].
+static void store_taken(const taken_power* taken, __global long* to)
+{
+  for (int c = 0; c < 2 * CHANNELS; ++c)
+  {
+    const bool more = CARRIES && taken->carried[c / CHANNELS][c % CHANNELS] >= 0.5f;
+    to[c] = taken->units[c / CHANNELS][c % CHANNELS] + more;
+  }
+}
+
+// Extinction of the medium itself: the photons' copy is limited to a finite range. At least 1 per voxel diagonal.
+static float thickness_of(const LightSumsInfo* info, float extinction)
+{
+  return fmax(info->diagonal * extinction, 1.0f);
+}
+
+// Converts the sums of a record, which stands for a number of `voxels`, to the light of one voxel.
+//   record  index of the coefficients
+static void finish_record(const LightSumsInfo* info, const __global float* sigma_a, const __global float* sigma_s,
+  size_t record, const long* sum, float voxels, __global float* fluence, __global float* mean_direction,
+  taken_power* taken)
+{
+  float total = 0.0f;
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    const float a = component(sigma_a, info->absorption, record, c),
+                s = component(sigma_s, info->scattering, record, c);
+    total += sum[c];
+    put_fluence(info, fluence, c, (float)sum[c] / (thickness_of(info, a + s) * voxels)); // power times diagonals
+    taken->units[0][c] += taken_by(info, sum[c], a, a + s, &taken->carried[0][c]);
+    taken->units[1][c] += taken_by(info, sum[c], s, a + s, &taken->carried[1][c]);
+  }
+#if DIRECTIONS
+  put_direction(mean_direction, sum, total);
+#endif
+}
+
 // Adds up and zeroes the copies of the sums, one row of voxels per work-item, and converts them to light.
 //   fluence         COLOURS per voxel
 //   mean_direction  3 per voxel: sum of power times direction over sum of power, no longer than 1; 0 in dark voxels
@@ -96,26 +151,11 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
 {
   const int r = get_global_id(0);
   const int nx = info.grid.size[0], ny = info.grid.size[1];
-  const size_t copy = (size_t)(nx + 2) * (ny + 2) * (info.grid.size[2] + 2);
   const size_t first = ((size_t)(r / ny + 1) * (ny + 2) + r % ny + 1) * (nx + 2) + 1;
-  long absorbed[CHANNELS], scattered[CHANNELS];
-  float carried[2][CHANNELS];
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    absorbed[c] = scattered[c] = 0;
-    carried[0][c] = carried[1][c] = 0.0f;
-  }
+  taken_power ofRow = nothing_taken();
   for (int x = 0; x < nx; ++x)
   {
     const size_t voxel = (size_t)r * nx + x;
-    __global long* record = sums + (first + x) * RECORD;
-    // Extinction of the medium itself: the photons' copy is limited to a finite range.
-    float extinction[CHANNELS], thickness[CHANNELS];
-    for (int c = 0; c < CHANNELS; ++c)
-    {
-      extinction[c] = component(sigma_a, info.absorption, voxel, c) + component(sigma_s, info.scattering, voxel, c);
-      thickness[c] = fmax(info.diagonal * extinction[c], 1.0f);
-    }
     long sum[RECORD];
     for (int c = 0; c < RECORD; ++c)
     {
@@ -124,31 +164,21 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
     for (int b = 0; b < info.batches; ++b)
     {
       long part[RECORD];
-      take_batch(&info, record, copyStride, b, part);
+      take_batch(&info, sums + (first + x) * RECORD, copyStride, b, part);
       for (int c = 0; c < RECORD; ++c)
       {
         sum[c] += part[c];
       }
-      __global float* to = batch_fluence + (voxel * info.batches + b) * COLOURS;
       for (int c = 0; c < CHANNELS && info.batches > 1; ++c)
       {
-        put_fluence(&info, to, c, (float)part[c] / thickness[c] * info.batches);
+        const float extinction =
+          component(sigma_a, info.absorption, voxel, c) + component(sigma_s, info.scattering, voxel, c);
+        put_fluence(&info, batch_fluence + (voxel * info.batches + b) * COLOURS, c,
+          (float)part[c] / thickness_of(&info, extinction) * info.batches);
       }
     }
-    float total = 0.0f;
-    for (int c = 0; c < CHANNELS; ++c)
-    {
-      const float path = (float)sum[c] / thickness[c]; // power times diagonals
-      total += sum[c];
-      put_fluence(&info, fluence + voxel * COLOURS, c, path);
-      absorbed[c] +=
-        taken_by(&info, sum[c], component(sigma_a, info.absorption, voxel, c), extinction[c], &carried[0][c]);
-      scattered[c] +=
-        taken_by(&info, sum[c], component(sigma_s, info.scattering, voxel, c), extinction[c], &carried[1][c]);
-    }
-#if DIRECTIONS
-    put_direction(mean_direction + voxel * 3, sum, total);
-#endif
+    finish_record(
+      &info, sigma_a, sigma_s, voxel, sum, 1.0f, fluence + voxel * COLOURS, mean_direction + voxel * 3, &ofRow);
 #if COUNTS
     const ulong counted = sum[RECORD - 1], weights = counted & (((ulong)1 << CountShift) - 1);
     const float photons = counted >> CountShift;
@@ -156,13 +186,7 @@ __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, co
     photon_weight[voxel] = photons > 0.0f ? weights / photons * info.weight : 0.0f;
 #endif
   }
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    absorbed[c] += CARRIES && carried[0][c] >= 0.5f;
-    scattered[c] += CARRIES && carried[1][c] >= 0.5f;
-    taken[(r * 2 + 0) * CHANNELS + c] = absorbed[c];
-    taken[(r * 2 + 1) * CHANNELS + c] = scattered[c];
-  }
+  store_taken(&ofRow, taken + (size_t)r * 2 * CHANNELS);
 }
 
 #if BRICKS
@@ -203,11 +227,7 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
   const float voxels = first < 0 ? size[0] * size[1] * size[2] : 1;
   const size_t strideY = info.grid.size[0], strideZ = strideY * info.grid.size[1];
   const size_t low = place[2] * BrickEdge * strideZ + place[1] * BrickEdge * strideY + place[0] * BrickEdge;
-  long absorbed[CHANNELS], scattered[CHANNELS];
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    absorbed[c] = scattered[c] = 0;
-  }
+  taken_power ofBrick = nothing_taken();
   for (int z = 0; z < (first < 0 ? 1 : size[2]); ++z)
   {
     for (int y = 0; y < (first < 0 ? 1 : size[1]); ++y)
@@ -222,28 +242,12 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
           leave_dark(fluence, mean_direction, voxel);
           continue;
         }
-        float total = 0.0f;
-        for (int c = 0; c < CHANNELS; ++c)
-        {
-          const float a = component(sigma_a, info.absorption, record, c),
-                      s = component(sigma_s, info.scattering, record, c);
-          total += sum[c];
-          put_fluence(
-            &info, fluence + voxel * COLOURS, c, (float)sum[c] / (fmax(info.diagonal * (a + s), 1.0f) * voxels));
-          absorbed[c] += taken_by(&info, sum[c], a, a + s, 0);
-          scattered[c] += taken_by(&info, sum[c], s, a + s, 0);
-        }
-#if DIRECTIONS
-        put_direction(mean_direction + voxel * 3, sum, total);
-#endif
+        finish_record(&info, sigma_a, sigma_s, record, sum, voxels, fluence + voxel * COLOURS,
+          mean_direction + voxel * 3, &ofBrick);
       }
     }
   }
-  for (int c = 0; c < CHANNELS; ++c)
-  {
-    taken[(brick * 2 + 0) * CHANNELS + c] = absorbed[c];
-    taken[(brick * 2 + 1) * CHANNELS + c] = scattered[c];
-  }
+  store_taken(&ofBrick, taken + (size_t)brick * 2 * CHANNELS);
 }
 
 #if defined(__has_builtin)
@@ -342,7 +346,7 @@ __kernel void show_light(LightSumsInfo info, const __global float* sigma_a, cons
       }
       const float extinction =
         component(sigma_a, info.absorption, voxel, c) + component(sigma_s, info.scattering, voxel, c);
-      put_fluence(&info, fluence + voxel * COLOURS, c, (float)sum / fmax(info.diagonal * extinction, 1.0f));
+      put_fluence(&info, fluence + voxel * COLOURS, c, (float)sum / thickness_of(&info, extinction));
     }
   }
 }
