@@ -338,11 +338,8 @@ void Check(const ReconstructionSettings& settings)
 /// @throws InvalidInput if an input of the estimator is missing; names it
 void CheckPresence(const NoisyLight& light, Estimator estimator)
 {
-  if (light.channels != 1 && light.channels != 3)
-  {
-    throw InvalidInput(
-      "The light has " + std::to_string(light.channels) + " channels; it must have 1 (grey) or 3 (RGB).");
-  }
+  Require(light.channels == 1 || light.channels == 3,
+    "The light has " + std::to_string(light.channels) + " channels; it must have 1 (grey) or 3 (RGB).");
   if (estimator == Estimator::Conservative)
   {
     const char* advice =

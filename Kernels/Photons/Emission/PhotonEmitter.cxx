@@ -157,25 +157,15 @@ void CheckPowers(const EmittedPhotons& emitted, int parts)
 
 void Check(const EmissionSettings& settings)
 {
-  if (settings.photonCount == 0)
-  {
-    throw InvalidInput("The number of photons is 0; ask for at least one.");
-  }
-  if (settings.batches < 1 || settings.batches > EmittedBatchesAtMost)
-  {
-    throw InvalidInput("The number of batches is " + std::to_string(settings.batches) + "; it must be 1 to " +
+  Require(settings.photonCount > 0, "The number of photons is 0; ask for at least one.");
+  Require(settings.batches >= 1 && settings.batches <= EmittedBatchesAtMost,
+    "The number of batches is " + std::to_string(settings.batches) + "; it must be 1 to " +
       std::to_string(EmittedBatchesAtMost) + ".");
-  }
-  if (settings.part < 0 || settings.part >= settings.parts)
-  {
-    throw InvalidInput("There is no part " + std::to_string(settings.part) + " of " + std::to_string(settings.parts) +
-      " of the photons.");
-  }
-  if (!(settings.densestAtMost >= 1.0))
-  {
-    throw InvalidInput("The density of photons at most is " + Text("%g", settings.densestAtMost) +
+  Require(settings.part >= 0 && settings.part < settings.parts,
+    "There is no part " + std::to_string(settings.part) + " of " + std::to_string(settings.parts) + " of the photons.");
+  Require(settings.densestAtMost >= 1.0,
+    "The density of photons at most is " + Text("%g", settings.densestAtMost) +
       " times that of photons spread evenly; it must be at least 1.");
-  }
   if (settings.map)
   {
     Check(*settings.map);

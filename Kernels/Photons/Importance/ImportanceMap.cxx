@@ -38,11 +38,9 @@ void CheckSquare(const ImportanceMap& map, std::size_t square)
     zeros += density[i] == 0.0f ? 1 : 0;
     firstZero = density[i] == 0.0f ? i : firstZero;
   }
-  if (zeros == map.Cells())
-  {
-    throw InvalidInput("The importance of " + LightName(map.lights[square]) +
+  Require(zeros < map.Cells(),
+    "The importance of " + LightName(map.lights[square]) +
       " is 0 everywhere, so no photon could set out. Leave the map out to spread photons evenly.");
-  }
   if (zeros > 0)
   {
     throw InvalidInput("The importance of " + LightName(map.lights[square]) + " is 0 in " + std::to_string(zeros) +
@@ -87,12 +85,10 @@ int ImportanceMap::SquareOf(int light) const
 void Check(const ImportanceMap& map)
 {
   const std::size_t needed = map.Cells() * map.lights.size();
-  if ((map.size < 1 && !map.lights.empty()) || map.density.size() != needed)
-  {
-    throw InvalidInput("The importance map has " + std::to_string(map.density.size()) + " cells; " +
-      std::to_string(map.lights.size()) + " lights of " + std::to_string(map.size) + " x " + std::to_string(map.size) +
-      " need " + std::to_string(needed) + ", at least one each.");
-  }
+  Require((map.size >= 1 || map.lights.empty()) && map.density.size() == needed,
+    "The importance map has " + std::to_string(map.density.size()) + " cells; " + std::to_string(map.lights.size()) +
+      " lights of " + std::to_string(map.size) + " x " + std::to_string(map.size) + " need " + std::to_string(needed) +
+      ", at least one each.");
   for (std::size_t square = 0; square < map.lights.size(); ++square)
   {
     CheckSquare(map, square);

@@ -31,28 +31,20 @@ constexpr double FilterVariance = 2.0;
 
 void Check(const ImportanceSettings& settings)
 {
-  if (settings.pilotCount == 0)
-  {
-    throw InvalidInput("The number of pilot photons is 0; ask for at least one, some tenth of the photons to follow.");
-  }
+  Require(settings.pilotCount > 0,
+    "The number of pilot photons is 0; ask for at least one, some tenth of the photons to follow.");
   for (int a = 0; a < 3; ++a)
   {
-    if (settings.cells[a] < 1)
-    {
-      throw InvalidInput("The pilot grid has " + std::to_string(settings.cells[a]) + " cells along axis " +
-        std::to_string(a) + "; it must have at least 1.");
-    }
+    Require(settings.cells[a] >= 1,
+      "The pilot grid has " + std::to_string(settings.cells[a]) + " cells along axis " + std::to_string(a) +
+        "; it must have at least 1.");
   }
-  if (!(settings.background > 0.0 && settings.background <= 1.0))
-  {
-    throw InvalidInput("The background is " + Text("%g", settings.background) +
+  Require(settings.background > 0.0 && settings.background <= 1.0,
+    "The background is " + Text("%g", settings.background) +
       " of the photons; it must be above 0, so that every place sends some, and at most 1.");
-  }
-  if (!settings.automatic && !(settings.gradientThreshold >= 0.0 && settings.luminanceThreshold >= 0.0))
-  {
-    throw InvalidInput("The thresholds are " + Text("%g", settings.gradientThreshold) + " (gradient) and " +
+  Require(settings.automatic || (settings.gradientThreshold >= 0.0 && settings.luminanceThreshold >= 0.0),
+    "The thresholds are " + Text("%g", settings.gradientThreshold) + " (gradient) and " +
       Text("%g", settings.luminanceThreshold) + " (luminance); they must not be negative.");
-  }
 }
 
 /// Luminance of each cell: mean of the channels.
@@ -332,11 +324,8 @@ Importance FindImportance(PhotonMarcher& marcher, const Grid& grid, const Illumi
   importance.map.size =
     std::min(static_cast<int>(std::sqrt(static_cast<double>(settings.pilotCount) + 0.5)), LargestEdge);
   const std::vector<PilotPhotons> pilots = EmitPilots(grid, illumination, importance.map.size, settings.seed);
-  if (pilots.empty())
-  {
-    throw InvalidInput(
-      "No light shines, so there is no importance to find. Connect Lights or an Environment, or set SkyColor.");
-  }
+  Require(!pilots.empty(),
+    "No light shines, so there is no importance to find. Connect Lights or an Environment, or set SkyColor.");
   std::vector<PilotLight> lights;
   for (const PilotPhotons& pilot : pilots)
   {

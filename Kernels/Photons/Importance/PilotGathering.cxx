@@ -25,11 +25,9 @@ std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
   std::array<int, 3> cells;
   for (int a = 0; a < 3; ++a)
   {
-    if (asked[a] < 1)
-    {
-      throw InvalidInput("Pilot light is asked for in " + std::to_string(asked[0]) + " x " + std::to_string(asked[1]) +
-        " x " + std::to_string(asked[2]) + " cells; there must be at least one along each axis.");
-    }
+    Require(asked[a] >= 1,
+      "Pilot light is asked for in " + std::to_string(asked[0]) + " x " + std::to_string(asked[1]) + " x " +
+        std::to_string(asked[2]) + " cells; there must be at least one along each axis.");
     cells[a] = std::min(asked[a], grid.size[a]);
   }
   return cells;
@@ -53,11 +51,9 @@ void PutMoments(std::int64_t count, std::int64_t sum, std::int64_t squares, floa
 /// @throws InvalidInput if the numbers of origins and photons differ, or an origin is out of range
 void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins)
 {
-  if (origins.size() != photons.size())
-  {
-    throw InvalidInput("There are " + std::to_string(photons.size()) + " pilot photons and " +
-      std::to_string(origins.size()) + " origins; give one for each.");
-  }
+  Require(origins.size() == photons.size(),
+    "There are " + std::to_string(photons.size()) + " pilot photons and " + std::to_string(origins.size()) +
+      " origins; give one for each.");
   for (std::size_t i = 0; i < origins.size(); ++i)
   {
     for (const int place : origins[i])

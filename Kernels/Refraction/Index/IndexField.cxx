@@ -99,11 +99,9 @@ void CheckLevels(const std::uint8_t* levels, const Grid& grid, const Grid& whole
 
 void CheckFilterSize(int filterSize)
 {
-  if (filterSize < 1 || filterSize > LargestFilter || filterSize % 2 == 0)
-  {
-    throw InvalidInput("The filter is " + std::to_string(filterSize) +
-      " voxels wide; it must be an odd number from 1 to " + std::to_string(LargestFilter) + ".");
-  }
+  Require(filterSize >= 1 && filterSize <= LargestFilter && filterSize % 2 == 1,
+    "The filter is " + std::to_string(filterSize) + " voxels wide; it must be an odd number from 1 to " +
+      std::to_string(LargestFilter) + ".");
 }
 
 void SmoothIndex(Device& device, const Grid& grid, int filterSize, Buffer<float>& index)

@@ -42,24 +42,16 @@ float AsBound(double bound)
 /// @throws InvalidInput if a setting is out of range
 void Check(const OctreeSettings& settings)
 {
-  if (!(settings.tolerance >= 0.0 && settings.tolerance <= 1.0))
-  {
-    throw InvalidInput("Tolerance is " + Text("%g", settings.tolerance) + "; it must lie in [0, 1].");
-  }
-  if (!(settings.extinctionTolerance >= 0.0) || std::isinf(settings.extinctionTolerance))
-  {
-    throw InvalidInput(
-      "ExtinctionTolerance is " + Text("%g", settings.extinctionTolerance) + "; it must be finite and not negative.");
-  }
+  Require(settings.tolerance >= 0.0 && settings.tolerance <= 1.0,
+    "Tolerance is " + Text("%g", settings.tolerance) + "; it must lie in [0, 1].");
+  Require(settings.extinctionTolerance >= 0.0 && !std::isinf(settings.extinctionTolerance),
+    "ExtinctionTolerance is " + Text("%g", settings.extinctionTolerance) + "; it must be finite and not negative.");
 }
 
 /// @throws InvalidInput if the index is missing, or not finite and above 0 in a voxel; names the first
 void CheckIndex(const Field& index, const Domain& domain)
 {
-  if (!index.values || index.components != 1)
-  {
-    throw InvalidInput("The refractive index must be given, with one component a voxel.");
-  }
+  Require(index.values && index.components == 1, "The refractive index must be given, with one component a voxel.");
   const Grid grid = domain.OwnGrid();
   const std::size_t count = grid.VoxelCount();
   std::atomic<bool> good(true);

@@ -78,13 +78,11 @@ SampleLattice::SampleLattice(const Grid& grid, int samples, const std::vector<co
     }
     longest = std::max(longest, (high - low) / grid.spacing[axis] * samples);
   }
-  if (!(longest < Longest / 2.0))
-  {
-    throw InvalidInput("The mesh is " + Text("%g", longest / samples) + " voxels long. With " +
-      std::to_string(samples) + (samples == 1 ? " sample" : " samples") + " an edge of a voxel it can be " +
+  Require(longest < Longest / 2.0,
+    "The mesh is " + Text("%g", longest / samples) + " voxels long. With " + std::to_string(samples) +
+      (samples == 1 ? " sample" : " samples") + " an edge of a voxel it can be " +
       std::to_string(static_cast<int>(Longest / 2.0) / samples) +
       " at most. Make the box larger, or cut away what is far outside of it.");
-  }
   while (2.0 * this->UnitsOfSample * (longest + 1.0) <= Longest)
   {
     this->UnitsOfSample *= 2;

@@ -30,10 +30,7 @@ void CheckPoint(const TriangleMesh& mesh, std::size_t number)
 
 void CheckNumbers(const TriangleMesh& mesh)
 {
-  if (mesh.triangles.empty())
-  {
-    throw InvalidInput("The mesh is empty: it has 0 triangles, and 0 boundary edges.");
-  }
+  Require(!mesh.triangles.empty(), "The mesh is empty: it has 0 triangles, and 0 boundary edges.");
   const int points = static_cast<int>(mesh.points.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
   {

@@ -531,15 +531,11 @@ void WindingNumbers::Add(const WindingNumbers& others)
 
 void Check(const VoxelizationSettings& settings)
 {
-  if (settings.samples < 1 || settings.samples > LargestSampleCount)
-  {
-    throw InvalidInput("The supersampling factor is " + std::to_string(settings.samples) + "; it must be 1 to " +
+  Require(settings.samples >= 1 && settings.samples <= LargestSampleCount,
+    "The supersampling factor is " + std::to_string(settings.samples) + "; it must be 1 to " +
       std::to_string(LargestSampleCount) + ".");
-  }
-  if (settings.columnAxis < 0 || settings.columnAxis > 2)
-  {
-    throw InvalidInput("Columns run along axis 0, 1 or 2, not " + std::to_string(settings.columnAxis) + ".");
-  }
+  Require(settings.columnAxis >= 0 && settings.columnAxis <= 2,
+    "Columns run along axis 0, 1 or 2, not " + std::to_string(settings.columnAxis) + ".");
 }
 
 std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid, const CountedVoxels& counted,
