@@ -20,9 +20,8 @@ struct PictureSize
 };
 
 /// Radiance pictures, RGBE and XYZE (.hdr, .pic): all orders of axes; flat, old and new run-length encodings. Values
-/// are divided by the EXPOSURE lines, XYZE is converted to linear sRGB. (vtkHDRReader trusts the file: a run may be
-/// longer than its row, a size that does not parse is used as it is, and the last rows of a short file are
-/// uninitialised.)
+/// are divided by the product of the EXPOSURE lines, XYZE is converted to linear sRGB. vtkHDRReader of VTK 9.2 takes the
+/// last EXPOSURE only, and reads columns (+X first), old runs and truncated files as noise: TestEnvironmentReader.
 /// @throws InvalidInput naming the file, the error and its position
 PictureSize SizeOfHdr(const std::string& path);
 RadiancePicture ReadHdr(const std::string& path);
