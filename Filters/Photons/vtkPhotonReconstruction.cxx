@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <numeric>
@@ -136,30 +137,13 @@ std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::stri
   return all;
 }
 
-/// Uses several independent sums, so that additions need not wait for each other.
-double SumOfSquares(const float* values, std::size_t count)
-{
-  constexpr std::size_t Lanes = 16;
-  double sums[Lanes] = {};
-  std::size_t i = 0;
-  for (; i + Lanes <= count; i += Lanes)
-  {
-    for (std::size_t lane = 0; lane < Lanes; ++lane)
-    {
-      sums[lane] += static_cast<double>(values[i + lane]) * values[i + lane];
-    }
-  }
-  for (; i < count; ++i)
-  {
-    sums[0] += static_cast<double>(values[i]) * values[i];
-  }
-  return std::accumulate(sums, sums + Lanes, 0.0);
-}
-
 double SumOfSquares(const std::vector<float>& values)
 {
-  return tyndall::SumInThreads(values.size(), 32768,
-    [&](std::size_t begin, std::size_t end) { return SumOfSquares(values.data() + begin, end - begin); });
+  return tyndall::SumInThreads(values.size(), 32768, [&](std::size_t begin, std::size_t end) {
+    const float* const first = values.data();
+    return std::transform_reduce(first + begin, first + end, 0.0, std::plus<double>(),
+      [](float value) { return static_cast<double>(value) * value; });
+  });
 }
 
 void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)

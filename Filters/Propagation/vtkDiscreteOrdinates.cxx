@@ -113,27 +113,21 @@ tyndall::LightField vtkDiscreteOrdinates::Solve(const tyndall::SolverScene& scen
 
 void vtkDiscreteOrdinates::Note(const tyndall::LightField& light)
 {
-  const bool any = !light.convergence.empty();
+  this->Superclass::Note(light);
   this->Orders = static_cast<int>(light.convergence.size());
   this->SweepsSaved = light.sweepsSaved.empty() ? 0 : light.sweepsSaved.back();
-  this->Residual = any ? light.convergence.back().residual : 0.0;
-  this->Seconds = any ? light.convergence.back().seconds : 0.0;
-  this->BalanceError = light.balance.RelativeError(light.channels);
   this->HalfRangeFlux = light.halfRangeFlux;
-  this->DeviceName = light.device;
-  this->LeftOut = tyndall::Lines(light.leftOut);
-  this->SettingsUsed = tyndall::Lines(light.settingsUsed);
 }
 
 void vtkDiscreteOrdinates::ShareResults(tyndall::Communicator& ranks)
 {
-  tyndall::TakeFromFirstRank(ranks, this->Orders, this->SweepsSaved, this->Residual, this->Seconds, this->BalanceError,
-    this->HalfRangeFlux, this->DeviceName, this->LeftOut, this->SettingsUsed);
+  this->Superclass::ShareResults(ranks);
+  tyndall::TakeFromFirstRank(ranks, this->Orders, this->SweepsSaved, this->HalfRangeFlux);
 }
 
 void vtkDiscreteOrdinates::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(Scheme, Scattering, DirectionsPerFace, SpiralDirections, Terms, MaximumOrders, WarmStart, NetFlux,
-    LeaveOut, Orders, SweepsSaved, Residual, BalanceError, HalfRangeFlux, Seconds, DeviceName, LeftOut);
+    LeaveOut, Orders, SweepsSaved, HalfRangeFlux);
 }

@@ -137,18 +137,12 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: number of scattering orders; how many more orders the last cold update took to the
-  /// same residual (0 if this update was cold); estimated relative error of fluence due to the omitted orders; relative
-  /// error of the energy balance; half-range flux of the quadrature for isotropic radiance through a face, over the
-  /// exact value; seconds; the device's name; what the scene did not need, one per line.
+  /// Results of the last update, besides those of vtkScatteringSolver, whose Residual is the error due to the omitted
+  /// orders: number of scattering orders; how many more orders the last cold update took to the same residual (0 if this
+  /// update was cold); half-range flux of the quadrature for isotropic radiance through a face, over the exact value.
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);
-  vtkGetMacro(Residual, double);
-  vtkGetMacro(BalanceError, double);
   vtkGetMacro(HalfRangeFlux, double);
-  vtkGetMacro(Seconds, double);
-  vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
   ///@}
 
 protected:
@@ -177,12 +171,7 @@ private:
   std::unique_ptr<tyndall::LastLight> Last;
   int Orders = 0;
   int SweepsSaved = 0;
-  double Residual = 0.0;
-  double BalanceError = 0.0;
   double HalfRangeFlux = 0.0;
-  double Seconds = 0.0;
-  std::string DeviceName;
-  std::string LeftOut;
 };
 
 #endif

@@ -125,7 +125,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
     light = this->Preview ? SolvePreviewOf(scene, settings, solve) : solve(scene);
   }
   light.settingsUsed = tyndall::Words(settings);
-  this->Seconds = tyndall::ClockSeconds() - start;
+  light.secondsOfAll = tyndall::ClockSeconds() - start;
   return light;
 }
 
@@ -176,25 +176,20 @@ tyndall::LightField vtkLatticeBoltzmannLighting::Solve(const tyndall::SolverScen
 
 void vtkLatticeBoltzmannLighting::Note(const tyndall::LightField& light)
 {
-  const bool any = !light.convergence.empty();
-  this->Steps = any ? light.convergence.back().iteration : 0;
-  this->Residual = any ? light.convergence.back().residual : 0.0;
+  this->Superclass::Note(light);
+  this->Steps = light.convergence.empty() ? 0 : light.convergence.back().iteration;
   this->BalanceError = UnaccountedPart(light);
-  this->DeviceName = light.device;
-  this->LeftOut = tyndall::Lines(light.leftOut);
-  this->SettingsUsed = tyndall::Lines(light.settingsUsed);
-  this->Seconds = any ? this->Seconds : 0.0;
 }
 
 void vtkLatticeBoltzmannLighting::ShareResults(tyndall::Communicator& ranks)
 {
-  tyndall::TakeFromFirstRank(ranks, this->Steps, this->Residual, this->BalanceError, this->DeviceName, this->LeftOut,
-    this->SettingsUsed, this->Seconds);
+  this->Superclass::ShareResults(ranks);
+  tyndall::TakeFromFirstRank(ranks, this->Steps);
 }
 
 void vtkLatticeBoltzmannLighting::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(Lattice, Scheme, BlockSize, Interleaved, VoxelsPerTurn, Probes, StepsPerExchange, MaximumOrders,
-    NetFlux, Steps, Residual, BalanceError, Seconds, DeviceName, LeftOut);
+  tyndallPrintMacro(
+    Lattice, Scheme, BlockSize, Interleaved, VoxelsPerTurn, Probes, StepsPerExchange, MaximumOrders, NetFlux, Steps);
 }

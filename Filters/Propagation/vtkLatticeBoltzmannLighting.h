@@ -148,15 +148,9 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: number of steps, or of iterations of the steady-state solve; estimated relative error
-  /// of fluence; relative error of the energy balance, left-over power included; seconds of the solve (uncollided light
-  /// included); the device's name; what the scene did not need, one per line.
+  /// Result of the last update, besides those of vtkScatteringSolver, whose BalanceError includes the left-over power:
+  /// number of steps, or of iterations of the steady-state solve.
   vtkGetMacro(Steps, int);
-  vtkGetMacro(Residual, double);
-  vtkGetMacro(BalanceError, double);
-  vtkGetMacro(Seconds, double);
-  vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
   ///@}
 
 protected:
@@ -190,11 +184,6 @@ private:
   bool NetFlux;
 
   int Steps = 0;
-  double Residual = 0.0;
-  double BalanceError = 0.0;
-  double Seconds = 0.0;
-  std::string DeviceName;
-  std::string LeftOut;
 };
 
 #endif

@@ -211,25 +211,19 @@ tyndall::LightField vtkLightPropagationMaps::Solve(const tyndall::SolverScene& g
 
 void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
 {
-  const bool any = !light.convergence.empty();
+  this->Superclass::Note(light);
   this->Orders = static_cast<int>(light.convergence.size());
   this->SweepsSaved = light.sweepsSaved.empty() ? 0 : light.sweepsSaved.back();
-  this->Residual = any ? light.convergence.back().residual : 0.0;
-  this->Seconds = light.secondsOfAll > 0.0 ? light.secondsOfAll : any ? light.convergence.back().seconds : 0.0;
   this->EstimatedError = light.relativeError;
-  this->BalanceError = light.balance.RelativeError(light.channels);
   this->HalfRangeFlux = light.halfRangeFlux;
-  this->DeviceName = light.device;
-  this->LeftOut = tyndall::Lines(light.leftOut);
-  this->SettingsUsed = tyndall::Lines(light.settingsUsed);
-  this->Solves = any ? light.solves : 0;
+  this->Solves = light.convergence.empty() ? 0 : light.solves;
 }
 
 void vtkLightPropagationMaps::ShareResults(tyndall::Communicator& ranks)
 {
-  tyndall::TakeFromFirstRank(ranks, this->Orders, this->SweepsSaved, this->Residual, this->Seconds,
-    this->EstimatedError, this->BalanceError, this->HalfRangeFlux, this->DeviceName, this->LeftOut, this->SettingsUsed,
-    this->Solves);
+  this->Superclass::ShareResults(ranks);
+  tyndall::TakeFromFirstRank(
+    ranks, this->Orders, this->SweepsSaved, this->EstimatedError, this->HalfRangeFlux, this->Solves);
 }
 
 void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
@@ -239,6 +233,5 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
   tyndallPrintMacro(Source, Acceleration, DirectionsPerFace, UncollidedDirections, AngularDegree, StoreMoments,
     EmissionError, StaggeredRays, MapResolution, MaximumOrders, WarmStart, NetFlux, LeaveOut, StoredDirections,
-    TargetError, Solves, Orders, SweepsSaved, Residual, EstimatedError, BalanceError, HalfRangeFlux, Seconds,
-    DeviceName, LeftOut);
+    TargetError, Solves, Orders, SweepsSaved, EstimatedError, HalfRangeFlux);
 }

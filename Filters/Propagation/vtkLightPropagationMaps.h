@@ -219,23 +219,17 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: number of solves (more than one with TargetError); number of scattering orders; how
-  /// many more orders the last cold update took to the same residual (0 if this update was cold); estimated relative
-  /// error of fluence due to the omitted orders; estimated total relative error of fluence (0 without EstimateError or
-  /// TargetError; NaN, not known, after one order); relative error of the energy balance; half-range flux of the
-  /// quadrature for isotropic radiance through a face, over the exact value (0.99992 with 25 directions per face: the
-  /// power that enters from faces and sky has the same relative error); seconds; the device's name; what the scene did
-  /// not need, one per line.
+  /// Results of the last update, besides those of vtkScatteringSolver, whose Residual is the error due to the omitted
+  /// orders: number of solves (more than one with TargetError); number of scattering orders; how many more orders the
+  /// last cold update took to the same residual (0 if this update was cold); estimated total relative error of fluence
+  /// (0 without EstimateError or TargetError; NaN, not known, after one order); half-range flux of the quadrature for
+  /// isotropic radiance through a face, over the exact value (0.99992 with 25 directions per face: the power that enters
+  /// from faces and sky has the same relative error).
   vtkGetMacro(Solves, int);
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);
-  vtkGetMacro(Residual, double);
   vtkGetMacro(EstimatedError, double);
-  vtkGetMacro(BalanceError, double);
   vtkGetMacro(HalfRangeFlux, double);
-  vtkGetMacro(Seconds, double);
-  vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
   ///@}
 
 protected:
@@ -275,13 +269,8 @@ private:
   int Solves = 0;
   int Orders = 0;
   int SweepsSaved = 0;
-  double Residual = 0.0;
   double EstimatedError = 0.0;
-  double BalanceError = 0.0;
   double HalfRangeFlux = 0.0;
-  double Seconds = 0.0;
-  std::string DeviceName;
-  std::string LeftOut;
 };
 
 #endif

@@ -141,8 +141,17 @@ public:
   /// Latest modification, the properties of `lit_color` included.
   vtkMTimeType GetMTime() override;
 
-  /// "Name = value" of each property that Quality chooses, as the last update used it, one per line.
+  ///@{
+  /// Results of the last update: estimated relative error of fluence; relative error of the energy balance; seconds; the
+  /// device's name; what the scene did not need, one per line; "Name = value" of each property that Quality chooses, as
+  /// it was used, one per line.
+  vtkGetMacro(Residual, double);
+  vtkGetMacro(BalanceError, double);
+  vtkGetMacro(Seconds, double);
+  vtkGetCharFromStdStringMacro(DeviceName);
+  vtkGetCharFromStdStringMacro(LeftOut);
   vtkGetCharFromStdStringMacro(SettingsUsed);
+  ///@}
 
   ///@{
   /// Uncollided light (vtkImageData) by connection or as data; null: the solver computes its own.
@@ -166,11 +175,11 @@ protected:
   virtual tyndall::LightField Solve(const tyndall::SolverScene& scene) = 0;
 
   /// Sets the read-only properties to those of the first rank, which has solved for all. Collective.
-  virtual void ShareResults(tyndall::Communicator& ranks) = 0;
+  virtual void ShareResults(tyndall::Communicator& ranks);
 
   /// Sets the read-only properties that report on a solve. Called with an empty `light` before a solve, so these stay
   /// empty if it fails.
-  virtual void Note(const tyndall::LightField& light) = 0;
+  virtual void Note(const tyndall::LightField& light);
 
   /// Whether the solver takes the medium's cell array `ior` into account. Default: no, with a warning if `ior` is not
   /// 1.
@@ -195,6 +204,11 @@ protected:
   int Quality = USUAL;
   bool Preview = false;
   int MemoryBudget = 0;
+  double Residual = 0.0;
+  double BalanceError = 0.0;
+  double Seconds = 0.0;
+  std::string DeviceName;
+  std::string LeftOut;
   std::string SettingsUsed;
   bool LitColor = false;
   double Exposure = 0.0;
