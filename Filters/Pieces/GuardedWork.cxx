@@ -370,33 +370,27 @@ namespace
 {
 constexpr int PartTag = 745205; ///< of messages with parts of outputs
 
-/// Crops the complete output of a port to what this rank is asked for.
-/// @param image  the extent of the complete output
-void KeepPart(const WorkOnSubdomains& work, vtkInformation* asking, vtkInformationVector* outputs, int port,
-  const std::array<int, 6>& image)
+/// Whether the extent of a port's image becomes known by the work only.
+bool TellsExtent(const WorkOnSubdomains& work, int port)
 {
-  vtkInformation* const information = outputs->GetInformationObject(port);
-  vtkImageData* const output = vtkImageData::GetData(outputs, port);
-  if (work.tellsExtents || port > 0)
-  {
-    TellExtentAndKeepWhatIsAskedFor(asking, information, output, image);
-  }
-  else
-  {
-    KeepWhatIsAskedFor(information, output, image);
-  }
+  return work.tellsExtents || port > 0;
 }
 
+/// Crops complete output images to what this rank is asked for.
 void KeepParts(const WorkOnSubdomains& work, vtkInformation* asking, vtkInformationVector* outputs)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
     vtkImageData* const output = vtkImageData::GetData(outputs, port);
-    if (output && (output->GetNumberOfCells() > 0 || (port == 0 && !work.tellsExtents)))
+    const bool tells = TellsExtent(work, port);
+    if (output && (output->GetNumberOfCells() > 0 || !tells))
     {
-      std::array<int, 6> image;
-      output->GetExtent(image.data());
-      KeepPart(work, asking, outputs, port, image);
+      vtkInformation* const information = outputs->GetInformationObject(port);
+      if (tells)
+      {
+        TellExtent(asking, information, output->GetExtent());
+      }
+      KeepWhatIsAskedFor(information, output);
     }
   }
 }
@@ -422,10 +416,9 @@ void DistributeImage(vtkMultiProcessController* ranks, const WorkOnSubdomains& w
     return;
   }
   vtkInformation* const information = outputs->GetInformationObject(port);
-  if (work.tellsExtents || port > 0)
+  if (TellsExtent(work, port))
   {
     TellExtent(asking, information, whole.data());
-    NotePartsOfRanks(information, {}, 0);
   }
   const Extent own = ExtentAskedFor(information, whole);
   std::vector<int> asked(6 * static_cast<std::size_t>(ranks->GetNumberOfProcesses()));
@@ -456,7 +449,7 @@ void DistributeImage(vtkMultiProcessController* ranks, const WorkOnSubdomains& w
       output->ShallowCopy(part);
     }
   }
-  KeepPart(work, asking, outputs, port, whole);
+  KeepWhatIsAskedFor(information, output, whole);
 }
 
 /// Works on the first rank, which gathers the inputs, and distributes the outputs. Collective.

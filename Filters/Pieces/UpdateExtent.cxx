@@ -487,13 +487,6 @@ void TellExtent(vtkInformation* asking, vtkInformation* information, const int e
   {
     information->CopyEntry(asking, key);
   }
-}
-
-void TellExtentAndKeepWhatIsAskedFor(
-  vtkInformation* asking, vtkInformation* information, vtkImageData* output, const Extent& image)
-{
-  TellExtent(asking, information, image.data());
   NotePartsOfRanks(information, {}, 0);
-  KeepWhatIsAskedFor(information, output, image);
 }
 }
