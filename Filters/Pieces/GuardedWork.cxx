@@ -452,21 +452,24 @@ void DistributeImage(vtkMultiProcessController* ranks, const WorkOnSubdomains& w
   KeepWhatIsAskedFor(information, output, whole);
 }
 
-/// Works on the first rank, which gathers the inputs, and distributes the outputs. Collective.
-void WorkOnFirstRank(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformation* asking,
+/// Works on the complete inputs: on the first rank, which then distributes the outputs. Collective.
+void WorkOnWhole(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformation* asking,
   vtkInformationVector* outputs, const WorkOnSubdomains& work, WholeInputs& inputs)
 {
-  const bool isFirst = !ranks || ranks->GetLocalProcessId() == 0;
-  inputs.MakeWhole(GatheredImage::On::FirstRank);
-  OnFirstRank(ranks, [&] {
+  const auto workOnAll = [&] {
     work.work(PieceBlocks(vtkImageData::GetData(inputs.Vectors()[work.port])), inputs.Vectors());
     Complete(filter, inputs, outputs);
-  });
-  if (!ranks)
+  };
+  if (!ranks || work.wholeOnEachRank)
   {
+    inputs.MakeWhole();
+    workOnAll();
     KeepParts(work, asking, outputs);
     return;
   }
+  const bool isFirst = ranks->GetLocalProcessId() == 0;
+  inputs.MakeWhole(GatheredImage::On::FirstRank);
+  OnFirstRank(ranks, workOnAll);
   if (work.shareResults)
   {
     work.shareResults(*CommunicatorOf(ranks, [filter] { return IsStoppedByOthers(filter); }));
@@ -504,7 +507,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
     }
     if (!agreed || !work.work(*agreed->pieces, inputs.Vectors()))
     {
-      WorkOnFirstRank(ranks, filter, asking, outputs, work, inputs);
+      WorkOnWhole(ranks, filter, asking, outputs, work, inputs);
       return;
     }
     Complete(filter, inputs, outputs);

@@ -138,8 +138,9 @@ public:
 
   ///@{
   /// Results of the last update, besides those of vtkScatteringSolver, whose Residual is the error due to the omitted
-  /// orders: number of scattering orders; how many more orders the last cold update took to the same residual (0 if this
-  /// update was cold); half-range flux of the quadrature for isotropic radiance through a face, over the exact value.
+  /// orders: number of scattering orders; how many more orders the last cold update took to the same residual (0 if
+  /// this update was cold); half-range flux of the quadrature for isotropic radiance through a face, over the exact
+  /// value.
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);
   vtkGetMacro(HalfRangeFlux, double);

@@ -223,8 +223,8 @@ public:
   /// orders: number of solves (more than one with TargetError); number of scattering orders; how many more orders the
   /// last cold update took to the same residual (0 if this update was cold); estimated total relative error of fluence
   /// (0 without EstimateError or TargetError; NaN, not known, after one order); half-range flux of the quadrature for
-  /// isotropic radiance through a face, over the exact value (0.99992 with 25 directions per face: the power that enters
-  /// from faces and sky has the same relative error).
+  /// isotropic radiance through a face, over the exact value (0.99992 with 25 directions per face: the power that
+  /// enters from faces and sky has the same relative error).
   vtkGetMacro(Solves, int);
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);

@@ -142,9 +142,9 @@ public:
   vtkMTimeType GetMTime() override;
 
   ///@{
-  /// Results of the last update: estimated relative error of fluence; relative error of the energy balance; seconds; the
-  /// device's name; what the scene did not need, one per line; "Name = value" of each property that Quality chooses, as
-  /// it was used, one per line.
+  /// Results of the last update: estimated relative error of fluence; relative error of the energy balance; seconds;
+  /// the device's name; what the scene did not need, one per line; "Name = value" of each property that Quality
+  /// chooses, as it was used, one per line.
   vtkGetMacro(Residual, double);
   vtkGetMacro(BalanceError, double);
   vtkGetMacro(Seconds, double);

@@ -69,7 +69,7 @@ struct ComparisonSettings;
  * With EstimateError (default on here) solvers estimate their own errors, by an extra run that is not timed. Photons do
  * not support periodic axes and are skipped if there are any.
  *
- * In a parallel pipeline every rank asks for the whole inputs; the first rank has the outputs.
+ * In a parallel pipeline the first rank compares, and has output 0; each rank has its piece of output 1.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkPhotonReconstruction
  */

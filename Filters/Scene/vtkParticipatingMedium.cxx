@@ -498,6 +498,7 @@ int vtkParticipatingMedium::RequestData(
   const bool asksForPiece = tyndall::EachAsksForItsPiece(request, outputs);
   tyndall::WorkOnSubdomains work;
   work.port = DENSITY;
+  work.wholeOnEachRank = true; // cell by cell
   work.wantsPieces = [&](vtkInformationVector**) { return asksForPiece; };
   work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
     if (pieces.GetDomain().Any(pieces.IsDecomposed() && !asksForPiece))
@@ -506,9 +507,6 @@ int vtkParticipatingMedium::RequestData(
     }
     this->MakeMedium(pieces, inputs, vtkImageData::GetData(outputs));
     return true;
-  };
-  work.shareResults = [this](tyndall::Communicator& ranks) {
-    tyndall::TakeFromFirstRank(ranks, this->PhysicalExtent, this->OpticalThickness, this->MeanFreePath);
   };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
