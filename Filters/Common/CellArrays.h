@@ -19,8 +19,8 @@ class vtkDataSetAttributes;
 class vtkImageData;
 class vtkInformation;
 
-/// Reads arrays of images as values of voxels, and chooses these arrays. Functions throw InvalidInput with a message for
-/// users.
+/// Reads arrays of images as values of voxels, and chooses these arrays. Functions throw InvalidInput with a message
+/// for users.
 namespace tyndall
 {
 /// The grid of an image's cells; the image's extent may start anywhere.

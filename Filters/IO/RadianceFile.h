@@ -20,8 +20,8 @@ struct PictureSize
 };
 
 /// Radiance pictures, RGBE and XYZE (.hdr, .pic): all orders of axes; flat, old and new run-length encodings. Values
-/// are divided by the product of the EXPOSURE lines, XYZE is converted to linear sRGB. vtkHDRReader of VTK 9.2 takes the
-/// last EXPOSURE only, and reads columns (+X first), old runs and truncated files as noise: TestEnvironmentReader.
+/// are divided by the product of the EXPOSURE lines, XYZE is converted to linear sRGB. vtkHDRReader of VTK 9.2 takes
+/// the last EXPOSURE only, and reads columns (+X first), old runs and truncated files as noise: TestEnvironmentReader.
 /// @throws InvalidInput naming the file, the error and its position
 PictureSize SizeOfHdr(const std::string& path);
 RadiancePicture ReadHdr(const std::string& path);

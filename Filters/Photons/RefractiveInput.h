@@ -45,8 +45,8 @@ public:
     bool kept = false; ///< whether the cached marcher was still valid
   };
 
-  /// Returns the marcher for these settings: cached if the domain is serial, or newly prepared. The cache is empty until
-  /// Keep, so that nothing invalid remains after an error. Collective.
+  /// Returns the marcher for these settings: cached if the domain is serial, or newly prepared. The cache is empty
+  /// until Keep, so that nothing invalid remains after an error. Collective.
   /// @param medium, octree  images of this rank's block; null if it has no voxels
   /// @throws InvalidInput as ReadRefractiveMedium and PhotonMarcher
   /// @throws DeviceError

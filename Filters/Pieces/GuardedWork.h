@@ -56,7 +56,8 @@ struct WorkOnSubdomains
   std::function<bool(const PieceBlocks& pieces, vtkInformationVector** inputs)> work;
   /// Gives the other ranks the results that the filter's members report, after the first rank has worked. Collective.
   std::function<void(Communicator& ranks)> shareResults;
-  /// Whether each rank works on the complete inputs, not the first for all: if that costs less than to send the outputs.
+  /// Whether each rank works on the complete inputs, not the first for all: if that costs less than to send the
+  /// outputs.
   bool wholeOnEachRank = false;
   /// Whether the extents of the output images become known by the work only; each rank then makes them complete.
   bool tellsExtents = false;

@@ -160,8 +160,8 @@ void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output, const std::array<int, 6>& image);
 
 /// In RequestData: announces the extent of an output that becomes known only when it is made. Otherwise the pipeline
-/// would run the filter again for the part of its guess that lies beyond this extent. Its pieces are those of VTK's extent
-/// translator.
+/// would run the filter again for the part of its guess that lies beyond this extent. Its pieces are those of VTK's
+/// extent translator.
 /// @param asking  the port that the request came from: VTK assumes that all ports then have its piece
 void TellExtent(vtkInformation* asking, vtkInformation* information, const int extent[6]);
 }
