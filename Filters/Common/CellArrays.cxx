@@ -219,7 +219,7 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std:
   return choice;
 }
 
-vtkDataArray* ChosenArray(vtkDataSetAttributes* attributes, const Choice& choice)
+vtkDataArray* ArrayChosenIn(vtkDataSetAttributes* attributes, const Choice& choice)
 {
   return choice.attribute >= 0 ? attributes->GetAttribute(choice.attribute) : attributes->GetArray(choice.name.c_str());
 }
@@ -236,8 +236,8 @@ void CheckNumeric(vtkDataSetAttributes* attributes, const Choice& choice)
 
 Found Find(vtkImageData* image, const Choice& choice)
 {
-  vtkDataArray* ofCells = ChosenArray(image->GetCellData(), choice);
-  vtkDataArray* ofPoints = ChosenArray(image->GetPointData(), choice);
+  vtkDataArray* ofCells = ArrayChosenIn(image->GetCellData(), choice);
+  vtkDataArray* ofPoints = ArrayChosenIn(image->GetPointData(), choice);
   if (choice.pointsFirst ? ofPoints != nullptr : ofCells == nullptr)
   {
     return { ofPoints, true };
