@@ -317,6 +317,10 @@ std::vector<std::uint8_t> ReadLevels(vtkImageData* image)
 
 std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* given, const OwnAxes& axes)
 {
+  if (communicator.Ranks() == 1)
+  {
+    return ReadPhotons(given, axes);
+  }
   std::vector<Photon> photons;
   std::uint64_t key = 0;
   communicator.Collective([&] {
