@@ -81,7 +81,7 @@ GhostCells::GhostCells(Communicator& communicator, const std::vector<VoxelBox>& 
 }
 
 template <class Value>
-void GhostCells::Exchange(Value* values, int arrays, std::size_t stride) const
+void GhostCells::Fill(Value* values, int arrays, std::size_t stride) const
 {
   for (const Shared& owned : this->Owned)
   {
@@ -109,26 +109,35 @@ void GhostCells::Exchange(Value* values, int arrays, std::size_t stride) const
   }
 }
 
-template void GhostCells::Exchange(double*, int, std::size_t) const;
-template void GhostCells::Exchange(float*, int, std::size_t) const;
+template void GhostCells::Fill(double*, int, std::size_t) const;
+template void GhostCells::Fill(float*, int, std::size_t) const;
 
-void GhostCells::AddToOwners(std::vector<double>& values) const
+std::vector<std::size_t> GhostCells::PlacesOf(const std::vector<Shared>& shared)
 {
-  for (const Shared& copied : this->Copied)
+  std::vector<std::size_t> places;
+  for (const Shared& cells : shared)
   {
-    std::vector<double> message(copied.places.size());
-    std::transform(
-      copied.places.begin(), copied.places.end(), message.begin(), [&](std::size_t place) { return values[place]; });
-    this->Comm.Send(copied.rank, MessageTag::GhostCells, message);
+    places.insert(places.end(), cells.places.begin(), cells.places.end());
   }
-  for (const Shared& owned : this->Owned)
+  return places;
+}
+
+std::vector<float> GhostCells::Exchange(const std::vector<float>& owned) const
+{
+  auto next = owned.begin();
+  for (const Shared& cells : this->Owned)
   {
-    const std::vector<double> message = this->Comm.Receive<double>(owned.rank, MessageTag::GhostCells);
-    for (std::size_t i = 0; i < message.size(); ++i)
-    {
-      values[owned.places[i]] += message[i];
-    }
+    const auto end = next + static_cast<std::ptrdiff_t>(cells.places.size());
+    this->Comm.Send(cells.rank, MessageTag::GhostCells, std::vector<float>(next, end));
+    next = end;
   }
+  std::vector<float> copied;
+  for (const Shared& cells : this->Copied)
+  {
+    const std::vector<float> message = this->Comm.Receive<float>(cells.rank, MessageTag::GhostCells);
+    copied.insert(copied.end(), message.begin(), message.end());
+  }
+  return copied;
 }
 
 std::array<bool, 3> GoesRoundAlone(

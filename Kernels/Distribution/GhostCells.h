@@ -24,11 +24,22 @@ public:
 
   /// Copies the owners' values to the ghost cells. Collective, with the same number of arrays on all ranks.
   /// @param values  `arrays` arrays over the held box, `stride` values apart
-  void Fill(std::vector<double>& values) const { this->Exchange(values.data(), 1, 0); }
-  void Fill(float* values, int arrays, std::size_t stride) const { this->Exchange(values, arrays, stride); }
+  template <class Value>
+  void Fill(Value* values, int arrays, std::size_t stride) const;
 
-  /// Adds the values of the ghost cells to the owners' values, in rank order. Collective.
-  void AddToOwners(std::vector<double>& values) const;
+  // The same for one array that is kept elsewhere.
+
+  std::vector<std::size_t> OwnedPlaces() const
+  {
+    return PlacesOf(this->Owned);
+  } ///< indices of own cells, once for each rank that has copies
+  std::vector<std::size_t> CopiedPlaces() const
+  {
+    return PlacesOf(this->Copied);
+  } ///< indices of this rank's ghost cells
+  /// @param owned  values at OwnedPlaces()
+  /// @return values at CopiedPlaces(). Collective
+  std::vector<float> Exchange(const std::vector<float>& owned) const;
 
 private:
   /// The cells exchanged with one other rank.
@@ -37,8 +48,7 @@ private:
     int rank;
     std::vector<std::size_t> places; ///< indices into arrays over the held box
   };
-  template <class Value>
-  void Exchange(Value* values, int arrays, std::size_t stride) const;
+  static std::vector<std::size_t> PlacesOf(const std::vector<Shared>& shared);
 
   Communicator& Comm;
   std::vector<Shared> Owned;  ///< own cells that are ghost cells of another rank

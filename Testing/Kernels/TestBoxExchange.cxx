@@ -1,10 +1,12 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/BrickedBytes.h"
+#include "Distribution/GhostCells.h"
 #include "Distribution/RanksInThreads.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 using namespace tyndall;
@@ -112,4 +114,45 @@ TEST(BrickedBytes, AreOfAllRanksWhatEachHas)
       });
     }
   }
+}
+
+TEST(GhostCells, AreThoseOfTheirOwners)
+{
+  const Grid grid = { { 5, 4, 3 } };
+  const BlockPartition partition = BlockPartition::Even(grid, 4);
+  std::vector<std::vector<VoxelBox>> ghosts;
+  for (const VoxelBox& block : partition.blocks)
+  {
+    ghosts.push_back(LayersBeside(block, grid.size));
+  }
+  RunInThreads(4, [&](Communicator& communicator) {
+    const int rank = communicator.Rank();
+    const VoxelBox held = Hull(partition.blocks[rank], ghosts[rank]);
+    const GhostCells cells(communicator, partition.blocks, ghosts, held);
+    std::vector<float> number(grid.VoxelCount());
+    std::iota(number.begin(), number.end(), 1.0f);
+    const std::vector<float> expected = PartOf(number, { {}, grid.size }, held, 1);
+    std::vector<double> values(held.VoxelCount(), 0.0);
+    Grid ofHeld;
+    ofHeld.size = held.size;
+    const auto isIn = [&](const VoxelBox& box, std::size_t i) {
+      const std::array<int, 3> at = ofHeld.VoxelAt(i);
+      return Common(box, { { at[0] + held.first[0], at[1] + held.first[1], at[2] + held.first[2] }, { 1, 1, 1 } })
+               .VoxelCount() == 1;
+    };
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      values[i] = isIn(partition.blocks[rank], i) ? expected[i] : 0.0;
+    }
+    cells.Fill(values.data(), 1, 0);
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      bool known = isIn(partition.blocks[rank], i);
+      for (const VoxelBox& box : ghosts[rank])
+      {
+        known = known || isIn(box, i);
+      }
+      EXPECT_EQ(values[i], known ? expected[i] : 0.0) << "rank " << rank << ", place " << i;
+    }
+  });
 }

@@ -2,7 +2,6 @@
 //   REAL_WIDTH  4 or 8 floats of a vector; 1: cell by cell, on a GPU
 //   GROUP       GroupSum.cl
 //   DOUBLES     1: the device has double precision
-//   LINEAR      1: light varies linearly across voxels; 0: it is constant in each
 
 #include "LightPropagation/CoarseDiffusion/CoarseShared.h"
 #include "LightPropagation/Diffusion/MultigridRows.cl"
@@ -10,7 +9,8 @@
 
 #define CELLS_AT_ONCE 64
 
-// Sums values over the voxels of each cell, times `scale`, plus `more` per voxel. Work-items process rows of cells.
+// Sums the block's values over the voxels of each cell, times `scale`, plus `more` per voxel. Work-items process rows
+// of cells.
 __kernel void sum_cells(
   CoarseCells box, const __global float* values, float scale, float more, __global float* sums, ulong first)
 {
@@ -18,16 +18,19 @@ __kernel void sum_cells(
   FOR_ROWS(box.cells)
   {
     const int y = r % box.cells.size[1], z = r / box.cells.size[1];
-    const int end_y = min((y + 1) << box.halvings[1], box.size[1]),
-              end_z = min((z + 1) << box.halvings[2], box.size[2]);
+    const int begin_y = max((y << box.halvings[1]) - box.origin[1], 0),
+              begin_z = max((z << box.halvings[2]) - box.origin[2], 0);
+    const int end_y = min(((y + 1) << box.halvings[1]) - box.origin[1], box.size[1]),
+              end_z = min(((z + 1) << box.halvings[2]) - box.origin[2], box.size[2]);
     __global float* row = sums + row_at(&box.cells, y, z);
     FOR_VOXELS(x, 0, box.cells.size[0])
     {
-      const int begin_x = x << box.halvings[0], end_x = min((x + 1) << box.halvings[0], box.size[0]);
+      const int begin_x = max((x << box.halvings[0]) - box.origin[0], 0),
+                end_x = min(((x + 1) << box.halvings[0]) - box.origin[0], box.size[0]);
       float sum = 0.0f;
-      for (int w = z << box.halvings[2]; w < end_z; ++w)
+      for (int w = begin_z; w < end_z; ++w)
       {
-        for (int v = y << box.halvings[1]; v < end_y; ++v)
+        for (int v = begin_y; v < end_y; ++v)
         {
           const __global float* voxels = values + ((ulong)w * box.size[1] + v) * box.size[0];
           for (int u = begin_x; u < end_x; ++u)
@@ -36,8 +39,7 @@ __kernel void sum_cells(
           }
         }
       }
-      row[x] =
-        scale * sum + more * ((end_x - begin_x) * (end_y - (y << box.halvings[1])) * (end_z - (z << box.halvings[2])));
+      row[x] = scale * sum + more * (max(end_x - begin_x, 0) * max(end_y - begin_y, 0) * max(end_z - begin_z, 0));
     }
   }
 }
@@ -69,7 +71,8 @@ inline float sharpen_at_face(float own, float inner, float t, float s, float spa
   return s * (inner - own) * part_of_first_term(spacing * t) / 24.0f;
 }
 
-// Computes the source scattered from gathered light. One work-item per row of voxels.
+// Computes the source scattered from gathered light. One work-item per row of the block's voxels. The path and the
+// coefficients are with ghost voxels.
 //   path        W length; may be negative
 //   source      W / (length^3 sr), added to if `adds`
 //   per_volume  sign / (4 pi times the volume of a voxel)
@@ -79,26 +82,27 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
   __global float8* tally)
 {
   const int* n = box.size;
-  const int r = get_global_id(0), y = r % n[1], z = r / n[1];
-  const int i = r * n[0];
-  path += box.first + i;
-  source += box.first + i;
-  sigma_s += box.first + i;
-  sigma_t += box.firstT + i;
+  const int r = get_global_id(0), y = r % n[1] + box.lead[1], z = r / n[1] + box.lead[2];
+  const int row = box.held[0], plane = box.held[0] * box.held[1], i = z * plane + y * row + box.lead[0];
+  const int n_linear = box.linear ? n[0] : 0;
+  const bool ghosts[2] = { box.lead[0] > 0, box.held[0] > box.lead[0] + n[0] };
+  path += box.heldFirst + i;
+  source += box.first + r * n[0];
+  sigma_s += box.heldFirst + i;
+  sigma_t += box.heldFirstT + i;
   float sum = 0.0f, magnitude = 0.0f, kept[6] = { 0.0f };
   for (int x = 0; x < n[0]; ++x)
   {
     source[x] = (adds ? source[x] : 0.0f) + per_volume * sigma_s[x] * path[x];
   }
-#if LINEAR
-  for (int x = 0; x + 1 < n[0]; ++x)
+  for (int x = 0; x + 1 < n_linear; ++x)
   {
     const float more = per_volume *
       sharpen(path[x], path[x + 1], sigma_t[x], sigma_s[x], sigma_t[x + 1], sigma_s[x + 1], box.spacing[0]);
     source[x] += more;
     source[x + 1] -= more;
   }
-  if (box.periodic[0])
+  if (box.wraps[0] && box.linear)
   {
     const int x = n[0] - 1;
     const float more =
@@ -106,30 +110,33 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
     source[x] += more;
     source[0] -= more;
   }
-  const int row = n[0], plane = n[0] * n[1];
-  const int beside[4] = { y > 0 ? -row
-      : box.periodic[1]         ? plane - row
-                                : 0,
-    y < n[1] - 1        ? row
-      : box.periodic[1] ? row - plane
-                        : 0,
-    z > 0               ? -plane
-      : box.periodic[2] ? (n[2] - 1) * plane
-                        : 0,
-    z < n[2] - 1        ? plane
-      : box.periodic[2] ? (1 - n[2]) * plane
-                        : 0 };
+  for (int side = 0; side < 2; ++side)
+  {
+    const int x = side ? n[0] - 1 : 0, other = side ? n[0] : -1;
+    if (ghosts[side] && box.linear)
+    {
+      source[x] += per_volume *
+        sharpen(path[x], path[other], sigma_t[x], sigma_s[x], sigma_t[other], sigma_s[other], box.spacing[0]);
+    }
+  }
+  const int around_y = box.wraps[1] ? plane - row : 0, around_z = box.wraps[2] ? (box.held[2] - 1) * plane : 0;
+  const int beside[4] = { y > 0 ? -row : around_y, y < box.held[1] - 1 ? row : -around_y, z > 0 ? -plane : around_z,
+    z < box.held[2] - 1 ? plane : -around_z };
   for (int k = 0; k < 4; ++k)
   {
-    for (int x = 0; x < n[0] && beside[k] != 0; ++x)
+    for (int x = 0; x < n_linear && beside[k] != 0; ++x)
     {
       const int other = x + beside[k];
       source[x] += per_volume *
         sharpen(path[x], path[other], sigma_t[x], sigma_s[x], sigma_t[other], sigma_s[other], box.spacing[1 + k / 2]);
     }
   }
-  for (int side = 0; side < 2 && !box.periodic[0] && n[0] > 1; ++side)
+  for (int side = 0; side < 2 && !box.wraps[0] && box.held[0] > 1 && box.linear; ++side)
   {
+    if (ghosts[side])
+    {
+      continue;
+    }
     const int x = side ? n[0] - 1 : 0, inner = side ? n[0] - 2 : 1;
     const float more = per_volume * sharpen_at_face(path[x], path[inner], sigma_t[x], sigma_s[x], box.spacing[0]);
     source[x] += more;
@@ -138,7 +145,7 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
   for (int k = 0; k < 4; ++k)
   {
     const int inner = beside[k ^ 1];
-    for (int x = 0; x < n[0] && beside[k] == 0 && inner != 0; ++x)
+    for (int x = 0; x < n_linear && beside[k] == 0 && inner != 0; ++x)
     {
       const float more =
         per_volume * sharpen_at_face(path[x], path[x + inner], sigma_t[x], sigma_s[x], box.spacing[1 + k / 2]);
@@ -146,7 +153,6 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
       kept[2 + k] += more;
     }
   }
-#endif
   for (int x = 0; x < n[0]; ++x)
   {
     sum += source[x];
@@ -196,7 +202,8 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
   fluence += box.first + r * n[0];
   sigma_s += box.first + r * n[0];
   sigma_t += box.firstT + r * n[0];
-  const between y = find_between(&box, 1, r % n[1]), z = find_between(&box, 2, r / n[1]);
+  const between y = find_between(&box, 1, box.origin[1] + r % n[1]),
+                z = find_between(&box, 2, box.origin[2] + r / n[1]);
   const int cells = box.cells.size[0], plane = cells * box.cells.size[1];
   const __global exact* low = found + y.from * cells + z.from * plane;
   const int aside = (y.to - y.from) * cells, above = (z.to - z.from) * plane;
@@ -225,8 +232,8 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
       const int to = k < half_edge ? 0 : 2;
       for (int c = 0; c < count; ++c)
       {
-        const int x = ((first + c) << box.halvings[0]) + k;
-        if (x < n[0])
+        const int x = ((first + c) << box.halvings[0]) + k - box.origin[0];
+        if ((uint)x < (uint)n[0])
         {
           const float more = line[c + 1] + fabs(way) * (line[c + to] - line[c + 1]);
           const float path_of_found = volume * more;

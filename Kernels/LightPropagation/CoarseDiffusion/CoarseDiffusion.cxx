@@ -1,14 +1,13 @@
 #include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
 
-#include "Device/Defines.h"
 #include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
-#include "LightPropagation/Diffusion/MultigridLayout.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -17,173 +16,241 @@ namespace tyndall
 namespace
 {
 constexpr double Reduction = 0.02; ///< reduction of the residual per order: sweeps reduce the error by less than that
+constexpr const char* Contents = "diffusion on cells";
 
-std::array<int, 3> CellsOf(const std::array<int, 3>& voxels, const std::array<int, 3>& halvings)
+Grid CellsOf(const Grid& voxels, const std::array<int, 3>& halvings)
 {
-  std::array<int, 3> cells;
+  Grid cells;
   for (int axis = 0; axis < 3; ++axis)
   {
-    cells[axis] = (voxels[axis] + (1 << halvings[axis]) - 1) >> halvings[axis];
+    const int edge = 1 << halvings[axis];
+    cells.size[axis] = (voxels.size[axis] + edge - 1) / edge;
+    cells.spacing[axis] = voxels.spacing[axis] * edge;
   }
   return cells;
 }
-
-std::array<double, 3> EdgesOf(const std::array<double, 3>& voxel, const std::array<int, 3>& halvings)
-{
-  return { voxel[0] * (1 << halvings[0]), voxel[1] * (1 << halvings[1]), voxel[2] * (1 << halvings[2]) };
-}
 }
 
-CoarseDiffusion::CoarseDiffusion(Device& device, const VolumeLayout& layout, int channel, const MediumOnDevice& medium,
-  const std::array<bool, 3>& periodic, const std::array<int, 3>& halvings, bool linear)
+CoarseDiffusion::CoarseDiffusion(Device& device, const Domain& domain, const VolumeLayout& layout,
+  const MediumOnDevice& medium, const Buffer<float>& path, const Settings& settings)
   : TheDevice(device)
+  , TheDomain(domain)
   , TheMedium(medium)
-  , TheGrid(layout.grid)
-  , Linear(linear)
-  , Solver(device, CellsOf(layout.grid.size, halvings), EdgesOf(layout.grid.spacing, halvings))
-  , Tally(device, Count(layout.grid.size[1]) * Count(layout.grid.size[2]), "sums")
+  , Path(path)
+  , Block(domain, settings.periodic, layout.channels, layout.sharedExtinction)
+  , PathWithGhosts(device, this->Block, path, layout.channels, Contents)
+  , SigmaT(device, this->Block, medium.SigmaT(), layout.sharedExtinction ? 1 : layout.channels, Contents)
+  , SigmaS(device, this->Block, medium.SigmaS(), layout.channels, Contents)
+  , Cells(CellsOf(domain.Whole(), settings.halvings))
 {
+  this->SigmaT.Fill();
+  this->SigmaS.Fill();
+  this->MakeBoxes(layout, settings);
+  domain.Collective([&] {
+    this->CellSums = Buffer<float>(device, Count(this->Channels.front().box.cells.floats), Contents);
+    this->CellSums.Fill(0.0f);
+    this->Tally = Buffer<cl_float8>(device, Count(layout.grid.size[1]) * Count(layout.grid.size[2]), "sums");
+  });
+  for (Channel& channel : this->Channels)
+  {
+    this->FindMatrix(channel);
+  }
+}
+
+void CoarseDiffusion::MakeBoxes(const VolumeLayout& layout, const Settings& settings)
+{
+  const VolumeLayout& held = this->Block.WithGhosts();
+  CoarseCells box = {};
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->Box.size[axis] = layout.grid.size[axis];
-    this->Box.spacing[axis] = static_cast<float>(layout.grid.spacing[axis]);
-    this->Box.periodic[axis] = periodic[axis];
-    this->Box.halvings[axis] = halvings[axis];
+    box.size[axis] = layout.grid.size[axis];
+    box.origin[axis] = this->TheDomain.Own().first[axis];
+    box.held[axis] = held.grid.size[axis];
+    box.lead[axis] = box.origin[axis] - this->Block.Held().first[axis];
+    box.wraps[axis] = this->Block.Periodic()[axis];
+    box.spacing[axis] = static_cast<float>(layout.grid.spacing[axis]);
+    box.periodic[axis] = settings.periodic[axis];
+    box.halvings[axis] = settings.halvings[axis];
   }
-  this->Box.first = static_cast<cl_int>(channel * layout.Stride());
-  this->Box.firstT = static_cast<cl_int>(layout.ExtinctionFirst(channel));
-  this->Box.cells = this->Solver.Rows();
-  this->Found = ExactValues(device, this->CellGrid().VoxelCount(), "diffusion on cells");
-  this->FindMatrix();
+  box.linear = settings.linear;
+  box.cells = MultigridLevels(this->Cells.size, this->Cells.spacing).front();
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    box.first = static_cast<cl_int>(c * layout.Stride());
+    box.firstT = static_cast<cl_int>(layout.ExtinctionFirst(c));
+    box.heldFirst = static_cast<cl_int>(c * held.Stride());
+    box.heldFirstT = static_cast<cl_int>(held.ExtinctionFirst(c));
+    this->Channels.emplace_back();
+    this->Channels.back().box = box;
+  }
+}
+
+void CoarseDiffusion::FindMatrix(Channel& channel)
+{
+  const CoarseCells& box = channel.box;
+  const std::vector<double> sigmaT = this->SumByCells(box, this->TheMedium.SigmaT(), box.firstT, 1.0, 0.0);
+  const std::vector<double> sigmaS = this->SumByCells(box, this->TheMedium.SigmaS(), box.first, 1.0, 0.0);
+  CoarseMatrix matrix = FindCoarseMatrix(this->TheDomain.Whole(), box, this->Cells,
+    std::vector<float>(sigmaT.begin(), sigmaT.end()), std::vector<float>(sigmaS.begin(), sigmaS.end()));
+  channel.borders = std::move(matrix.borders);
+  this->TheDomain.Collective([&] {
+    channel.foundOnDevice = ExactValues(this->TheDevice, this->Cells.VoxelCount(), Contents);
+    if (this->TheDomain.Rank() == 0)
+    {
+      channel.solver = std::make_unique<MultigridSolver>(this->TheDevice, this->Cells.size, this->Cells.spacing);
+      channel.solver->Conductance().Write(matrix.conductance.data());
+      channel.solver->Loss().Write(matrix.loss.data());
+      channel.solver->Coarsen();
+    }
+  });
 }
 
 cl::Kernel CoarseDiffusion::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(name, kernel_source::CoarseDiffusion,
-    MultigridSolver::RowOptions(this->TheDevice) + Define("LINEAR", this->Linear) + ExactOption(this->TheDevice));
+  return this->TheDevice.Kernel(
+    name, kernel_source::CoarseDiffusion, MultigridSolver::RowOptions(this->TheDevice) + ExactOption(this->TheDevice));
 }
 
-/// Sum over the voxels of each cell, x fastest.
-std::vector<float> CoarseDiffusion::SumOfVoxels(const Buffer<float>& values, int first)
+/// Sum over the voxels of each cell, over all ranks, x fastest.
+/// @param first  offset of the channel in `values`
+/// @param scale, more  factor of the values; addend per voxel
+std::vector<double> CoarseDiffusion::SumByCells(
+  const CoarseCells& box, const Buffer<float>& values, int first, double scale, double more) const
 {
-  cl::Kernel kernel = this->Kernel("sum_cells");
-  With(kernel, this->Box, values, 1.0f, 0.0f, this->Solver.Right(), cl_ulong(first));
-  MultigridSolver::RunRows(this->TheDevice, kernel, this->Box.cells);
-  return OfRows(this->Box.cells, this->Solver.Right().Read());
+  std::vector<double> sums;
+  this->TheDomain.Collective([&] {
+    cl::Kernel kernel = this->Kernel("sum_cells");
+    With(kernel, box, values, static_cast<float>(scale), static_cast<float>(more), this->CellSums, cl_ulong(first));
+    MultigridSolver::RunRows(this->TheDevice, kernel, box.cells);
+    const std::vector<float> own = OfRows(box.cells, this->CellSums.Read());
+    sums.assign(own.begin(), own.end());
+  });
+  return this->TheDomain.Sum(sums);
 }
 
-void CoarseDiffusion::FindMatrix()
+std::vector<CoarseDiffusion::Powers> CoarseDiffusion::ScatterOrder(
+  const Buffer<float>& fluence, const Buffer<float>& source, const Rgb& onTheWay, const Buffer<float>* guess)
 {
-  const std::vector<float> sigmaT = this->SumOfVoxels(this->TheMedium.SigmaT(), this->Box.firstT);
-  const std::vector<float> sigmaS = this->SumOfVoxels(this->TheMedium.SigmaS(), this->Box.first);
-  CoarseMatrix matrix = FindCoarseMatrix(this->TheGrid, this->Box, this->CellGrid(), sigmaT, sigmaS);
-  this->Solver.Conductance().Write(matrix.conductance.data());
-  this->Solver.Loss().Write(matrix.loss.data());
-  this->Solver.Coarsen();
-  this->Borders = std::move(matrix.borders);
-}
-
-CoarseDiffusion::Powers CoarseDiffusion::ScatterOrder(const Buffer<float>& path, const Buffer<float>& fluence,
-  const Buffer<float>& source, double onTheWay, const Buffer<float>* guess)
-{
-  const double perSource = 4.0 * Pi * this->TheGrid.VoxelVolume();
-  const Sums swept = this->Scatter(path, source, 1.0, false);
-  this->Found.Fill(0.0);
-  if (!guess)
+  const double perSource = 4.0 * Pi * this->TheDomain.Whole().VoxelVolume();
+  std::vector<Powers> all(this->Channels.size());
+  this->PathWithGhosts.Fill();
+  for (std::size_t c = 0; c < all.size(); ++c)
   {
-    this->Solve(source, perSource * swept.second, onTheWay);
+    Channel& channel = this->Channels[c];
+    Powers& powers = all[c];
+    const Sums swept = this->Scatter(channel, source, 1.0, false);
+    channel.found.assign(this->Cells.VoxelCount(), 0.0);
+    if (!guess)
+    {
+      this->Solve(channel, source, perSource * swept.second, onTheWay[c]);
+    }
+    const Sums absorbed = this->AddLaterOrders(channel, guess, fluence);
+    powers.absorbed = absorbed.first;
+    powers.out = this->OutThroughFaces(channel);
+    powers.left =
+      perSource * swept.first - absorbed.second - std::accumulate(powers.out.begin(), powers.out.end(), 0.0);
+    for (int face = 0; face < 6; ++face)
+    {
+      powers.kept[face] = swept.byFace[face];
+      powers.out[face] -= perSource * swept.byFace[face];
+    }
   }
-  const Sums absorbed = guess ? this->AddGuess(*guess, path, fluence) : this->AddFound(path, fluence);
-  const Sums scattered = this->Scatter(path, source, -1.0, true);
-  Powers powers;
-  powers.absorbed = absorbed.first;
-  powers.scattered = perSource * scattered.first;
-  powers.magnitude = perSource * scattered.second;
-  powers.out = this->OutThroughFaces();
-  powers.left = perSource * swept.first - absorbed.second - std::accumulate(powers.out.begin(), powers.out.end(), 0.0);
-  for (int face = 0; face < 6; ++face)
+  this->PathWithGhosts.Fill();
+  for (std::size_t c = 0; c < all.size(); ++c)
   {
-    powers.kept[face] = perSource * (swept.byFace[face] + scattered.byFace[face]);
-    powers.out[face] -= perSource * swept.byFace[face];
+    const Sums scattered = this->Scatter(this->Channels[c], source, -1.0, true);
+    all[c].scattered = perSource * scattered.first;
+    all[c].magnitude = perSource * scattered.second;
+    for (int face = 0; face < 6; ++face)
+    {
+      all[c].kept[face] = perSource * (all[c].kept[face] + scattered.byFace[face]);
+    }
   }
-  return powers;
+  return all;
 }
 
 /// Solves for all later orders, from the power that the last sweep scattered and the power still in flight, W.
-void CoarseDiffusion::Solve(const Buffer<float>& source, double magnitude, double onTheWay)
+void CoarseDiffusion::Solve(Channel& channel, const Buffer<float>& source, double magnitude, double onTheWay) const
 {
   const double all = magnitude + std::abs(onTheWay);
   if (!(all > 0.0))
   {
+    channel.foundOnDevice.Fill(0.0);
     return;
   }
-  cl::Kernel sum = this->Kernel("sum_cells");
-  With(sum, this->Box, source, static_cast<float>(4.0 * Pi * this->TheGrid.VoxelVolume()),
-    static_cast<float>(onTheWay / static_cast<double>(this->TheGrid.VoxelCount())), this->Solver.Right(),
-    cl_ulong(this->Box.first));
-  MultigridSolver::RunRows(this->TheDevice, sum, this->Box.cells);
-  this->Solver.Solve(this->Found, all / static_cast<double>(this->CellGrid().VoxelCount()), Reduction);
+  const CoarseCells& box = channel.box;
+  const Grid& whole = this->TheDomain.Whole();
+  const std::vector<double> right = this->SumByCells(
+    box, source, box.first, 4.0 * Pi * whole.VoxelVolume(), onTheWay / static_cast<double>(whole.VoxelCount()));
+  this->TheDomain.Collective([&] {
+    channel.foundOnDevice.Fill(0.0);
+    if (channel.solver)
+    {
+      channel.solver->Right().Write(InRows(box.cells, right).data());
+      channel.solver->Solve(channel.foundOnDevice, all / static_cast<double>(this->Cells.VoxelCount()), Reduction);
+      channel.found = channel.foundOnDevice.Read();
+    }
+  });
+  channel.found = this->TheDomain.Sum(channel.found); // the other ranks contribute zeros
+  this->TheDomain.Collective([&] {
+    if (!channel.solver)
+    {
+      channel.foundOnDevice.Write(channel.found);
+    }
+  });
 }
 
 /// Adds the light scattered from path integrals, times a sign, to the source. @return sums of the kernel's tally
 CoarseDiffusion::Sums CoarseDiffusion::Scatter(
-  const Buffer<float>& path, const Buffer<float>& source, double sign, bool adds)
+  const Channel& channel, const Buffer<float>& source, double sign, bool adds) const
 {
-  cl::Kernel kernel = this->Kernel("scatter_row");
-  With(kernel, this->Box, path, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), source,
-    static_cast<float>(sign / (4.0 * Pi * this->TheGrid.VoxelVolume())), cl_int(adds), this->Tally);
-  return this->RunByRows(kernel);
+  return this->RunByRows("scatter_row", [&](cl::Kernel& kernel) {
+    With(kernel, channel.box, this->PathWithGhosts.Values(), this->SigmaT.Values(), this->SigmaS.Values(), source,
+      static_cast<float>(sign / (4.0 * Pi * this->TheDomain.Whole().VoxelVolume())), cl_int(adds), this->Tally);
+  });
 }
 
-CoarseDiffusion::Sums CoarseDiffusion::AddFound(const Buffer<float>& path, const Buffer<float>& fluence)
+/// Adds the path and that of all later orders, which replaces it with a negative sign, to the fluence.
+CoarseDiffusion::Sums CoarseDiffusion::AddLaterOrders(
+  const Channel& channel, const Buffer<float>* guess, const Buffer<float>& fluence) const
 {
-  cl::Kernel kernel = this->Kernel("add_found");
-  With(kernel, this->Box, this->Found.Handle(), path, fluence, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(),
-    static_cast<float>(this->TheGrid.VoxelVolume()), this->Tally);
-  return this->RunByRows(kernel);
+  return this->RunByRows(guess ? "add_guess" : "add_found", [&](cl::Kernel& kernel) {
+    With(kernel, channel.box, guess ? guess->Handle() : channel.foundOnDevice.Handle(), this->Path, fluence,
+      this->TheMedium.SigmaT(), this->TheMedium.SigmaS(), static_cast<float>(this->TheDomain.Whole().VoxelVolume()),
+      this->Tally);
+  });
 }
 
-CoarseDiffusion::Sums CoarseDiffusion::AddGuess(
-  const Buffer<float>& guess, const Buffer<float>& path, const Buffer<float>& fluence)
+/// Runs a kernel on the rows of the block's voxels. @return sums of its tally over all ranks
+CoarseDiffusion::Sums CoarseDiffusion::RunByRows(
+  const char* name, const std::function<void(cl::Kernel&)>& setArguments) const
 {
-  cl::Kernel kernel = this->Kernel("add_guess");
-  With(kernel, this->Box, guess, path, fluence, this->TheMedium.SigmaT(), this->TheMedium.SigmaS(),
-    static_cast<float>(this->TheGrid.VoxelVolume()), this->Tally);
-  return this->RunByRows(kernel);
-}
-
-CoarseDiffusion::Sums CoarseDiffusion::RunByRows(cl::Kernel& kernel)
-{
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), GroupOfLargeItems(this->TheDevice));
-  Sums sums;
-  for (const cl_float8& row : this->Tally.Read())
-  {
-    sums.first += row.s[0];
-    sums.second += row.s[1];
-    for (int face = 0; face < 6; ++face)
+  std::vector<double> values(8, 0.0);
+  this->TheDomain.Collective([&] {
+    if (this->TheDomain.IsEmpty())
     {
-      sums.byFace[face] += row.s[2 + face];
+      return;
     }
-  }
+    cl::Kernel kernel = this->Kernel(name);
+    setArguments(kernel);
+    this->TheDevice.Queue().enqueueNDRangeKernel(
+      kernel, cl::NullRange, cl::NDRange(this->Tally.Size()), GroupOfLargeItems(this->TheDevice));
+    for (const cl_float8& row : this->Tally.Read())
+    {
+      std::transform(values.begin(), values.end(), row.s, values.begin(), std::plus<double>());
+    }
+  });
+  values = this->TheDomain.Sum(values);
+  Sums sums = { values[0], values[1], {} };
+  std::copy_n(values.begin() + 2, 6, sums.byFace.begin());
   return sums;
 }
 
-std::array<double, 6> CoarseDiffusion::OutThroughFaces() const
+std::array<double, 6> CoarseDiffusion::OutThroughFaces(const Channel& channel) const
 {
-  const std::vector<double> found = this->Found.Read();
   std::array<double, 6> out = {};
-  ForBoxFaceCells(this->CellGrid(),
-    [&](const BoxFaceCell& cell) { out[cell.face] += this->Borders[cell.number] * found[cell.voxel]; });
+  ForBoxFaceCells(this->Cells,
+    [&](const BoxFaceCell& cell) { out[cell.face] += channel.borders[cell.number] * channel.found[cell.voxel]; });
   return out;
-}
-
-/// A grid of the cells; only its size is meaningful.
-Grid CoarseDiffusion::CellGrid() const
-{
-  const int* const n = this->Box.cells.size;
-  Grid grid;
-  grid.size = { n[0], n[1], n[2] };
-  return grid;
 }
 }

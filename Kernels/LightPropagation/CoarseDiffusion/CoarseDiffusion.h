@@ -1,29 +1,43 @@
 #pragma once
 
+#include "Distribution/Domain.h"
 #include "LightPropagation/CoarseDiffusion/CoarseShared.h"
+#include "LightPropagation/Diffusion/BlockWithGhosts.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 
 #include <array>
+#include <functional>
+#include <memory>
 #include <vector>
 
 namespace tyndall
 {
-/// Coarse-mesh DSA: diffusion of one channel on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13),
-/// which estimates the contribution of all later scattering orders from the light that a sweep found. Cells are at most
-/// about a mean free path wide, so that sweeps damp errors below cell size quickly. The correction is subtracted from
-/// the next source, so it changes the rate of convergence, not the limit.
+/// Coarse-mesh DSA: diffusion on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13), which estimates
+/// the contribution of all later scattering orders from the light that a sweep found. Cells are at most about a mean
+/// free path wide, so that sweeps damp errors below cell size quickly. The correction is subtracted from the next
+/// source, so it changes the rate of convergence, not the limit.
+///
+/// Cells are those of the whole grid, whichever ranks own their voxels: ranks sum over their voxels, the first rank
+/// solves, and all ranks hold the solution. Constructor and functions are collective.
 ///
 /// Related: diffusion synthetic acceleration (Adams and Larsen 2002), here on a coarser grid than the sweeps'.
 class CoarseDiffusion
 {
 public:
-  /// @param halvings  along each axis; cells have 2^halvings voxels
-  /// @param linear  light varies linearly across voxels rather than being constant in each
-  CoarseDiffusion(Device& device, const VolumeLayout& layout, int channel, const MediumOnDevice& medium,
-    const std::array<bool, 3>& periodic, const std::array<int, 3>& halvings, bool linear);
+  struct Settings
+  {
+    std::array<bool, 3> periodic; ///< axes of the domain
+    std::array<int, 3> halvings;  ///< along each axis; cells have 2^halvings voxels
+    bool linear;                  ///< light varies linearly across voxels rather than being constant in each
+  };
+  /// @param domain, medium, path  must outlive this object
+  /// @param layout  of the rank's block
+  /// @param path  path integrals of the sweeps, W length, [channel][stride]
+  CoarseDiffusion(Device& device, const Domain& domain, const VolumeLayout& layout, const MediumOnDevice& medium,
+    const Buffer<float>& path, const Settings& settings);
 
-  /// Powers of one scattering order, W.
+  /// Powers of one scattering order in a channel, over all ranks, W.
   struct Powers
   {
     double absorbed = 0.0;  ///< absorbed from all light added in this order
@@ -37,15 +51,15 @@ public:
   };
 
   /// Computes the next source from a sweep's path integrals. Adds these and the cells' solution for all later orders to
-  /// `fluence`, and leaves in `path` the (negative) path to subtract from the next sweep's. All arrays are
+  /// `fluence`, and leaves in the path the (negative) path to subtract from the next sweep's. All arrays are
   /// [channel][stride].
-  /// @param path  W length
   /// @param source  W / (length^3 sr), replaced
   /// @param onTheWay  power that rays around periodic axes still carry, W; it is added to the right-hand side,
   ///   uniformly over the box
   /// @param guess  path of all later orders, W length, to use instead of the cells' solution; null: use the solution
-  Powers ScatterOrder(const Buffer<float>& path, const Buffer<float>& fluence, const Buffer<float>& source,
-    double onTheWay = 0.0, const Buffer<float>* guess = nullptr);
+  /// @return by channel
+  std::vector<Powers> ScatterOrder(
+    const Buffer<float>& fluence, const Buffer<float>& source, const Rgb& onTheWay, const Buffer<float>* guess);
 
 private:
   struct Sums
@@ -53,25 +67,34 @@ private:
     double first = 0.0, second = 0.0; ///< meaning as in the kernel's tally
     std::array<double, 6> byFace = {};
   };
+  struct Channel
+  {
+    CoarseCells box = {};
+    std::unique_ptr<MultigridSolver> solver; ///< on the first rank; else null
+    std::vector<double> borders;             ///< as in CoarseMatrix
+    std::vector<double> found;               ///< solution of the last order, W / length^2, by cell
+    ExactValues foundOnDevice;
+  };
+  void MakeBoxes(const VolumeLayout& layout, const Settings& settings);
+  void FindMatrix(Channel& channel);
   cl::Kernel Kernel(const char* name) const;
-  std::vector<float> SumOfVoxels(const Buffer<float>& values, int first);
-  void FindMatrix();
-  Sums Scatter(const Buffer<float>& path, const Buffer<float>& source, double sign, bool adds);
-  void Solve(const Buffer<float>& source, double magnitude, double onTheWay);
-  Sums AddFound(const Buffer<float>& path, const Buffer<float>& fluence);
-  Sums AddGuess(const Buffer<float>& guess, const Buffer<float>& path, const Buffer<float>& fluence);
-  std::array<double, 6> OutThroughFaces() const;
-  Grid CellGrid() const;
-  Sums RunByRows(cl::Kernel& kernel);
+  std::vector<double> SumByCells(
+    const CoarseCells& box, const Buffer<float>& values, int first, double scale, double more) const;
+  Sums Scatter(const Channel& channel, const Buffer<float>& source, double sign, bool adds) const;
+  void Solve(Channel& channel, const Buffer<float>& source, double magnitude, double onTheWay) const;
+  Sums AddLaterOrders(const Channel& channel, const Buffer<float>* guess, const Buffer<float>& fluence) const;
+  std::array<double, 6> OutThroughFaces(const Channel& channel) const;
+  Sums RunByRows(const char* name, const std::function<void(cl::Kernel&)>& setArguments) const;
 
   Device& TheDevice;
+  const Domain& TheDomain;
   const MediumOnDevice& TheMedium;
-  Grid TheGrid;
-  CoarseCells Box = {};
-  bool Linear;
-  MultigridSolver Solver;
-  ExactValues Found; ///< W / length^2, by cells
-  Buffer<cl_float8> Tally;
-  std::vector<double> Borders; ///< as in CoarseMatrix
+  const Buffer<float>& Path;
+  const BlockWithGhosts Block;
+  GhostedBuffer PathWithGhosts, SigmaT, SigmaS;
+  Grid Cells; ///< of the whole grid
+  Buffer<float> CellSums;
+  Buffer<cl_float8> Tally; ///< by row of voxels
+  std::vector<Channel> Channels;
 };
 }

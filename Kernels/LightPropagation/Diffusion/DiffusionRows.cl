@@ -376,19 +376,19 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* gi
   }
 }
 
-// Absorbed power of the fluence, W.
+// Absorbed power of the fluence, W, in the voxels that this rank owns.
 // sums  [work-group]
 __kernel void diffusion_absorbed(
   DiffusionLayout layout, const __global float* sigma_a, const __global exact* fluence, __global exact* sums)
 {
   sigma_a += layout.first;
-  const int n = layout.size[0];
   exact sum = 0;
   FOR_ROWS(layout.rows)
   {
-    FOR_VOXELS(x, 0, n)
+    const int here = voxel_at(&layout, ROW_Y(layout.rows, r), ROW_Z(layout.rows, r));
+    FOR_VOXELS(x, layout.rows.first[0], layout.rows.end[0])
     {
-      sum += sigma_a[r * n + x] * fluence[r * n + x];
+      sum += sigma_a[here + x] * fluence[here + x];
     }
   }
   sum *= volume_of(&layout);

@@ -12,17 +12,20 @@ enum
   RowsLead = 16          ///< padding before a level's first row, floats
 };
 
-/// A multigrid level and the memory layout of its arrays. Voxels form rows along x. Each row has a ghost on its left
-/// (the last float before it) and on its right, so that vectors may be loaded with an offset of one voxel. Planes are
-/// padded so that rows of neighbouring planes do not map to the same cache lines.
+/// A box of voxels of a multigrid level and the memory layout of its arrays. Voxels form rows along x. Each row has a
+/// ghost on its left (the last float before it) and on its right, so that vectors may be loaded with an offset of one
+/// voxel. Planes are padded so that rows of neighbouring planes do not map to the same cache lines.
 typedef struct
 {
   int size[3];
-  int halved[3]; ///< 1: halved to the next coarser level, by axis
-  int pitch;     ///< distance of rows, floats
-  int plane;     ///< distance of planes, floats
-  int floats;    ///< size of an array, floats
-  int together;  ///< number of rows per work-item on a CPU
+  int first[3], end[3]; ///< range of the voxels that this rank owns; the others are ghost voxels
+  int halved[3];        ///< 1: halved to the next coarser level, by axis
+  int shift[3];         ///< voxel x of the next coarser level's box has the voxels from (x << halved) + shift on
+  int single[3];        ///< 1: the whole grid of the level has one voxel along this axis
+  int pitch;            ///< distance of rows, floats
+  int plane;            ///< distance of planes, floats
+  int floats;           ///< size of an array, floats
+  int together;         ///< number of rows per work-item on a CPU
 } MultigridLevel;
 
 /// The grid, and the offsets of one channel in the arrays.

@@ -1,7 +1,6 @@
 #include "LightPropagation/Diffusion/DiffusionSolver.h"
 
 #include "Medium/BoxFaces.h"
-#include "Medium/VoxelSums.h"
 
 #include <algorithm>
 #include <functional>
@@ -29,12 +28,12 @@ CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, con
   return pattern;
 }
 
-/// One of several arrays of a level, without the padding between rows.
-std::vector<float> ArrayOf(const MultigridLevel& rows, const std::vector<float>& arrays, int which)
-{
-  const auto begin = arrays.begin() + static_cast<std::ptrdiff_t>(which) * rows.floats;
-  return OfRows(rows, { begin, begin + rows.floats });
-}
+constexpr double Reduction = 3e-3; ///< reduction of the residual in one correction: more would hardly save sweeps
+/// The same for slow iterations, after several corrections: the residuals that these leave add up.
+constexpr double SlowReduction = 1e-4;
+constexpr int Several = 12;
+/// Targets of Refine(): reduction of the residual, and its root mean square in units.
+constexpr double RefinedBy = 0.1, RefinedTo = 1e-6;
 }
 
 DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, const DirectionSet& directions,
@@ -43,144 +42,77 @@ DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, c
   : Block(block)
   , TheDomain(block.TheDomain())
   , Periodic(periodic)
-  , SigmaA(arrays.sigma_a)
-  , First(arrays.first)
   , ByCells(arrays.faces != nullptr)
 {
   this->TheDomain.Collective([&] {
+    this->Solver = std::make_unique<MultigridSolver>(device, this->TheDomain, periodic);
     if (block.Has())
     {
-      this->System = std::make_unique<DiffusionSystem>(device, block.WithGhosts().grid, block.Periodic(), directions,
-        PatternOf(pattern, block.Held(), this->TheDomain.Whole().size), arrays, incoming, linear);
+      this->System = std::make_unique<DiffusionSystem>(device, *this->Solver, block.WithGhosts().grid, block.Periodic(),
+        directions, PatternOf(pattern, block.Held(), this->TheDomain.Whole().size), arrays, incoming, linear);
+    }
+    else
+    {
+      this->NoVoxels = ExactValues(device, 0, "the diffusion system");
     }
     if (block.HasGhosts())
     {
       this->OwnNext = ExactValues(device, block.Own().grid.VoxelCount(), "the diffusion system");
     }
   });
-  if (this->TheDomain.IsSerial())
-  {
-    return;
-  }
-  std::array<std::vector<float>, 3> conductance;
-  std::vector<float> loss;
+  this->Solver->Coarsen();
+}
+
+/// Runs a step of a rank that has voxels. Collective.
+void DiffusionSolver::OnSystem(const std::function<void(DiffusionSystem&)>& step) const
+{
   this->TheDomain.Collective([&] {
-    this->OverRanks =
-      std::make_unique<MultigridOverRanks>(this->TheDomain.Comm(), this->TheDomain.Partition(), periodic);
-    this->Fluence.assign(block.WithGhosts().grid.VoxelCount(), 0.0);
-    if (!this->System)
+    if (this->System)
     {
-      return;
+      step(*this->System);
     }
-    MultigridSolver& matrix = this->System->Matrix();
-    const std::vector<float> all = matrix.Conductance().Read();
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      conductance[axis] = ArrayOf(matrix.Rows(), all, axis);
-    }
-    loss = ArrayOf(matrix.Rows(), matrix.Loss().Read(), 0);
   });
-  this->OverRanks->SetMatrix(conductance, loss);
 }
 
 double DiffusionSolver::Correct(double unit)
 {
   Buffer<float> none;
-  this->TheDomain.Collective([&] {
-    if (this->System)
-    {
-      this->System->FindModel();
-    }
-  });
+  this->OnSystem([](DiffusionSystem& system) { system.FindModel(); });
   this->Block.FillGhosts(this->System ? this->System->TheModel() : none);
-  const double reduction = DiffusionSystem::ReductionAfter(this->Corrections++);
-  this->TheDomain.Collective([&] {
-    if (this->System)
-    {
-      this->System->Balance();
-    }
-    if (this->OnDevice())
-    {
-      this->System->Solve(unit, reduction);
-    }
-  });
-  this->SolveOverRanks(unit, reduction);
+  this->OnSystem([](DiffusionSystem& system) { system.Balance(); });
+  const double reduction = this->Corrections++ < Several ? Reduction : SlowReduction;
+  this->Solver->Solve(this->System ? this->System->Solved() : this->NoVoxels, unit, reduction);
   AndersonMixing::Sums sums = {};
-  this->TheDomain.Collective([&] {
-    if (this->System)
-    {
-      this->System->FindFlux();
-      sums = this->System->SumsOfChange();
-    }
+  this->OnSystem([&](DiffusionSystem& system) {
+    system.FindFlux();
+    sums = system.SumsOfChange();
   });
   const std::vector<double> all = this->TheDomain.Sum(std::vector<double>{ sums.begin(), sums.end() });
   std::copy(all.begin(), all.end(), sums.begin());
-  this->TheDomain.Collective([&] {
-    if (this->System)
-    {
-      this->System->MixBy(sums);
-    }
-  });
+  this->OnSystem([&](DiffusionSystem& system) { system.MixBy(sums); });
   return AndersonMixing::ChangeBy(sums);
-}
-
-void DiffusionSolver::SolveOverRanks(double unit, double reduction)
-{
-  if (!this->OverRanks)
-  {
-    return;
-  }
-  std::vector<float> right;
-  this->TheDomain.Collective([&] {
-    if (this->System)
-    {
-      right = ArrayOf(this->System->Matrix().Rows(), this->System->Matrix().Right().Read(), 0);
-    }
-  });
-  this->OverRanks->Solve(this->Fluence, right, unit, reduction);
-  this->TheDomain.Collective([&] {
-    if (this->System)
-    {
-      this->System->SetFound(this->Fluence);
-    }
-  });
 }
 
 void DiffusionSolver::Refine(double unit)
 {
-  if (this->OverRanks)
-  {
-    this->OverRanks->GoOn(this->Fluence, unit, DiffusionSystem::RefinedBy, DiffusionSystem::RefinedTo);
-  }
-  this->TheDomain.Collective([&] {
-    if (this->OnDevice())
-    {
-      this->System->Refine(unit);
-    }
-    else if (this->System)
-    {
-      this->System->SetFound(this->Fluence);
-    }
-  });
+  this->Solver->GoOn(this->System ? this->System->Solved() : this->NoVoxels, unit, RefinedBy, RefinedTo);
 }
 
 void DiffusionSolver::BeginBeyond(const std::vector<double>& guessed)
 {
-  this->TheDomain.Collective([&] {
-    if (!this->System)
-    {
-      return;
-    }
-    std::vector<double> state = this->System->State();
-    std::copy(this->Fluence.begin(), this->Fluence.end(), state.begin()); // the host's copy is not rounded
+  this->OnSystem([&](DiffusionSystem& system) {
+    std::vector<double> state = system.State();
     std::transform(state.begin(), state.end(), guessed.begin(), state.begin(), std::plus<>());
-    std::copy_n(state.begin(), this->Fluence.size(), this->Fluence.begin());
-    this->System->Begin(state);
+    system.Begin(state);
   });
 }
 
 std::vector<double> DiffusionSolver::OwnOf(const std::vector<double>& held) const
 {
+  if (!this->Block.HasGhosts())
+  {
+    return held;
+  }
   std::vector<double> own(this->Block.Own().grid.VoxelCount());
   for (std::size_t i = 0; i < own.size(); ++i)
   {
@@ -191,7 +123,7 @@ std::vector<double> DiffusionSolver::OwnOf(const std::vector<double>& held) cons
 
 std::vector<double> DiffusionSolver::Found() const
 {
-  return this->OnDevice() ? this->System->Found() : this->OwnOf(this->Fluence);
+  return this->System ? this->OwnOf(this->System->Found()) : std::vector<double>();
 }
 
 const ExactValues& DiffusionSolver::NextFluence()
@@ -207,40 +139,23 @@ const ExactValues& DiffusionSolver::NextFluence()
 double DiffusionSolver::Absorbed() const
 {
   double own = 0.0;
-  this->TheDomain.Collective([&] {
-    if (this->OnDevice())
-    {
-      own = this->System->Absorbed();
-    }
-    else if (this->System)
-    {
-      const Grid& grid = this->Block.Own().grid;
-      const std::vector<float> sigmaA = this->SigmaA->Read();
-      own = grid.VoxelVolume() * SumOverVoxels(grid, [&](std::size_t i) {
-        const std::size_t at = this->Block.PlaceOf(i);
-        return sigmaA[this->First + at] * this->Fluence[at];
-      });
-    }
-  });
+  this->OnSystem([&](DiffusionSystem& system) { own = system.Absorbed(); });
   return this->TheDomain.Sum(own);
 }
 
 std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<double, 6>& ofSweep)
 {
   DiffusionSystem::BorderSums sums;
-  this->TheDomain.Collective([&] {
-    if (this->System)
-    {
-      const std::array<int, 3>& size = this->Block.WithGhosts().grid.size;
-      sums = this->System->SumBorders([&](int face, int u, int v) {
-        const PlaneAxes axes = AcrossAxis(face / 2);
-        std::array<int, 3> voxel = {};
-        voxel[axes.axis] = face % 2 ? size[axes.axis] - 1 : 0;
-        voxel[axes.u] = u;
-        voxel[axes.v] = v;
-        return this->Block.IsOwn(voxel); // the faces of own voxels at the end of the box are the grid's
-      });
-    }
+  this->OnSystem([&](DiffusionSystem& system) {
+    const std::array<int, 3>& size = this->Block.WithGhosts().grid.size;
+    sums = system.SumBorders([&](int face, int u, int v) {
+      const PlaneAxes axes = AcrossAxis(face / 2);
+      std::array<int, 3> voxel = {};
+      voxel[axes.axis] = face % 2 ? size[axes.axis] - 1 : 0;
+      voxel[axes.u] = u;
+      voxel[axes.v] = v;
+      return this->Block.IsOwn(voxel); // the faces of own voxels at the end of the box are the grid's
+    });
   });
   std::vector<double> values = { sums.transportWeight, sums.shared };
   for (std::array<double, 6>* ofFaces : { &sums.out, &sums.seeming, &sums.came })

@@ -2,18 +2,17 @@
 
 #include "LightPropagation/Diffusion/BlockWithGhosts.h"
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
-#include "LightPropagation/Diffusion/MultigridOverRanks.h"
+#include "LightPropagation/Diffusion/MultigridSolver.h"
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace tyndall
 {
 /// The low-order solve of one channel (DiffusionSystem.h, numerics.md, section 7) on a domain. Each rank sets up the
-/// balance of its own voxels from its block and ghosts; all ranks solve it together by conjugate gradients with
-/// multigrid. A serial domain is solved on its device (MultigridSolver.h), several ranks on their hosts
-/// (MultigridOverRanks.h); the solutions agree up to rounding and the tolerance of the linear solver. Constructor and
+/// balance of its own voxels from its block and ghosts; all ranks solve it together (MultigridSolver.h). Constructor and
 /// functions are collective unless stated otherwise.
 class DiffusionSolver
 {
@@ -53,20 +52,17 @@ public:
   SurfacePowers PowersAtSurface() const;
 
 private:
-  bool OnDevice() const { return this->System && !this->OverRanks; }
   std::vector<double> OwnOf(const std::vector<double>& held) const;
-  void SolveOverRanks(double unit, double reduction);
+  void OnSystem(const std::function<void(DiffusionSystem&)>& step) const;
 
   const BlockWithGhosts& Block;
   const Domain& TheDomain;
   const std::array<bool, 3> Periodic;
-  const Buffer<float>* SigmaA;
-  std::size_t First;
-  bool ByCells;                                  ///< whether escaped power is known by cell of the box's faces
-  std::unique_ptr<DiffusionSystem> System;       ///< of the block with ghosts; null on a rank without voxels
-  std::unique_ptr<MultigridOverRanks> OverRanks; ///< null: the system is solved on the device
-  std::vector<double> Fluence;                   ///< solution of the ranks, with ghosts
-  ExactValues OwnNext;                           ///< next fluence of the block; empty: the block has no ghosts
+  bool ByCells; ///< whether escaped power is known by cell of the box's faces
+  std::unique_ptr<MultigridSolver> Solver;
+  std::unique_ptr<DiffusionSystem> System; ///< of the block with ghosts; null on a rank without voxels
+  ExactValues NoVoxels;                    ///< the solution of a rank without voxels
+  ExactValues OwnNext;                     ///< next fluence of the block; empty: the block has no ghosts
   int Corrections = 0;
 };
 }

@@ -15,11 +15,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Floor = 0.05;     ///< minimum optical length between voxel centres: conductance does not grow below it
-constexpr double Reduction = 3e-3; ///< reduction of the residual in one correction: more would hardly save sweeps
-/// The same for slow iterations, after several corrections: the residuals that these leave add up.
-constexpr double SlowReduction = 1e-4;
-constexpr int Several = 12;
+constexpr double Floor = 0.05; ///< minimum optical length between voxel centres: conductance does not grow below it
 constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces per work-group
 
 /// Rounding can make the power of dark faces slightly negative: it is set to 0, and the others are scaled to conserve
@@ -41,14 +37,14 @@ std::array<double, 6> NotNegative(std::array<double, 6> powers)
 }
 }
 
-DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::array<bool, 3>& periodic,
-  const DirectionSet& directions, const CrossingPattern& pattern, const Arrays& arrays,
-  const std::array<double, 6>& incoming, bool linear)
+DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const Grid& grid,
+  const std::array<bool, 3>& periodic, const DirectionSet& directions, const CrossingPattern& pattern,
+  const Arrays& arrays, const std::array<double, 6>& incoming, bool linear)
   : TheDevice(device)
   , The(arrays)
   , Count(grid.VoxelCount())
   , BorderCells(BoxFaceCellCount(grid))
-  , Solver(device, grid.size, grid.spacing)
+  , Solver(solver)
   , Mixing(device, grid.VoxelCount(), this->Values(), "the diffusion system")
 {
   double halfRange = 0.0;
@@ -64,7 +60,7 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   std::copy(incoming.begin(), incoming.end(), this->Layout.incoming);
   std::copy(arrays.albedo.begin(), arrays.albedo.end(), this->Layout.albedo);
 
-  this->Layout.rows = this->Solver.Rows();
+  this->Layout.rows = WithGhostsOwned(this->Solver.Rows());
 
   const char* what = "the diffusion system";
   std::vector<float> tables = pattern.values;
@@ -89,7 +85,6 @@ DiffusionSystem::DiffusionSystem(Device& device, const Grid& grid, const std::ar
   cl::Kernel border = this->Kernel("diffusion_border_loss");
   With(border, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->Solver.Loss());
   this->RunBorder(border);
-  this->Solver.Coarsen();
   this->FindSkins();
 }
 
@@ -202,17 +197,6 @@ void DiffusionSystem::Balance()
   this->RunBorder(border);
 }
 
-void DiffusionSystem::SetFound(const std::vector<double>& fluence)
-{
-  std::vector<double> state = fluence;
-  if (this->HasMoments())
-  {
-    state = this->Solution.Read();
-    std::copy(fluence.begin(), fluence.end(), state.begin());
-  }
-  this->Solution.Write(state);
-}
-
 void DiffusionSystem::FindFlux()
 {
   if (this->HasMoments())
@@ -221,11 +205,6 @@ void DiffusionSystem::FindFlux()
       this->OnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
     this->Run(flux);
   }
-}
-
-double DiffusionSystem::ReductionAfter(int corrections)
-{
-  return corrections < Several ? Reduction : SlowReduction;
 }
 
 AndersonMixing::Weighting DiffusionSystem::WeightingOfChange() const
@@ -245,17 +224,14 @@ void DiffusionSystem::MixBy(const AndersonMixing::Sums& sums)
   this->Mixing.Mix(this->Next, this->Solution, sums);
 }
 
-void DiffusionSystem::Refine(double unit)
-{
-  this->Solver.GoOn(this->Solution, unit, RefinedBy, RefinedTo);
-}
-
 double DiffusionSystem::Absorbed() const
 {
   cl::Kernel kernel = this->RowsKernel("diffusion_absorbed");
-  const ExactValues sums(this->TheDevice, MultigridSolver::GroupsOf(this->TheDevice, this->Layout.rows), "sums");
-  With(kernel, this->Layout, *this->The.sigma_a, this->Solution.Handle(), sums.Handle());
-  this->RunRows(kernel);
+  DiffusionLayout own = this->Layout;
+  own.rows = this->Solver.Rows();
+  const ExactValues sums(this->TheDevice, MultigridSolver::GroupsOf(this->TheDevice, own.rows), "sums");
+  With(kernel, own, *this->The.sigma_a, this->Solution.Handle(), sums.Handle());
+  MultigridSolver::RunRows(this->TheDevice, kernel, own.rows);
   const std::vector<double> parts = sums.Read();
   return std::accumulate(parts.begin(), parts.end(), 0.0);
 }

@@ -61,9 +61,11 @@ public:
     std::array<double, 6> albedo = {}; ///< of the box's faces
   };
 
+  /// @param solver  of the same voxels; its matrix is written, except for the coarser levels; must outlive this object
   /// @param incoming  incident power through the box's faces without that of lamps, W / length^2
-  DiffusionSystem(Device& device, const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& directions,
-    const CrossingPattern& pattern, const Arrays& arrays, const std::array<double, 6>& incoming, bool linear);
+  DiffusionSystem(Device& device, MultigridSolver& solver, const Grid& grid, const std::array<bool, 3>& periodic,
+    const DirectionSet& directions, const CrossingPattern& pattern, const Arrays& arrays,
+    const std::array<double, 6>& incoming, bool linear);
 
   /// The last solution: fluence, W / length^2, [voxel]; if there are angular moments, followed by those of degree 1,
   /// [x, y, z][voxel].
@@ -87,14 +89,9 @@ public:
   void FindModel();                                 ///< computes the fluence with which the sweep is compared
   Buffer<float>& TheModel() { return this->Model; } ///< W / length^2, [voxel]
   void Balance(); ///< computes the right-hand side: each voxel's balance, from the model
-  MultigridSolver& Matrix() { return this->Solver; } ///< and its right-hand side
-  /// Solves the system of a serial domain on the device, see MultigridSolver::Solve().
-  void Solve(double unit, double reduction) { this->Solver.Solve(this->Solution, unit, reduction); }
-  static double ReductionAfter(int corrections);     ///< reduction of the residual for the next solve
-  void SetFound(const std::vector<double>& fluence); ///< sets a solution computed on the host
+  /// The solution; ghost voxels included.
+  ExactValues& Solved() { return this->Solution; }
   void FindFlux(); ///< computes the moments of degree 1 that belong to the solution, if there are angular moments
-  /// Targets of Refine(): reduction of the residual, and its root mean square in units.
-  static constexpr double RefinedBy = 0.1, RefinedTo = 1e-6;
   AndersonMixing::Sums SumsOfChange() const; ///< for the mixing of the solution; call after it was found
   void MixBy(const AndersonMixing::Sums& sums);
 
@@ -116,10 +113,7 @@ public:
   static std::array<double, 6> OutflowBy(const BorderSums& sums, double entered, const std::array<double, 6>& ofSweep,
     const std::array<bool, 3>& periodic = {});
 
-  /// Continues the last solve on the device, for more digits.
-  void Refine(double unit);
-
-  /// Power absorbed according to the last correction, W.
+  /// Power absorbed according to the last correction, W; without ghost voxels.
   double Absorbed() const;
 
   /// Fluence found by the last correction, W / length^2.
@@ -156,7 +150,7 @@ private:
   DiffusionLayout Layout = {};
   Arrays The;
   std::size_t Count, BorderCells;
-  MultigridSolver Solver;
+  MultigridSolver& Solver;
   Buffer<float> FlatSource, Pattern, Model;
   Buffer<cl_int> Skins; ///< by row: 1 if it has thick voxels next to thinner ones
   bool AnySkin = false;

@@ -33,6 +33,7 @@ std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, cons
   std::array<double, 3> spacing = ofSpacing;
   MultigridLevel level = {};
   std::copy(size.begin(), size.end(), level.size);
+  level = WithGhostsOwned(level);
   std::vector<MultigridLevel> levels;
   for (;;)
   {
@@ -45,6 +46,7 @@ std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, cons
     for (int axis = 0; axis < 3; ++axis)
     {
       level.halved[axis] = level.size[axis] > 1 && spacing[axis] < 1.9 * shortest ? 1 : 0;
+      level.single[axis] = level.size[axis] == 1;
     }
     LayOut(level);
     levels.push_back(level);
@@ -57,6 +59,41 @@ std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, cons
       spacing[axis] *= 1 + level.halved[axis];
       level.size[axis] = (level.size[axis] + level.halved[axis]) >> level.halved[axis];
     }
+    level = WithGhostsOwned(level);
   }
+}
+
+MultigridLevel PartOfLevel(
+  const MultigridLevel& whole, const VoxelBox& box, const VoxelBox& own, const VoxelBox& joined)
+{
+  MultigridLevel level = whole;
+  const bool any = own.VoxelCount() > 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    level.size[axis] = any ? box.size[axis] : 0;
+    level.first[axis] = any ? own.first[axis] - box.first[axis] : 0;
+    level.end[axis] = any ? level.first[axis] + own.size[axis] : 0;
+    level.shift[axis] = (joined.first[axis] << whole.halved[axis]) - box.first[axis];
+  }
+  LayOut(level);
+  return level;
+}
+
+MultigridLevel WithGhostsOwned(MultigridLevel level)
+{
+  std::fill_n(level.first, 3, 0);
+  std::copy_n(level.size, 3, level.end);
+  return level;
+}
+
+VoxelBox Joined(const MultigridLevel& level, const VoxelBox& box)
+{
+  VoxelBox joined = box;
+  for (int axis = 0; axis < 3 && box.VoxelCount() > 0; ++axis)
+  {
+    joined.first[axis] = box.first[axis] >> level.halved[axis];
+    joined.size[axis] = ((box.first[axis] + box.size[axis] - 1) >> level.halved[axis]) + 1 - joined.first[axis];
+  }
+  return joined;
 }
 }

@@ -11,18 +11,24 @@
 #include "Numerics/GroupSum.cl"
 #include "Numerics/Numerics.cl"
 
-// FOR_ROWS     loops over the rows r that this work-item contributes to
+// FOR_ROWS     loops over the rows r of own voxels that this work-item contributes to
+// ROW_Y, ROW_Z  position of such a row
 // FOR_VECTORS  loops over its part of begin <= x < end in a row, by vectors
 // FOR_VOXELS   the same by single voxels
 // FILL_GHOSTS  sets a row's ghosts to the values of the opposite end; within FOR_ROWS, after the last write to the row.
 //              A periodic axis continues there; at the box's end the conductance is 0
 // ENDS_ROW     true for exactly one iteration per row
+#define OWN_SIZE(level, axis) ((level).end[axis] - (level).first[axis])
+#define OWN_ROWS(level) (OWN_SIZE(level, 1) * OWN_SIZE(level, 2))
+#define ROW_Y(level, r) ((level).first[1] + (r) % OWN_SIZE(level, 1))
+#define ROW_Z(level, r) ((level).first[2] + (r) / OWN_SIZE(level, 1))
 #if REAL_WIDTH == 1
 #define LANES 0
-#define FOR_ROWS(level)                                                                            \
-  for (int voxel = get_global_id(0), r = voxel / (level).size[0], own_x = voxel % (level).size[0]; \
-       voxel < (level).size[0] * (level).size[1] * (level).size[2];                                \
-       voxel += get_global_size(0), r = voxel / (level).size[0], own_x = voxel % (level).size[0])
+#define FOR_ROWS(level)                                                                                           \
+  for (int voxel = get_global_id(0), r = voxel / OWN_SIZE(level, 0),                                              \
+           own_x = (level).first[0] + voxel % OWN_SIZE(level, 0);                                                 \
+       voxel < OWN_SIZE(level, 0) * OWN_ROWS(level); voxel += get_global_size(0), r = voxel / OWN_SIZE(level, 0), \
+           own_x = (level).first[0] + voxel % OWN_SIZE(level, 0))
 #define FOR_VECTORS(x, begin, end) for (int x = own_x; x >= (begin) && x < (end); x = (end))
 #define FOR_VOXELS FOR_VECTORS
 #define FILL_GHOSTS(row, size) fill_ghosts_of(row, size, own_x)
@@ -33,10 +39,9 @@
 #else
 #define LANES ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
 #endif
-#define FOR_ROWS(level)                                                            \
-  for (int r = get_global_id(0) * (level).together,                                \
-           row_end = min((level).size[1] * (level).size[2], r + (level).together); \
-       r < row_end; ++r)
+#define FOR_ROWS(level)                                                                                                \
+  for (int r = get_global_id(0) * (level).together, row_end = min(OWN_ROWS(level), r + (level).together); r < row_end; \
+       ++r)
 #define FOR_VECTORS(x, begin, end) for (int x = (begin); x < (end); x += REAL_WIDTH)
 #define FOR_VOXELS(x, begin, end) for (int x = (begin); x < (end); ++x)
 #define FILL_GHOSTS(row, size) fill_ghosts(row, size)
@@ -52,6 +57,13 @@ inline int row_at(const MultigridLevel* level, int y, int z)
 inline real in_row(real values, int left)
 {
   return left >= REAL_WIDTH ? values : select(values, (real)0.0f, LANES >= left);
+}
+
+// The same for lanes of voxels that this rank does not own.
+inline real in_own(const MultigridLevel* level, real values, int x)
+{
+  const real kept = in_row(values, level->end[0] - x);
+  return x >= level->first[0] ? kept : select((real)0.0f, kept, LANES + x >= level->first[0]);
 }
 
 inline void fill_ghosts(__global float* row, int size)

@@ -45,15 +45,20 @@ __kernel void level_invert(MultigridLevel level, const __global float* conductan
 {
   FOR_ROWS(level)
   {
-    const int y = r % level.size[1], z = r / level.size[1];
+    const int y = ROW_Y(level, r), z = ROW_Z(level, r);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, inverse);
-    FOR_VECTORS(x, 0, level.size[0])
+    FOR_VECTORS(x, level.first[0], level.end[0])
     {
       const real diagonal = diagonal_of(&row, x);
       const real value = select((real)0.0f, (real)damping / diagonal, diagonal > (real)0.0f);
-      store_real(in_row(value, level.size[0] - x), x, inverse + row_at(&level, y, z));
+      store_real(in_row(value, level.end[0] - x), x, inverse + row_at(&level, y, z));
     }
   }
+}
+
+inline bool owns_row(const MultigridLevel* level, int y, int z)
+{
+  return y >= level->first[1] && y < level->end[1] && z >= level->first[2] && z < level->end[2];
 }
 
 // The coarser level's matrix (numerics.md, Eq. (70)): conductances of adjacent faces add up; along a halved axis they
@@ -67,7 +72,7 @@ typedef struct
 static void add_fine_row(const MultigridLevel* fine, int v, int w, int b, int c, int x,
   const __global float* conductance, const __global float* loss, coarse_entries* sum)
 {
-  const int here = row_at(fine, v, w), n = fine->size[0];
+  const int here = row_at(fine, v, w), u = (x << fine->halved[0]) + fine->shift[0];
   const __global float* sources[4] = { loss + here, conductance + here, conductance + fine->floats + here,
     conductance + 2 * fine->floats + here };
   real values[4];
@@ -75,12 +80,11 @@ static void add_fine_row(const MultigridLevel* fine, int v, int w, int b, int c,
   {
     if (!fine->halved[0])
     {
-      values[k] = in_row(load_real(x, sources[k]), n - x);
+      values[k] = in_own(fine, load_real(u, sources[k]), u);
       continue;
     }
-    const int u = 2 * x;
-    const real low = in_row(load_real(u, sources[k]), n - u);
-    const real high = in_row(load_real(u + REAL_WIDTH, sources[k]), n - u - REAL_WIDTH);
+    const real low = in_own(fine, load_real(u, sources[k]), u);
+    const real high = in_own(fine, load_real(u + REAL_WIDTH, sources[k]), u + REAL_WIDTH);
     values[k] = k == 1 ? first_of_pairs(low, high) : pair_sums(low, high);
   }
   sum->loss += values[0];
@@ -94,17 +98,17 @@ __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __
 {
   FOR_ROWS(coarse)
   {
-    const int y = r % coarse.size[1], z = r / coarse.size[1];
+    const int y = ROW_Y(coarse, r), z = ROW_Z(coarse, r);
     const int here = row_at(&coarse, y, z);
-    FOR_VECTORS(x, 0, coarse.size[0])
+    FOR_VECTORS(x, coarse.first[0], coarse.end[0])
     {
       coarse_entries sum = { (real)0.0f, { (real)0.0f, (real)0.0f, (real)0.0f } };
       for (int c = 0; c <= fine.halved[2]; ++c)
       {
         for (int b = 0; b <= fine.halved[1]; ++b)
         {
-          const int v = (y << fine.halved[1]) + b, w = (z << fine.halved[2]) + c;
-          if (v < fine.size[1] && w < fine.size[2])
+          const int v = (y << fine.halved[1]) + fine.shift[1] + b, w = (z << fine.halved[2]) + fine.shift[2] + c;
+          if (owns_row(&fine, v, w))
           {
             add_fine_row(&fine, v, w, b, c, x, conductance, loss, &sum);
           }
@@ -113,7 +117,7 @@ __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __
       store_real(sum.loss, x, coarse_loss + here);
       for (int axis = 0; axis < 3; ++axis)
       {
-        const float part = coarse.size[axis] == 1 ? 0.0f : fine.halved[axis] ? 0.5f : 1.0f;
+        const float part = coarse.single[axis] ? 0.0f : fine.halved[axis] ? 0.5f : 1.0f;
         store_real(sum.passes[axis] * part, x, coarse_conductance + axis * coarse.floats + here);
       }
     }
@@ -148,16 +152,16 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
   exact sum = 0;
   FOR_ROWS(level)
   {
-    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
+    const int y = ROW_Y(level, r), z = ROW_Z(level, r), here = row_at(&level, y, z);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, guess);
-    FOR_VOXELS(x, 0, level.size[0])
+    FOR_VOXELS(x, level.first[0], level.end[0])
     {
       const float left = residual_at(&level, &row, values, x, y, z, right[here + x]) * per_unit;
       right[here + x] = left;
       guess[here + x] = inverse[here + x] * left;
       sum += (exact)left * left;
     }
-    for (int x = level.size[0]; x % REAL_WIDTH != 0; ++x)
+    for (int x = level.end[0]; (x - level.first[0]) % REAL_WIDTH != 0; ++x)
     {
       right[here + x] = 0.0f; // may be the ghost of the next row
     }
@@ -170,7 +174,7 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
 // Jacobi's initial guess there.
 static real left_of_row(const MultigridLevel* fine, const matrix_row* row, const __global float* right, int x)
 {
-  return in_row(load_real(x, right) - apply_row(row, x), fine->size[0] - x);
+  return in_own(fine, load_real(x, right) - apply_row(row, x), x);
 }
 
 __kernel void level_restrict(MultigridLevel fine, MultigridLevel coarse, const __global float* conductance,
@@ -179,22 +183,22 @@ __kernel void level_restrict(MultigridLevel fine, MultigridLevel coarse, const _
 {
   FOR_ROWS(coarse)
   {
-    const int y = r % coarse.size[1], z = r / coarse.size[1], here = row_at(&coarse, y, z);
+    const int y = ROW_Y(coarse, r), z = ROW_Z(coarse, r), here = row_at(&coarse, y, z);
+    bool first = true;
     for (int c = 0; c <= fine.halved[2]; ++c)
     {
       for (int b = 0; b <= fine.halved[1]; ++b)
       {
-        const int v = (y << fine.halved[1]) + b, w = (z << fine.halved[2]) + c;
-        const bool first = b == 0 && c == 0;
-        if (v >= fine.size[1] || w >= fine.size[2])
+        const int v = (y << fine.halved[1]) + fine.shift[1] + b, w = (z << fine.halved[2]) + fine.shift[2] + c;
+        if (!owns_row(&fine, v, w))
         {
           continue;
         }
         const matrix_row row = find_matrix_row(&fine, v, w, conductance, loss, values);
         const __global float* fine_right = right + row_at(&fine, v, w);
-        FOR_VECTORS(x, 0, coarse.size[0])
+        FOR_VECTORS(x, coarse.first[0], coarse.end[0])
         {
-          const int u = x << fine.halved[0];
+          const int u = (x << fine.halved[0]) + fine.shift[0];
           real left = left_of_row(&fine, &row, fine_right, u);
           if (fine.halved[0])
           {
@@ -202,14 +206,40 @@ __kernel void level_restrict(MultigridLevel fine, MultigridLevel coarse, const _
           }
           store_real(first ? left : load_real(x, coarse_right + here) + left, x, coarse_right + here);
         }
+        first = false;
       }
     }
-    FOR_VECTORS(x, 0, coarse.size[0])
+    FOR_VECTORS(x, coarse.first[0], coarse.end[0])
     {
       store_real(load_real(x, coarse_right + here) * load_real(x, coarse_inverse + here), x, coarse_values + here);
     }
     FILL_GHOSTS(coarse_values + here, coarse.size[0]);
   }
+}
+
+// Jacobi's initial guess for a right-hand side.
+__kernel void level_guess(
+  MultigridLevel level, const __global float* inverse, const __global float* right, __global float* guess)
+{
+  FOR_ROWS(level)
+  {
+    const int here = row_at(&level, ROW_Y(level, r), ROW_Z(level, r));
+    FOR_VECTORS(x, level.first[0], level.end[0])
+    {
+      store_real(load_real(x, right + here) * load_real(x, inverse + here), x, guess + here);
+    }
+    FILL_GHOSTS(guess + here, level.size[0]);
+  }
+}
+
+// Copies values at some places of an array to and from ghost voxels' messages.
+__kernel void pick_places(const __global float* values, const __global int* places, __global float* picked)
+{
+  picked[get_global_id(0)] = values[places[get_global_id(0)]];
+}
+__kernel void put_places(const __global float* picked, const __global int* places, __global float* values)
+{
+  values[places[get_global_id(0)]] = picked[get_global_id(0)];
 }
 
 // Adds the coarser level's correction.
@@ -218,24 +248,25 @@ __kernel void level_prolong(
 {
   FOR_ROWS(fine)
   {
-    const int y = r % fine.size[1], z = r / fine.size[1];
-    const __global float* from = correction + row_at(&coarse, y >> fine.halved[1], z >> fine.halved[2]);
+    const int y = ROW_Y(fine, r), z = ROW_Z(fine, r);
+    const __global float* from =
+      correction + row_at(&coarse, (y - fine.shift[1]) >> fine.halved[1], (z - fine.shift[2]) >> fine.halved[2]);
     __global float* to = values + row_at(&fine, y, z);
 #if REAL_WIDTH == 1
-    to[own_x] += from[own_x >> fine.halved[0]];
+    to[own_x] += from[(own_x - fine.shift[0]) >> fine.halved[0]];
 #else
     if (fine.halved[0])
     {
-      for (int x = 0; 2 * x < fine.size[0]; x += REAL_WIDTH)
+      for (int x = 0; 2 * x + fine.shift[0] < fine.end[0]; x += REAL_WIDTH)
       {
         const real parents = load_real(x, from);
-        const int u = 2 * x;
+        const int u = 2 * x + fine.shift[0];
 #if REAL_WIDTH == 4
         store_real(load_real(u, to) + parents.s0011, u, to);
         store_real(load_real(u + 4, to) + parents.s2233, u + 4, to);
 #else
         store_real(load_real(u, to) + parents.s00112233, u, to);
-        if (u + 8 < fine.size[0])
+        if (u + 8 < fine.end[0])
         {
           store_real(load_real(u + 8, to) + parents.s44556677, u + 8, to);
         }
@@ -244,9 +275,9 @@ __kernel void level_prolong(
     }
     else
     {
-      FOR_VECTORS(x, 0, fine.size[0])
+      FOR_VECTORS(x, fine.first[0], fine.end[0])
       {
-        store_real(load_real(x, to) + load_real(x, from), x, to);
+        store_real(load_real(x, to) + load_real(x - fine.shift[0], from), x, to);
       }
     }
 #endif
@@ -263,10 +294,10 @@ __kernel void level_smooth(MultigridLevel level, const __global float* conductan
   exact sum = 0;
   FOR_ROWS(level)
   {
-    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
+    const int y = ROW_Y(level, r), z = ROW_Z(level, r), here = row_at(&level, y, z);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, values);
     exact_real of_row = (exact_real)0;
-    FOR_VECTORS(x, 0, level.size[0])
+    FOR_VECTORS(x, level.first[0], level.end[0])
     {
       const real b = load_real(x, right + here);
       const real value =
@@ -288,12 +319,12 @@ __kernel void level_revisit(MultigridLevel level, const __global float* conducta
 {
   FOR_ROWS(level)
   {
-    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
+    const int y = ROW_Y(level, r), z = ROW_Z(level, r), here = row_at(&level, y, z);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, found);
-    FOR_VECTORS(x, 0, level.size[0])
+    FOR_VECTORS(x, level.first[0], level.end[0])
     {
       const real left =
-        in_row(multiply_add(apply_row(&row, x), (real)-part, load_real(x, right + here)), level.size[0] - x);
+        in_row(multiply_add(apply_row(&row, x), (real)-part, load_real(x, right + here)), level.end[0] - x);
       store_real(load_real(x, found + here) * part, x, kept + here);
       store_real(left, x, right + here);
       store_real(left * load_real(x, inverse + here), x, guess + here);
@@ -307,8 +338,8 @@ __kernel void level_join(MultigridLevel level, const __global float* kept, float
 {
   FOR_ROWS(level)
   {
-    const int here = row_at(&level, r % level.size[1], r / level.size[1]);
-    FOR_VECTORS(x, 0, level.size[0])
+    const int here = row_at(&level, ROW_Y(level, r), ROW_Z(level, r));
+    FOR_VECTORS(x, level.first[0], level.end[0])
     {
       store_real(multiply_add(load_real(x, found + here), (real)part, load_real(x, kept + here)), x, found + here);
     }
@@ -409,8 +440,8 @@ __kernel void turn_direction(
 {
   FOR_ROWS(level)
   {
-    const int here = row_at(&level, r % level.size[1], r / level.size[1]);
-    FOR_VECTORS(x, 0, level.size[0])
+    const int here = row_at(&level, ROW_Y(level, r), ROW_Z(level, r));
+    FOR_VECTORS(x, level.first[0], level.end[0])
     {
       store_real(multiply_add(load_real(x, direction + here), (real)part, load_real(x, preconditioned + here)), x,
         direction + here);
@@ -427,12 +458,12 @@ __kernel void apply_matrix(MultigridLevel level, const __global float* conductan
   exact sum = 0;
   FOR_ROWS(level)
   {
-    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z);
+    const int y = ROW_Y(level, r), z = ROW_Z(level, r), here = row_at(&level, y, z);
     const matrix_row row = find_matrix_row(&level, y, z, conductance, loss, direction);
     exact_real of_row = (exact_real)0;
-    FOR_VECTORS(x, 0, level.size[0])
+    FOR_VECTORS(x, level.first[0], level.end[0])
     {
-      const real q = in_row(apply_row(&row, x), level.size[0] - x);
+      const real q = in_row(apply_row(&row, x), level.end[0] - x);
       of_row += to_exact_real(q) * to_exact_real(load_real(x, direction + here));
       store_real(q, x, applied + here);
     }
@@ -451,29 +482,29 @@ __kernel void go_along(MultigridLevel level, const __global float* direction, co
   exact sum = 0;
   FOR_ROWS(level)
   {
-    const int y = r % level.size[1], z = r / level.size[1], here = row_at(&level, y, z), n = level.size[0];
-    __global exact* of_voxels = values + ((ulong)z * level.size[1] + y) * n;
+    const int y = ROW_Y(level, r), z = ROW_Z(level, r), here = row_at(&level, y, z), end = level.end[0];
+    __global exact* of_voxels = values + ((ulong)z * level.size[1] + y) * level.size[0];
     exact_real of_row = (exact_real)0;
-    FOR_VECTORS(x, 0, n)
+    FOR_VECTORS(x, level.first[0], end)
     {
       const real residual = multiply_add(load_real(x, applied + here), (real)-step, load_real(x, left + here));
       store_real(residual, x, left + here);
       store_real(residual * load_real(x, inverse + here), x, guess + here);
       of_row += to_exact_real(residual) * to_exact_real(residual);
-      if (x + REAL_WIDTH <= n)
+      if (x + REAL_WIDTH <= end)
       {
         store_exact(
           load_exact(x, of_voxels) + to_exact_real(load_real(x, direction + here)) * step_of_values, x, of_voxels);
       }
       else
       {
-        for (int k = x; k < n; ++k)
+        for (int k = x; k < end; ++k)
         {
           of_voxels[k] += direction[here + k] * step_of_values;
         }
       }
     }
-    FILL_GHOSTS(guess + here, n);
+    FILL_GHOSTS(guess + here, level.size[0]);
     sum += sum_of_exact(of_row);
   }
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])

@@ -1,7 +1,6 @@
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 
 #include "LightPropagation/Diffusion/ConjugateGradients.h"
-#include "LightPropagation/Diffusion/MultigridCycle.h"
 
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
@@ -19,37 +18,64 @@ namespace
 /// On a GPU: enough to keep the largest ones busy. With more voxels each work-item processes several, and the host need
 /// not add more sums.
 constexpr std::size_t GroupsAtMost = 4096;
+
+constexpr const char* Contents = "the diffusion system";
+
+constexpr int FinishRounds = 12; ///< symmetric Gauss-Seidel iterations on the coarsest level
+/// Damping of Jacobi's method, about the optimum: 0.8 takes 8% more iterations, 0.95 as many.
+constexpr float Damping = 0.87f;
+/// Number of coarse levels, from the finest of them, that are visited twice per cycle; more do not save iterations.
+constexpr std::size_t VisitedTwice = 2;
+/// Fraction of each of two visits' correction that is applied. With it the preconditioner stays positive even if one
+/// visit overshoots by up to a factor of 2.5, as it does where voxels of unequal coefficients are joined.
+constexpr float PartOfVisit = 0.8f;
 }
 
-MultigridSolver::MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing)
+MultigridSolver::MultigridSolver(Device& device, const Domain& domain, const std::array<bool, 3>& periodic)
   : TheDevice(device)
+  , TheDomain(domain)
 {
-  const char* what = "the diffusion system";
-  for (const MultigridLevel& layout : MultigridLevels(size, spacing))
+  const Grid& whole = this->TheDomain.Whole();
+  std::vector<MultigridLevel> layouts = MultigridLevels(whole.size, whole.spacing);
+  if (!this->TheDomain.IsSerial())
   {
-    Level level;
-    level.layout = layout;
-    level.conductance = Buffer<float>(device, 3 * static_cast<std::size_t>(layout.floats), what);
-    for (Buffer<float>* array : { &level.loss, &level.inverse, &level.right, &level.guess, &level.better })
+    if (layouts.size() == 1) // adds a level of the same voxels, all on the first rank
     {
-      *array = Buffer<float>(device, static_cast<std::size_t>(layout.floats), what);
-      array->Fill(0.0f);
+      std::fill_n(layouts[0].halved, 3, 0);
+      layouts.push_back(layouts[0]);
     }
-    level.conductance.Fill(0.0f);
-    this->Levels.push_back(std::move(level));
+    this->Exchange = std::make_unique<MultigridExchange>(device, this->TheDomain, periodic, layouts[0], layouts[1]);
+    this->Touched = this->MakeLevel(this->Exchange->Touched());
+    layouts[0] = this->Exchange->Finest();
+    layouts.resize(this->TheDomain.Rank() == 0 ? layouts.size() : 1);
+  }
+  std::size_t groups = std::max<std::size_t>(1, GroupsOf(device, this->Touched.layout));
+  for (const MultigridLevel& layout : layouts)
+  {
+    this->Levels.push_back(this->MakeLevel(layout));
+    groups = std::max(groups, GroupsOf(device, layout));
   }
   for (std::size_t l = 1; l <= VisitedTwice && l + 1 < this->Levels.size(); ++l)
   {
-    this->Levels[l].kept = Buffer<float>(device, static_cast<std::size_t>(this->Levels[l].layout.floats), what);
+    this->Levels[l].kept = Buffer<float>(device, static_cast<std::size_t>(this->Levels[l].layout.floats), Contents);
   }
-  this->Direction = Buffer<float>(device, static_cast<std::size_t>(this->Rows().floats), what);
+  this->Direction = Buffer<float>(device, static_cast<std::size_t>(this->Rows().floats), Contents);
   this->Direction.Fill(0.0f);
-  std::size_t groups = 1;
-  for (const Level& level : this->Levels)
-  {
-    groups = std::max(groups, GroupsOf(device, level.layout));
-  }
   this->Sums = ExactValues(device, groups, "sums");
+}
+
+MultigridSolver::Level MultigridSolver::MakeLevel(const MultigridLevel& layout) const
+{
+  Level level;
+  level.layout = layout;
+  level.conductance = Buffer<float>(this->TheDevice, 3 * static_cast<std::size_t>(layout.floats), Contents);
+  for (Buffer<float>* array : { &level.loss, &level.inverse, &level.right, &level.guess, &level.better })
+  {
+    *array = Buffer<float>(this->TheDevice, static_cast<std::size_t>(layout.floats), Contents);
+    array->Fill(0.0f);
+  }
+  level.conductance.Fill(0.0f);
+  return level;
 }
 
 std::string MultigridSolver::RowOptions(const Device& device)
@@ -59,17 +85,21 @@ std::string MultigridSolver::RowOptions(const Device& device)
 
 std::size_t MultigridSolver::GroupsOf(const Device& device, const MultigridLevel& level)
 {
-  const std::size_t rows = static_cast<std::size_t>(level.size[1]) * level.size[2];
+  const auto own = [&](int axis) { return static_cast<std::size_t>(level.end[axis] - level.first[axis]); };
+  const std::size_t rows = own(1) * own(2);
   if (device.IsCpu())
   {
-    return PartsOf<std::size_t>(rows, level.together);
+    return PartsOf<std::size_t>(rows, std::max(1, level.together));
   }
-  return std::min<std::size_t>(PartsOf<std::size_t>(rows * level.size[0], SummingGroup(device)), GroupsAtMost);
+  return std::min<std::size_t>(PartsOf<std::size_t>(rows * own(0), SummingGroup(device)), GroupsAtMost);
 }
 
 void MultigridSolver::RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level)
 {
-  RunSummingGroups(device, kernel, GroupsOf(device, level));
+  if (const std::size_t groups = GroupsOf(device, level); groups > 0)
+  {
+    RunSummingGroups(device, kernel, groups);
+  }
 }
 
 std::array<const Buffer<float>*, 3> MultigridSolver::Scratch() const
@@ -85,24 +115,43 @@ cl::Kernel MultigridSolver::Kernel(const char* name) const
 
 void MultigridSolver::Coarsen()
 {
-  cl::Kernel coarsen = this->Kernel("level_coarsen");
-  cl::Kernel invert = this->Kernel("level_invert");
-  for (std::size_t l = 0; l < this->Levels.size(); ++l)
+  if (this->Exchange)
   {
-    Level& level = this->Levels[l];
-    if (l > 0)
+    this->TheDomain.Collective([&] { this->CoarsenTo(this->Touched, this->Levels.front()); });
+    const std::vector<float> conductance = this->Exchange->Sum(this->Touched.conductance, 3);
+    const std::vector<float> loss = this->Exchange->Sum(this->Touched.loss, 1);
+    this->TheDomain.Collective([&] {
+      if (this->HasAllLevels())
+      {
+        this->Levels[1].conductance.Write(conductance.data());
+        this->Levels[1].loss.Write(loss.data());
+      }
+    });
+  }
+  this->TheDomain.Collective([&] {
+    cl::Kernel invert = this->Kernel("level_invert");
+    for (std::size_t l = 0; l < this->Levels.size(); ++l)
     {
-      const Level& fine = this->Levels[l - 1];
-      With(coarsen, fine.layout, level.layout, fine.conductance, fine.loss, level.conductance, level.loss);
-      this->Run(coarsen, level);
+      Level& level = this->Levels[l];
+      if (l > (this->Exchange ? 1 : 0))
+      {
+        this->CoarsenTo(level, this->Levels[l - 1]);
+      }
+      With(invert, level.layout, level.conductance, level.loss, level.inverse, Damping);
+      this->Run(invert, level);
     }
-    With(invert, level.layout, level.conductance, level.loss, level.inverse, Damping);
-    this->Run(invert, level);
-  }
-  if (!this->TheDevice.IsCpu())
-  {
-    this->FindAnswers();
-  }
+    if (!this->TheDevice.IsCpu() && this->HasAllLevels())
+    {
+      this->FindAnswers();
+    }
+  });
+}
+
+void MultigridSolver::CoarsenTo(Level& coarse, const Level& fine)
+{
+  cl::Kernel coarsen = this->Kernel("level_coarsen");
+  With(coarsen, fine.layout, coarse.layout, fine.conductance, fine.loss, coarse.conductance, coarse.loss);
+  this->Run(coarsen, coarse);
 }
 
 /// What the coarsest level makes of a 1 in each of its voxels.
@@ -116,10 +165,9 @@ void MultigridSolver::FindAnswers()
     throw std::logic_error("the coarsest level has more voxels than a group has work-items");
   }
   const std::size_t floats = voxels * level.layout.floats;
-  const char* what = "the diffusion system";
-  Buffer<float> rights(this->TheDevice, floats, what), values(this->TheDevice, floats, what);
+  Buffer<float> rights(this->TheDevice, floats, Contents), values(this->TheDevice, floats, Contents);
   rights.Fill(0.0f);
-  this->Answers = Buffer<float>(this->TheDevice, voxels * voxels, what);
+  this->Answers = Buffer<float>(this->TheDevice, voxels * voxels, Contents);
   cl::Kernel kernel = this->Kernel("level_answers");
   With(kernel, level.layout, level.conductance, level.loss, rights, values, this->Answers, cl_int(FinishRounds));
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(voxels), cl::NullRange);
@@ -151,24 +199,50 @@ void MultigridSolver::Restrict(Level& fine, Level& coarse)
   this->Run(kernel, coarse);
 }
 
-/// Adds the coarser level's correction, and smoothes.
-void MultigridSolver::Correct(Level& fine, const Level& coarse)
+/// Adds the coarser level's correction.
+void MultigridSolver::Prolong(const Level& coarse, Level& fine)
 {
   cl::Kernel prolong = this->Kernel("level_prolong");
   With(prolong, fine.layout, coarse.layout, coarse.better, fine.guess);
   this->Run(prolong, fine);
+}
+
+void MultigridSolver::Smooth(Level& level)
+{
   cl::Kernel smooth = this->Kernel("level_smooth");
-  With(smooth, fine.layout, fine.conductance, fine.loss, fine.inverse, fine.right, fine.guess, fine.better,
+  With(smooth, level.layout, level.conductance, level.loss, level.inverse, level.right, level.guess, level.better,
     this->Sums.Handle());
-  this->Run(smooth, fine);
+  this->Run(smooth, level);
 }
 
 /// Applies a multigrid cycle to the residual; the result is in the finest level's `better`.
 /// @return the residual's squared norm in that of the preconditioner, in units
 double MultigridSolver::Precondition()
 {
-  this->Visit(0);
-  return this->SumOfGroups();
+  if (!this->Exchange)
+  {
+    return this->SumAfter([&] { this->Visit(0); });
+  }
+  Level& finest = this->Levels.front();
+  this->Exchange->FillGhosts(finest.guess);
+  this->TheDomain.Collective([&] { this->Restrict(finest, this->Touched); });
+  const std::vector<float> right = this->Exchange->Sum(this->Touched.right, 1);
+  this->TheDomain.Collective([&] {
+    if (this->HasAllLevels())
+    {
+      Level& coarse = this->Levels[1];
+      coarse.right.Write(right.data());
+      cl::Kernel guess = this->Kernel("level_guess");
+      With(guess, coarse.layout, coarse.inverse, coarse.right, coarse.guess);
+      this->Run(guess, coarse);
+      this->VisitCoarser(1);
+    }
+  });
+  this->Exchange->Distribute(
+    this->HasAllLevels() ? this->Levels[1].better : this->Touched.better, this->Touched.better);
+  this->TheDomain.Collective([&] { this->Prolong(this->Touched, finest); });
+  this->Exchange->FillGhosts(finest.guess);
+  return this->SumAfter([&] { this->Smooth(finest); });
 }
 
 /// Solves a level approximately: from its right-hand side and initial guess to `better`. The cycle is symmetric:
@@ -182,15 +256,21 @@ void MultigridSolver::Visit(std::size_t l)
     return;
   }
   this->Restrict(level, this->Levels[l + 1]);
-  if (this->Levels[l + 1].kept.Size() > 0)
+  this->VisitCoarser(l + 1);
+  this->Prolong(this->Levels[l + 1], level);
+  this->Smooth(level);
+}
+
+void MultigridSolver::VisitCoarser(std::size_t l)
+{
+  if (this->Levels[l].kept.Size() > 0)
   {
-    this->VisitTwice(l + 1);
+    this->VisitTwice(l);
   }
   else
   {
-    this->Visit(l + 1);
+    this->Visit(l);
   }
-  this->Correct(level, this->Levels[l + 1]);
 }
 
 /// Applies a fraction of each of two visits' corrections, the second for the residual of the first: symmetric, as one
@@ -209,78 +289,99 @@ void MultigridSolver::VisitTwice(std::size_t l)
   this->Run(join, level);
 }
 
-/// Sum of the partial sums of the finest level's work-groups.
-double MultigridSolver::SumOfGroups() const
+/// Runs kernels of the finest level whose work-groups leave partial sums. @return their sum over all ranks
+double MultigridSolver::SumAfter(const std::function<void()>& work) const
 {
-  const std::vector<double> values = this->Sums.Read();
-  const std::size_t groups = GroupsOf(this->TheDevice, this->Rows());
   double sum = 0.0;
-  for (std::size_t i = 0; i < groups; ++i)
-  {
-    sum += values[i];
-  }
-  return sum;
+  this->TheDomain.Collective([&] {
+    work();
+    const std::vector<double> values = this->Sums.Read();
+    const std::size_t groups = GroupsOf(this->TheDevice, this->Rows());
+    for (std::size_t i = 0; i < groups; ++i)
+    {
+      sum += values[i];
+    }
+  });
+  return this->TheDomain.Sum(sum);
 }
 
 /// Replaces the right-hand side by the residual. @return r r, in units
 double MultigridSolver::Begin(const ExactValues& values, double unit)
 {
-  const Level& finest = this->Levels.front();
-  cl::Kernel kernel = this->Kernel("begin_residual");
-  With(kernel, finest.layout, finest.conductance, finest.loss, finest.inverse, values.Handle(),
-    static_cast<float>(1.0 / unit), finest.right, finest.guess, this->Sums.Handle());
-  this->Run(kernel, finest);
-  this->Direction.Fill(0.0f);
-  return this->SumOfGroups();
+  return this->SumAfter([&] {
+    const Level& finest = this->Levels.front();
+    cl::Kernel kernel = this->Kernel("begin_residual");
+    With(kernel, finest.layout, finest.conductance, finest.loss, finest.inverse, values.Handle(),
+      static_cast<float>(1.0 / unit), finest.right, finest.guess, this->Sums.Handle());
+    this->Run(kernel, finest);
+    this->Direction.Fill(0.0f);
+  });
 }
 
 /// p = z + part p
 void MultigridSolver::Turn(double part)
 {
-  const Level& finest = this->Levels.front();
-  cl::Kernel kernel = this->Kernel("turn_direction");
-  With(kernel, finest.layout, finest.better, this->Direction, static_cast<float>(part));
-  this->Run(kernel, finest);
+  this->TheDomain.Collective([&] {
+    const Level& finest = this->Levels.front();
+    cl::Kernel kernel = this->Kernel("turn_direction");
+    With(kernel, finest.layout, finest.better, this->Direction, static_cast<float>(part));
+    this->Run(kernel, finest);
+  });
+  if (this->Exchange)
+  {
+    this->Exchange->FillGhosts(this->Direction);
+  }
 }
 
 /// @return p A p. Leaves A p in the finest level's `better`.
 double MultigridSolver::Curvature()
 {
-  const Level& finest = this->Levels.front();
-  cl::Kernel kernel = this->Kernel("apply_matrix");
-  With(kernel, finest.layout, finest.conductance, finest.loss, this->Direction, finest.better, this->Sums.Handle());
-  this->Run(kernel, finest);
-  return this->SumOfGroups();
+  return this->SumAfter([&] {
+    const Level& finest = this->Levels.front();
+    cl::Kernel kernel = this->Kernel("apply_matrix");
+    With(kernel, finest.layout, finest.conductance, finest.loss, this->Direction, finest.better, this->Sums.Handle());
+    this->Run(kernel, finest);
+  });
 }
 
 /// x += length p, r -= length A p. @return r r, in units
 double MultigridSolver::Step(const ExactValues& values, double length, double unit)
 {
-  const Level& finest = this->Levels.front();
-  cl::Kernel kernel = this->Kernel("go_along");
-  With(kernel, finest.layout, this->Direction, finest.better, finest.inverse, static_cast<float>(length));
-  SetExact(this->TheDevice, kernel, 5, length * unit);
-  SetFrom(kernel, 6, finest.right, finest.guess, values.Handle(), this->Sums.Handle());
-  this->Run(kernel, finest);
-  return this->SumOfGroups();
+  return this->SumAfter([&] {
+    const Level& finest = this->Levels.front();
+    cl::Kernel kernel = this->Kernel("go_along");
+    With(kernel, finest.layout, this->Direction, finest.better, finest.inverse, static_cast<float>(length));
+    SetExact(this->TheDevice, kernel, 5, length * unit);
+    SetFrom(kernel, 6, finest.right, finest.guess, values.Handle(), this->Sums.Handle());
+    this->Run(kernel, finest);
+  });
 }
 
-int MultigridSolver::Solve(const ExactValues& values, double unit, double reduction, double leftAtMost)
+int MultigridSolver::Solve(ExactValues& values, double unit, double reduction, double leftAtMost)
 {
+  if (this->Exchange)
+  {
+    this->Exchange->FillGhosts(values);
+  }
   return this->Iterate(values, this->Begin(values, unit), unit, reduction, leftAtMost);
 }
 
-int MultigridSolver::GoOn(const ExactValues& values, double unit, double reduction, double leftAtMost)
+int MultigridSolver::GoOn(ExactValues& values, double unit, double reduction, double leftAtMost)
 {
   return this->Iterate(values, this->Step(values, 0.0, unit), unit, reduction, leftAtMost);
 }
 
 /// @param left  r r of the initial residual, in units
-int MultigridSolver::Iterate(const ExactValues& values, double left, double unit, double reduction, double leftAtMost)
+int MultigridSolver::Iterate(ExactValues& values, double left, double unit, double reduction, double leftAtMost)
 {
   const GradientSteps steps = { [&] { return this->Precondition(); }, [&](double part) { this->Turn(part); },
     [&] { return this->Curvature(); }, [&](double length) { return this->Step(values, length, unit); } };
-  const auto voxels = static_cast<double>(this->Rows().size[0]) * this->Rows().size[1] * this->Rows().size[2];
-  return SolveCg(steps, left, { reduction, leftAtMost, voxels }, this->FirstResidual);
+  const auto voxels = static_cast<double>(this->TheDomain.Whole().VoxelCount());
+  const int iterations = SolveCg(steps, left, { reduction, leftAtMost, voxels }, this->FirstResidual);
+  if (this->Exchange)
+  {
+    this->Exchange->FillGhosts(values);
+  }
+  return iterations;
 }
 }

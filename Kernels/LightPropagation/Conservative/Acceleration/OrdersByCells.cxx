@@ -7,34 +7,20 @@ namespace tyndall
 OrdersByCells::OrdersByCells(TransportParts& parts)
   : Parts(parts)
   , Closed(parts.Problem.Settings().periodic == std::array<bool, 3>{ true, true, true })
+  , Cells(parts.TheDevice, parts.TheDomain(), parts.Layout, parts.OnDevice, parts.Path,
+      { parts.Problem.Settings().periodic, CellHalvings(parts.Problem), parts.Problem.HasLinearSource() })
 {
-  const Domain& domain = parts.TheDomain();
-  const std::array<int, 3> halvings = CellHalvings(parts.Problem);
-  const bool linear = parts.Problem.HasLinearSource();
-  for (int c = 0; c < parts.Layout.channels; ++c)
-  {
-    if (domain.IsSerial())
-    {
-      this->Cells.push_back(std::make_unique<CoarseDiffusion>(
-        parts.TheDevice, parts.Layout, c, parts.OnDevice, parts.Problem.Settings().periodic, halvings, linear));
-    }
-    else
-    {
-      this->CellsOfRanks.push_back(std::make_unique<CellsOverRanks>(
-        parts.TheDevice, domain.Comm(), domain.Partition(), parts.Layout, c, parts.OnDevice, halvings, linear));
-    }
-  }
 }
 
 OrdersByCells::Powers OrdersByCells::ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess)
 {
   Powers all;
-  TransportParts& parts = this->Parts;
+  const TransportParts& parts = this->Parts;
+  const std::vector<CoarseDiffusion::Powers> ofChannels =
+    this->Cells.ScatterOrder(parts.Fluence, parts.Source, this->Closed ? onTheWay : Rgb{}, guess);
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    const CoarseDiffusion::Powers powers = this->Cells.empty()
-      ? this->CellsOfRanks[c]->ScatterOrder(parts.Path, parts.Fluence, parts.Source, guess)
-      : this->Cells[c]->ScatterOrder(parts.Path, parts.Fluence, parts.Source, this->Closed ? onTheWay[c] : 0.0, guess);
+    const CoarseDiffusion::Powers& powers = ofChannels[c];
     ledger.Absorb(c, powers.absorbed);
     all.scattered[c] = powers.scattered;
     all.magnitude[c] = powers.magnitude;

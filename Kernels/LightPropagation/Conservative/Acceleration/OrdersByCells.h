@@ -1,17 +1,14 @@
 #pragma once
 
-#include "LightPropagation/CoarseDiffusion/CellsOverRanks.h"
 #include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
 #include "LightPropagation/Conservative/EnergyLedger.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 
 #include <array>
-#include <memory>
-#include <vector>
 
 namespace tyndall
 {
-/// Correction step of coarse-mesh DSA (CoarseDiffusion.h; on several ranks CellsOverRanks.h). For each channel,
+/// Correction step of coarse-mesh DSA (CoarseDiffusion.h). For each channel,
 /// diffusion on coarse cells of several voxels predicts the sum of all orders to come; this class also accounts for its
 /// power. Construct and call collectively.
 class OrdersByCells
@@ -44,10 +41,9 @@ public:
 
 private:
   TransportParts& Parts;
-  bool Closed;                                               ///< all axes are periodic
-  std::vector<std::unique_ptr<CoarseDiffusion>> Cells;       ///< by channel, on a serial domain
-  std::vector<std::unique_ptr<CellsOverRanks>> CellsOfRanks; ///< the same on several ranks
-  std::array<Rgb, 6> Kept = {};                              ///< W by face that the next sweep lets escape in excess
-  std::array<Rgb, 6> Out = {};                               ///< W by face that escapes in all orders to come
+  bool Closed; ///< all axes are periodic
+  CoarseDiffusion Cells;
+  std::array<Rgb, 6> Kept = {}; ///< W by face that the next sweep lets escape in excess
+  std::array<Rgb, 6> Out = {};  ///< W by face that escapes in all orders to come
 };
 }
