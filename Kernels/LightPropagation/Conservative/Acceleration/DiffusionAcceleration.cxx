@@ -1,14 +1,15 @@
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
 
+#include "Device/HostThreads.h"
 #include "LightPropagation/Conservative/NegativeFluence.h"
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
-#include "LightPropagation/Diffusion/FluxLimit.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
 #include "Medium/BoxFaces.h"
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -17,24 +18,49 @@ namespace tyndall
 namespace
 {
 constexpr int MostSweeps = 200;
+
+/// Limits the net flux to the fluence. In absorbing voxels the mean of the powers through opposite faces overestimates
+/// the net flux.
+/// @param fluence  W / length^2, [channel][stride]
+/// @param flux  net flux times the voxel's volume, [channel][x, y, z][stride]
+void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& ofLight)
+{
+  const std::size_t stride = layout.Stride();
+  std::vector<float> flux = ofLight.Read();
+  const double volume = layout.grid.VoxelVolume();
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    InThreads(layout.grid.VoxelCount(), 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        float* const x = flux.data() + 3 * c * stride + i;
+        float* const y = x + stride;
+        float* const z = y + stride;
+        const double most = fluence[c * stride + i] * volume;
+        const double flows = std::hypot(*x, *y, *z);
+        const auto part = static_cast<float>(flows > most ? most / flows : 1.0);
+        *x *= part;
+        *y *= part;
+        *z *= part;
+      }
+    });
+  }
+  ofLight.Write(flux.data());
+}
 }
 
 DiffusionAcceleration::DiffusionAcceleration(TransportParts& parts, const KeptLight* kept)
   : Parts(parts)
   , TheDomain(parts.TheDomain())
   , Settings(parts.Problem.Settings())
-  , TheMedium(parts.Problem.TheMedium())
-  , LinearSource(parts.Problem.HasLinearSource())
-  , Block(this->TheDomain, this->Settings.periodic, parts.Layout.channels, parts.Layout.sharedExtinction)
-  , Coefficients(parts, this->Block)
-  , Moments(this->Block, parts.Functions())
+  , Arrays(parts)
   , Warm(parts, kept, "diffusion acceleration")
 {
 }
 
 IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
 {
-  this->Uncollided.emplace(this->Parts, this->Block, this->Coefficients,
+  this->Uncollided.emplace(this->Parts, this->Arrays.Block(), this->Arrays.Medium(),
     OfPart(monitor, [this](double done) { return ProgressOf(this->Settings, 1.0, UncollidedPart * done); }));
   this->GiveFirstScattered();
   this->ReflectUncollided();
@@ -74,8 +100,8 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   if (this->Box)
   {
     const bool shines = this->Parts.Lights.SweepCarriesBoundarySource();
-    this->Result.leftByCell = this->Box->LeftByCell(
-      shines ? this->Parts.Lights.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{}, this->TheMedium);
+    this->Result.leftByCell = this->Box->LeftWithoutPattern(
+      shines ? this->Parts.Lights.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{}, this->Parts.Problem.TheMedium());
   }
   return std::move(this->Result);
 }
@@ -108,22 +134,9 @@ void DiffusionAcceleration::GiveFirstScattered()
   TransportParts& parts = this->Parts;
   const int channels = parts.Layout.channels;
   std::vector<float> path = this->Uncollided->Path();
+  this->Arrays.Give(path);
   Rgb scattered = {};
   this->TheDomain.Collective([&] {
-    this->Given = Buffer<float>(parts.TheDevice, parts.Source.Read(), "the light given");
-    parts.DarkenBeams(); // until the first-collision source is emitted
-    parts.Path.Write(path.data());
-    if (!parts.IsEmpty())
-    {
-      parts.Scattering->AddFirstScattered(parts.WholeDeposit(), this->Given);
-    }
-    this->GivenFlux =
-      Buffer<float>(parts.TheDevice, this->HasMoments() ? parts.Layout.Floats(3) : 0, "the net flux given");
-    this->GivenFlux.Fill(0.0f);
-    if (parts.Basis)
-    {
-      AddFluxOfMoments(parts.TheDevice, parts.Layout, parts.Functions(), this->Given, this->GivenFlux);
-    }
     const double volume = parts.Layout.grid.VoxelVolume();
     for (int c = 0; c < channels; ++c)
     {
@@ -139,25 +152,11 @@ void DiffusionAcceleration::GiveFirstScattered()
   this->GivenPower = this->Uncollided->Ledger().Balance().emitted;
   std::transform(scattered.begin(), scattered.end(), this->GivenPower.begin(), this->GivenPower.begin(), std::plus<>());
   this->UncollidedFluence.swap(path);
-  const char* what = "the diffusion system";
-  this->GivenInSystems = { parts.TheDevice, this->Block, this->Given, channels, what };
-  this->GivenInSystems.FillOwn();
-  if (this->HasMoments())
-  {
-    this->GivenFluxInSystems = { parts.TheDevice, this->Block, this->GivenFlux, 3 * channels, what };
-    this->GivenFluxInSystems.Fill();
-  }
 }
 
 void DiffusionAcceleration::MakeSweep()
 {
   TransportParts& parts = this->Parts;
-  const char* what = "the power from voxel to voxel";
-  this->TheDomain.Collective(
-    [&] { this->PartialCurrents = Buffer<float>(parts.TheDevice, parts.Layout.Floats(6), what); });
-  this->SourceInSystems = { parts.TheDevice, this->Block, parts.Source, parts.Layout.channels, "the diffusion system" };
-  this->Currents = { parts.TheDevice, this->Block, this->PartialCurrents, 6 * parts.Layout.channels, what };
-  this->Moments.Allocate(parts.TheDevice, "the diffusion system");
   SweepRequest request = { this->DepositOfSweep(), parts.AllRays() };
   request.sameBoundary = true;
   request.angular = parts.UsualValues();
@@ -166,10 +165,10 @@ void DiffusionAcceleration::MakeSweep()
 }
 
 /// No flux: the diffusion system provides it.
-Deposit DiffusionAcceleration::DepositOfSweep() const
+Deposit DiffusionAcceleration::DepositOfSweep()
 {
   const Deposit whole = this->Parts.WholeDeposit();
-  return { whole.path, nullptr, &this->PartialCurrents, nullptr, whole.faceOut, whole.spreadsAside };
+  return { whole.path, nullptr, &this->Arrays.PartialCurrents(), nullptr, whole.faceOut, whole.spreadsAside };
 }
 
 /// Sweeps the current source into path integrals and partial currents. Boundary light enters in every sweep.
@@ -178,14 +177,14 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->TheDomain.Collective([&] {
     if (iteration == 1)
     {
-      this->Parts.LightBeams(this->Given);
+      this->Parts.LightBeams(this->Arrays.Given());
     }
   });
   this->ScatterFound();
   this->ShapeSource();
   this->TheDomain.Collective([&] {
     this->Parts.Path.Fill(0.0f);
-    this->PartialCurrents.Fill(0.0f);
+    this->Arrays.PartialCurrents().Fill(0.0f);
     this->Swept->Forget();
   });
   const bool shines = iteration > 0 || this->Parts.HasSource();
@@ -195,19 +194,18 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   {
     this->Box->TakeSwept();
   }
-  this->Moments.Spread(this->Parts.Path);
-  this->Currents.Fill();
+  this->Arrays.TakeSwept();
 }
 
 /// Adjusts the source at the surfaces of optically thick voxels.
 void DiffusionAcceleration::ShapeSource()
 {
-  this->SourceInSystems.FillOwn();
+  this->Arrays.TakeSource();
   if (this->Systems.empty())
   {
     return;
   }
-  this->TheDomain.Collective([&] {
+  this->Arrays.ChangeSource([&] {
     for (std::size_t c = 0; c < this->Systems.size(); ++c)
     {
       if (this->VoxelPower(static_cast<int>(c)) > 0.0)
@@ -216,7 +214,6 @@ void DiffusionAcceleration::ShapeSource()
       }
     }
   });
-  this->SourceInSystems.TakeOwn();
 }
 
 /// Reflects uncollided light; its reflected part enters in every sweep.
@@ -227,10 +224,10 @@ void DiffusionAcceleration::ReflectUncollided()
   {
     return;
   }
-  this->Box.emplace(parts.TheDevice, *parts.Faces, this->Block);
+  this->Box.emplace(parts.TheDevice, *parts.Faces, this->Arrays.Block());
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    this->GivenPower[c] += this->Box->OfBox().GivenBack()[c];
+    this->GivenPower[c] += this->Box->GivenBack()[c];
   }
 }
 
@@ -243,7 +240,7 @@ void DiffusionAcceleration::ScatterFound()
       if (this->VoxelPower(static_cast<int>(c)) > 0.0)
       {
         this->Parts.Scattering->ScatterFluence(static_cast<int>(c), this->DepositOfSweep(),
-          this->Systems[c]->NextFluence(), this->Given, this->Parts.Source);
+          this->Systems[c]->NextFluence(), this->Arrays.Given(), this->Parts.Source);
       }
     }
   });
@@ -270,26 +267,17 @@ void DiffusionAcceleration::MakeSystems()
     this->Settings.mapResolution, parts.Usual.Starts(), this->Settings.periodic);
   const std::array<Rgb, 6> incoming =
     parts.Lights.SweepCarriesBoundarySource() ? parts.Lights.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
-  const VolumeLayout& held = this->Block.WithGhosts();
-  const GhostedMedium& medium = this->Coefficients;
-  const bool passes = this->Uncollided->Passes();
   for (int c = 0; c < parts.Layout.channels; ++c)
   {
-    std::array<double, 6> ofChannel, albedo = {};
+    std::array<double, 6> ofChannel;
     for (int face = 0; face < 6; ++face)
     {
-      albedo[face] = parts.Faces ? parts.Faces->Albedo()[face][c] : 0.0;
       ofChannel[face] = incoming[face][c];
       this->PowerIn[c] += this->Tally.in[face][c];
     }
-    const DiffusionSystem::Arrays arrays = { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(),
-      &medium.sigma_t.Values(), &medium.Swept(), &medium.sigma_a.Values(), &medium.sigma_s.Values(),
-      &this->GivenInSystems.Values(), this->Moments.Places(), c,
-      this->HasMoments() ? &this->GivenFluxInSystems.Values() : nullptr, &this->SourceInSystems.Values(),
-      &this->Moments.Values(parts.Path), &this->Currents.Values(), passes ? &this->Uncollided->Passed() : nullptr,
-      passes ? &this->Uncollided->OfLamps() : nullptr, this->Box ? &this->Box->Rows(c) : nullptr, albedo };
-    this->Systems.push_back(std::make_unique<DiffusionSolver>(parts.TheDevice, this->Block, parts.Usual.Set(), pattern,
-      arrays, ofChannel, this->Settings.periodic, this->LinearSource));
+    this->Systems.push_back(std::make_unique<DiffusionSolver>(parts.TheDevice, this->Arrays.Block(), parts.Usual.Set(),
+      pattern, this->Arrays.OfChannel(c, *this->Uncollided, this->Box ? &this->Box->Rows(c) : nullptr), ofChannel,
+      this->Settings.periodic, parts.Problem.HasLinearSource()));
   }
 }
 
@@ -313,25 +301,22 @@ void DiffusionAcceleration::Correct(int iteration)
   }
   if (this->HasMoments())
   {
-    this->TheDomain.Collective([&] {
+    this->Arrays.ChangePath([&](const Buffer<float>& path) {
       for (int c = 0; c < this->Parts.Layout.channels; ++c)
       {
         if (this->VoxelPower(c) > 0.0)
         {
-          this->Systems[c]->PutNextFlux(this->Moments.Values(this->Parts.Path));
+          this->Systems[c]->PutNextFlux(path);
         }
       }
     });
-    this->Moments.TakeFirstDegree(this->Parts.Path);
   }
   this->CountLight();
   if (this->Parts.FacesReflect())
   {
     Rgb given = this->GivenPower;
     std::transform(given.begin(), given.end(), this->PowerIn.begin(), given.begin(), std::plus<>());
-    double ofFaces = 0.0;
-    this->TheDomain.Collective([&] { ofFaces = this->Box->OfBox().Reflect(iteration, given); });
-    change = std::max(change, this->TheDomain.Max(ofFaces)); // devices of different ranks may round differently
+    change = std::max(change, this->Box->Reflect(iteration, given));
   }
   const bool guessed = iteration == 1 && this->Warm.Begins() && this->Warm.Rate(0) > 0.0;
   this->Residual = this->Rest.After(change, guessed ? this->Warm.Rate(0) : 0.0);
@@ -369,7 +354,7 @@ void DiffusionAcceleration::CountLight()
   if (this->Box)
   {
     this->Box->TakeLeaving(lit);
-    this->Box->OfBox().Count(this->Result.ledger);
+    this->Box->Count(this->Result.ledger);
   }
 }
 
@@ -421,7 +406,7 @@ void DiffusionAcceleration::BeginWarm()
   {
     return;
   }
-  GhostedBuffer guess(parts.TheDevice, this->Block, this->Warm.Guess(), layout.channels, "the last light");
+  GhostedBuffer guess(parts.TheDevice, this->Arrays.Block(), this->Warm.Guess(), layout.channels, "the last light");
   guess.Fill();
   std::vector<float> values;
   this->TheDomain.Collective([&] { values = guess.Values().Read(); });
@@ -441,9 +426,9 @@ void DiffusionAcceleration::BeginWarm()
 /// @param fluence  with ghost cells, W length
 std::vector<double> DiffusionAcceleration::GuessOf(int c, const std::vector<float>& fluence) const
 {
-  const VolumeLayout& held = this->Block.WithGhosts();
+  const VolumeLayout& held = this->Arrays.Block().WithGhosts();
   const auto begin = fluence.begin() + static_cast<std::ptrdiff_t>(c * held.Stride());
-  std::vector<double> state = this->Moments.StateOf(
+  std::vector<double> state = this->Arrays.Moments().StateOf(
     c, this->Warm.Guessed(), { begin, begin + static_cast<std::ptrdiff_t>(held.grid.VoxelCount()) });
   for (double& value : state)
   {
@@ -496,8 +481,8 @@ std::vector<float> DiffusionAcceleration::FluenceOfSystems()
     path = this->Parts.Path.Read();
   });
   const Halo around(this->TheDomain.Comm(), this->TheDomain.Partition(), this->Settings.periodic, 1);
-  MakeFluence(
-    this->TheDomain.Comm(), around, layout, this->TheMedium.sigma_a, fluence, std::move(path), this->UncollidedFluence);
+  MakeFluence(this->TheDomain.Comm(), around, layout, this->Parts.Problem.TheMedium().sigma_a, fluence, std::move(path),
+    this->UncollidedFluence);
   fluence.resize(layout.Values());
   fluence.resize(layout.Floats(), 0.0f);
   return fluence;
@@ -508,7 +493,7 @@ std::vector<float> DiffusionAcceleration::FluenceOfSystems()
 void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
 {
   TransportParts& parts = this->Parts;
-  GhostedBuffer flux(parts.TheDevice, this->Block, parts.Flux, 3 * parts.Layout.channels, "net_flux");
+  GhostedBuffer flux(parts.TheDevice, this->Arrays.Block(), parts.Flux, 3 * parts.Layout.channels, "net_flux");
   flux.FillOwn();
   this->TheDomain.Collective([&] {
     for (int c = 0; c < parts.Layout.channels; ++c)
@@ -535,7 +520,7 @@ void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
 /// Computes the surface radiance of optically thick voxels from the powers of the diffusion system.
 void DiffusionAcceleration::FindSurfaceRadiance()
 {
-  if (!this->LinearSource)
+  if (!this->Parts.Problem.HasLinearSource())
   {
     return;
   }
@@ -553,7 +538,7 @@ void DiffusionAcceleration::FindSurfaceRadiance()
       powers.back().lamps = lamps.empty() ? nullptr : lamps.data() + c * layout.Stride();
     }
   });
-  this->Result.surfaceRadiance = SurfaceRadiance(
-    this->TheDomain, this->Settings.periodic, this->TheMedium, layout.channels, this->Parts.Lights.Lamps, powers);
+  this->Result.surfaceRadiance = SurfaceRadiance(this->TheDomain, this->Settings.periodic,
+    this->Parts.Problem.TheMedium(), layout.channels, this->Parts.Lights.Lamps, powers);
 }
 }

@@ -1,13 +1,12 @@
 #pragma once
 
-#include "LightPropagation/Conservative/Acceleration/FaceBalanceOfBlock.h"
-#include "LightPropagation/Conservative/Acceleration/MomentsWithGhosts.h"
+#include "LightPropagation/Conservative/Acceleration/FaceBalance.h"
+#include "LightPropagation/Conservative/Acceleration/SystemArrays.h"
 #include "LightPropagation/Conservative/Iteration.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Conservative/UncollidedLight.h"
 #include "LightPropagation/Conservative/WarmStart.h"
 #include "LightPropagation/Convergence.h"
-#include "LightPropagation/Diffusion/BlockWithGhosts.h"
 #include "LightPropagation/Diffusion/DiffusionSolver.h"
 
 #include <memory>
@@ -31,7 +30,7 @@ public:
 private:
   void GiveFirstScattered();
   void MakeSweep();
-  Deposit DepositOfSweep() const;
+  Deposit DepositOfSweep();
   void ScatterFound();
   void FindShown();
   void Sweep(int iteration, const Monitor& monitor);
@@ -45,7 +44,7 @@ private:
   void CountLight();
   double VoxelPower(int channel) const;
   bool Done(int iterations) const;
-  bool HasMoments() const { return this->Moments.Any(); }
+  bool HasMoments() const { return this->Arrays.Moments().Any(); }
   std::vector<float> SweptFluence() const;
   std::vector<float> FluenceOfSystems();
   void WriteFlux(const std::vector<float>& fluence);
@@ -56,29 +55,16 @@ private:
   TransportParts& Parts;
   const Domain& TheDomain;
   const PropagationSettings& Settings;
-  const Medium& TheMedium;
-  bool LinearSource;
-
-  // Input of the diffusion systems, with ghost cells
-  const BlockWithGhosts Block;
-  const GhostedMedium Coefficients;
-  MomentsWithGhosts Moments; ///< of the sweeps' path integrals
-  GhostedBuffer GivenInSystems, GivenFluxInSystems, SourceInSystems, Currents;
-
-  // Uncollided light
+  SystemArrays Arrays;
   std::optional<UncollidedLight> Uncollided;
   std::vector<float> UncollidedFluence; ///< W / length^2, [channel][stride]
-
-  // Scattered light and boundary light along the usual directions; of the block, without ghost cells
-  Buffer<float> Given, GivenFlux, PartialCurrents; ///< as in DiffusionSystem::Arrays
-  std::unique_ptr<SweepOperator> Swept;
+  std::unique_ptr<SweepOperator> Swept; ///< of scattered light and boundary light along the usual directions
   std::vector<std::unique_ptr<DiffusionSolver>> Systems; ///< by channel
-  std::optional<FaceBalanceOfBlock> Box;                 ///< if light by cell of the box faces is needed
+  std::optional<FaceBalance> Box;                        ///< if light by cell of the box faces is needed
   SweepTally Tally;                                      ///< of the last sweep
   Rgb GivenPower = {}, PowerIn = {};                     ///< W: emitted or first scattered; incident through faces
   RestOfChanges Rest;
   double Residual = 1.0;
-
   WarmStart Warm;
   std::vector<float> First, FirstMoments; ///< of the first iteration, as in WarmStart, if light is kept
 

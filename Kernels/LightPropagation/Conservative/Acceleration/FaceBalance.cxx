@@ -9,11 +9,21 @@
 
 namespace tyndall
 {
-FaceBalance::FaceBalance(FaceLight& faces)
-  : Faces(faces)
+FaceBalance::FaceBalance(Device& device, FaceLight& faces, const BlockWithGhosts& block)
+  : TheDomain(block.TheDomain())
+  , Faces(faces)
   , Cells(faces.Cells())
+  , HeldCells(block.Has() ? BoxFaceCellCount(block.WithGhosts().grid) : 0)
 {
-  this->LeftSwept = faces.TakeOut();
+  this->FindOwnCells(block);
+  this->TheDomain.Collective([&] {
+    this->LeftSwept = faces.TakeOut();
+    for (int c = 0; c < faces.Channels(); ++c)
+    {
+      this->OfBlock.emplace_back(device, (FaceLeaves + 1) * this->HeldCells + 1, "the light at the box's faces");
+      this->OfBlock.back().Fill(0.0f);
+    }
+  });
   this->LeftUncollided.assign(this->LeftSwept.begin(), this->LeftSwept.end());
   for (std::size_t i = 0; i < this->LeftSwept.size(); ++i)
   {
@@ -24,60 +34,112 @@ FaceBalance::FaceBalance(FaceLight& faces)
   this->CameBackInSweep = this->CameBack;
   this->Leaves.assign(this->CameBack.size(), 0.0);
   this->BackMixing.resize(faces.Channels());
-  if (faces.Reflects())
+  this->TheDomain.Collective([&] {
+    if (faces.Reflects())
+    {
+      faces.LetIn(this->Leaves, this->GivenBackByCell);
+    }
+  });
+}
+
+void FaceBalance::FindOwnCells(const BlockWithGhosts& block)
+{
+  if (!block.Has())
   {
-    faces.LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->GivenBackByCell);
+    return;
   }
+  const Grid& held = block.WithGhosts().grid;
+  ForBoxFaceCells(held, [&](const BoxFaceCell& cell) {
+    const std::array<int, 3> voxel = held.VoxelAt(cell.voxel);
+    if (block.IsOwn(voxel)) // at its face the grid with ghost cells then ends at the box
+    {
+      const BoxFaceLayout layout = LayoutOfFace(this->Faces.Box(), cell.face);
+      std::size_t place = layout.first;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        place += (block.Held().first[axis] + voxel[axis]) * layout.step[axis];
+      }
+      this->OwnCells.push_back({ cell.number, place, block.OwnAt(voxel) });
+    }
+  });
 }
 
 void FaceBalance::TakeSwept()
 {
-  this->LeftSwept = this->Faces.TakeOut();
-  this->CameBackInSweep = this->CameBack;
+  this->TheDomain.Collective([&] {
+    this->LeftSwept = this->Faces.TakeOut();
+    this->CameBackInSweep = this->CameBack;
+    for (std::size_t c = 0; c < this->OfBlock.size(); ++c)
+    {
+      this->OfBlock[c].Write(this->RowsOf(c).data());
+    }
+  });
 }
 
-std::vector<float> FaceBalance::RowsOf(int channel) const
+std::vector<float> FaceBalance::RowsOf(std::size_t channel) const
 {
-  std::vector<float> rows((FaceLeaves + 1) * this->Cells, 0.0f);
-  const std::size_t first = channel * this->Cells;
-  for (std::size_t cell = 0; cell < this->Cells; ++cell)
+  std::vector<float> rows(this->OfBlock[channel].Size(), 0.0f);
+  for (const OwnCell& cell : this->OwnCells)
   {
-    rows[FaceCame * this->Cells + cell] = static_cast<float>(this->CameBackInSweep[first + cell]);
-    rows[FaceGiven * this->Cells + cell] = static_cast<float>(this->GivenBackByCell[first + cell]);
-    rows[FaceLeft * this->Cells + cell] = this->LeftSwept[first + cell];
+    const std::size_t i = channel * this->Cells + cell.whole;
+    rows[FaceCame * this->HeldCells + cell.held] = static_cast<float>(this->CameBackInSweep[i]);
+    rows[FaceGiven * this->HeldCells + cell.held] = static_cast<float>(this->GivenBackByCell[i]);
+    rows[FaceLeft * this->HeldCells + cell.held] = this->LeftSwept[i];
   }
   return rows;
 }
 
-void FaceBalance::SetLeaving(int channel, const std::vector<float>& leaves)
+void FaceBalance::TakeLeaving(const std::vector<bool>& lit)
 {
-  std::copy(leaves.begin(), leaves.end(), this->Leaves.begin() + static_cast<std::ptrdiff_t>(channel * this->Cells));
+  std::vector<double> leaves(this->Cells * lit.size(), 0.0);
+  this->TheDomain.Collective([&] {
+    for (std::size_t c = 0; c < lit.size(); ++c)
+    {
+      const std::vector<float> rows = this->OfBlock[c].Read();
+      for (const OwnCell& cell : this->OwnCells)
+      {
+        leaves[c * this->Cells + cell.whole] = rows[FaceLeaves * this->HeldCells + cell.held];
+      }
+    }
+  });
+  leaves = this->TheDomain.Sum(leaves);
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+  {
+    this->Leaves[i] = lit[i / this->Cells] ? leaves[i] : this->Leaves[i];
+  }
 }
 
 double FaceBalance::Reflect(int iteration, const Rgb& given)
 {
   double change = 0.0;
-  for (std::size_t c = 0; c < this->BackMixing.size(); ++c)
-  {
-    double differs = 0.0, all = given[c];
-    const auto begin = this->CameBack.begin() + static_cast<std::ptrdiff_t>(c * this->Cells);
-    const std::vector<double> came(begin, begin + static_cast<std::ptrdiff_t>(this->Cells));
-    std::vector<double> found(this->Cells);
-    for (std::size_t cell = 0; cell < this->Cells; ++cell)
+  this->TheDomain.Collective([&] {
+    for (std::size_t c = 0; c < this->BackMixing.size(); ++c)
     {
-      const std::size_t i = c * this->Cells + cell;
-      found[cell] = this->GivenBackByCell[i] + this->Faces.AlbedoOf(i) * std::max(this->Leaves[i], 0.0);
-      differs += std::abs(found[cell] - came[cell]);
-      all += found[cell];
+      change = std::max(change, this->ReflectChannel(iteration, c, given[c]));
     }
-    change = std::max(change, all > 0.0 ? differs / all : 0.0);
-    // Mixing helps in thin media, where the diffusion systems do not predict the path of reflected light.
-    const std::vector<double> next = iteration > 0 ? this->BackMixing[c].Next(came, found) : found;
-    std::copy(next.begin(), next.end(), begin);
+    // Powers of the diffusion systems do not have the pattern of rays.
+    this->Faces.LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
+  });
+  return this->TheDomain.Max(change); // devices of different ranks may round differently
+}
+
+double FaceBalance::ReflectChannel(int iteration, std::size_t c, double given)
+{
+  double differs = 0.0, all = given;
+  const auto begin = this->CameBack.begin() + static_cast<std::ptrdiff_t>(c * this->Cells);
+  const std::vector<double> came(begin, begin + static_cast<std::ptrdiff_t>(this->Cells));
+  std::vector<double> found(this->Cells);
+  for (std::size_t cell = 0; cell < this->Cells; ++cell)
+  {
+    const std::size_t i = c * this->Cells + cell;
+    found[cell] = this->GivenBackByCell[i] + this->Faces.AlbedoOf(i) * std::max(this->Leaves[i], 0.0);
+    differs += std::abs(found[cell] - came[cell]);
+    all += found[cell];
   }
-  // Powers of the diffusion systems do not have the pattern of rays.
-  this->Faces.LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
-  return change;
+  // Mixing helps in thin media, where the diffusion systems do not predict the path of reflected light.
+  const std::vector<double> next = iteration > 0 ? this->BackMixing[c].Next(came, found) : found;
+  std::copy(next.begin(), next.end(), begin);
+  return all > 0.0 ? differs / all : 0.0;
 }
 
 std::vector<double> FaceBalance::Left() const
@@ -100,9 +162,26 @@ void FaceBalance::Count(EnergyLedger& ledger) const
   }
 }
 
-std::vector<double> FaceBalance::LeftWithoutPattern(
-  const std::array<Rgb, 6>& incoming, const std::vector<double>& tau, bool spreads) const
+/// Optical length of the voxel at each cell along its longest edge, [channel][cell].
+std::vector<double> FaceBalance::OpticalLengths(const Medium& medium) const
 {
+  const std::array<double, 3>& h = this->Faces.Box().spacing;
+  const double longest = *std::max_element(h.begin(), h.end());
+  std::vector<double> tau(this->Leaves.size(), 0.0);
+  for (std::size_t c = 0; c < this->OfBlock.size(); ++c)
+  {
+    for (const OwnCell& cell : this->OwnCells)
+    {
+      tau[c * this->Cells + cell.whole] = longest * medium.TransportSigmaT(cell.voxel, static_cast<int>(c));
+    }
+  }
+  return this->TheDomain.Sum(tau);
+}
+
+std::vector<double> FaceBalance::LeftWithoutPattern(const std::array<Rgb, 6>& incoming, const Medium& medium) const
+{
+  const bool spreads = !this->Faces.Reflects(); // over neighbouring cells (Deposit::spreadsAside)
+  const std::vector<double> tau = this->OpticalLengths(medium);
   const Grid& grid = this->Faces.Box();
   const std::vector<double> left = this->Left();
   std::vector<double> smooth = left;
