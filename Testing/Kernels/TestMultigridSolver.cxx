@@ -139,6 +139,17 @@ struct BlockOfGrid
     return part;
   }
 
+  /// Values of which those of the ghost voxels at the low end of an axis are 0.
+  std::vector<float> WithoutLowEnd(std::vector<float> values, int axis) const
+  {
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      const bool atEnd = this->held.VoxelAt(i)[axis] == 0 && this->box.first[axis] < this->own.first[axis];
+      values[i] = atEnd ? 0.0f : values[i];
+    }
+    return values;
+  }
+
   bool IsOwn(std::size_t i) const
   {
     const std::array<int, 3> at = this->held.VoxelAt(i);
@@ -168,9 +179,10 @@ protected:
       MultigridSolver solver(this->GetDevice(), Domain(communicator, partition), periodic);
       const BlockOfGrid block(partition, communicator.Rank(), periodic);
       std::vector<float> conductance;
-      for (const std::vector<float>& ofAxis : matrix.Conductances())
+      const std::vector<std::vector<float>> ofAxes = matrix.Conductances();
+      for (int axis = 0; axis < 3; ++axis)
       {
-        const std::vector<float> part = block.Part(ofAxis);
+        const std::vector<float> part = block.WithoutLowEnd(block.Part(ofAxes[axis]), axis);
         conductance.insert(conductance.end(), part.begin(), part.end());
       }
       solver.Conductance().Write(InRows(solver.Rows(), conductance, 3).data());

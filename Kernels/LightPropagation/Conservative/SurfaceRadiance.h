@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Distribution/Domain.h"
-#include "LightPropagation/Diffusion/SurfacePowers.h"
+#include "LightPropagation/Diffusion/DiffusionSystem.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 

@@ -9,7 +9,7 @@
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
-#include "LightPropagation/Scattering/BeamsInSource.h"
+#include "LightPropagation/Scattering/BeamScattering.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Scattering/SweptMoments.h"
 #include "LightPropagation/Sweep/SweepOperator.h"

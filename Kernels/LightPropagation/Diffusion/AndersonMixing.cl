@@ -2,7 +2,8 @@
 //   GROUP    work-items that share a chunk (GroupSum.cl)
 //   DOUBLES  1: the device has double precision
 
-#include "LightPropagation/Diffusion/DiffusionLayout.cl"
+#include "LightPropagation/Diffusion/DiffusionShared.h"
+#include "Numerics/Exact.cl"
 #include "Numerics/GroupSum.cl"
 
 // Sums for Anderson mixing (numerics.md, Eqs. (71), (72)), with f = found - given and d1, d2 the differences of f from

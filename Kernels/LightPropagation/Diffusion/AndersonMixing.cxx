@@ -31,7 +31,7 @@ cl::Kernel AndersonMixing::Kernel(const char* name) const
     name, kernel_source::AndersonMixing, SummingOption(this->TheDevice) + ExactOption(this->TheDevice));
 }
 
-double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, const Sums& sums)
+void AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, const Sums& sums)
 {
   const std::array<double, 2> weights = this->WeightsBy(sums);
   cl::Kernel step = this->Kernel("anderson_step");
@@ -43,7 +43,6 @@ double AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, c
     static_cast<float>(weights[0]), static_cast<float>(weights[1]));
   this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
   ++this->Mixes;
-  return ChangeBy(sums);
 }
 
 double AndersonMixing::ChangeBy(const Sums& sums)

@@ -28,17 +28,12 @@ public:
 
   using Sums = std::array<double, AndersonSums>;
 
-  /// @param given  the input that led to the result `found`; replaced by the next input
-  /// @return |found - given| / |found| over each voxel's first value, weighted (numerics.md, Eq. (72))
-  double Mix(const ExactValues& given, const ExactValues& found, const Weighting& weighting)
-  {
-    return this->Mix(given, found, this->SumsOf(given, found, weighting));
-  }
-
-  // Mix() in two steps, for values distributed over ranks: the sums are added up over all ranks in between.
+  /// Sums over this rank's values; Mix() takes those of all ranks.
   Sums SumsOf(const ExactValues& given, const ExactValues& found, const Weighting& weighting) const;
-  double Mix(const ExactValues& given, const ExactValues& found, const Sums& sums);
-  static double ChangeBy(const Sums& sums); ///< the change that Mix() returns
+  /// @param given  the input that led to the result `found`; replaced by the next input
+  void Mix(const ExactValues& given, const ExactValues& found, const Sums& sums);
+  /// |found - given| / |found| over each voxel's first value, weighted (numerics.md, Eq. (72)).
+  static double ChangeBy(const Sums& sums);
 
 private:
   cl::Kernel Kernel(const char* name) const;

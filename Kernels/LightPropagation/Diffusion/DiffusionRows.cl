@@ -11,7 +11,7 @@
 // MultigridRows.cl. The face at x = 0 of a row needs separate treatment: the voxel before it in memory is not its
 // neighbour.
 
-#include "LightPropagation/Diffusion/FaceRemainder.cl"
+#include "LightPropagation/Diffusion/Conductance.cl"
 #include "LightPropagation/Diffusion/MultigridRows.cl"
 #include "Numerics/Exact.cl"
 
@@ -82,13 +82,14 @@ __kernel void diffusion_flat_source(
       for (int axis = 0; axis < (layout.flatStride > 0 ? 3 : 1); ++axis)
       {
         real current = flat_source_current(sweeps * layout.spacing[axis]);
-#if MOMENTS
-        // The first moment of the source carries part of the current exactly; only the rest has the excess of a
-        // constant source.
-        const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
-        const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
-        current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
-#endif
+        if (MOMENTS)
+        {
+          // The first moment of the source carries part of the current exactly; only the rest has the excess of a
+          // constant source.
+          const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
+          const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
+          current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
+        }
         store_in_row(current, x, layout.size[0], flat_source + (ulong)axis * layout.flatStride + here);
       }
     }
@@ -247,21 +248,25 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
     FOR_VECTORS(x, 0, n)
     {
       const real solved = load_rounded(fluence + here, x, n);
-#if SKIN
-      real sigma_t[7];
-      find_extinctions(&layout, y, z, x, extinction, sigma_t);
-      const real skin = skin_of(&layout, sigma_t);
-      real source_of_fluence = load_real(here + x, source);
-#if PASSING
-      source_of_fluence -= load_real(here + x, of_lamps); // the solved fluence does not include it either
-#endif
-      const real shining = 4.0f * M_PI_F * source_of_fluence / fmax(sigma_t[0], (real)1e-37f);
-      const real given = select(solved, mix(solved, shining, skin), skin > (real)0.0f);
-      const real longest = sigma_t[0] * edge;
-#else
-      const real given = solved;
-      const real longest = load_real(layout.firstT + here + x, extinction) * edge;
-#endif
+      real given = solved, longest;
+      if (SKIN)
+      {
+        real sigma_t[7];
+        find_extinctions(&layout, y, z, x, extinction, sigma_t);
+        const real skin = skin_of(&layout, sigma_t);
+        real source_of_fluence = load_real(here + x, source);
+        if (PASSING)
+        {
+          source_of_fluence -= load_real(here + x, of_lamps); // the solved fluence does not include it either
+        }
+        const real shining = 4.0f * M_PI_F * source_of_fluence / fmax(sigma_t[0], (real)1e-37f);
+        given = select(solved, mix(solved, shining, skin), skin > (real)0.0f);
+        longest = sigma_t[0] * edge;
+      }
+      else
+      {
+        longest = load_real(layout.firstT + here + x, extinction) * edge;
+      }
       const real found = load_real(here + x, path) / volume_of(&layout);
       const real thick = layout.linear ? 1.0f - 1.0f / (1.0f + longest * longest) : (real)0.0f;
       const real value = select(found + thick * (given - found), given, longest > (real)1e9f);
@@ -289,14 +294,16 @@ static real power_of_faces(
     { load_real(j, of->flatSource), load_real(i, of->flatSource) },
     { load_real(j, of->model), load_real(i, of->model) }, passes, load_real(i, of->low) - load_real(j, of->high),
     (real)0.0f, crossing };
-#if MOMENTS
-  const float per_flux = 1.5f * layout->spacing[axis] * (4.0f * M_PI_F);
-  face.driven = passes * per_flux * (load_real(j, of->givenFlux) + load_real(i, of->givenFlux));
-#endif
+  if (MOMENTS)
+  {
+    const float per_flux = 1.5f * layout->spacing[axis] * (4.0f * M_PI_F);
+    face.driven = passes * per_flux * (load_real(j, of->givenFlux) + load_real(i, of->givenFlux));
+  }
   real power = remainder_of(layout, axis, &face) + face.driven;
-#if PASSING
-  power += load_real(j, of->passedHigh) - load_real(i, of->passedLow);
-#endif
+  if (PASSING)
+  {
+    power += load_real(j, of->passedHigh) - load_real(i, of->passedLow);
+  }
   return power;
 }
 

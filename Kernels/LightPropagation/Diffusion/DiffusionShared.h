@@ -42,10 +42,11 @@ typedef struct
   float spacing[3];
   /// Sum over directions of w mu / 4 pi, mu > 0: exactly 1/4, except for the error of the quadrature.
   float halfRange;
-  float floor;         ///< minimum optical length between voxel centres: conductance does not grow below it
-  float incoming[6];   ///< incident power through each face of the box, W / length^2
-  float albedo[6];     ///< albedo of each face of the box
-  MultigridLevel rows; ///< memory layout of the conductances
+  float floor;           ///< minimum optical length between voxel centres: conductance does not grow below it
+  float absorbingWeight; ///< of the optical length of absorption in the weight of the transport correction
+  float incoming[6];     ///< incident power through each face of the box, W / length^2
+  float albedo[6];       ///< albedo of each face of the box
+  MultigridLevel rows;   ///< memory layout of the conductances
 } DiffusionLayout;
 
 /// Values for each cell of the box's faces (Medium/BoxFaces.h), from the solution and from the sweep, W.

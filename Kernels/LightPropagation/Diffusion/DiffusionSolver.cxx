@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
 #include <utility>
 
 namespace tyndall
@@ -34,6 +35,51 @@ constexpr double SlowReduction = 1e-4;
 constexpr int Several = 12;
 /// Targets of Refine(): reduction of the residual, and its root mean square in units.
 constexpr double RefinedBy = 0.1, RefinedTo = 1e-6;
+
+/// Rounding can make the power of dark faces slightly negative: it is set to 0, and the others are scaled to conserve
+/// the sum.
+std::array<double, 6> NotNegative(std::array<double, 6> powers)
+{
+  const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
+  double positive = 0.0;
+  for (double& power : powers)
+  {
+    power = std::max(power, 0.0);
+    positive += power;
+  }
+  for (double& power : powers)
+  {
+    power *= positive > 0.0 ? std::max(sum, 0.0) / positive : 0.0;
+  }
+  return powers;
+}
+
+/// Escaped power through each of the box's faces by the last correction, W; 0 on periodic axes.
+/// @param sums  over all ranks
+/// @param entered  power that entered in the sweep, W
+/// @param ofSweep  power that left through each face in the sweep, W; determines how power at the box's edges is
+///   divided among faces
+std::array<double, 6> OutflowBy(const DiffusionSystem::BorderSums& sums, double entered,
+  const std::array<double, 6>& ofSweep, const std::array<bool, 3>& periodic)
+{
+  std::array<double, 6> outflow = sums.out;
+  std::array<double, 6> missing = ofSweep; // outgoing power minus its estimate
+  // Summing thousands of rays through one cell in floats gives errors of 1e-5.
+  const double allCame = std::accumulate(sums.came.begin(), sums.came.end(), 0.0);
+  for (int face = 0; face < 6; ++face)
+  {
+    missing[face] -= sums.seeming[face];
+    outflow[face] += allCame > 0.0 ? sums.came[face] * (entered / allCame) : 0.0;
+  }
+  const double all = std::accumulate(missing.begin(), missing.end(), 0.0);
+  const double left = std::accumulate(ofSweep.begin(), ofSweep.end(), 0.0);
+  for (int face = 0; face < 6 && sums.shared > 0.0 && left > 0.0; ++face)
+  {
+    outflow[face] +=
+      periodic[face / 2] ? 0.0 : sums.transportWeight / sums.shared * (missing[face] - all * ofSweep[face] / left);
+  }
+  return NotNegative(outflow);
+}
 }
 
 DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, const DirectionSet& directions,
@@ -107,14 +153,17 @@ void DiffusionSolver::BeginBeyond(const std::vector<double>& guessed)
   });
 }
 
-std::vector<double> DiffusionSolver::OwnOf(const std::vector<double>& held) const
+/// The fluence of the block's voxels out of a state with ghost voxels (DiffusionSystem::State).
+std::vector<double> DiffusionSolver::OwnOf(std::vector<double> held) const
 {
+  const std::size_t count = this->Block.Own().grid.VoxelCount();
   if (!this->Block.HasGhosts())
   {
+    held.resize(count);
     return held;
   }
-  std::vector<double> own(this->Block.Own().grid.VoxelCount());
-  for (std::size_t i = 0; i < own.size(); ++i)
+  std::vector<double> own(count);
+  for (std::size_t i = 0; i < count; ++i)
   {
     own[i] = held[this->Block.PlaceOf(i)];
   }
@@ -123,7 +172,7 @@ std::vector<double> DiffusionSolver::OwnOf(const std::vector<double>& held) cons
 
 std::vector<double> DiffusionSolver::Found() const
 {
-  return this->System ? this->OwnOf(this->System->Found()) : std::vector<double>();
+  return this->System ? this->OwnOf(this->System->State()) : std::vector<double>();
 }
 
 const ExactValues& DiffusionSolver::NextFluence()
@@ -171,7 +220,7 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
     std::copy_n(next, 6, ofFaces->begin());
     next += 6;
   }
-  return DiffusionSystem::OutflowBy(sums, entered, ofSweep, this->Periodic);
+  return OutflowBy(sums, entered, ofSweep, this->Periodic);
 }
 
 void DiffusionSolver::ShapeSource()

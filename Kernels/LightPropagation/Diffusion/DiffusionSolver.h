@@ -35,7 +35,9 @@ public:
   /// Continues the solve of the last correction, for more digits.
   void Refine(double unit);
   double Absorbed() const; ///< power absorbed according to the last correction, W
-  /// DiffusionSystem::OutflowBy() over all ranks.
+  /// Escaped power through each of the box's faces by the last correction, W; 0 on periodic axes.
+  /// @param entered  power that entered in the sweep, W
+  /// @param ofSweep  power that left through each face in the sweep, W
   std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
   /// Starts the next correction and the next sweep's source from the solution plus a guess.
   /// @param guessed  added, W / length^2, by voxel with ghosts, as DiffusionSystem::State()
@@ -52,7 +54,7 @@ public:
   SurfacePowers PowersAtSurface() const;
 
 private:
-  std::vector<double> OwnOf(const std::vector<double>& held) const;
+  std::vector<double> OwnOf(std::vector<double> held) const;
   void OnSystem(const std::function<void(DiffusionSystem&)>& step) const;
 
   const BlockWithGhosts& Block;

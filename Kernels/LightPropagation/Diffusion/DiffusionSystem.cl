@@ -8,7 +8,6 @@
 // Faces d of a voxel are -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
 #include "LightPropagation/Diffusion/BoxBorders.cl"
-#include "LightPropagation/Diffusion/FaceRemainder.cl"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
 // Conductance of face d of a voxel. The array holds low faces, in rows (MultigridLevel).
@@ -116,11 +115,7 @@ static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* ar
 // current along the axis (numerics.md, Eq. (53a)).
 static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
 {
-#if MOMENTS
-  return 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i];
-#else
-  return 0.0f;
-#endif
+  return MOMENTS ? 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i] : 0.0f;
 }
 
 // drive() out of a voxel through its face d to voxel j, or, below, to the boundary of the box.
@@ -175,9 +170,7 @@ static float model_of_boundary(
   *dark = area * (factors.ofMedium * passes * driven - factors.ofLight * coming_in(layout, arrays, FaceGiven, d, at));
 #else
   *dark = -passes / a * incoming * area;
-#if MOMENTS
-  *dark += passes * driven * area;
-#endif
+  *dark += MOMENTS ? passes * driven * area : 0.0f;
 #endif
   const float net = passes * (light - incoming / a);
   if (!layout->linear)
@@ -193,11 +186,11 @@ static float model_of_boundary(
 static float passing(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
 {
-#if PASSING
+  if (!PASSING)
+  {
+    return 0.0f;
+  }
   return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
-#else
-  return 0.0f;
-#endif
 }
 
 // Fraction of the power that the medium sends through face d and that is not reflected back.
@@ -431,7 +424,6 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
   }
 }
 
-#if MOMENTS
 // Computes the moments of degree 1 and stores them behind the fluence, [x, y, z][voxel]: those of the sweep, plus the
 // difference of the solution's net flux from the model's.
 __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
@@ -479,7 +471,6 @@ __kernel void diffusion_put_flux(
       (float)(fluence[(axis + 1) * count + i] * volume_of(&layout));
   }
 }
-#endif
 
 // Changes the next sweep's source in optically thick voxels next to thinner ones: instead of emission and scattering,
 // to the source that gives their surface the outward partial current of diffusion (numerics.md, Eqs. (63), (64)).
@@ -513,9 +504,7 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
       const float area = face_area(&layout, d / 2);
       const float beyond = sigma_t[j] * layout.spacing[d / 2];
       float out = conductance_at(&layout, conductance, d, at) * (float)(fluence[i] - fluence[j]) / area;
-#if PASSING
-      out += (passed[d * stride + i] - passed[(d ^ 1) * stride + j]) / area;
-#endif
+      out += PASSING ? (passed[d * stride + i] - passed[(d ^ 1) * stride + j]) / area : 0.0f;
       const float weight = open[d] * area;
       const float there = (float)fluence[j] + 1.5f * out * way_to_boundary(&layout, beyond, sigma_t[j], sigma_a[j]);
       shining += weight * (there + 2.0f * out);

@@ -2,7 +2,6 @@
 
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
-#include "LightPropagation/Diffusion/DiffusionLayout.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
@@ -17,31 +16,13 @@ namespace
 {
 constexpr double Floor = 0.05; ///< minimum optical length between voxel centres: conductance does not grow below it
 constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces per work-group
-
-/// Rounding can make the power of dark faces slightly negative: it is set to 0, and the others are scaled to conserve
-/// the sum.
-std::array<double, 6> NotNegative(std::array<double, 6> powers)
-{
-  const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
-  double positive = 0.0;
-  for (double& power : powers)
-  {
-    power = std::max(power, 0.0);
-    positive += power;
-  }
-  for (double& power : powers)
-  {
-    power *= positive > 0.0 ? std::max(sum, 0.0) / positive : 0.0;
-  }
-  return powers;
-}
 }
 
 DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const Grid& grid,
   const std::array<bool, 3>& periodic, const DirectionSet& directions, const CrossingPattern& pattern,
   const Arrays& arrays, const std::array<double, 6>& incoming, bool linear)
   : TheDevice(device)
-  , The(arrays)
+  , Inputs(arrays)
   , Count(grid.VoxelCount())
   , BorderCells(BoxFaceCellCount(grid))
   , Solver(solver)
@@ -56,6 +37,7 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
   this->Layout.linear = linear;
   std::copy(pattern.first.begin(), pattern.first.end(), this->Layout.pattern);
   this->Layout.halfRange = static_cast<float>(halfRange);
+  this->Layout.absorbingWeight = this->HasMoments() ? 0.0f : 3.0f;
   this->Layout.floor = static_cast<float>(Floor);
   std::copy(incoming.begin(), incoming.end(), this->Layout.incoming);
   std::copy(arrays.albedo.begin(), arrays.albedo.end(), this->Layout.albedo);
@@ -90,14 +72,14 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
 
 std::string DiffusionSystem::Options() const
 {
-  return ExactOption(this->TheDevice) + Define("PASSING", this->The.passed != nullptr) +
+  return ExactOption(this->TheDevice) + Define("PASSING", this->Inputs.passed != nullptr) +
     Define("MOMENTS", this->HasMoments());
 }
 
 cl::Kernel DiffusionSystem::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(
-    name, kernel_source::DiffusionSystem, this->Options() + Define("FACES", this->The.faces != nullptr));
+    name, kernel_source::DiffusionSystem, this->Options() + Define("FACES", this->Inputs.faces != nullptr));
 }
 
 cl::Kernel DiffusionSystem::RowsKernel(const char* name) const
@@ -125,11 +107,12 @@ void DiffusionSystem::RunRows(cl::Kernel& kernel) const
 template <class... More>
 cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
 {
-  const Arrays& the = this->The;
+  const Arrays& inputs = this->Inputs;
   cl::Kernel kernel = this->Kernel(name);
-  With(kernel, this->Layout, *the.sigma_t, *the.sigma_a, *the.swept, this->FlatSource, this->Solver.Conductance(),
-    *the.partialCurrents, this->Passed(), this->Model, this->Pattern, *the.source, *the.path,
-    the.givenFlux ? *the.givenFlux : *the.given, this->The.faces ? *this->The.faces : this->Model, more...);
+  With(kernel, this->Layout, *inputs.sigma_t, *inputs.sigma_a, *inputs.swept, this->FlatSource,
+    this->Solver.Conductance(), *inputs.partialCurrents, this->Passed(), this->Model, this->Pattern, *inputs.source,
+    *inputs.path, inputs.givenFlux ? *inputs.givenFlux : *inputs.given,
+    this->Inputs.faces ? *this->Inputs.faces : this->Model, more...);
   return kernel;
 }
 
@@ -152,7 +135,7 @@ const Buffer<float>& DiffusionSystem::ExtinctionInRows()
 {
   const Buffer<float>& extinction = *this->Solver.Scratch().front();
   cl::Kernel rows = this->RowsKernel("diffusion_extinction");
-  With(rows, this->Layout, *this->The.sigma_t, extinction);
+  With(rows, this->Layout, *this->Inputs.sigma_t, extinction);
   this->RunRows(rows);
   return extinction;
 }
@@ -164,34 +147,34 @@ void DiffusionSystem::ShapeSource()
     return;
   }
   cl::Kernel kernel = this->Kernel("diffusion_surface_source");
-  With(kernel, this->Layout, this->Next.Handle(), *this->The.sigma_t, *this->The.sigma_a, this->Solver.Conductance(),
-    this->Passed(), this->Skins, *this->The.source);
+  With(kernel, this->Layout, this->Next.Handle(), *this->Inputs.sigma_t, *this->Inputs.sigma_a,
+    this->Solver.Conductance(), this->Passed(), this->Skins, *this->Inputs.source);
   this->Run(kernel);
 }
 
 /// Computes the fluence at which the sweep's powers are compared with diffusion.
 void DiffusionSystem::FindModel()
 {
-  const Arrays& the = this->The;
-  const Buffer<float>& extinction = this->AnySkin ? this->ExtinctionInRows() : *the.sigma_t;
+  const Arrays& inputs = this->Inputs;
+  const Buffer<float>& extinction = this->AnySkin ? this->ExtinctionInRows() : *inputs.sigma_t;
   cl::Kernel model = this->RowsKernel("diffusion_model");
-  With(model, this->Layout, extinction, *the.path, this->Next.Handle(), *the.source,
-    the.ofLamps ? *the.ofLamps : *the.source, this->Model);
+  With(model, this->Layout, extinction, *inputs.path, this->Next.Handle(), *inputs.source,
+    inputs.ofLamps ? *inputs.ofLamps : *inputs.source, this->Model);
   this->RunRows(model);
 }
 
 /// Computes the system's right-hand side.
 void DiffusionSystem::Balance()
 {
-  const Arrays& the = this->The;
+  const Arrays& inputs = this->Inputs;
   const auto [x, y, z] = this->Solver.Scratch();
   cl::Kernel powers = this->RowsKernel("diffusion_face_powers");
-  With(powers, this->Layout, *the.sigma_t, *the.sigma_a, this->FlatSource, this->Solver.Conductance(),
-    *the.partialCurrents, this->Passed(), this->Model, this->Pattern, the.givenFlux ? *the.givenFlux : *the.given, *x,
-    *y, *z);
+  With(powers, this->Layout, *inputs.sigma_t, *inputs.sigma_a, this->FlatSource, this->Solver.Conductance(),
+    *inputs.partialCurrents, this->Passed(), this->Model, this->Pattern,
+    inputs.givenFlux ? *inputs.givenFlux : *inputs.given, *x, *y, *z);
   this->RunRows(powers);
   cl::Kernel balance = this->RowsKernel("diffusion_balance");
-  With(balance, this->Layout, *the.given, *x, *y, *z, this->Solver.Right());
+  With(balance, this->Layout, *inputs.given, *x, *y, *z, this->Solver.Right());
   this->RunRows(balance);
   cl::Kernel border = this->OnArrays("diffusion_border_balance", this->Solver.Right(), this->Borders.Handle());
   this->RunBorder(border);
@@ -201,22 +184,17 @@ void DiffusionSystem::FindFlux()
 {
   if (this->HasMoments())
   {
-    cl::Kernel flux =
-      this->OnArrays("diffusion_found_flux", this->The.moments, cl_int(this->The.channel), this->Solution.Handle());
+    cl::Kernel flux = this->OnArrays(
+      "diffusion_found_flux", this->Inputs.moments, cl_int(this->Inputs.channel), this->Solution.Handle());
     this->Run(flux);
   }
 }
 
-AndersonMixing::Weighting DiffusionSystem::WeightingOfChange() const
+AndersonMixing::Sums DiffusionSystem::SumsOfChange() const
 {
   const auto& h = this->Layout.spacing;
   const float edge = std::cbrt(h[0] * h[1] * h[2]); // invariant under permutation of the axes
-  return { this->The.sigma_s, this->The.first, edge };
-}
-
-AndersonMixing::Sums DiffusionSystem::SumsOfChange() const
-{
-  return this->Mixing.SumsOf(this->Next, this->Solution, this->WeightingOfChange());
+  return this->Mixing.SumsOf(this->Next, this->Solution, { this->Inputs.sigma_s, this->Inputs.first, edge });
 }
 
 void DiffusionSystem::MixBy(const AndersonMixing::Sums& sums)
@@ -230,22 +208,10 @@ double DiffusionSystem::Absorbed() const
   DiffusionLayout own = this->Layout;
   own.rows = this->Solver.Rows();
   const ExactValues sums(this->TheDevice, MultigridSolver::GroupsOf(this->TheDevice, own.rows), "sums");
-  With(kernel, own, *this->The.sigma_a, this->Solution.Handle(), sums.Handle());
+  With(kernel, own, *this->Inputs.sigma_a, this->Solution.Handle(), sums.Handle());
   MultigridSolver::RunRows(this->TheDevice, kernel, own.rows);
   const std::vector<double> parts = sums.Read();
   return std::accumulate(parts.begin(), parts.end(), 0.0);
-}
-
-bool DiffusionSystem::Reflects() const
-{
-  return std::any_of(this->The.albedo.begin(), this->The.albedo.end(), [](double albedo) { return albedo > 0.0; });
-}
-
-std::vector<double> DiffusionSystem::Found() const
-{
-  std::vector<double> found = this->Solution.Read();
-  found.resize(this->Count);
-  return found;
 }
 
 DiffusionSystem::BorderSums DiffusionSystem::SumBorders(const std::function<bool(int face, int u, int v)>& counts)
@@ -276,35 +242,15 @@ DiffusionSystem::BorderSums DiffusionSystem::SumBorders(const std::function<bool
   return sums;
 }
 
-std::array<double, 6> DiffusionSystem::OutflowBy(
-  const BorderSums& sums, double entered, const std::array<double, 6>& ofSweep, const std::array<bool, 3>& periodic)
-{
-  std::array<double, 6> outflow = sums.out;
-  std::array<double, 6> missing = ofSweep; // outgoing power minus its estimate
-  // Summing thousands of rays through one cell in floats gives errors of 1e-5.
-  const double allCame = std::accumulate(sums.came.begin(), sums.came.end(), 0.0);
-  for (int face = 0; face < 6; ++face)
-  {
-    missing[face] -= sums.seeming[face];
-    outflow[face] += allCame > 0.0 ? sums.came[face] * (entered / allCame) : 0.0;
-  }
-  const double all = std::accumulate(missing.begin(), missing.end(), 0.0);
-  const double left = std::accumulate(ofSweep.begin(), ofSweep.end(), 0.0);
-  for (int face = 0; face < 6 && sums.shared > 0.0 && left > 0.0; ++face)
-  {
-    outflow[face] +=
-      periodic[face / 2] ? 0.0 : sums.transportWeight / sums.shared * (missing[face] - all * ofSweep[face] / left);
-  }
-  return NotNegative(outflow);
-}
-
 SurfacePowers DiffusionSystem::PowersAtSurface() const
 {
   const std::vector<double> borders = this->Borders.Read();
   SurfacePowers powers;
   powers.halfRange = this->Layout.halfRange;
   const std::size_t cells = borders.size() / BorderValues;
-  const std::vector<float> faces = this->Reflects() ? this->The.faces->Read() : std::vector<float>();
+  const std::array<double, 6>& albedo = this->Inputs.albedo;
+  const bool reflects = std::any_of(albedo.begin(), albedo.end(), [](double ofFace) { return ofFace > 0.0; });
+  const std::vector<float> faces = reflects ? this->Inputs.faces->Read() : std::vector<float>();
   const auto row = [&](std::size_t number) {
     return faces.empty() ? faces
                          : std::vector<float>(faces.begin() + number * cells, faces.begin() + (number + 1) * cells);
@@ -321,8 +267,7 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
       powers.net.push_back(borders[at] / area);
       if (!back.empty())
       {
-        powers.back.push_back(
-          (back[powers.net.size() - 1] + this->The.albedo[face] * leaves[powers.net.size() - 1]) / area);
+        powers.back.push_back((back[powers.net.size() - 1] + albedo[face] * leaves[powers.net.size() - 1]) / area);
       }
     }
   }
@@ -332,7 +277,7 @@ SurfacePowers DiffusionSystem::PowersAtSurface() const
 void DiffusionSystem::PutNextFlux(const Buffer<float>& path)
 {
   cl::Kernel kernel = this->Kernel("diffusion_put_flux");
-  With(kernel, this->Layout, this->Next.Handle(), this->The.moments, cl_int(this->The.channel), path);
+  With(kernel, this->Layout, this->Next.Handle(), this->Inputs.moments, cl_int(this->Inputs.channel), path);
   this->Run(kernel);
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "Device/Sizes.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Diffusion/AndersonMixing.h"
 #include "LightPropagation/Diffusion/CrossingPattern.h"
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
-#include "LightPropagation/Diffusion/SurfacePowers.h"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 #include "Medium/Grid.h"
 
@@ -16,6 +16,42 @@
 
 namespace tyndall
 {
+/// @param arrays  has the offsets of a channel and the stride (DiffusionSystem::Arrays, LampLight)
+template <class Arrays>
+DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
+{
+  DiffusionLayout layout = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    layout.size[axis] = grid.size[axis];
+    layout.periodic[axis] = periodic[axis];
+    layout.spacing[axis] = static_cast<float>(grid.spacing[axis]);
+  }
+  layout.stride = static_cast<cl_int>(arrays.stride);
+  layout.firstT = static_cast<cl_int>(arrays.firstT);
+  layout.first = static_cast<cl_int>(arrays.first);
+  return layout;
+}
+
+/// Runs a kernel with one work-item per voxel (VOXEL in DiffusionLayout.cl).
+inline void RunVoxels(Device& device, cl::Kernel& kernel, const DiffusionLayout& layout)
+{
+  const cl::NDRange range(RoundUp<std::size_t>(layout.size[0], 32), RoundUp<std::size_t>(layout.size[1], 8),
+    static_cast<std::size_t>(layout.size[2]));
+  device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, range, cl::NDRange(32, 8, 1));
+}
+
+/// Power of one channel through the cells of the box's faces, W / length^2, without uncollided light of lamps.
+struct SurfacePowers
+{
+  std::vector<double> net;       ///< outgoing minus incoming, by cell (BoxFaces.h)
+  std::array<double, 6> in = {}; ///< incident through each face, averaged over its cells
+  std::vector<double> back;      ///< reflected power by cell; empty: no face reflects
+  const float* lamps = nullptr;  ///< uncollided fluence of lamps by voxel; null: there are none
+  /// halfRange of the quadrature of the incident light: isotropic radiance L gives `in` = 4 pi halfRange L
+  double halfRange = 0.25;
+};
+
 /// The diffusion system of one channel (numerics.md, section 7): a diffusion-like balance of each voxel's power,
 /// corrected by the powers that a sweep found through its faces, Eq. (53). Its solution is the fluence of all
 /// scattering orders.
@@ -105,19 +141,9 @@ public:
   };
   /// @param counts  whether to count a cell of a face (face; position along the other two axes in order)
   BorderSums SumBorders(const std::function<bool(int face, int u, int v)>& counts);
-  /// Escaped power through each of the box's faces by the last correction, W; 0 on periodic axes.
-  /// @param sums  over all ranks
-  /// @param entered  power that entered in the sweep, W
-  /// @param ofSweep  power that left through each face in the sweep, W; determines how power at the box's edges is
-  ///   divided among faces
-  static std::array<double, 6> OutflowBy(const BorderSums& sums, double entered, const std::array<double, 6>& ofSweep,
-    const std::array<bool, 3>& periodic = {});
-
   /// Power absorbed according to the last correction, W; without ghost voxels.
   double Absorbed() const;
 
-  /// Fluence found by the last correction, W / length^2.
-  std::vector<double> Found() const;
   /// Power through the voxels' faces on the box's surface, W, of the last SumBorders().
   SurfacePowers PowersAtSurface() const;
 
@@ -129,13 +155,11 @@ public:
   void AddFlux(const Buffer<float>& flux);
 
 private:
-  bool Reflects() const;
   std::size_t Values() const { return this->HasMoments() ? 4 * this->Count : this->Count; }
-  bool HasMoments() const { return this->The.swept != this->The.sigma_t; }
-  const Buffer<float>& Passed() const { return this->The.passed ? *this->The.passed : this->Model; }
+  bool HasMoments() const { return this->Inputs.swept != this->Inputs.sigma_t; }
+  const Buffer<float>& Passed() const { return this->Inputs.passed ? *this->Inputs.passed : this->Model; }
   void FindSkins();
   const Buffer<float>& ExtinctionInRows();
-  AndersonMixing::Weighting WeightingOfChange() const;
   std::string Options() const;
   cl::Kernel Kernel(const char* name) const;
   cl::Kernel RowsKernel(const char* name) const; ///< kernel that processes rows
@@ -148,7 +172,7 @@ private:
 
   Device& TheDevice;
   DiffusionLayout Layout = {};
-  Arrays The;
+  Arrays Inputs;
   std::size_t Count, BorderCells;
   MultigridSolver& Solver;
   Buffer<float> FlatSource, Pattern, Model;

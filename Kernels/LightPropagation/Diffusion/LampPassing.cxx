@@ -1,7 +1,7 @@
 #include "LightPropagation/Diffusion/LampPassing.h"
 
 #include "Device/ExactValues.h"
-#include "LightPropagation/Diffusion/DiffusionLayout.h"
+#include "LightPropagation/Diffusion/DiffusionSystem.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall

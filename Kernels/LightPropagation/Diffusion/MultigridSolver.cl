@@ -333,17 +333,17 @@ __kernel void level_revisit(MultigridLevel level, const __global float* conducta
   }
 }
 
-// Adds the same fraction of the second visit's correction to the stored one.
-__kernel void level_join(MultigridLevel level, const __global float* kept, float part, __global float* found)
+// values = added + part values
+__kernel void scale_and_add(MultigridLevel level, const __global float* added, float part, __global float* values)
 {
   FOR_ROWS(level)
   {
     const int here = row_at(&level, ROW_Y(level, r), ROW_Z(level, r));
     FOR_VECTORS(x, level.first[0], level.end[0])
     {
-      store_real(multiply_add(load_real(x, found + here), (real)part, load_real(x, kept + here)), x, found + here);
+      store_real(multiply_add(load_real(x, values + here), (real)part, load_real(x, added + here)), x, values + here);
     }
-    FILL_GHOSTS(found + here, level.size[0]);
+    FILL_GHOSTS(values + here, level.size[0]);
   }
 }
 
@@ -432,22 +432,6 @@ __kernel void level_answer(MultigridLevel level, const __global float* answers, 
     sum = (exact)right[here + x] * value;
   }
   PUT_SUM_OF_GROUP(exact, sum, sums[0])
-}
-
-// p = z + part p
-__kernel void turn_direction(
-  MultigridLevel level, const __global float* preconditioned, __global float* direction, float part)
-{
-  FOR_ROWS(level)
-  {
-    const int here = row_at(&level, ROW_Y(level, r), ROW_Z(level, r));
-    FOR_VECTORS(x, level.first[0], level.end[0])
-    {
-      store_real(multiply_add(load_real(x, direction + here), (real)part, load_real(x, preconditioned + here)), x,
-        direction + here);
-    }
-    FILL_GHOSTS(direction + here, level.size[0]);
-  }
 }
 
 // q = A p

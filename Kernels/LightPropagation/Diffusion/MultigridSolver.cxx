@@ -1,7 +1,5 @@
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 
-#include "LightPropagation/Diffusion/ConjugateGradients.h"
-
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
 #include "Device/Sizes.h"
@@ -9,6 +7,8 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace tyndall
@@ -29,6 +29,36 @@ constexpr std::size_t VisitedTwice = 2;
 /// Fraction of each of two visits' correction that is applied. With it the preconditioner stays positive even if one
 /// visit overshoots by up to a factor of 2.5, as it does where voxels of unequal coefficients are joined.
 constexpr float PartOfVisit = 0.8f;
+
+constexpr int MostIterations = 300;
+/// Number of iterations within which the residual must halve; otherwise the iteration stops.
+constexpr int Patience = 12;
+/// Factor by which the bound on the root mean square is looser than that in the preconditioner's norm.
+constexpr double Looser = 10.0;
+constexpr double Negligible = 1e-12; ///< residual relative to the first one that is negligible
+
+/// Whether a residual is above its bound and still falling. To be called once per iteration.
+class StagnationTest
+{
+public:
+  explicit StagnationTest(double most)
+    : Most(most)
+  {
+  }
+
+  /// @param square  squared norm of the residual
+  bool operator()(double square)
+  {
+    this->SinceHalved = square < 0.25 * this->Smallest ? 0 : this->SinceHalved + 1;
+    this->Smallest = this->SinceHalved == 0 ? square : this->Smallest;
+    return square > this->Most && this->SinceHalved < Patience;
+  }
+
+private:
+  double Most; ///< squared
+  double Smallest = std::numeric_limits<double>::infinity();
+  int SinceHalved = 0; ///< iterations
+};
 }
 
 MultigridSolver::MultigridSolver(Device& device, const Domain& domain, const std::array<bool, 3>& periodic)
@@ -284,9 +314,16 @@ void MultigridSolver::VisitTwice(std::size_t l)
     level.right, level.guess);
   this->Run(revisit, level);
   this->Visit(l);
-  cl::Kernel join = this->Kernel("level_join");
-  With(join, level.layout, level.kept, PartOfVisit, level.better);
-  this->Run(join, level);
+  this->ScaleAndAdd(level, level.kept, PartOfVisit, level.better);
+}
+
+/// values = added + part values
+void MultigridSolver::ScaleAndAdd(
+  const Level& level, const Buffer<float>& added, float part, const Buffer<float>& values)
+{
+  cl::Kernel kernel = this->Kernel("scale_and_add");
+  With(kernel, level.layout, added, part, values);
+  this->Run(kernel, level);
 }
 
 /// Runs kernels of the finest level whose work-groups leave partial sums. @return their sum over all ranks
@@ -323,9 +360,7 @@ void MultigridSolver::Turn(double part)
 {
   this->TheDomain.Collective([&] {
     const Level& finest = this->Levels.front();
-    cl::Kernel kernel = this->Kernel("turn_direction");
-    With(kernel, finest.layout, finest.better, this->Direction, static_cast<float>(part));
-    this->Run(kernel, finest);
+    this->ScaleAndAdd(finest, finest.better, static_cast<float>(part), this->Direction);
   });
   if (this->Exchange)
   {
@@ -371,17 +406,38 @@ int MultigridSolver::GoOn(ExactValues& values, double unit, double reduction, do
   return this->Iterate(values, this->Step(values, 0.0, unit), unit, reduction, leftAtMost);
 }
 
+/// Conjugate gradients (Hestenes and Stiefel 1952) until the bounds are met or the residual stagnates.
 /// @param left  r r of the initial residual, in units
 int MultigridSolver::Iterate(ExactValues& values, double left, double unit, double reduction, double leftAtMost)
 {
-  const GradientSteps steps = { [&] { return this->Precondition(); }, [&](double part) { this->Turn(part); },
-    [&] { return this->Curvature(); }, [&](double length) { return this->Step(values, length, unit); } };
+  double rz = this->Precondition();
+  this->FirstResidual = std::max(this->FirstResidual, rz);
+  const double enough = std::max(rz * reduction * reduction, this->FirstResidual * Negligible * Negligible);
+  const double least = Looser * reduction;
   const auto voxels = static_cast<double>(this->TheDomain.Whole().VoxelCount());
-  const int iterations = SolveCg(steps, left, { reduction, leftAtMost, voxels }, this->FirstResidual);
+  StagnationTest tooLarge(std::min(leftAtMost * leftAtMost * voxels, least * least * left));
+  bool tooMuchLeft = tooLarge(left);
+  double part = 0.0;
+  int iteration = 0;
+  while (iteration < MostIterations && rz > 0.0 && std::isfinite(rz) && (rz > enough || tooMuchLeft))
+  {
+    this->Turn(part);
+    const double curvature = this->Curvature();
+    if (!(curvature > 0.0))
+    {
+      break;
+    }
+    left = this->Step(values, rz / curvature, unit);
+    tooMuchLeft = tooLarge(left);
+    const double next = this->Precondition();
+    part = next / rz;
+    rz = next;
+    ++iteration;
+  }
   if (this->Exchange)
   {
     this->Exchange->FillGhosts(values);
   }
-  return iterations;
+  return iteration;
 }
 }

@@ -42,7 +42,8 @@ public:
   /// Layout of the arrays below: the block and its ghost voxels (BlockWithGhosts::Held).
   const MultigridLevel& Rows() const { return this->Levels.front().layout; }
 
-  /// Conductances of low faces, [axis][rows], 0 at the grid's end; also those of the ghost voxels above the block.
+  /// Conductances of low faces, [axis][rows]: of the block's voxels and of the ghost voxels above it; 0 at the low end of
+  /// the arrays' box, unless the block spans a periodic axis from end to end.
   Buffer<float>& Conductance() { return this->Levels.front().conductance; }
   Buffer<float>& Loss() { return this->Levels.front().loss; }
   /// Computes the matrices of the coarser levels. To be called after conductances and losses were written. Collective.
@@ -77,7 +78,7 @@ public:
 private:
   struct Level
   {
-    MultigridLevel layout;
+    MultigridLevel layout = {};
     /// `inverse`: damping / diagonal. `guess`, `better`: before and after a Jacobi step. `kept`: correction of the
     /// first of two visits; empty if the level is visited once.
     Buffer<float> conductance, loss, inverse, right, guess, better, kept;
@@ -98,6 +99,7 @@ private:
   void Restrict(Level& fine, Level& coarse);
   void Prolong(const Level& coarse, Level& fine);
   void Smooth(Level& level);
+  void ScaleAndAdd(const Level& level, const Buffer<float>& added, float part, const Buffer<float>& values);
   int Iterate(ExactValues& values, double left, double unit, double reduction, double leftAtMost);
   double Begin(const ExactValues& values, double unit);
   void Turn(double part);
@@ -114,6 +116,7 @@ private:
   /// Inverse of the coarsest level as a matrix, where that is faster (level_answers); else empty.
   Buffer<float> Answers;
   ExactValues Sums;
-  double FirstResidual = 0.0; ///< r z of the first solve, in units
+  /// Largest r z at the begin of a solve, in units: later solves do not reduce the residual below rounding relative to it
+  double FirstResidual = 0.0;
 };
 }

@@ -40,18 +40,15 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
     for (ulong i = part; i < end_of_part; i += step)
     {
       const real p = load_real(i, path);
-#if SCATTERS
-      const real s = load_real(i, sigma_s);
-#else
-      const real s = (real)0.0f;
-#endif
+      const real s = SCATTERS ? load_real(i, sigma_s) : (real)0.0f;
       const real f = multiply_add(p, (real)per_volume, load_real(i, fluence));
       absorbed_of_part = multiply_add(fmax(load_real(i, sigma_t) - s, (real)0.0f), p, absorbed_of_part);
       scattered_of_part = multiply_add(s, p, scattered_of_part);
       store_real(f, i, fluence);
-#if SCATTERS
-      store_real(s * p * (per_volume * M_1_PI_F * 0.25f), i, source);
-#endif
+      if (SCATTERS)
+      {
+        store_real(s * p * (per_volume * M_1_PI_F * 0.25f), i, source);
+      }
       store_real((real)0.0f, i, path);
     }
     absorbed += absorbed_of_part;

@@ -137,8 +137,11 @@ double FaceBalance::ReflectChannel(int iteration, std::size_t c, double given)
     all += found[cell];
   }
   // Mixing helps in thin media, where the diffusion systems do not predict the path of reflected light.
-  const std::vector<double> next = iteration > 0 ? this->BackMixing[c].Next(came, found) : found;
-  std::copy(next.begin(), next.end(), begin);
+  if (iteration > 0)
+  {
+    found = this->BackMixing[c].Next(came, found);
+  }
+  std::copy(found.begin(), found.end(), begin);
   return all > 0.0 ? differs / all : 0.0;
 }
 
