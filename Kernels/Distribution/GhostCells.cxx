@@ -81,27 +81,46 @@ GhostCells::GhostCells(Communicator& communicator, const std::vector<VoxelBox>& 
 }
 
 template <class Value>
+std::vector<Value> GhostCells::Exchange(const std::vector<Value>& owned, int arrays) const
+{
+  auto next = owned.begin();
+  for (const Shared& cells : this->Owned)
+  {
+    const auto end = next + static_cast<std::ptrdiff_t>(arrays * cells.places.size());
+    this->Comm.Send(cells.rank, MessageTag::GhostCells, std::vector<Value>(next, end));
+    next = end;
+  }
+  std::vector<Value> copied;
+  for (const Shared& cells : this->Copied)
+  {
+    const std::vector<Value> message = this->Comm.Receive<Value>(cells.rank, MessageTag::GhostCells);
+    copied.insert(copied.end(), message.begin(), message.end());
+  }
+  return copied;
+}
+
+template std::vector<float> GhostCells::Exchange(const std::vector<float>&, int) const;
+
+template <class Value>
 void GhostCells::Fill(Value* values, int arrays, std::size_t stride) const
 {
-  for (const Shared& owned : this->Owned)
+  std::vector<Value> owned;
+  for (const Shared& cells : this->Owned)
   {
-    std::vector<Value> message;
-    message.reserve(owned.places.size() * arrays);
     for (int array = 0; array < arrays; ++array)
     {
       const Value* const from = values + array * stride;
-      std::transform(owned.places.begin(), owned.places.end(), std::back_inserter(message),
+      std::transform(cells.places.begin(), cells.places.end(), std::back_inserter(owned),
         [from](std::size_t place) { return from[place]; });
     }
-    this->Comm.Send(owned.rank, MessageTag::GhostCells, message);
   }
-  for (const Shared& copied : this->Copied)
+  const std::vector<Value> copied = this->Exchange(owned, arrays);
+  auto next = copied.begin();
+  for (const Shared& cells : this->Copied)
   {
-    const std::vector<Value> message = this->Comm.Receive<Value>(copied.rank, MessageTag::GhostCells);
-    auto next = message.begin();
     for (int array = 0; array < arrays; ++array)
     {
-      for (const std::size_t place : copied.places)
+      for (const std::size_t place : cells.places)
       {
         values[array * stride + place] = *next++;
       }
@@ -120,24 +139,6 @@ std::vector<std::size_t> GhostCells::PlacesOf(const std::vector<Shared>& shared)
     places.insert(places.end(), cells.places.begin(), cells.places.end());
   }
   return places;
-}
-
-std::vector<float> GhostCells::Exchange(const std::vector<float>& owned) const
-{
-  auto next = owned.begin();
-  for (const Shared& cells : this->Owned)
-  {
-    const auto end = next + static_cast<std::ptrdiff_t>(cells.places.size());
-    this->Comm.Send(cells.rank, MessageTag::GhostCells, std::vector<float>(next, end));
-    next = end;
-  }
-  std::vector<float> copied;
-  for (const Shared& cells : this->Copied)
-  {
-    const std::vector<float> message = this->Comm.Receive<float>(cells.rank, MessageTag::GhostCells);
-    copied.insert(copied.end(), message.begin(), message.end());
-  }
-  return copied;
 }
 
 std::array<bool, 3> GoesRoundAlone(

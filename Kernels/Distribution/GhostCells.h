@@ -27,7 +27,7 @@ public:
   template <class Value>
   void Fill(Value* values, int arrays, std::size_t stride) const;
 
-  // The same for one array that is kept elsewhere.
+  // The same for arrays that are kept elsewhere.
 
   std::vector<std::size_t> OwnedPlaces() const
   {
@@ -37,9 +37,10 @@ public:
   {
     return PlacesOf(this->Copied);
   } ///< indices of this rank's ghost cells
-  /// @param owned  values at OwnedPlaces()
-  /// @return values at CopiedPlaces(). Collective
-  std::vector<float> Exchange(const std::vector<float>& owned) const;
+  /// @param owned  values at OwnedPlaces(); of several arrays one after the other for each rank that has copies
+  /// @return values at CopiedPlaces(), in the same order by owner. Collective
+  template <class Value>
+  std::vector<Value> Exchange(const std::vector<Value>& owned, int arrays = 1) const;
 
 private:
   /// The cells exchanged with one other rank.

@@ -3,7 +3,12 @@
 
 #include "BlocksOfLight.h"
 
+#include "LightPropagation/Problem/ScatteringOrders.h"
+
+#include <algorithm>
+#include <array>
 #include <string>
+#include <vector>
 
 using namespace blocks_of_light;
 
@@ -139,6 +144,31 @@ TEST_F(PeriodicInBlocks, ConvergeAsTheWholeInColour)
   settings.directionsPerFace = 9;
   settings.periodic = { false, true, false };
   ExpectInUnevenBlocks(whole, LitFromOutside(), settings);
+}
+
+/// With coarse-mesh DSA, whose cells wrap around too.
+TEST_F(PeriodicInBlocks, ConvergeAsTheWholeOnCells)
+{
+  for (const std::array<bool, 3>& periodic :
+    std::vector<std::array<bool, 3>>{ { true, false, true }, { true, true, true } })
+  {
+    RandomMedium whole(Grid{ { 12, 11, 13 } }, 1, 1.0f, 54);
+    std::fill(whole.absorption.begin(), whole.absorption.end(), 0.01f);
+    std::fill(whole.scattering.begin(), whole.scattering.end(), 0.2f);
+    whole.absorption[7] = 0.3f;
+    whole.Emit(0.3f);
+    PropagationSettings settings;
+    settings.directionsPerFace = 4;
+    settings.periodic = periodic;
+    settings.emissionError = 0.0;
+    ASSERT_EQ(
+      ChooseIterationScheme(PropagationProblem(whole.medium, {}, settings, {})), IterationScheme::CoarseMeshDsa);
+    const LightField expected = SolveConservative(GetDevice(), whole.medium, {}, settings);
+    const LightField found = LightOfAll(GetDevice(), Uneven(whole.medium.grid), whole, {}, settings);
+    EXPECT_LT(RelativeRmse(found.fluence, expected.fluence), settings.tolerance);
+    EXPECT_NEAR(found.convergence.size(), expected.convergence.size(), 1);
+    EXPECT_LT(found.balance.RelativeError(1), 1e-5);
+  }
 }
 
 TEST_F(PeriodicInBlocks, AreTheWholeVoxelByVoxel)

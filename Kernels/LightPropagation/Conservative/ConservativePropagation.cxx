@@ -306,16 +306,11 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
   const Illumination& illumination, const PropagationSettings& settings)
 {
   const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
-  const IterationScheme how = ChooseIterationScheme(problem);
   // Plane-parallel blocks may still differ from each other; then the voxel solver is used.
   const bool varies = !domain.IsEmpty() && !IsPlaneParallel(medium, illumination, settings);
   if (problem.IsSlab() || !domain.Any(varies))
   {
     return "layers, which it solves in the cosine alone";
-  }
-  if (how == IterationScheme::SourceIteration && FastestScheme(problem) != how)
-  {
-    return "many scattering orders in thin voxels round a periodic axis, which it accelerates";
   }
   if (MayHaveEmissionPeaks(problem))
   {

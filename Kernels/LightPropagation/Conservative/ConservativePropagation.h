@@ -31,7 +31,7 @@ namespace tyndall
 /// (SweepInBlocks.h), and all decisions and sums are global, so that the light equals that of a serial solve, to
 /// rounding or, accelerated, to the tolerance. A rank holds its block, a halo of one voxel if the source is linear, and
 /// values by cell of the box faces if these reflect or face power is requested. Not available on several ranks: exact
-/// rays for localised emission, coarse-mesh DSA with periodic axes, the plane-parallel solver (ReasonNotToDecompose).
+/// rays for localised emission, the plane-parallel solver (ReasonNotToDecompose).
 ///
 /// Collective.
 /// @param domain  the decomposed grid

@@ -12,8 +12,8 @@
 namespace tyndall
 {
 /// The low-order solve of one channel (DiffusionSystem.h, numerics.md, section 7) on a domain. Each rank sets up the
-/// balance of its own voxels from its block and ghosts; all ranks solve it together (MultigridSolver.h). Constructor and
-/// functions are collective unless stated otherwise.
+/// balance of its own voxels from its block and ghosts; all ranks solve it together (MultigridSolver.h). Constructor
+/// and functions are collective unless stated otherwise.
 class DiffusionSolver
 {
 public:

@@ -269,27 +269,44 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
 #endif
 }
 
+// Power through face d of the box that the medium sends by the solution, before reflection at the face; `share` is the
+// voxel's remainder_of_borders() for the face.
+static exact sent_by_medium(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
+  const int* next, float passes, float share)
+{
+  const exact light = fluence + drive_out(layout, arrays, d, i);
+  return passes * face_area(layout, d / 2) * light + share + passing(layout, arrays, d, i, next, true);
+}
+
+// Net outgoing power through face d of the box by the solution.
+static exact power_of_border(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
+  const int* next, const int* at, float share)
+{
+  const int axis = d / 2;
+  const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+  const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
+#if FACES
+  const float area = face_area(layout, axis);
+  const face_factors factors = reflecting_face(layout, d, passes);
+  const exact ofMedium = sent_by_medium(layout, arrays, fluence, d, i, next, passes, share);
+  return factors.ofMedium * ofMedium - factors.ofLight * area * coming_in(layout, arrays, FaceGiven, d, at);
+#else
+  const exact light = fluence + drive_out(layout, arrays, d, i);
+  return passes * face_area(layout, axis) * (light - layout->incoming[d] / layout->halfRange) + share +
+    passing(layout, arrays, d, i, next, true);
+#endif
+}
+
 // Net outgoing power through face d of voxel i by the solution; `share` is the voxel's remainder_of_borders() for each
 // face of the box.
 static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, const float* share)
 {
-  const int axis = d / 2;
   if (is_border(layout, at, d))
   {
-    const float tau = arrays->sigma_t[i] * layout->spacing[axis];
-    const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
-    const exact light = fluence[i] + drive_out(layout, arrays, d, i);
-#if FACES
-    const float area = face_area(layout, axis);
-    const face_factors factors = reflecting_face(layout, d, passes);
-    const exact ofMedium = passes * area * light + share[d] + passing(layout, arrays, d, i, next, true);
-    return factors.ofMedium * ofMedium - factors.ofLight * area * coming_in(layout, arrays, FaceGiven, d, at);
-#endif
-    return passes * face_area(layout, axis) * (light - layout->incoming[d] / layout->halfRange) + share[d] +
-      passing(layout, arrays, d, i, next, true);
+    return power_of_border(layout, arrays, fluence[i], d, i, next, at, share[d]);
   }
-  if (layout->size[axis] == 1)
+  if (layout->size[d / 2] == 1)
   {
     return 0;
   }
@@ -300,17 +317,14 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
 
 #if FACES
 // Outgoing power through face d of the box by the solution, before reflection at the face (numerics.md, Eq. (76c)).
-static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
-  int d, int i, const int* next, const int* at, float share)
+static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
+  const int* next, const int* at, float share)
 {
-  const int axis = d / 2;
-  const float tau = arrays->sigma_t[i] * layout->spacing[axis];
+  const float tau = arrays->sigma_t[i] * layout->spacing[d / 2];
   const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
-  const float area = face_area(layout, axis);
-  const exact ofMedium =
-    passes * area * (fluence[i] + drive_out(layout, arrays, d, i)) + share + passing(layout, arrays, d, i, next, true);
+  const exact ofMedium = sent_by_medium(layout, arrays, fluence, d, i, next, passes, share);
   const exact albedo = layout->albedo[d], passes_in = passes / layout->halfRange;
-  const exact given = area * coming_in(layout, arrays, FaceGiven, d, at);
+  const exact given = face_area(layout, d / 2) * coming_in(layout, arrays, FaceGiven, d, at);
   return (ofMedium + given * (1 - passes_in)) / (1 - albedo * (1 - passes_in));
 }
 #endif
@@ -379,23 +393,28 @@ __kernel void diffusion_border_balance(DiffusionLayout layout, const __global fl
 
 // Computes the power through the box's faces by the solution; completes the values of diffusion_border_balance.
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* swept, const __global float* flat_source, const __global float* conductance,
-  const __global float* currents, const __global float* passed, const __global float* model,
-  const __global float* pattern, const __global float* source, const __global float* path,
-  const __global float* given_flux, __global float* faces, const __global exact* fluence, __global exact* borders)
+  const __global float* passed, const __global float* given_flux, __global float* faces, const __global exact* fluence,
+  __global exact* borders)
 {
   BORDER_VOXEL(layout)
-  ARRAYS_OF_CHANNEL
+  const diffusion_arrays arrays = { .sigma_t = sigma_t + layout.firstT,
+    .sigma_a = sigma_a + layout.first,
+    .passed = passed + (PASSING ? 6 * (ulong)layout.first : 0),
+    .givenFlux = given_flux + (MOMENTS ? 3 * (ulong)layout.first : 0),
+    .stride = layout.stride,
+    .faces = faces };
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
   for (int d = 0; d < 6; ++d)
   {
     if (is_border(&layout, at, d))
     {
       __global exact* face = borders + BorderValues * cell_of_face(&layout, at, d);
-      const float none[6] = { 0.0f };
-      face[BorderNet] = power_of_face(&layout, &arrays, fluence, d, i, next, at, none);
+      face[BorderNet] = power_of_border(&layout, &arrays, fluence[i], d, i, next, at, 0.0f);
 #if FACES
       faces[FaceLeaves * face_cells(&layout) + cell_of_face(&layout, at, d)] =
-        (float)power_leaving(&layout, &arrays, fluence, d, i, next, at, (float)face[BorderWholeShare]);
+        (float)power_leaving(&layout, &arrays, fluence[i], d, i, next, at, (float)face[BorderWholeShare]);
 #endif
     }
   }
@@ -426,17 +445,16 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
 
 // Computes the moments of degree 1 and stores them behind the fluence, [x, y, z][voxel]: those of the sweep, plus the
 // difference of the solution's net flux from the model's.
-__kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
-  const __global float* swept, const __global float* flat_source, const __global float* conductance,
-  const __global float* currents, const __global float* passed, const __global float* model,
-  const __global float* pattern, const __global float* source, const __global float* path,
-  const __global float* given_flux, const __global float* faces, MomentPlaces places, int channel,
-  __global exact* fluence)
+// moments  of the sweep's path, W length
+// model    see diffusion_model
+__kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* conductance,
+  const __global float* model, const __global float* moments, MomentPlaces places, int channel, __global exact* fluence)
 {
   VOXEL(layout.size)
   const int count = layout.size[0] * layout.size[1] * layout.size[2];
-  const __global float* moments = path;
-  ARRAYS_OF_CHANNEL
+  const int at[3] = { x, y, z };
+  int next[6];
+  find_neighbours(layout.size, x, y, z, i, next);
   const ulong line = (ulong)z * layout.size[1] + y;
   for (int axis = 0; axis < 3; ++axis)
   {

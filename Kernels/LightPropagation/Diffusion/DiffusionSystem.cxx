@@ -111,8 +111,7 @@ cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
   cl::Kernel kernel = this->Kernel(name);
   With(kernel, this->Layout, *inputs.sigma_t, *inputs.sigma_a, *inputs.swept, this->FlatSource,
     this->Solver.Conductance(), *inputs.partialCurrents, this->Passed(), this->Model, this->Pattern, *inputs.source,
-    *inputs.path, inputs.givenFlux ? *inputs.givenFlux : *inputs.given,
-    this->Inputs.faces ? *this->Inputs.faces : this->Model, more...);
+    *inputs.path, this->GivenFlux(), this->Faces(), more...);
   return kernel;
 }
 
@@ -170,8 +169,7 @@ void DiffusionSystem::Balance()
   const auto [x, y, z] = this->Solver.Scratch();
   cl::Kernel powers = this->RowsKernel("diffusion_face_powers");
   With(powers, this->Layout, *inputs.sigma_t, *inputs.sigma_a, this->FlatSource, this->Solver.Conductance(),
-    *inputs.partialCurrents, this->Passed(), this->Model, this->Pattern,
-    inputs.givenFlux ? *inputs.givenFlux : *inputs.given, *x, *y, *z);
+    *inputs.partialCurrents, this->Passed(), this->Model, this->Pattern, this->GivenFlux(), *x, *y, *z);
   this->RunRows(powers);
   cl::Kernel balance = this->RowsKernel("diffusion_balance");
   With(balance, this->Layout, *inputs.given, *x, *y, *z, this->Solver.Right());
@@ -184,8 +182,10 @@ void DiffusionSystem::FindFlux()
 {
   if (this->HasMoments())
   {
-    cl::Kernel flux = this->OnArrays(
-      "diffusion_found_flux", this->Inputs.moments, cl_int(this->Inputs.channel), this->Solution.Handle());
+    const Arrays& inputs = this->Inputs;
+    cl::Kernel flux = this->Kernel("diffusion_found_flux");
+    With(flux, this->Layout, this->Solver.Conductance(), this->Model, *inputs.path, inputs.moments,
+      cl_int(inputs.channel), this->Solution.Handle());
     this->Run(flux);
   }
 }
@@ -216,7 +216,10 @@ double DiffusionSystem::Absorbed() const
 
 DiffusionSystem::BorderSums DiffusionSystem::SumBorders(const std::function<bool(int face, int u, int v)>& counts)
 {
-  cl::Kernel kernel = this->OnArrays("diffusion_outflow", this->Solution.Handle(), this->Borders.Handle());
+  const Arrays& inputs = this->Inputs;
+  cl::Kernel kernel = this->Kernel("diffusion_outflow");
+  With(kernel, this->Layout, *inputs.sigma_t, *inputs.sigma_a, this->Passed(), this->GivenFlux(), this->Faces(),
+    this->Solution.Handle(), this->Borders.Handle());
   this->RunBorder(kernel);
   const std::vector<double> borders = this->Borders.Read();
   BorderSums sums;

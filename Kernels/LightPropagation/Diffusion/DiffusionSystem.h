@@ -157,6 +157,12 @@ public:
 private:
   std::size_t Values() const { return this->HasMoments() ? 4 * this->Count : this->Count; }
   bool HasMoments() const { return this->Inputs.swept != this->Inputs.sigma_t; }
+  // Arrays that kernels read only if they exist; else any other.
+  const Buffer<float>& GivenFlux() const
+  {
+    return this->Inputs.givenFlux ? *this->Inputs.givenFlux : *this->Inputs.given;
+  }
+  const Buffer<float>& Faces() const { return this->Inputs.faces ? *this->Inputs.faces : this->Model; }
   const Buffer<float>& Passed() const { return this->Inputs.passed ? *this->Inputs.passed : this->Model; }
   void FindSkins();
   const Buffer<float>& ExtinctionInRows();

@@ -42,8 +42,8 @@ public:
   /// Layout of the arrays below: the block and its ghost voxels (BlockWithGhosts::Held).
   const MultigridLevel& Rows() const { return this->Levels.front().layout; }
 
-  /// Conductances of low faces, [axis][rows]: of the block's voxels and of the ghost voxels above it; 0 at the low end of
-  /// the arrays' box, unless the block spans a periodic axis from end to end.
+  /// Conductances of low faces, [axis][rows]: of the block's voxels and of the ghost voxels above it; 0 at the low end
+  /// of the arrays' box, unless the block spans a periodic axis from end to end.
   Buffer<float>& Conductance() { return this->Levels.front().conductance; }
   Buffer<float>& Loss() { return this->Levels.front().loss; }
   /// Computes the matrices of the coarser levels. To be called after conductances and losses were written. Collective.
@@ -116,7 +116,7 @@ private:
   /// Inverse of the coarsest level as a matrix, where that is faster (level_answers); else empty.
   Buffer<float> Answers;
   ExactValues Sums;
-  /// Largest r z at the begin of a solve, in units: later solves do not reduce the residual below rounding relative to it
+  /// Largest r z at the begin of a solve, in units: later solves do not reduce the residual below its rounding error
   double FirstResidual = 0.0;
 };
 }

@@ -340,12 +340,6 @@ bool MayBeAccelerated(const PropagationSettings& settings, bool scatters)
   return settings.source == PropagationSource::Linear ||
     (settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0 && scatters);
 }
-
-/// Scheme that a distributed solve uses in place of the serial one: cells do not wrap around periodic axes.
-IterationScheme AvailableInBlocks(IterationScheme serial, const PropagationSettings& settings)
-{
-  return serial == IterationScheme::CoarseMeshDsa && settings.IsPeriodic() ? IterationScheme::SourceIteration : serial;
-}
 }
 
 double OrdersNeeded(const PropagationProblem& problem)
@@ -378,7 +372,7 @@ std::array<int, 3> CellHalvings(const Grid& grid, double thickest)
   return halvings;
 }
 
-IterationScheme FastestScheme(const PropagationProblem& problem)
+IterationScheme ChooseIterationScheme(const PropagationProblem& problem)
 {
   const PropagationSettings& settings = problem.Settings();
   if (!MayBeAccelerated(settings, problem.Traits().scatters))
@@ -391,11 +385,5 @@ IterationScheme FastestScheme(const PropagationProblem& problem)
     return IterationScheme::SourceIteration;
   }
   return CanUseCells(scene) ? IterationScheme::CoarseMeshDsa : IterationScheme::Dsa;
-}
-
-IterationScheme ChooseIterationScheme(const PropagationProblem& problem)
-{
-  const IterationScheme fastest = FastestScheme(problem);
-  return problem.TheDomain().IsSerial() ? fastest : AvailableInBlocks(fastest, problem.Settings());
 }
 }

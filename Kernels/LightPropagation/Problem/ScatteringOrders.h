@@ -24,9 +24,7 @@ enum class IterationScheme
   CoarseMeshDsa,
   Dsa, ///< diffusion synthetic acceleration on the voxels; Conservative/Acceleration/DiffusionAcceleration.h
 };
-/// Fastest scheme for a serial solve.
-IterationScheme FastestScheme(const PropagationProblem& problem);
-/// Fastest scheme available on the problem's domain.
+/// The fastest scheme. Collective.
 IterationScheme ChooseIterationScheme(const PropagationProblem& problem);
 
 /// Base-2 logarithm of the number of voxels per cell of coarse-mesh DSA along each axis, such that a cell is at most
