@@ -1,7 +1,7 @@
 #include "Comparison/ComparedRun.h"
 
-#include "LatticeBoltzmann/CubicVoxels.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
+#include "LatticeBoltzmann/LatticeSettings.h"
 
 #include <memory>
 

@@ -3,7 +3,7 @@
 #include "Comparison/ConvergedLight.h"
 #include "Device/CompilationListener.h"
 #include "Device/Errors.h"
-#include "LatticeBoltzmann/CubicVoxels.h"
+#include "LatticeBoltzmann/LatticeSettings.h"
 #include "LightPropagation/Published/PublishedModel.h"
 #include "Numerics/NumberText.h"
 

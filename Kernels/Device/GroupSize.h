@@ -3,6 +3,8 @@
 #include "Device/Defines.h"
 #include "Device/Device.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 
 namespace tyndall
@@ -16,6 +18,17 @@ inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
     : dimensions == 1    ? cl::NDRange(1)
     : dimensions == 2    ? cl::NDRange(1, 1)
                          : cl::NDRange(1, 1, 1);
+}
+
+/// Runs a kernel over a range of work-items; over an empty range nothing.
+inline void Launch(
+  Device& device, const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group = cl::NullRange)
+{
+  const std::size_t* sizes = items.get();
+  if (std::find(sizes, sizes + items.dimensions(), 0) == sizes + items.dimensions())
+  {
+    device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, items, group);
+  }
 }
 
 /// Work-items per group in sums by groups (Numerics/GroupSum.cl); 1 on a CPU.

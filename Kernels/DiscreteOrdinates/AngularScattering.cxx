@@ -2,6 +2,7 @@
 
 #include "Device/Batches.h"
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Device/Sizes.h"
 #include "TyndallKernelSources.h"
 
@@ -144,7 +145,7 @@ void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<floa
     With(scatter, radiance, source, this->Moments, this->Weights, this->Spread, this->Angles, sigma_s, light.order,
       light.fluence, light.flux, scale, cl_ulong(this->Voxels), cl_ulong(OrdinateStride(this->Voxels)),
       cl_ulong(begin * Block));
-    this->TheDevice.Queue().enqueueNDRangeKernel(scatter, cl::NullRange, cl::NDRange(size), cl::NDRange(GroupSize));
+    Launch(this->TheDevice, scatter, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }
 
@@ -159,7 +160,7 @@ void AngularScattering::ScatterByPasses(const Buffer<float>& radiance, const Buf
     {
       With(along, radiance, source, this->MatrixRows[i], sigma_s, cl_int(this->Lanes[i][0]), cl_int(this->Lanes[i][1]),
         cl_ulong(OrdinateStride(this->Voxels)));
-      this->TheDevice.Queue().enqueueNDRangeKernel(along, cl::NullRange, cl::NDRange(this->Voxels), cl::NullRange);
+      Launch(this->TheDevice, along, cl::NDRange(this->Voxels));
     }
   });
 }
@@ -174,7 +175,7 @@ void AngularScattering::Gather(const Buffer<float>& radiance, const OrdinatesLig
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     With(gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux, cl_ulong(this->Voxels),
       cl_ulong(OrdinateStride(this->Voxels)), cl_ulong(begin * Block));
-    this->TheDevice.Queue().enqueueNDRangeKernel(gather, cl::NullRange, cl::NDRange(size), cl::NDRange(GroupSize));
+    Launch(this->TheDevice, gather, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }
 }

@@ -1,6 +1,7 @@
 #include "DiscreteOrdinates/ChannelArrays.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Emission/UncollidedEmission.h"
 #include "LightPropagation/Sweep/SweepOfDevice.h"
@@ -114,30 +115,22 @@ void ChannelArrays::AddLamps(
     path = Buffer<float>(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
   });
   const SweepMaker sweeps = [&](const SweepRequest& request) { return this->SweepOf(sigma_t, periodic, request); };
-  std::unique_ptr<LampsInBlocks> nearLamps;
-  const auto volumeHere = [&] {
-    UncollidedVolume volume = { this->TheDevice, this->Layout, sigma_t, periodic, sweeps,
-      { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
-    if (!this->Scene.domain.IsSerial())
-    {
-      this->SpreadOverRanks(volume, nearLamps);
-    }
-    return volume;
-  };
+  const UncollidedVolume volume = { this->TheDevice, this->Scene.domain, this->Layout, sigma_t, periodic, sweeps,
+    { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
   const LampTarget target = { source, this->Scale, this->Direct, this->Light };
   const double all = static_cast<double>(this->Scene.lamps.size() + (this->OfVacuum ? 1 : 0));
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
   {
     this->Scene.domain.Collective([&] { path.Fill(0.0f); });
     const Monitor ofLamp = OfPart(monitor, i / all, (i + 1) / all);
-    this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volumeHere(), ofLamp), result.ledger);
+    this->CountLamp(UncollidedLamp(this->Scene.lamps[i]).AddTo(volume, ofLamp), result.ledger);
     this->Scene.domain.Collective([&] { scattering->Add(this->Scene.lamps[i], path, sigma_s, target); });
   }
   if (this->OfVacuum)
   {
     this->Scene.domain.Collective([&] { path.Fill(0.0f); });
     const Monitor ofVacuum = OfPart(monitor, (all - 1.0) / all, 1.0);
-    this->CountLamp(this->AddVacuum(volumeHere(), *scattering, sigma_s, target, ofVacuum), result.ledger);
+    this->CountLamp(this->AddVacuum(volume, *scattering, sigma_s, target, ofVacuum), result.ledger);
   }
   if (this->Scene.uncollided.IsThere())
   {
@@ -186,26 +179,6 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
       this->Layout, sigma_t, periodic, request, this->BlocksWorkspace);
   });
   return sweep;
-}
-
-/// Adds the light of lamps. Rays are those of the whole grid; beams of lamps cross from rank to rank.
-/// @param nearLamps  for sigma_t of the volume; made on first use
-void ChannelArrays::SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<LampsInBlocks>& nearLamps) const
-{
-  const Domain& domain = this->Scene.domain;
-  volume.whole = &domain.Whole();
-  volume.together = [&domain](const std::function<void()>& work) { domain.Collective(work); };
-  volume.followLamp = [this, &domain, &nearLamps, periodic = volume.periodic, &sigma_t = volume.sigma_t](
-                        const SweepVolume& ofChannels, const tyndall::Light& lamp, const Monitor& monitor) {
-    if (!nearLamps)
-    {
-      nearLamps = std::make_unique<LampsInBlocks>(
-        this->TheDevice, domain.Comm(), domain.Partition(), periodic, this->Layout, sigma_t);
-    }
-    const SweepTally tally = nearLamps->Deposit(ofChannels, lamp, monitor);
-    // The tally already is a sum over ranks, but an empty block may not know the power of the channel.
-    return SumOf(domain, IsFirstThatHas(domain.Comm(), domain.Partition()) ? tally : SweepTally());
-  };
 }
 
 /// Adds light from another solver.
@@ -281,8 +254,7 @@ void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double facto
   const Buffer<float> even(this->TheDevice, scattered, "the last light");
   cl::Kernel add = this->TheDevice.Kernel("add_even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
   With(add, source, even, cl_ulong(OrdinateStride(this->Voxels)));
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    add, cl::NullRange, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
+  Launch(this->TheDevice, add, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
   this->TheDevice.Finish(); // the values go
 }
 
@@ -299,8 +271,7 @@ void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger
     const Buffer<float> values(this->TheDevice, emission, "emission");
     cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
     With(even, source, values, cl_ulong(OrdinateStride(this->Voxels)));
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      even, cl::NullRange, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
+    Launch(this->TheDevice, even, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
     this->TheDevice.Finish(); // the values go
   });
   ledger.Emit(0, 4.0 * Pi * this->Scene.domain.Sum(sum * this->Layout.grid.VoxelVolume()));

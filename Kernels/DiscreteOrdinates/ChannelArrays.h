@@ -7,7 +7,6 @@
 #include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
-#include "LightPropagation/Uncollided/Lamps/LampsInBlocks.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include "Device/Monitor.h"
@@ -75,7 +74,6 @@ private:
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
   std::unique_ptr<SweepOperator> SweepOf(
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request);
-  void SpreadOverRanks(UncollidedVolume& volume, std::unique_ptr<LampsInBlocks>& nearLamps) const;
   void AddGiven(const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source,
     OrdinatesResult& result);
   void CountLamp(const SweepTally& tally, EnergyLedger& ledger);

@@ -9,7 +9,6 @@
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
-#include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/Problem/GridAxes.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
@@ -91,6 +90,7 @@ OrdinatesGuess OrdinatesWarmStart::GuessOf(int channel, bool begins) const
 {
   OrdinatesGuess guess;
   guess.keeps = true;
+  guess.begins = begins;
   if (begins)
   {
     const std::vector<float>& all = this->Kept->scattered;
@@ -124,7 +124,7 @@ void OrdinatesWarmStart::Finish(LightField& light, KeptLight* kept)
 struct SolvedScene
 {
   const Domain& domain;
-  const Medium& medium; ///< one voxel of vacuum if the block is empty
+  const Medium& medium; ///< of this rank's block
   const MediumTraits& traits;
   const Illumination& shining;
   int channels;
@@ -190,12 +190,6 @@ LightField SolveChannels(
     diverged = diverged || found.diverged;
     light.leftOut = c == 0 ? Words(scene, far, angles.phase.Terms() == 1, settings) : light.leftOut;
   }
-  if (domain.IsEmpty())
-  {
-    light.fluence.clear();
-    light.fluenceDirect.clear();
-    light.netFlux.clear();
-  }
   DescribeLight(light, device, far);
   light.doubts = DoubtsOf(settings, thickest, domain.Any(!domain.IsEmpty() && scene.medium.phase.Varies()));
   Judge(settings, diverged, domain, scene.medium, light);
@@ -247,9 +241,8 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
   const PropagationProblem problem(domain, medium, illumination, AsPropagation(settings));
   Illumination shining = problem.Shining();
   shining.uncollided = UncollidedKnown(domain, shining.uncollided);
-  const Medium solved = domain.IsEmpty() ? VoxelOfVacuum(problem.Whole()) : problem.TheMedium();
   LightField light = SolveChannels(device,
-    { problem.TheDomain(), solved, problem.Traits(), shining, problem.Channels(),
+    { problem.TheDomain(), problem.TheMedium(), problem.Traits(), shining, problem.Channels(),
       problem.Settings().directionsPerFace },
     settings, monitor, kept);
   domain.Collective([&] { problem.Undo(light); });

@@ -1,6 +1,7 @@
 #include "DiscreteOrdinates/LampScattering.h"
 
 #include "Device/Defines.h"
+#include "Device/GroupSize.h"
 #include "DiscreteOrdinates/LampScatteringShared.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
@@ -121,8 +122,8 @@ void LampScattering::AddAlong(
     ways);
   With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table,
     static_cast<cl_ulong>(OrdinateStride(this->TheGrid.VoxelCount())), info, ways);
-  this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, voxels);
-  this->TheDevice.Queue().enqueueNDRangeKernel(scatter, cl::NullRange, voxels);
+  Launch(this->TheDevice, add, voxels);
+  Launch(this->TheDevice, scatter, voxels);
   target.scale.Fill(1.0f);
   this->TheDevice.Finish();
 }
@@ -145,24 +146,23 @@ void LampScattering::Add(
   info.perVolume = static_cast<float>(1.0 / this->TheGrid.VoxelVolume());
   const cl::NDRange voxels(this->TheGrid.VoxelCount());
   const cl_ulong stride = OrdinateStride(this->TheGrid.VoxelCount());
-  cl::CommandQueue& queue = this->TheDevice.Queue();
   cl::Kernel add = this->Kernel("add_lamp", false);
   With(add, path, target.light.fluence, target.direct, target.light.flux, cl_int(target.light.flux.Size() > 0), info);
-  queue.enqueueNDRangeKernel(add, cl::NullRange, voxels);
+  Launch(this->TheDevice, add, voxels);
   if (parallel)
   {
     const Buffer<float> parts(this->TheDevice, this->PartsAlong({ place.x, place.y, place.z }), "the phase function");
     cl::Kernel scatter = this->Kernel("scatter_parallel", false);
     With(scatter, target.source, target.scale, path, sigma_s, parts, stride, info.perVolume);
     const cl::NDRange all(this->TheGrid.VoxelCount(), this->Groups.Count());
-    queue.enqueueNDRangeKernel(scatter, cl::NullRange, all);
+    Launch(this->TheDevice, scatter, all);
     this->TheDevice.Finish(); // the parts go
   }
   else
   {
     cl::Kernel scatter = this->Kernel("scatter_from_place", false);
     With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table, stride, info);
-    queue.enqueueNDRangeKernel(scatter, cl::NullRange, voxels);
+    Launch(this->TheDevice, scatter, voxels);
   }
   target.scale.Fill(1.0f);
   this->TheDevice.Finish();

@@ -25,7 +25,8 @@ namespace tyndall
 struct OrdinatesGuess
 {
   bool keeps = false;        ///< keep the light of this solve
-  std::vector<float> values; ///< as OrdinatesResult::left; empty: no first guess
+  bool begins = false;       ///< there is a first guess
+  std::vector<float> values; ///< as OrdinatesResult::left
   double firstScattered = 0.0;
   double rate = 0.0;
 };
@@ -34,7 +35,7 @@ struct OrdinatesGuess
 struct OrdinatesScene
 {
   const Domain& domain;
-  const Medium& medium; ///< of this rank's block; one voxel of vacuum if that is empty
+  const Medium& medium; ///< of this rank's block
   int channel = 0;
   std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
   IncomingRadiance incoming; ///< empty: no light is incident

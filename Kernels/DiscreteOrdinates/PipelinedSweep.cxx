@@ -10,13 +10,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr int AllFaces = 0x3f; ///< bits of the faces -x, +x, ... +z
-
-/// Bits of the faces of this rank's block that are interior to the grid; all faces for an empty block.
+/// Bits of the faces of this rank's block that are interior to the grid.
 int InnerFacesOf(const Domain& domain)
 {
   const VoxelBox& block = domain.Own();
-  int inner = !domain.IsEmpty() ? 0 : AllFaces;
+  int inner = 0;
   for (int axis = 0; axis < 3; ++axis)
   {
     inner |= block.first[axis] > 0 ? 1 << (2 * axis) : 0;
@@ -275,7 +273,7 @@ FacePowers PipelinedSweep::Apply(const Buffer<float>& radiance, const Buffer<flo
   this->TakeFromAround();
   this->TheDomain.Collective([&] {
     this->Failure.Throw();
-    if (!this->TheDomain.IsEmpty() && !this->Failure.broken)
+    if (!this->Failure.broken)
     {
       this->Sweep.Count(powers);
     }

@@ -114,7 +114,7 @@ private:
     this->BeginWarm();
   }
 
-  bool IsWarm() const { return !this->Scene.guess.values.empty(); }
+  bool IsWarm() const { return this->Scene.guess.begins; }
 
   /// Adds the scattering source of the guess to the first-collision source (numerics.md, section 6.4).
   void BeginWarm()
@@ -133,6 +133,7 @@ private:
       this->Arrays.ScatterEvenly(this->Guess, 1.0, this->Out());
     });
     this->GoesOn += this->Arrays.PowersOf(this->Guess, false).scattered;
+    this->CountsGuess = true;
     this->Record.BeginWarm(this->Scene.guess.rate);
   }
 
@@ -148,7 +149,7 @@ private:
       return;
     }
     double guessed = 0.0;
-    if (!this->Guess.empty())
+    if (std::exchange(this->CountsGuess, false))
     {
       guessed = this->Arrays.PowersOf(this->Guess, false).scattered;
       this->Scene.domain.Collective([&] { this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out()); });
@@ -281,6 +282,7 @@ private:
   OrdinatesRecord Record;
   OrdinatesResult Result;
   std::vector<float> Guess;                             ///< W / length^2, until subtracted again
+  bool CountsGuess = false;                             ///< the source contains that of the guess
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0; ///< W
   double WasOnTheWay = 0.0;                             ///< W, before the last sweep
 };

@@ -17,7 +17,8 @@ constexpr double LongestChord = 1e6; ///< in voxel edges, for directions along w
 
 std::size_t FaceVoxels(const Grid& grid, int axis)
 {
-  return grid.VoxelCount() / static_cast<std::size_t>(grid.size[axis]);
+  const PlaneAxes across = AcrossAxis(axis);
+  return static_cast<std::size_t>(grid.size[across.u]) * static_cast<std::size_t>(grid.size[across.v]);
 }
 
 double FaceArea(const Grid& grid, int axis)
@@ -162,7 +163,7 @@ void UpwindSweep::EnterByCells(int axis) const
   const std::size_t cells = FaceVoxels(this->TheGrid, axis);
   With(enter, this->Faces[axis], this->At.reflecting->in, this->Up, axis,
     cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis).first), cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis + 1).first));
-  this->TheDevice.Queue().enqueueNDRangeKernel(enter, cl::NullRange, cl::NDRange(cells, this->Groups.Count()));
+  Launch(this->TheDevice, enter, cl::NDRange(cells, this->Groups.Count()));
 }
 
 void UpwindSweep::LeaveByCells() const
@@ -176,7 +177,7 @@ void UpwindSweep::LeaveByCells() const
     }
     With(leave, this->Faces[axis], this->At.reflecting->out, this->Across, this->Up, axis, this->Groups.Count(),
       cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis).first), cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis + 1).first));
-    this->TheDevice.Queue().enqueueNDRangeKernel(leave, cl::NullRange, cl::NDRange(FaceVoxels(this->TheGrid, axis)));
+    Launch(this->TheDevice, leave, cl::NDRange(FaceVoxels(this->TheGrid, axis)));
   }
 }
 
@@ -222,7 +223,7 @@ void UpwindSweep::FillFace(int axis, const IncomingRadiance& incoming, FacePower
   const Buffer<float> table(this->TheDevice, values, "light through the faces");
   cl::Kernel fill = this->Kernel("fill_face");
   With(fill, this->Faces[axis], table, cl_int(voxels));
-  this->TheDevice.Queue().enqueueNDRangeKernel(fill, cl::NullRange, cl::NDRange(this->Groups.Count() * voxels));
+  Launch(this->TheDevice, fill, cl::NDRange(this->Groups.Count() * voxels));
   this->TheDevice.Finish(); // the table goes
 }
 
@@ -237,7 +238,7 @@ void UpwindSweep::Count(FacePowers& powers) const
     }
     const std::array<int, 2> size = this->FaceSize(axis);
     With(sum, this->Faces[axis], this->Sums[axis], cl_int(size[1]));
-    this->TheDevice.Queue().enqueueNDRangeKernel(sum, cl::NullRange, cl::NDRange(this->Groups.Count() * size[0]));
+    Launch(this->TheDevice, sum, cl::NDRange(this->Groups.Count() * size[0]));
     const std::vector<float> sums = this->Sums[axis].Read();
     for (std::size_t i = 0; i < sums.size(); ++i)
     {

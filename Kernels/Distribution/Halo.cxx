@@ -111,6 +111,8 @@ Field Halo::Spread(const Field& own, std::vector<float>& values) const
   }
   const std::size_t count = this->Own().VoxelCount() * static_cast<std::size_t>(own.components);
   values = this->Spread(std::vector<float>(own.values, own.values + count), own.components);
-  return { values.data(), own.components };
+  Field known = own;
+  known.values = values.data();
+  return known;
 }
 }

@@ -15,8 +15,8 @@ namespace tyndall
 LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
   const Illumination& illumination, const LatticeSettings& settings, const Monitor& monitor)
 {
-  CheckLattice(domain, medium, ior, illumination, settings);
-  const LatticeProblem problem(device, domain, medium, ior, illumination, settings);
+  CheckLattice(domain, medium, ior, settings);
+  const LatticeProblem problem(domain, medium, ior, illumination, settings);
   const Uncollided uncollided = FindUncollided(device, problem, settings, OfPart(monitor, 0.0, 0.1));
   LightField light = BeginLight(problem, settings);
   double thickest = 0.0;
@@ -36,7 +36,7 @@ LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Med
   const std::vector<Photon>& photons, const Illumination& illumination, const LatticeSettings& settings,
   const Monitor& monitor)
 {
-  CheckLattice(domain, medium, ior, illumination, settings);
+  CheckLattice(domain, medium, ior, settings);
   domain.Collective([&] { RequireOpenAxes(settings); });
   MarchSettings march;
   const bool needs = !domain.IsEmpty() && NeedsFirstMoments(medium, settings);

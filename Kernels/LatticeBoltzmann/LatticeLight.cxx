@@ -3,10 +3,8 @@
 #include "Device/DeviceWords.h"
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
-#include "LatticeBoltzmann/CubicVoxels.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
-#include "LightPropagation/Distributed/BlockScene.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"
@@ -50,53 +48,31 @@ void CheckThickness(const Medium& medium)
   }
 }
 
-void CheckOwnBlock(const Domain& domain, const Medium& medium, const Field& ior, const Illumination& illumination,
-  const LatticeSettings& settings)
+void CheckOwnBlock(const Domain& domain, const Medium& medium, const Field& ior, const LatticeSettings& settings)
 {
   Check(settings);
   const std::string refused = domain.IsSerial() ? "" : NotInBlocks(settings);
   Require(refused.empty(), "A lattice that is spread over ranks is not solved with " + refused + ".");
-  Check(illumination);
-  CheckFaceAlbedo(illumination, settings.periodic);
   if (domain.IsEmpty())
   {
     return;
   }
-  Check(medium);
   CheckCubes(medium.grid);
   CheckThickness(medium);
   CheckIndex(ior, medium.grid);
-  Check(illumination.uncollided, medium);
-  Require(medium.grid.size == domain.Own().size,
-    "The medium of rank " + std::to_string(domain.Rank()) + " does not have the size of its block.");
-}
-
-/// Compares, over ranks, the settings that light propagation maps do not have.
-void RequireSameLattice(
-  const Domain& domain, const Field& ior, const Illumination& illumination, const LatticeSettings& settings)
-{
-  std::vector<double> numbers = { 1.0 * settings.directions, settings.tolerance, 1.0 * settings.interleaves };
-  for (const Rgb& face : illumination.faceAlbedo)
-  {
-    numbers.insert(numbers.end(), face.begin(), face.end());
-  }
-  RequireSame(domain.Comm(), "settings of the lattice", true, numbers);
-  RequireSame(domain.Comm(), "whether there is a refractive index", !domain.IsEmpty(), { ior.values ? 1.0 : 0.0 });
 }
 }
 
-void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, const Illumination& illumination,
-  const LatticeSettings& settings)
+void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, const LatticeSettings& settings)
 {
   domain.Collective([&] {
-    domain.Partition().Check();
     Require(static_cast<int>(domain.Partition().blocks.size()) == domain.Comm().Ranks(),
       "There is not a block for each rank.");
-    CheckOwnBlock(domain, medium, ior, illumination, settings);
+    CheckOwnBlock(domain, medium, ior, settings);
   });
-  RequireSame(domain, medium, illumination, AsPropagation(settings, 0));
-  RequireSameLattice(domain, ior, illumination, settings);
-  RequireSink(domain, medium, illumination, AsPropagation(settings));
+  RequireSame(domain.Comm(), "settings of the lattice", true,
+    { 1.0 * settings.directions, settings.tolerance, 1.0 * settings.interleaves });
+  RequireSame(domain.Comm(), "whether there is a refractive index", !domain.IsEmpty(), { ior.values ? 1.0 : 0.0 });
 }
 
 bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)
@@ -225,7 +201,7 @@ void FinishLight(LightField& light, const Device& device, const LatticeProblem& 
   domain.Collective([&] { DescribeLight(light, device, anisotropic, settings, thickest); });
   if (settings.scheme == LatticeScheme::Conservative)
   {
-    JudgeBalance(light, domain, problem.TheMedium());
+    JudgeBalance(light, domain, problem.OwnMedium());
   }
   problem.Undo(light);
   domain.Collective([&] { JudgeLight(light, illumination, settings); });

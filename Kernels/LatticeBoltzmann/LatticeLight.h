@@ -15,10 +15,9 @@
 
 namespace tyndall
 {
-/// Checks the arguments of SolveLatticeBoltzmann. Collective.
+/// Checks what the lattice requires beyond LatticeProblem. Collective.
 /// @throws InvalidInput under the conditions listed at SolveLatticeBoltzmann
-void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, const Illumination& illumination,
-  const LatticeSettings& settings);
+void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, const LatticeSettings& settings);
 
 /// Whether some voxel is so optically thick that the place of first scattering within it matters, and the scheme
 /// resolves it.

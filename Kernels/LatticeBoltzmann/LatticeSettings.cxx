@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "Numerics/NumberText.h"
 
+#include <algorithm>
 #include <string>
 
 namespace tyndall
@@ -15,6 +16,12 @@ void SetLevel(LatticeSettings& settings, int directions, double tolerance)
   SetUnlessChosen(settings.directions, byDefault.directions, directions);
   SetUnlessChosen(settings.tolerance, byDefault.tolerance, tolerance);
 }
+}
+
+bool HasCubicVoxels(const Grid& grid)
+{
+  const auto [least, most] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
+  return *most <= 1.001 * *least;
 }
 
 void Check(const LatticeSettings& settings)

@@ -2,6 +2,7 @@
 
 #include "Light/Quality.h"
 #include "LightPropagation/PropagationSettings.h"
+#include "Medium/Grid.h"
 
 #include <array>
 #include <string>
@@ -50,6 +51,9 @@ struct LatticeSettings
       this->maximumSteps == 0 && !this->interleaves;
   }
 };
+
+/// Whether voxels are cubes to 0.1%, as the lattice requires.
+bool HasCubicVoxels(const Grid& grid);
 
 /// @throws InvalidInput if `directions` is not 6 or 18, a number is out of its range or the tolerance is not positive
 void Check(const LatticeSettings& settings);

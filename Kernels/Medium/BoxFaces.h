@@ -35,7 +35,8 @@ inline BoxFaceLayout LayoutOfFace(const Grid& grid, int face)
   BoxFaceLayout layout = { 0, {} };
   for (int before = 0; before < face; ++before)
   {
-    layout.first += grid.VoxelCount() / grid.size[before / 2];
+    const PlaneAxes across = AcrossAxis(before / 2);
+    layout.first += static_cast<std::size_t>(grid.size[across.u]) * grid.size[across.v];
   }
   const PlaneAxes axes = AcrossAxis(face / 2);
   layout.step[axes.u] = 1;

@@ -78,7 +78,7 @@ void TimeStep(Device& device, bool quick, Table& table, const StepCase& of)
   Uncollided uncollided;
   uncollided.image.fluence = { direct.data(), 1 };
   const Field index = { of.bends ? ior.data() : nullptr, 1 };
-  const LatticeProblem problem(device, Domain(box.medium.grid), box.medium, index, box.light, settings);
+  const LatticeProblem problem(Domain(box.medium.grid), box.medium, index, box.light, settings);
   const LatticeVoxels voxels(problem, settings, uncollided, 0);
   Lattice lattice(device, problem.Box(), settings, voxels);
   const double bytes = BytesOfStep(voxels, of.directions, count);

@@ -505,8 +505,7 @@ TEST_F(LatticeOverRanks, RefusesLightThatDoesNotBalance)
       MediumToCut part = medium.Part(domain.Own());
       part.Attach();
       const LatticeSettings settings = Tight();
-      const LatticeProblem problem(
-        this->GetDevice(), domain, part.scene.medium, part.Index(), part.scene.light, settings);
+      const LatticeProblem problem(domain, part.scene.medium, part.Index(), part.scene.light, settings);
       LightField light = BeginLight(problem, settings);
       light.balance.entered[0] = light.balance.escaped[0] = 2.0;
       const Rgb lostHere = { domain.Rank() == ranks - 1 ? lost * ranks : 0.0, 0.0, 0.0 };

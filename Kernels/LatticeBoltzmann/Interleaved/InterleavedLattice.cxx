@@ -41,7 +41,7 @@ void InterleavedLattice::Begin(const PackedPhotons& packed, int channels)
   this->ToCome.emplace(packed, channels, grid);
   Illumination lit = this->Shining;
   lit.uncollided = this->ToCome->Image();
-  this->Problem.emplace(this->TheDevice, this->TheDomain, this->TheMedium, this->Index, lit, this->Settings);
+  this->Problem.emplace(this->TheDomain, this->TheMedium, this->Index, lit, this->Settings);
   const UncollidedImage& solved = this->Problem->TheIllumination().uncollided;
   const int all = this->Problem->Channels();
   this->Light.fluence.assign(grid.VoxelCount() * static_cast<std::size_t>(all), 0.0f);

@@ -2,8 +2,6 @@
 
 #include "LightPropagation/Sweep/SweepOfDevice.h"
 
-#include <functional>
-
 namespace tyndall
 {
 BlockTransport::BlockTransport(Device& device, const Domain& domain, const VolumeLayout& layout,
@@ -43,23 +41,12 @@ BeyondFaces BlockTransport::FetchBeyond(const Buffer<float>& byFaces)
 UncollidedVolume BlockTransport::VolumeOf(const Deposit& deposit, const AngularBasis* basis)
 {
   const SweepMaker sweeps = [this](const SweepRequest& request) { return this->MakeSweep(request); };
-  UncollidedVolume volume = { this->TheDevice, this->Layout, this->SigmaT, this->Periodic, sweeps, deposit, basis,
-    nullptr };
-  if (this->TheDomain.IsSerial())
+  UncollidedVolume volume = { this->TheDevice, this->TheDomain, this->Layout, this->SigmaT, this->Periodic, sweeps,
+    deposit, basis, nullptr };
+  if (!this->TheDomain.IsSerial())
   {
-    return volume;
+    volume.fetchBeyond = [this](const Buffer<float>& byFaces) { return this->FetchBeyond(byFaces); };
   }
-  volume.whole = &this->TheDomain.Whole();
-  volume.fetchBeyond = [this](const Buffer<float>& byFaces) { return this->FetchBeyond(byFaces); };
-  volume.together = [this](const std::function<void()>& step) { this->TheDomain.Collective(step); };
-  volume.followLamp = [this](const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor) {
-    if (!this->NearLamps)
-    {
-      this->NearLamps = std::make_unique<LampsInBlocks>(this->TheDevice, this->TheDomain.Comm(),
-        this->TheDomain.Partition(), this->Periodic, this->Layout, this->SigmaT);
-    }
-    return this->NearLamps->Deposit(ofChannels, lamp, monitor);
-  };
   return volume;
 }
 }

@@ -7,7 +7,6 @@
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
-#include "LightPropagation/Uncollided/Lamps/LampsInBlocks.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
 #include <array>
@@ -43,7 +42,6 @@ private:
   const std::array<bool, 3> Periodic;
   SweepWorkspace Workspace;
   BlockWorkspace PipelineWorkspace;
-  std::unique_ptr<AcrossFaces> Across;      ///< null: the block is the domain
-  std::unique_ptr<LampsInBlocks> NearLamps; ///< null until first used
+  std::unique_ptr<AcrossFaces> Across; ///< null: the block is the domain
 };
 }

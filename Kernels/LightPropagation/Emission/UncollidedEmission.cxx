@@ -80,7 +80,7 @@ VacuumEmission::VacuumEmission(const SweptDirections& along, std::vector<float> 
 SweepTally VacuumEmission::AddTo(const UncollidedVolume& volume, const Monitor& monitor) const
 {
   Buffer<float> source;
-  volume.Collective([&] {
+  volume.domain.Collective([&] {
     const int functions = volume.basis ? volume.basis->Count() : 1;
     source = Buffer<float>(volume.device, volume.layout.MomentFloats(functions), "what empty voxels emit");
     source.Fill(0.0f);

@@ -21,7 +21,7 @@ constexpr int RaysPerThickEdge = 8;
 SweepTally SweepBeam(
   const UncollidedVolume& volume, const Light& light, bool firstMoments, const Deposit& deposit, const Monitor& monitor)
 {
-  const Grid& grid = volume.Whole();
+  const Grid& grid = volume.domain.Whole();
   const std::array<double, 3> omega = DirectionOf(light);
   const std::vector<int> axes = MarchingAxes(grid, omega);
   Rgb power = light.power; // each marching axis carries an equal part of the beam
@@ -80,7 +80,7 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
     return SweepBeam(volume, light, false, volume.deposit, monitor);
   }
   Buffer<float> path, partialCurrents;
-  volume.Collective([&] {
+  volume.domain.Collective([&] {
     path = Buffer<float>(volume.device, volume.layout.Floats(), "the light of a beam");
     partialCurrents = Buffer<float>(volume.device, volume.layout.Floats(6), "the light of a beam");
     path.Fill(0.0f);

@@ -29,15 +29,15 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
 {
   // a function rather than none: the maps of the opposite marching direction must be cleared, too
   const SweepBoundary dark = [](int, int) { return Rgb{}; };
-  const Grid& grid = volume.Whole();
+  const Grid& grid = volume.domain.Whole();
   const int channels = volume.layout.Groups().front().count; // number of channels that are swept together
   AngularValues values;
-  volume.Collective([&] { values = volume.basis ? along.Values(*volume.basis) : AngularValues(); });
+  volume.domain.Collective([&] { values = volume.basis ? along.Values(*volume.basis) : AngularValues(); });
   SweepTally tally;
   for (int part = 0; part < 6; ++part)
   {
     std::vector<Bundle> bundles;
-    volume.Collective([&] { bundles = along.LitAlong(part / 2, part % 2, isLit); });
+    volume.domain.Collective([&] { bundles = along.LitAlong(part / 2, part % 2, isLit); });
     if (!incoming)
     {
       MoveAsLines(bundles);

@@ -21,7 +21,7 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   }
   const bool parallel = this->Lamp.type == LightType::Directional;
   std::optional<NarrowLight> light;
-  volume.Collective([&] { // a rank without voxels has no basis, and no light of its own
+  volume.domain.Collective([&] { // a rank without voxels has no basis, and no light of its own
     if (volume.basis)
     {
       light.emplace(volume, !parallel);
@@ -55,8 +55,7 @@ SweepTally UncollidedLamp::Put(const UncollidedVolume& volume, const Monitor& mo
     {
       return SweepTally();
     }
-    return volume.followLamp ? volume.followLamp(ofChannels, light, ofGroup)
-                             : DepositLamp(volume.device, ofChannels, light, volume.periodic, ofGroup);
+    return DepositLamp(volume.device, volume.domain, ofChannels, light, volume.periodic, ofGroup);
   };
   return AddByGroups(volume, monitor, add);
 }

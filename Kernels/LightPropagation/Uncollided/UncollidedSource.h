@@ -2,13 +2,15 @@
 
 #include "Device/Device.h"
 #include "Device/Monitor.h"
+#include "Distribution/Domain.h"
 #include "LightPropagation/Angular/AngularBasis.h"
 #include "LightPropagation/Sweep/BeyondFaces.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"
 
-#include <functional>
+#include <array>
+#include <vector>
 
 namespace tyndall
 {
@@ -16,31 +18,20 @@ namespace tyndall
 struct UncollidedVolume
 {
   Device& device;
-  const VolumeLayout& layout;
+  const Domain& domain;
+  const VolumeLayout& layout;   ///< of this rank's block
   const Buffer<float>& sigma_t; ///< 1/length
   const std::array<bool, 3>& periodic;
-  SweepMaker makeSweep; ///< makes sweeps along sets of parallel rays
+  SweepMaker makeSweep; ///< makes sweeps of the domain along sets of parallel rays
   Deposit deposit;
   /// Basis of the angular moments in the deposit's path; null: it has none. If there is one, sources do not deposit net
   /// flux, which the moments contain.
   const AngularBasis* basis = nullptr;
   /// Receives the path integrals of a parallel beam alone, W length, [channel][stride]; null: not wanted.
   const Buffer<float>* beamPath = nullptr;
-  /// Traces the light of a point, spot or rectangle lamp; empty: DepositLamp() (LampBeams.h).
-  std::function<SweepTally(const SweepVolume& ofChannels, const Light& lamp, const Monitor& monitor)> followLamp = {};
-  /// The grid that rays cross, if the medium here is a block of it (`makeSweep` then sweeps all blocks); null: the
-  /// layout's grid.
-  const Grid* whole = nullptr;
-  /// For a block: fetches the power that enters voxels beyond the block's faces; empty: the layout's grid is the whole
-  /// grid.
+  /// On several ranks: fetches the power that enters voxels beyond the block's faces; empty: the block is the domain,
+  /// or first moments are not wanted.
   FetchBeyondFaces fetchBeyond = {};
-  /// For a block: Communicator::Collective of all ranks that share the grid; empty: the grid is serial.
-  std::function<void(const std::function<void()>& work)> together = {};
-
-  /// Runs work that may fail on one rank before a collective sweep: an error on one rank becomes an error on all.
-  /// Collective.
-  void Collective(const std::function<void()>& work) const { this->together ? this->together(work) : work(); }
-  const Grid& Whole() const { return this->whole ? *this->whole : this->layout.grid; }
 };
 
 /// A source of uncollided flux: one lamp, the light through the box's faces, or a localised emission in the medium
@@ -50,9 +41,9 @@ class UncollidedSource
 public:
   virtual ~UncollidedSource() = default;
 
-  /// Adds path integrals, and net flux and first moments if the deposit has arrays for them, to the deposit. Collective
-  /// if the grid is divided into blocks: allocation failures on one rank become errors on all
-  /// (UncollidedVolume::Collective) before the last collective step; errors after it may occur on one rank alone.
+  /// Adds path integrals, and net flux and first moments if the deposit has arrays for them, to the deposit.
+  /// Collective: failures on one rank become errors on all before the last collective step; errors after it may occur
+  /// on one rank alone.
   /// @return incident power, escaped power, and the power still in flight around periodic axes
   virtual SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const = 0;
 

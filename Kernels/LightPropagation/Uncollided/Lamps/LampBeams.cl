@@ -7,7 +7,7 @@
 //   VACUUM         1: a rectangle in parts, each for some voxels; also sums the deposit that vacuum would have and, if
 //                  an axis is periodic (AROUND 1), the deposit of beams before they wrap around it
 //   THIN           optical length of a voxel below which loss is taken as uniform
-//   IN_BLOCK       1: beams are traced in a block of the grid, and stop where they leave it; optional
+//   IN_BLOCK       1: beams are traced in a block of the grid, and stop where they leave it
 //
 // Space around the lamp is divided into six pyramids, one for each direction along an axis. In a pyramid beams lie on a
 // grid of tangents, fine enough that a beam is at most a voxel wide where it leaves the box. A beam advances layer by
@@ -810,6 +810,66 @@ static void write_sums(const lamp_tally* tally, float shone, __global float* sum
   sums[8] = shone;
 }
 
+#if IN_BLOCK
+static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsWay* beam, const __global float* sigma,
+  __global long* path, ulong stride, __global long* cells, __global float* sums)
+{
+  lamp_tally tally;
+  clear_tally(&tally, cells);
+  beam_state state = { beam->layer, beam->step, beam->left, beam->rest, { beam->stays[0], beam->stays[1] },
+    beam->free };
+  float shone = 0.0f, power = 0.0f;
+  if (!beam->begun || lamp->periodic[row->axis])
+  {
+    power = power_of_beam(lamp, row, beam->beam);
+  }
+  if (!beam->begun)
+  {
+    shone = power;
+    tally.entered = row->skipped > 0 ? 0.0f : shone;
+    state = beam_of(shone);
+  }
+  // The remaining power of a beam that has already travelled may be negative by rounding.
+  const bool is_there = beam->begun || shone > 0.0f;
+  beam->begun = true;
+  beam->ended = !is_there ||
+    follow_beam(
+      lamp, row, begin_of(row, beam->beam), tangent_of(row, beam->beam), power, sigma, path, stride, &state, &tally);
+  beam->layer = state.layer;
+  beam->step = state.step;
+  beam->left = state.left;
+  beam->rest = state.rest;
+  beam->stays[0] = state.stays[0];
+  beam->stays[1] = state.stays[1];
+  beam->free = state.free;
+  for (int a = 0; a < 3 && !beam->ended; ++a)
+  {
+    beam->voxel[a] = state.voxel[a];
+  }
+  write_sums(&tally, shone, sums);
+}
+
+// Traces beams through one block of a grid: those that start in it, and those that arrive from other blocks.
+// sigma, path, stride, cells, rows  as in follow_lamp, for the stored voxels of LampInfo
+// beams  replaced by their state when they have left the block, or ended
+// sums   [beam], see write_sums()
+__kernel void follow_lamp_in_block(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
+  ulong stride, __global long* cells, const __global BeamRow* rows, __global BeamOnItsWay* beams, int count,
+  __global float* sums)
+{
+#if ATOMICS
+  const int b = get_global_id(0);
+#else
+  for (int b = 0; b < count; ++b)
+#endif
+  {
+    BeamOnItsWay beam = beams[b];
+    const BeamRow row = rows[beam.row];
+    follow_in_block(&lamp, &row, &beam, sigma + sigma_first, path, stride, cells, sums + b * LampRowSums);
+    beams[b] = beam;
+  }
+}
+#else
 static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global float* sigma, __global long* path,
   ulong stride, __global long* cells, __global float* sums)
 {
@@ -849,3 +909,4 @@ __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigm
     follow_row(&lamp, &row, sigma + sigma_first, path, stride, cells, sums + r * LampRowSums);
   }
 }
+#endif

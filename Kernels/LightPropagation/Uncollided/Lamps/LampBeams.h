@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Device/Monitor.h"
+#include "Distribution/Domain.h"
 #include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"
@@ -13,16 +14,24 @@ namespace tyndall
 ///
 /// Lamps send square beams, at most half a voxel wide where they leave the box and at least 16 across a spot's cone,
 /// each with the power of its solid angle, Eq. (33). A rectangle is divided into parts, each of which lights the voxels
-/// that are far enough away from it, with beams one voxel wide or more; each
-/// voxel's path is then scaled to be exact in vacuum, Eq. (34a). Deposits are summed in 64-bit fixed point, Eq. (35),
-/// so that the sum does not depend on the order of the beams. For a lamp inside the box all of its power is traced.
+/// that are far enough away from it, with beams one voxel wide or more; each voxel's path is then scaled to be exact in
+/// vacuum, Eq. (34a). Deposits are summed in 64-bit fixed point, Eq. (35), so that the sum does not depend on the order
+/// of the beams. For a lamp inside the box all of its power is traced.
 ///
 /// On a periodic axis rays wrap around, in passes with fewer beams at larger distance, until 0.05% of the power is left
 /// (LampPyramids.h). A lamp outside the box then illuminates only the part of the box that it sees directly, once per
 /// period.
 ///
+/// On several ranks, a beam that leaves a block is sent to the rank of the block that it enters (numerics.md, section
+/// 4.9). A beam covers up to four voxels, some of which may belong to another rank: each rank holds sigma_t of its
+/// block and a halo of two voxels, and sends its beams' deposits in the halo to their owners. Deposits agree with those
+/// of a serial run bit for bit, except for the final correction of the power, which is a sum in another order, and,
+/// around periodic axes, except for beams with less than 1e-7 of their initial power, which are dropped.
+///
+/// Collective.
+/// @param volume  this rank's block; the face cells of its deposit are those of the whole grid
 /// @return incident power (for a lamp inside the box: all of its power), escaped power, and the power still in flight
-///   around periodic axes
-SweepTally DepositLamp(Device& device, const SweepVolume& volume, const Light& light,
+///   around periodic axes; of all ranks
+SweepTally DepositLamp(Device& device, const Domain& domain, const SweepVolume& volume, const Light& light,
   const std::array<bool, 3>& periodic, const Monitor& monitor);
 }

@@ -18,7 +18,7 @@ typedef struct
 {
   int size[3];
   int first[3], stored[3];         ///< voxels that the arrays cover: all, or a block and its halo
-  int followed[3], followedEnd[3]; ///< voxels in which beams are traced (LampInBlock.cl)
+  int followed[3], followedEnd[3]; ///< voxels in which beams are traced
   int periodic[3];
   int images[3]; ///< periodic images to either side whose light is corrected together with the rectangle's, by axis
   float spacing[3];

@@ -1,41 +1,97 @@
 #pragma once
 
 #include "Device/Device.h"
+#include "Distribution/Domain.h"
 #include "LightPropagation/Sweep/Deposit.h"
+#include "LightPropagation/Sweep/SweepTally.h"
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
+#include "LightPropagation/Uncollided/Lamps/LampPoints.h"
 #include "LightPropagation/Uncollided/Lamps/LampPyramids.h"
-#include "LightPropagation/Uncollided/Lamps/LampShares.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
 #include "Medium/VoxelBox.h"
 
-#include <glm/vec3.hpp>
-
+#include <algorithm>
 #include <array>
-#include <limits>
+#include <numeric>
 #include <string_view>
 #include <vector>
 
 namespace tyndall
 {
-/// A point source that represents a lamp, or a part of it.
-struct LampPoint
+/// Factors that convert LampShares to fractions of the lamp's power.
+struct LampFactors
 {
-  struct Sphere ///< in lengths from the grid's corner
-  {
-    glm::dvec3 middle = glm::dvec3(0.0);
-    double radius = 0.0;
-  };
-
-  glm::dvec3 place;   ///< position, voxels from the grid's corner
-  double share = 1.0; ///< fraction of the lamp's power
-
-  /// The point illuminates voxels outside the first sphere and inside the second, beyond which the larger part of the
-  /// lamp that was divided into this one takes over.
-  Sphere part, whole = { glm::dvec3(0.0), std::numeric_limits<double>::infinity() };
-  double reach = std::numeric_limits<double>::infinity(); ///< length to which its beams are traced
+  /// For the power that enters, that the medium removes, and that escapes or is still in flight.
+  double in, taken, out;
 };
 
+/// Power balance of a lamp's beams, as fractions of its power.
+struct LampShares
+{
+  std::array<double, 6> in = {}, out = {}; ///< by face
+  double onTheWay = 0.0;                   ///< still in flight around a periodic axis
+  double shone = 0.0;                      ///< emitted into the directions that were traced
+
+  double In() const { return std::accumulate(this->in.begin(), this->in.end(), 0.0); }
+  double Out() const { return std::accumulate(this->out.begin(), this->out.end(), this->onTheWay); }
+
+  /// @param sums  tallies of one row of beams, [LampRowSums]
+  void Count(const BeamRow& row, const float* sums)
+  {
+    // by the marching direction, for light of a lamp inside the box crosses no face on its way in
+    this->in[2 * row.axis + row.up] += sums[0];
+    for (int face = 0; face < 6; ++face)
+    {
+      this->out[face] += sums[1 + face];
+    }
+    this->onTheWay += sums[7];
+    // counts each part of the lamp once: parts of the finest level only
+    this->shone += row.skipped > 0 || row.partFrom > 0.0f ? 0.0 : sums[8];
+  }
+
+  void Add(const LampShares& other)
+  {
+    for (std::size_t face = 0; face < 6; ++face)
+    {
+      this->in[face] += other.in[face];
+      this->out[face] += other.out[face];
+    }
+    this->onTheWay += other.onTheWay;
+    this->shone += other.shone;
+  }
+
+  /// The sum over ranks. Collective.
+  LampShares SumOver(const Domain& domain) const
+  {
+    std::vector<double> values = { this->shone, this->onTheWay };
+    values.insert(values.end(), this->in.begin(), this->in.end());
+    values.insert(values.end(), this->out.begin(), this->out.end());
+    values = domain.Sum(values);
+    LampShares sum;
+    sum.shone = values[0];
+    sum.onTheWay = values[1];
+    std::copy_n(values.begin() + 2, 6, sum.in.begin());
+    std::copy_n(values.begin() + 8, 6, sum.out.begin());
+    return sum;
+  }
+
+  /// @param power  of the lamp, W, by channel; `channels` of these are used
+  SweepTally Times(const Rgb& power, int channels, const LampFactors& factors) const
+  {
+    SweepTally tally;
+    for (int c = 0; c < channels; ++c)
+    {
+      for (int face = 0; face < 6; ++face)
+      {
+        tally.in[face][c] = power[c] * factors.in * this->in[face];
+        tally.out[face][c] = power[c] * factors.out * this->out[face];
+      }
+      tally.onTheWay[c] = power[c] * factors.out * this->onTheWay;
+    }
+    return tally;
+  }
+};
 /// A point, spot or rectangle lamp inside or outside a grid, prepared for the kernels that trace its beams
 /// (numerics.md, sections 5.4 and 5.5).
 class LampOnGrid
@@ -84,11 +140,13 @@ public:
   double Diagonal() const; ///< diagonal of a voxel, length
 
   /// @param source  of LampBeams.cl, or of a file that uses the same options
-  cl::Kernel Kernel(Device& device, const char* name, std::string_view source, const Deposit& deposit) const;
+  /// @param inBlock  option IN_BLOCK of LampBeams.cl
+  cl::Kernel Kernel(
+    Device& device, const char* name, std::string_view source, const Deposit& deposit, bool inBlock = false) const;
   static bool HasAtomics(Device& device) { return device.HasExtension("cl_khr_int64_base_atomics"); }
 
 private:
-  void DivideRectangle();
+  void CountImages();
   bool FollowsAll() const;
 
   Light Lamp;

@@ -69,7 +69,7 @@ void LampSums::AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double f
     units.s[c] = static_cast<float>(lamp.TheLight().power[c] * factor / lamp.UnitsPerLength());
   }
   const auto add = [&](const char* name, const Buffer<float>* sum) {
-    if (!sum)
+    if (!sum || volume.grid.VoxelCount() == 0)
     {
       return;
     }
@@ -98,24 +98,24 @@ void LampSums::AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, cons
   this->TheDevice.Finish(); // the cells may be released
 }
 
-bool LampSums::SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const
+void LampSums::SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const
 {
-  if (!(extinction > 0.0))
-  {
-    return false;
-  }
-  for (int c = 0; c < volume.channels && volume.grid.VoxelCount() > 0; ++c)
+  const bool adds = share > 0.0 && extinction > 0.0 && volume.grid.VoxelCount() > 0;
+  for (int c = 0; c < volume.channels && adds; ++c)
   {
     cl::Kernel add = lamp.Kernel(this->TheDevice, "add_evenly", kernel_source::LampSums, volume.deposit);
     With(add, *volume.deposit.path, cl_ulong(volume.first + c * volume.stride),
       static_cast<float>(lamp.TheLight().power[c] * share / extinction));
     this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(volume.grid.VoxelCount()));
   }
-  return true;
 }
 
 double Extinction(const SweepVolume& volume)
 {
+  if (volume.grid.VoxelCount() == 0)
+  {
+    return 0.0;
+  }
   const std::vector<float> sigma = volume.sigma_t->Read();
   const auto first = sigma.begin() + static_cast<std::ptrdiff_t>(volume.sigma_t_first);
   return std::accumulate(first, first + static_cast<std::ptrdiff_t>(volume.grid.VoxelCount()), 0.0);

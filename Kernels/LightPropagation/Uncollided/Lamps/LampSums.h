@@ -42,9 +42,8 @@ public:
   /// Adds light uniformly to the deposit's path: its limit after many wraps around a box that is periodic along all
   /// axes.
   /// @param share  fraction of the lamp's power
-  /// @param extinction  Extinction() of the whole box
-  /// @return false if the box has no extinction, so that nothing was added
-  bool SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const;
+  /// @param extinction  Extinction() of the whole box; if it is 0, nothing is added
+  void SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const;
 
 private:
   Device& TheDevice;
