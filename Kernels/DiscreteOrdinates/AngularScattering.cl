@@ -7,6 +7,7 @@
 //   ROWS        moments of a voxel, in vectors of REAL_WIDTH: fluence, the terms, net flux
 //   FLUX        1 if net flux is requested; it follows the terms
 //   POSITIVE    1: negative sources are set to 0, and the rest scaled to conserve the scattered power
+#include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Numerics/Numerics.cl"
 
 #define BLOCK 8 // voxels per work-item
@@ -65,34 +66,26 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
     {
       order[i] = moments[i * MOMENTS];
       fluence[i] += moments[i * MOMENTS];
-#if FLUX
-      for (int a = 0; a < 3; ++a)
+      for (int a = 0; FLUX && a < 3; ++a)
       {
         flux[a * voxels + i] += moments[i * MOMENTS + 1 + TERMS + a];
       }
-#endif
     }
   }
 }
 
 // Processes eight voxels by eight directions at once. With POSITIVE, sets negative sources to 0 and records the factor
 // by which the rest must be multiplied to conserve power.
-#if POSITIVE
-#define POSITIVE_PART(b)                     \
-  source##b = fmax(source##b, (float8)0.0f); \
+#define POSITIVE_PART(b)                                            \
+  source##b = POSITIVE ? fmax(source##b, (float8)0.0f) : source##b; \
   power##b = multiply_add8(angle, source##b, power##b);
 #define CLEAR_POWER(b) float8 power##b = (float8)0.0f;
 #define NOTE_SCALE(b)                                                              \
   {                                                                                \
     const float all = sum8(power##b);                                              \
-    if (first + b < voxels)                                                        \
+    if (POSITIVE && first + b < voxels)                                            \
       scale[first + b] = all > 0.0f ? moments[(first + b) * MOMENTS] / all : 0.0f; \
   }
-#else
-#define POSITIVE_PART(b)
-#define CLEAR_POWER(b)
-#define NOTE_SCALE(b)
-#endif
 #if defined(FP_FAST_FMAF) || defined(__FMA__)
 #define multiply_add8(a, b, c) fma(a, b, c)
 #else
@@ -112,9 +105,10 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
 __kernel void scatter_terms(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* spread, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
-  __global float* scale, ulong voxels, ulong stride, ulong begin)
+  __global float* scale, ScatteringVoxels at)
 {
-  const ulong first = begin + get_global_id(0) * BLOCK;
+  const ulong voxels = at.voxels, stride = at.stride;
+  const ulong first = at.begin + get_global_id(0) * BLOCK;
   find_moments(radiance, weights, stride, first, moments);
   add_light(moments, voxels, first, order, fluence, flux);
   const __global float* mine = moments + first * MOMENTS + 1;
@@ -140,9 +134,10 @@ __kernel void scatter_terms(const __global float* radiance, __global float* sour
 __kernel void scatter_matrix(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* matrix, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
-  __global float* scale, ulong voxels, ulong stride, ulong begin)
+  __global float* scale, ScatteringVoxels at)
 {
-  const ulong first = begin + get_global_id(0) * BLOCK;
+  const ulong voxels = at.voxels, stride = at.stride;
+  const ulong first = at.begin + get_global_id(0) * BLOCK;
   find_moments(radiance, weights, stride, first, moments);
   add_light(moments, voxels, first, order, fluence, flux);
   EACH_VOXEL(CLEAR_POWER)
@@ -183,9 +178,10 @@ __kernel void scatter_along(const __global float* radiance, __global float* sour
 
 // Only adds moments to fluence and flux, for a medium that does not scatter.
 __kernel void gather_light(const __global float* radiance, __global float* moments, const __global float* weights,
-  __global float* order, __global float* fluence, __global float* flux, ulong voxels, ulong stride, ulong begin)
+  __global float* order, __global float* fluence, __global float* flux, ScatteringVoxels at)
 {
-  const ulong first = begin + get_global_id(0) * BLOCK;
+  const ulong voxels = at.voxels, stride = at.stride;
+  const ulong first = at.begin + get_global_id(0) * BLOCK;
   find_moments(radiance, weights, stride, first, moments);
   add_light(moments, voxels, first, order, fluence, flux);
 }

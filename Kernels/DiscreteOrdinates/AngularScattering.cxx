@@ -127,6 +127,11 @@ cl::Kernel AngularScattering::Kernel(const char* name) const
       Define("ROWS", this->Rows) + Define("FLUX", this->NetFlux) + Define("POSITIVE", this->Positive));
 }
 
+ScatteringVoxels AngularScattering::VoxelsFrom(std::size_t item) const
+{
+  return { this->Voxels, OrdinateStride(this->Voxels), item * Block };
+}
+
 void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<float>& sigma_s,
   const Buffer<float>& source, const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor) const
 {
@@ -143,8 +148,7 @@ void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<floa
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     With(scatter, radiance, source, this->Moments, this->Weights, this->Spread, this->Angles, sigma_s, light.order,
-      light.fluence, light.flux, scale, cl_ulong(this->Voxels), cl_ulong(OrdinateStride(this->Voxels)),
-      cl_ulong(begin * Block));
+      light.fluence, light.flux, scale, this->VoxelsFrom(begin));
     Launch(this->TheDevice, scatter, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }
@@ -173,8 +177,8 @@ void AngularScattering::Gather(const Buffer<float>& radiance, const OrdinatesLig
   batches.first = FirstBatch;
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
-    With(gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux, cl_ulong(this->Voxels),
-      cl_ulong(OrdinateStride(this->Voxels)), cl_ulong(begin * Block));
+    With(
+      gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux, this->VoxelsFrom(begin));
     Launch(this->TheDevice, gather, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }

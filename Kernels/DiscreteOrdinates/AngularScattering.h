@@ -3,6 +3,7 @@
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
+#include "DiscreteOrdinates/OrdinatesShared.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
 #include <cstddef>
@@ -55,6 +56,7 @@ private:
   void ScatterByPasses(const Buffer<float>& radiance, const Buffer<float>& sigma_s, const Buffer<float>& source,
     const Monitor& monitor) const;
   cl::Kernel Kernel(const char* name) const;
+  ScatteringVoxels VoxelsFrom(std::size_t item) const;
 
   Device& TheDevice;
   PairSums Sums;

@@ -5,17 +5,9 @@
 //   TABLE   values of the phase function at equidistant angles from 0 to pi
 //   WAYS    1: each voxel has a mean direction, whose length is the fraction of the light along it;
 //           0: rays of a lamp
-#include "DiscreteOrdinates/LampScatteringShared.h"
+#include "DiscreteOrdinates/OrdinatesShared.h"
 
 #define MOST_TILT 0.98f // as LampScattering.cxx has it
-
-#if WAYS
-#define WAYS_ARGUMENT , const __global float* ways
-#define ALONG vload3(i, ways)
-#else
-#define WAYS_ARGUMENT
-#define ALONG from_lamp(&lamp, i)
-#endif
 
 // Direction of the light of the lamp in a voxel; 0 in the voxel that contains the lamp, where light is isotropic.
 inline float3 from_lamp(const LampInRays* lamp, ulong i)
@@ -58,10 +50,16 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
+// Mean direction of the light in a voxel.
+inline float3 way_of(const LampInRays* lamp, const __global float* ways, ulong i)
+{
+  return WAYS ? vload3(i, ways) : from_lamp(lamp, i);
+}
+
 //   path     path integrals of the lamp, W length
 //   direct   W / length^2, added to, as are fluence and flux, [x, y, z][voxel], if has_flux
 __kernel void add_lamp(const __global float* path, __global float* fluence, __global float* direct,
-  __global float* flux, int has_flux, LampInRays lamp WAYS_ARGUMENT)
+  __global float* flux, int has_flux, LampInRays lamp, const __global float* ways)
 {
   const ulong i = get_global_id(0), voxels = get_global_size(0);
   const float light = path[i] * lamp.perVolume;
@@ -69,7 +67,7 @@ __kernel void add_lamp(const __global float* path, __global float* fluence, __gl
   direct[i] += light;
   if (has_flux)
   {
-    const float3 along = ALONG;
+    const float3 along = way_of(&lamp, ways, i);
     flux[i] += light * along.x;
     flux[voxels + i] += light * along.y;
     flux[2 * voxels + i] += light * along.z;
@@ -94,17 +92,13 @@ __kernel void scatter_parallel(__global float* source, const __global float* sca
 // power and, as far as no direction becomes negative, the right mean cosine.
 __kernel void scatter_from_place(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* omegas, const __global float* table, ulong stride,
-  LampInRays lamp WAYS_ARGUMENT)
+  LampInRays lamp, const __global float* ways)
 {
   const ulong i = get_global_id(0);
-#if WAYS
-  const float3 mean_way = ALONG;
-  const float directed = fmin(length(mean_way), 1.0f);
-  const float3 along = directed > 0.0f ? normalize(mean_way) : (float3)(0.0f);
+  const float3 mean_way = way_of(&lamp, ways, i);
+  const float directed = WAYS ? fmin(length(mean_way), 1.0f) : 1.0f;
+  const float3 along = !WAYS ? mean_way : directed > 0.0f ? normalize(mean_way) : (float3)(0.0f);
   const float evenly = (1.0f - directed) * path[i] * lamp.perVolume * sigma_s[i] / (4.0f * M_PI_F);
-#else
-  const float3 along = from_lamp(&lamp, i);
-#endif
   const __global float8* of = (const __global float8*)omegas;
   float8 sums = (float8)0.0f, firsts = (float8)0.0f, seconds = (float8)0.0f;
   for (int group = 0; group < GROUPS; ++group)
@@ -122,16 +116,15 @@ __kernel void scatter_from_place(__global float* source, const __global float* s
   // avoids computing its power as a difference that cancels.
   const float tilt = slope > 1e-6f ? clamp(lacking / slope, -MOST_TILT, MOST_TILT) : copysign(MOST_TILT, lacking);
   float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
-#if WAYS
   power *= directed;
-#endif
   for (int group = 0; group < GROUPS; ++group)
   {
     const float8 cosine = along.x * of[4 * group] + along.y * of[4 * group + 1] + along.z * of[4 * group + 2];
     __global float8* to = (__global float8*)source + group * stride + i;
     *to = *to * scale[i] + power * phase_at(table, cosine) * ((float8)1.0f + tilt * cosine);
-#if WAYS
-    *to += evenly;
-#endif
+    if (WAYS)
+    {
+      *to += evenly;
+    }
   }
 }

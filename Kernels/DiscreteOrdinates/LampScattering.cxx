@@ -2,7 +2,7 @@
 
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
-#include "DiscreteOrdinates/LampScatteringShared.h"
+#include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
 #include "Numerics/Vectors.h"
@@ -147,7 +147,8 @@ void LampScattering::Add(
   const cl::NDRange voxels(this->TheGrid.VoxelCount());
   const cl_ulong stride = OrdinateStride(this->TheGrid.VoxelCount());
   cl::Kernel add = this->Kernel("add_lamp", false);
-  With(add, path, target.light.fluence, target.direct, target.light.flux, cl_int(target.light.flux.Size() > 0), info);
+  With(add, path, target.light.fluence, target.direct, target.light.flux, cl_int(target.light.flux.Size() > 0), info,
+    Buffer<float>());
   Launch(this->TheDevice, add, voxels);
   if (parallel)
   {
@@ -161,7 +162,7 @@ void LampScattering::Add(
   else
   {
     cl::Kernel scatter = this->Kernel("scatter_from_place", false);
-    With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table, stride, info);
+    With(scatter, target.source, target.scale, path, sigma_s, this->Omegas, this->Table, stride, info, Buffer<float>());
     Launch(this->TheDevice, scatter, voxels);
   }
   target.scale.Fill(1.0f);

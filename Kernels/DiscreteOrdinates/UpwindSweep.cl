@@ -2,6 +2,7 @@
 // (D9) to (D11)). Radiance is [group][stride][8 directions]. The host defines
 //
 //   REAL_WIDTH  8: a work-item processes the directions of a group; 1: one of them
+#include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Numerics/Numerics.cl"
 
 #define THIN 0.3f // optical length below which the series are accurate to rounding
@@ -44,7 +45,7 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
   return multiply_add(in, transmitted, gain * p1);
 }
 
-// Sweeps layers `begin` to `end` along z, counted in the direction of each group.
+// Sweeps `layers` along z, counted in the direction of each group.
 //   radiance  on entry source relative to scale, W / (length^3 sr); on return mean radiance
 //   scale     factor by voxel for all sources
 //   shares    [group][x, y, z, chord][8]: share of each axis in the incident radiance; length of the mean chord
@@ -52,9 +53,10 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
 //   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: incident before the
 //             sweep, outgoing after it
 __kernel void sweep_upwind(__global float* radiance, const __global float* sigma_t, const __global float* scale,
-  const __global float* shares, const __global int* up, __global float* x, __global float* y, __global float* z, int nx,
-  int ny, int nz, ulong stride, int begin, int end)
+  const __global float* shares, const __global int* up, __global float* x, __global float* y, __global float* z,
+  SweptLayers layers)
 {
+  const int nx = layers.size[0], ny = layers.size[1], nz = layers.size[2];
   const int item = get_global_id(0);
   const int group = item * REAL_WIDTH / 8;
   const int lane = item * REAL_WIDTH % 8;
@@ -63,7 +65,7 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
   const real share_z = load_real((group * 4 + 2) * 8 + lane, shares);
   const real chord = load_real((group * 4 + 3) * 8 + lane, shares);
   const int up_x = up[3 * group], up_y = up[3 * group + 1], up_z = up[3 * group + 2];
-  for (int layer = begin; layer < end; ++layer)
+  for (int layer = layers.begin; layer < layers.end; ++layer)
   {
     const int k = up_z ? layer : nz - 1 - layer;
     __global float* along_y = y + ((ulong)group * nz + k) * nx * 8 + lane;
@@ -73,7 +75,7 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
       __global float* along_x = x + (((ulong)group * nz + k) * ny + j) * 8 + lane;
       __global float* along_z = z + ((ulong)group * ny + j) * nx * 8 + lane;
       const ulong first = ((ulong)k * ny + j) * nx;
-      __global float* cells = radiance + (group * stride + first) * 8 + lane;
+      __global float* cells = radiance + (group * layers.stride + first) * 8 + lane;
       real from_x = load_real(0, along_x);
       for (int column = 0; column < nx; ++column)
       {

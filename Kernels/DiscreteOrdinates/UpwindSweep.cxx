@@ -3,6 +3,7 @@
 #include "Device/Batches.h"
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
+#include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
@@ -133,8 +134,10 @@ void UpwindSweep::SweepGroups(int first, int count, const Buffer<float>& radianc
   Batches batches;
   batches.count = static_cast<std::size_t>(n[2]);
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
-    With(sweep, radiance, sigma_t, scale, this->Shares, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], n[0],
-      n[1], n[2], cl_ulong(OrdinateStride(this->TheGrid.VoxelCount())), cl_int(begin), cl_int(begin + size));
+    const SweptLayers layers = { { n[0], n[1], n[2] }, static_cast<cl_int>(begin), static_cast<cl_int>(begin + size),
+      OrdinateStride(this->TheGrid.VoxelCount()) };
+    With(
+      sweep, radiance, sigma_t, scale, this->Shares, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], layers);
     const std::size_t items = OrdinateLanes / static_cast<std::size_t>(width);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       sweep, cl::NDRange(first * items), cl::NDRange(count * items), GroupOfLargeItems(this->TheDevice));

@@ -240,12 +240,14 @@ static integer lines_up_to(real place, float per_voxel, float before, int count)
 static void add_lines(const turned_scene* s, real got, real aside, float up, real* sums)
 {
   sums[0] += got;
-#if NET_FLUX
+  if (!NET_FLUX)
+  {
+    return;
+  }
   const real part = got * rsqrt(s->spacing[0] * s->spacing[0] + aside * aside + up * up);
   sums[1] += part * s->spacing[0];
   sums[2] += part * aside;
   sums[3] += part * up;
-#endif
 }
 
 // Adds the mean of the rays of fan p that cross adjacent voxels (numerics.md, Eqs. (40a), (40b)), or cells of the face.
@@ -373,12 +375,10 @@ __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* po
       const ulong i = voxel_index(&turned, at);
       path[i] += all;
       halves[i] += first_half;
-#if NET_FLUX
-      for (int k = 0; k < 3; ++k)
+      for (int k = 0; NET_FLUX && k < 3; ++k)
       {
         flux[turned.axis[k] * stride + i] += turned.sign[k] * share * ((const float*)&sums[1 + k])[lane];
       }
-#endif
     }
   }
 }

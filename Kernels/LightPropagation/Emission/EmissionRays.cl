@@ -347,12 +347,10 @@ __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong s
   for (int c = 0; c < CHANNELS; ++c)
   {
     path[c * stride + i] = sums[4 * c] * volume;
-#if NET_FLUX
-    for (int a = 0; a < 3; ++a)
+    for (int a = 0; NET_FLUX && a < 3; ++a)
     {
       flux[(3 * c + a) * stride + i] = sums[4 * c + 1 + a] * volume;
     }
-#endif
   }
 }
 

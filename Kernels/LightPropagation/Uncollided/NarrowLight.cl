@@ -1,6 +1,5 @@
 // Angular moments of light that has a single direction, or nearly one, in each voxel, such as that of lamps. Options:
 //   DEGREE  highest degree of the moments
-//   RAYS    1: the direction in each voxel is that of the net flux; 0: it is the same everywhere
 // One work-item per voxel of a row, row, and channel.
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
@@ -9,7 +8,7 @@
 
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 
-#if RAYS
+// Adds light whose direction in each voxel is that of the net flux.
 // basis    [function][harmonic], AngularBasis.h
 // path     W length, [channel][stride]
 // flux     net flux of the same light, W length, [channel][x, y, z][stride]
@@ -53,8 +52,8 @@ __kernel void add_narrow_moments(MomentPlaces places, const __global float* basi
     }
   }
 }
-#else
 
+// Adds light that has the same direction everywhere.
 // values   of the angular functions in the light's direction, [function]
 __kernel void add_beam_moments(
   MomentPlaces places, const __global float* values, const __global float* path, __global float* moments, ulong stride)
@@ -70,4 +69,3 @@ __kernel void add_beam_moments(
     moments[MOMENT_PLACE(places, q, c, line, x)] += values[q] * power;
   }
 }
-#endif

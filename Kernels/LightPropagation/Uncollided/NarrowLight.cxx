@@ -34,11 +34,10 @@ namespace
 {
 /// Runs a kernel of NarrowLight.cl. Its arguments are the places of the moments, then `arguments`.
 template <class... Arguments>
-void RunOnMoments(Device& device, const VolumeLayout& layout, const AngularBasis& basis, const char* name, bool rays,
+void RunOnMoments(Device& device, const VolumeLayout& layout, const AngularBasis& basis, const char* name,
   const Arguments&... arguments)
 {
-  cl::Kernel kernel =
-    device.Kernel(name, kernel_source::NarrowLight, Define("DEGREE", basis.Degree()) + Define("RAYS", rays));
+  cl::Kernel kernel = device.Kernel(name, kernel_source::NarrowLight, Define("DEGREE", basis.Degree()));
   With(kernel, layout.Places(basis.Count()), arguments...);
   const std::array<int, 3>& size = layout.grid.size;
   device.Queue().enqueueNDRangeKernel(
@@ -52,7 +51,7 @@ void NarrowLight::AddAlong(const std::array<double, 3>& omega) const
   const VolumeLayout& layout = this->Volume.layout;
   const AngularBasis& basis = *this->Volume.basis;
   const Buffer<float> values(this->Volume.device, Floats(basis.At(omega)), "the angular functions");
-  RunOnMoments(this->Volume.device, layout, basis, "add_beam_moments", false, values, *this->To().path,
+  RunOnMoments(this->Volume.device, layout, basis, "add_beam_moments", values, *this->To().path,
     *this->Volume.deposit.path, cl_ulong(layout.Stride()));
 }
 
@@ -67,6 +66,6 @@ void AddNarrowMoments(Device& device, const VolumeLayout& layout, const AngularB
 {
   const Buffer<float> matrix(device, Floats(basis.Matrix()), "the angular functions");
   RunOnMoments(
-    device, layout, basis, "add_narrow_moments", true, matrix, path, flux, moments, cl_ulong(layout.Stride()), peak);
+    device, layout, basis, "add_narrow_moments", matrix, path, flux, moments, cl_ulong(layout.Stride()), peak);
 }
 }

@@ -125,6 +125,8 @@ private:
   Beams Starting(const Rows& rows) const;
   Beams FollowInBlock(
     const Rows& rows, const Buffer<BeamRow>& onDevice, const Beams& beams, LampShares& found, const Monitor& monitor);
+  void Launch(const Buffer<float>& sigmaT, std::size_t sigmaFirst, const Buffer<BeamRow>& rows,
+    const Buffer<BeamOnItsWay>& beams, std::size_t first, std::size_t count, const Buffer<float>& sums);
   std::size_t RowsTogether(const BeamRow& row) const;
   std::size_t BeamsTogether(const BeamRow& row) const;
   void AddToOwners();
@@ -160,8 +162,7 @@ LampBeams::LampBeams(Device& device, const Domain& domain, const SweepVolume& vo
   domain.Collective([&] {
     const std::size_t stride = serial ? volume.stride : this->Box().VoxelCount();
     this->Sums = std::make_unique<LampSums>(device, this->Lamp, volume.deposit, stride, domain.Whole());
-    this->Kernel = this->Lamp.Kernel(
-      device, serial ? "follow_lamp" : "follow_lamp_in_block", kernel_source::LampBeams, volume.deposit, !serial);
+    this->Kernel = this->Lamp.Kernel(device, "follow_lamp", kernel_source::LampBeams, volume.deposit, !serial);
   });
 }
 
@@ -193,6 +194,18 @@ void LampBeams::FollowPoints(const Pass& pass, double factor, const Monitor& mon
   this->Shares.Add(found.SumOver(this->TheDomain));
 }
 
+/// Runs follow_lamp of LampBeams.cl for some rows or, on several ranks, beams.
+void LampBeams::Launch(const Buffer<float>& sigmaT, std::size_t sigmaFirst, const Buffer<BeamRow>& rows,
+  const Buffer<BeamOnItsWay>& beams, std::size_t first, std::size_t count, const Buffer<float>& sums)
+{
+  With(this->Kernel, this->Lamp.Describe(this->Box(), this->TheDomain.Own()), sigmaT, cl_ulong(sigmaFirst),
+    this->Sums->Sums(), cl_ulong(this->Sums->Stride()), this->Sums->Cells(), rows, beams, cl_int(first), cl_int(count),
+    sums);
+  this->TheDevice.Queue().enqueueNDRangeKernel(this->Kernel, cl::NullRange,
+    cl::NDRange(LampOnGrid::HasAtomics(this->TheDevice) ? count : 1), GroupOfLargeItems(this->TheDevice));
+  this->TheDevice.Finish();
+}
+
 /// Traces rows of beams through the whole grid.
 void LampBeams::FollowRows(const Rows& rows, LampShares& found, const Monitor& monitor)
 {
@@ -202,15 +215,10 @@ void LampBeams::FollowRows(const Rows& rows, LampShares& found, const Monitor& m
   }
   const Buffer<BeamRow> onDevice(this->TheDevice, rows, "the beams of a lamp");
   const Buffer<float> sums(this->TheDevice, rows.size() * LampRowSums, "sums");
-  const LampInfo info = this->Lamp.Describe(this->Box(), this->Box());
   for (std::size_t first = 0, count; first < rows.size(); first += count)
   {
     count = std::min(this->RowsTogether(rows[first]), rows.size() - first);
-    With(this->Kernel, info, *this->Volume.sigma_t, cl_ulong(this->Volume.sigma_t_first), this->Sums->Sums(),
-      cl_ulong(this->Sums->Stride()), this->Sums->Cells(), onDevice, cl_int(count), cl_int(first), sums);
-    this->TheDevice.Queue().enqueueNDRangeKernel(this->Kernel, cl::NullRange,
-      cl::NDRange(LampOnGrid::HasAtomics(this->TheDevice) ? count : 1), GroupOfLargeItems(this->TheDevice));
-    this->TheDevice.Finish();
+    this->Launch(*this->Volume.sigma_t, this->Volume.sigma_t_first, onDevice, {}, first, count, sums);
     Report(monitor, static_cast<double>(first + count) / static_cast<double>(rows.size()));
   }
   const std::vector<float> tallies = sums.Read();
@@ -258,18 +266,13 @@ LampBeams::Beams LampBeams::Starting(const Rows& rows) const
 LampBeams::Beams LampBeams::FollowInBlock(
   const Rows& rows, const Buffer<BeamRow>& onDevice, const Beams& beams, LampShares& found, const Monitor& monitor)
 {
-  const LampInfo info = this->Lamp.Describe(this->Box(), this->TheDomain.Own());
   Beams gone;
   for (std::size_t first = 0, count; first < beams.size(); first += count)
   {
     count = std::min(this->BeamsTogether(rows[beams[first].row]), beams.size() - first);
     const Buffer<BeamOnItsWay> some(this->TheDevice, beams.data() + first, count, "beams");
     const Buffer<float> sums(this->TheDevice, count * LampRowSums, "sums");
-    With(this->Kernel, info, this->SigmaT, cl_ulong(0), this->Sums->Sums(), cl_ulong(this->Sums->Stride()),
-      this->Sums->Cells(), onDevice, some, cl_int(count), sums);
-    this->TheDevice.Queue().enqueueNDRangeKernel(this->Kernel, cl::NullRange,
-      cl::NDRange(LampOnGrid::HasAtomics(this->TheDevice) ? count : 1), GroupOfLargeItems(this->TheDevice));
-    this->TheDevice.Finish();
+    this->Launch(this->SigmaT, 0, onDevice, some, 0, count, sums);
     const Beams after = some.Read();
     const std::vector<float> tallies = sums.Read();
     for (std::size_t b = 0; b < count; ++b)

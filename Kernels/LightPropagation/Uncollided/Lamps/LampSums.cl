@@ -5,7 +5,6 @@
 #include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 #include "Numerics/Numerics.cl"
 
-#if VACUUM
 #define DEEPEST 7 // maximum number of halvings of a voxel close to a rectangle
 
 // Solid angle of the rectangle as seen from a point, whose coordinates are along its edges and its normal; 0 from
@@ -178,11 +177,11 @@ __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulo
   const float right = rectangle.path * mean_of_images(&rectangle, voxel);
   const float beams = (float)fixed_path[FIRST_OF_VACUUM * stride + i] / rectangle.scale;
   float gain = beams > 0.0f ? right / beams : 1.0f;
-#if AROUND
-  // Light that has wrapped around an axis more often than the images is not corrected.
-  const float all = (float)fixed_path[i], direct = (float)fixed_path[(FIRST_OF_VACUUM + 1) * stride + i];
-  gain = all > 0.0f ? 1.0f + (gain - 1.0f) * fmin(direct / all, 1.0f) : 1.0f;
-#endif
+  if (AROUND) // light that has wrapped around an axis more often than the images is not corrected
+  {
+    const float all = (float)fixed_path[i], direct = (float)fixed_path[(FIRST_OF_VACUUM + 1) * stride + i];
+    gain = all > 0.0f ? 1.0f + (gain - 1.0f) * fmin(direct / all, 1.0f) : 1.0f;
+  }
   gains[i] = gain;
   if (!(beams > 0.0f) && fixed_path[i] == 0)
   {
@@ -192,10 +191,12 @@ __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulo
     fixed_path[i] = convert_long_sat_rte(right * kept * units_of(extinction, diagonal) * rectangle.scale);
   }
 }
-#define GAIN(i) gains[i]
-#else
-#define GAIN(i) 1.0f
-#endif
+
+// Factor of a voxel's path.
+static float gain_of(const __global float* gains, ulong i)
+{
+  return VACUUM ? gains[i] : 1.0f;
+}
 
 // gains  factor of each voxel, if VACUUM
 // path   W length, [channel][stride], added to
@@ -208,10 +209,9 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
   const int channel = get_global_id(1);
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
   path[first + channel * stride + i] +=
-    (float)fixed_path[i] * unit * GAIN(i) / units_of(sigma[sigma_first + i], diagonal);
+    (float)fixed_path[i] * unit * gain_of(gains, i) / units_of(sigma[sigma_first + i], diagonal);
 }
 
-#if FACE_OUT
 // cells     as in follow_lamp (LampBeams.cl)
 // face_out  W, [channel][cell], added to
 // watts     [channel] of the lamp
@@ -223,9 +223,7 @@ __kernel void add_fixed_cells(
   const float unit = (channel == 0 ? watts.x : channel == 1 ? watts.y : watts.z) / LampPowerUnits;
   face_out[first + channel * stride + i] += (float)cells[i] * unit;
 }
-#endif
 
-#if NET_FLUX
 // fixed_path  as in follow_lamp (LampBeams.cl)
 // flux  W length, [channel][x, y, z][stride], added to
 __kernel void add_fixed_flux(const __global long* fixed_path, __global float* flux, ulong first, ulong stride,
@@ -237,12 +235,10 @@ __kernel void add_fixed_flux(const __global long* fixed_path, __global float* fl
   for (int axis = 0; axis < 3; ++axis)
   {
     flux[3 * (first + channel * stride) + axis * stride + i] += (float)fixed_path[(FIRST_OF_FLUX + axis) * stride + i] *
-      unit * GAIN(i) / units_of(sigma[sigma_first + i], diagonal);
+      unit * gain_of(gains, i) / units_of(sigma[sigma_first + i], diagonal);
   }
 }
-#endif
 
-#if MOMENTS
 // fixed_path  as in follow_lamp (LampBeams.cl)
 // first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
 __kernel void add_fixed_moments(const __global long* fixed_path, __global float* first_moments, ulong first,
@@ -254,14 +250,13 @@ __kernel void add_fixed_moments(const __global long* fixed_path, __global float*
   const float unit = channel == 0 ? units.x : channel == 1 ? units.y : units.z;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const float towards =
-      (float)fixed_path[(1 + axis) * stride + i] * unit * GAIN(i) / units_of(sigma[sigma_first + i], diagonal);
+    const float towards = (float)fixed_path[(1 + axis) * stride + i] * unit * gain_of(gains, i) /
+      units_of(sigma[sigma_first + i], diagonal);
     __global float* of_axis = first_moments + 6 * (first + channel * stride) + 2 * axis * stride + i;
     of_axis[0] += fmax(-towards, 0.0f);
     of_axis[stride] += fmax(towards, 0.0f);
   }
 }
-#endif
 
 // Adds the same path, W length, to every voxel.
 __kernel void add_evenly(__global float* path, ulong first, float each)
