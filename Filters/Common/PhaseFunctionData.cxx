@@ -4,7 +4,7 @@
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Numerics/NumberText.h"
-#include "PhaseFunction/UsedCosines.h"
+#include "PhaseFunction/PhaseOfMedium.h"
 
 #include "vtkCellData.h"
 #include "vtkDataObject.h"

@@ -5,7 +5,7 @@
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
-#include "DiscreteOrdinates/OrdinatesQuality.h"
+#include "DiscreteOrdinates/OrdinatesSettings.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/Ranks.h"

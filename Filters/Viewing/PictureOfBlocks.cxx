@@ -1,6 +1,6 @@
 #include "PictureOfBlocks.h"
 
-#include "Distribution/MessageTags.h"
+#include "Distribution/Communicator.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"

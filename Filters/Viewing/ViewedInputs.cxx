@@ -6,7 +6,7 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
 #include "Medium/BoxFaces.h"
-#include "Medium/GridOfBox.h"
+#include "Medium/VoxelBox.h"
 #include "Viewing/Scene/GridBlock.h"
 #include "vtkMediumRayCaster.h"
 

@@ -5,7 +5,7 @@
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
-#include "Distribution/KeptInBlocks.h"
+#include "Distribution/SharedLight.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"

@@ -48,4 +48,78 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings)
   as.angularDegree = 0; // scattering is by direction, not in moments
   return as;
 }
+
+namespace
+{
+/// Settings of one quality level.
+struct Level
+{
+  int rows; ///< directions along the edge of a cube face
+  int terms;
+  double tolerance;
+};
+
+constexpr Level Draft = { 3, 9, 1e-2 }, Fine = { 8, 49, 1e-4 }, Reference = { 12, 100, 1e-5 };
+
+/// Largest number of rows of directions for which one channel of radiance takes at most half of the memory.
+int RowsThatFit(int rows, int atLeast, std::size_t voxels, double memory)
+{
+  constexpr std::size_t Faces = 6;
+  while (rows > atLeast && static_cast<double>(Faces * rows * rows * sizeof(float) * voxels) > 0.5 * memory)
+  {
+    --rows;
+  }
+  return rows;
+}
+
+/// @param voxels  of the whole grid
+void SetLevel(const Level& level, OrdinatesSettings& settings, std::size_t voxels, bool isIsotropic, double memory)
+{
+  const OrdinatesSettings byDefault;
+  const int rows = RowsThatFit(level.rows, Draft.rows, voxels, memory);
+  SetUnlessChosen(settings.directionsPerFace, byDefault.directionsPerFace, rows * rows);
+  SetUnlessChosen(settings.tolerance, byDefault.tolerance, level.tolerance);
+  if (!isIsotropic)
+  {
+    SetUnlessChosen(settings.terms, byDefault.terms, level.terms);
+  }
+}
+}
+
+OrdinatesSettings AtQuality(
+  const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory)
+{
+  const bool isIsotropic = !domain.Any(!domain.IsEmpty() && !medium.phase.IsIsotropic());
+  const double least = -domain.Max(-static_cast<double>(memory.all));
+  const auto set = [&](const Level& level) {
+    SetLevel(level, settings, domain.Whole().VoxelCount(), isIsotropic, least);
+  };
+  switch (quality)
+  {
+    case Quality::Draft: set(Draft); break;
+    case Quality::Default: break;
+    case Quality::Fine: set(Fine); break;
+    case Quality::Reference: set(Reference); break;
+  }
+  return settings;
+}
+
+std::vector<std::string> Words(const OrdinatesSettings& settings)
+{
+  std::vector<std::string> words = { settings.spiralDirections > 0
+      ? "SpiralDirections = " + std::to_string(settings.spiralDirections)
+      : "DirectionsPerFace = " + std::to_string(settings.directionsPerFace) };
+  if (settings.scattering != OrdinatesScattering::Matrix)
+  {
+    words.push_back("Terms = " + std::to_string(settings.terms));
+  }
+  words.push_back("Tolerance = " + Text("%g", settings.tolerance));
+  return words;
+}
+
+std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light)
+{
+  settings.directionsPerFace = light.directionsPerFace > 0 ? light.directionsPerFace : settings.directionsPerFace;
+  return Words(settings);
+}
 }

@@ -1,8 +1,16 @@
 #pragma once
 
+#include "Distribution/Domain.h"
+#include "Light/LightField.h"
+#include "Light/Quality.h"
+#include "LightPropagation/Problem/AngularDegree.h"
 #include "LightPropagation/PropagationSettings.h"
+#include "Medium/Medium.h"
 
 #include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 namespace tyndall
 {
@@ -44,4 +52,18 @@ bool IsPublished(const OrdinatesSettings& settings);
 
 /// Equivalent settings of light propagation maps, to determine units, channels and axes in the same way.
 PropagationSettings AsPropagation(const OrdinatesSettings& settings);
+
+/// Settings for a quality level: directions, tolerance and, if scattering is anisotropic, terms of the phase function.
+/// Only settings that have their default values are changed. The number of directions is limited so that one channel of
+/// their radiance on the whole grid takes at most half of the smallest memory of all ranks. Collective.
+/// @param medium  of this rank's block
+/// @param memory  of this rank's device
+OrdinatesSettings AtQuality(
+  const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
+
+/// "Name = value" of each setting that a quality level may choose and that has an effect: spiralDirections instead of
+/// directionsPerFace if set, no terms with the full matrix.
+std::vector<std::string> Words(const OrdinatesSettings& settings);
+/// The same with the settings actually used: slabs are solved with more directions (UnvaryingAxes.h).
+std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light);
 }

@@ -1,7 +1,7 @@
 #include "Distribution/BlockPartition.h"
 
 #include "Device/Errors.h"
-#include "Medium/GridOfBox.h"
+#include "Medium/VoxelBox.h"
 
 #include <algorithm>
 #include <string>

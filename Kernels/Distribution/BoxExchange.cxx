@@ -1,7 +1,5 @@
 #include "Distribution/BoxExchange.h"
 
-#include "Distribution/MessageTags.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -65,27 +63,6 @@ std::vector<std::uint8_t> PartOf(const std::vector<std::uint8_t>& values, const 
   return TakeFrom(values, box, part, 1);
 }
 
-std::vector<std::vector<std::size_t>> NumbersOfEach(
-  Communicator& communicator, const BlockPartition& partition, const std::vector<std::vector<std::size_t>>& toEach)
-{
-  std::vector<std::vector<std::size_t>> found(toEach.size());
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    if (partition.blocks[rank].VoxelCount() > 0)
-    {
-      communicator.Send(rank, MessageTag::NumbersOfEach, toEach[rank]);
-    }
-  }
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    if (partition.blocks[rank].VoxelCount() > 0)
-    {
-      found[rank] = communicator.Receive<std::size_t>(rank, MessageTag::NumbersOfEach);
-    }
-  }
-  return found;
-}
-
 std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition& partition,
   const std::vector<VoxelBox>& wanted, const std::vector<float>& own, int components)
 {
@@ -110,39 +87,5 @@ std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition&
     }
   }
   return values;
-}
-
-std::vector<std::int64_t> SumsInBlock(Communicator& communicator, const BlockPartition& partition,
-  const std::vector<VoxelBox>& found, const std::vector<std::int64_t>& values)
-{
-  const int self = communicator.Rank();
-  const VoxelBox& block = partition.blocks.at(self);
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    if (const VoxelBox theirs = Common(found[self], partition.blocks[rank]); rank != self && theirs.VoxelCount() > 0)
-    {
-      communicator.Send(rank, MessageTag::ValuesOfBoxes, TakeFrom(values, found[self], theirs, 1));
-    }
-  }
-  std::vector<std::int64_t> sums(block.VoxelCount(), 0);
-  for (int rank = 0; rank < communicator.Ranks(); ++rank)
-  {
-    const VoxelBox mine = Common(found[rank], block);
-    if (mine.VoxelCount() == 0)
-    {
-      continue;
-    }
-    const std::vector<std::int64_t> taken = rank == self
-      ? TakeFrom(values, found[self], mine, 1)
-      : communicator.Receive<std::int64_t>(rank, MessageTag::ValuesOfBoxes);
-    auto from = taken.begin();
-    ForRows(block, mine, 1, [&](std::size_t place) {
-      for (int x = 0; x < mine.size[0]; ++x)
-      {
-        sums[place + x] += *from++;
-      }
-    });
-  }
-  return sums;
 }
 }

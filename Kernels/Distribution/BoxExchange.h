@@ -19,24 +19,10 @@ std::vector<std::uint8_t> PartOf(const std::vector<std::uint8_t>& values, const 
 void PutPart(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,
   int components);
 
-/// All-to-all exchange of integers, this rank included. Ranks without voxels neither send nor receive. Collective among
-/// the ranks that have voxels.
-/// @param toEach, return  by rank
-std::vector<std::vector<std::size_t>> NumbersOfEach(
-  Communicator& communicator, const BlockPartition& partition, const std::vector<std::vector<std::size_t>>& toEach);
-
 /// Gathers the values of the box that each rank wants, which may reach into other ranks' blocks. Collective.
 /// @param wanted  the box that each rank wants, within the grid; may be empty
 /// @param own  `components` per voxel of this rank's block, x fastest
 /// @return `components` per voxel of the box that this rank wants
 std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition& partition,
   const std::vector<VoxelBox>& wanted, const std::vector<float>& own, int components);
-
-/// The transpose of ValuesInBox: sums, for each rank's block, what all ranks found in their boxes, which may reach into
-/// other ranks' blocks. The numbers are integers, so the order of ranks does not matter. Collective.
-/// @param found  each rank's box, within the grid; may be empty
-/// @param values  one per voxel of this rank's box, x fastest
-/// @return one sum per voxel of this rank's block
-std::vector<std::int64_t> SumsInBlock(Communicator& communicator, const BlockPartition& partition,
-  const std::vector<VoxelBox>& found, const std::vector<std::int64_t>& values);
 }

@@ -1,7 +1,5 @@
 #include "Distribution/BrickedBytes.h"
 
-#include "Distribution/MessageTags.h"
-
 #include <algorithm>
 #include <cstddef>
 

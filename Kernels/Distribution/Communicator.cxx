@@ -2,7 +2,6 @@
 
 #include "Device/Errors.h"
 #include "Distribution/HeldFailure.h"
-#include "Distribution/MessageTags.h"
 
 #include <algorithm>
 #include <exception>

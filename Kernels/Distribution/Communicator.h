@@ -10,6 +10,24 @@
 
 namespace tyndall
 {
+/// Tags of messages between ranks one per kind of message. Sweeps and lattice steps number their
+/// messages from 0 on, below these tags.
+namespace MessageTag
+{
+constexpr int ListsOfWords = 29990;     ///< PictureOfBlocks.cxx
+constexpr int ReceiptsOfDepths = 29991; ///< ShadowsInBlocks.cxx
+constexpr int ColumnsOfSight = 29992;   ///< LitColor.cxx
+constexpr int DepthsOfLamps = 29993;    ///< ShadowsInBlocks.cxx
+constexpr int CornersOfPaths = 29995;   ///< PhotonPaths.cxx
+constexpr int RunsOfBytes = 29996;      ///< BrickedBytes.cxx
+constexpr int GhostCells = 29998;       ///< Halo.cxx
+constexpr int ValuesOfBoxes = 29999;    ///< BoxExchange.cxx
+constexpr int Sums = 30000;             ///< Communicator.cxx, as are those that follow
+constexpr int Agreements = 30001;
+constexpr int Parcels = 30002;
+constexpr int Count = 30010; ///< all tags are smaller
+}
+
 /// Message passing among the ranks of one solve. Each rank owns one Communicator and calls it from one thread.
 /// Messages from one rank to another with the same tag arrive in the order in which they were sent.
 class Communicator
@@ -27,7 +45,7 @@ public:
   virtual int Ranks() const = 0;
 
   /// Sends without waiting for the receiver. A rank may send to itself, because light wraps around a periodic axis.
-  /// @param tag  one of MessageTags.h, or a non-negative number smaller than those
+  /// @param tag  one of MessageTag, or a non-negative number smaller than those
   template <class T>
   void Send(int to, int tag, const std::vector<T>& values)
   {

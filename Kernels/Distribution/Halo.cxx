@@ -3,104 +3,227 @@
 #include "Distribution/BoxExchange.h"
 
 #include <algorithm>
-#include <functional>
+#include <iterator>
+#include <utility>
 
 namespace tyndall
 {
-Halo::Halo(Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers)
-  : Comm(communicator)
-  , Partition(partition)
-  , Around(periodic)
+namespace
 {
-  const std::array<int, 3>& size = partition.whole.size;
-  std::array<int, 3> most = {}; // largest number of periods away from the grid
-  for (const VoxelBox& block : partition.blocks)
+/// Appends the indices of a part's cells in an array over a box.
+void AddPlaces(const VoxelBox& box, const VoxelBox& part, std::vector<std::size_t>& places)
+{
+  for (int z = part.first[2]; z < EndOf(part, 2); ++z)
   {
-    VoxelBox box = block;
-    for (int axis = 0; axis < 3 && block.VoxelCount() > 0; ++axis)
+    for (int y = part.first[1]; y < EndOf(part, 1); ++y)
     {
-      const int first = block.first[axis] - layers, end = EndOf(block, axis) + layers;
-      box.first[axis] = periodic[axis] ? first : std::max(0, first);
-      box.size[axis] = (periodic[axis] ? end : std::min(size[axis], end)) - box.first[axis];
-      most[axis] = periodic[axis] ? (layers + size[axis] - 1) / size[axis] : 0;
-    }
-    this->Boxes.push_back(box);
-  }
-  for (int z = -most[2]; z <= most[2]; ++z)
-  {
-    for (int y = -most[1]; y <= most[1]; ++y)
-    {
-      for (int x = -most[0]; x <= most[0]; ++x)
+      const std::size_t row = static_cast<std::size_t>(z - box.first[2]) * box.size[1] + (y - box.first[1]);
+      for (int x = part.first[0]; x < EndOf(part, 0); ++x)
       {
-        this->Periods.push_back({ x, y, z });
+        places.push_back(row * box.size[0] + (x - box.first[0]));
       }
     }
   }
 }
 
-/// The part of a box that lies `periods` grid periods away, as voxels of the grid.
-VoxelBox Halo::Image(const VoxelBox& box, const std::array<int, 3>& periods) const
+VoxelBox Moved(VoxelBox box, const std::array<int, 3>& by, int factor = 1)
 {
-  VoxelBox moved = box;
   for (int axis = 0; axis < 3; ++axis)
   {
-    moved.first[axis] -= periods[axis] * this->Partition.whole.size[axis];
+    box.first[axis] += factor * by[axis];
   }
-  return Common(moved, { { 0, 0, 0 }, this->Partition.whole.size });
+  return box;
+}
+
+/// Shift, in cells, by whole periods, that moves a box beyond the grid's ends into the grid.
+std::array<int, 3> ShiftOf(const VoxelBox& box, const std::array<int, 3>& gridSize)
+{
+  std::array<int, 3> by = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int size = gridSize[axis], first = box.first[axis];
+    by[axis] = size > 0 ? -(first < 0 ? first - size + 1 : first) / size * size : 0;
+  }
+  return by;
+}
+
+/// The box with its halo; empty if it is.
+VoxelBox WithHalo(const VoxelBox& block, const Grid& whole, const std::array<bool, 3>& periodic, int layers)
+{
+  VoxelBox box = block;
+  for (int axis = 0; axis < 3 && block.VoxelCount() > 0; ++axis)
+  {
+    const int first = block.first[axis] - layers, end = EndOf(block, axis) + layers;
+    box.first[axis] = periodic[axis] ? first : std::max(0, first);
+    box.size[axis] = (periodic[axis] ? end : std::min(whole.size[axis], end)) - box.first[axis];
+  }
+  return box;
+}
+
+/// The parts of a box that lie in the grid, and in its periodic images.
+std::vector<VoxelBox> PartsByPeriods(const VoxelBox& box, const Grid& whole)
+{
+  std::vector<VoxelBox> parts;
+  const VoxelBox period = { {}, whole.size };
+  const std::array<int, 3> back = ShiftOf(box, whole.size); // to the first period that the box reaches
+  std::array<int, 3> by;
+  for (by[2] = -back[2]; by[2] < EndOf(box, 2); by[2] += whole.size[2])
+  {
+    for (by[1] = -back[1]; by[1] < EndOf(box, 1); by[1] += whole.size[1])
+    {
+      for (by[0] = -back[0]; by[0] < EndOf(box, 0); by[0] += whole.size[0])
+      {
+        parts.push_back(Common(box, Moved(period, by)));
+      }
+    }
+  }
+  return parts;
+}
+}
+
+GhostCells::GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
+  const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held, const std::array<int, 3>& gridSize)
+  : Comm(communicator)
+{
+  const int self = communicator.Rank();
+  const auto shared = [&](int owner, int holder, bool ofHolder) {
+    Shared cells = { ofHolder ? owner : holder, {} };
+    for (const VoxelBox& box : ghosts[holder])
+    {
+      const std::array<int, 3> shift = ShiftOf(box, gridSize);
+      if (owner != holder || shift != std::array<int, 3>{})
+      {
+        const VoxelBox common = Common(Moved(box, shift), own[owner]);
+        AddPlaces(held, ofHolder ? Moved(common, shift, -1) : common, cells.places);
+      }
+    }
+    return cells;
+  };
+  for (int rank = 0; rank < communicator.Ranks(); ++rank)
+  {
+    if (Shared owned = shared(self, rank, false); !owned.places.empty())
+    {
+      this->Owned.push_back(std::move(owned));
+    }
+    if (Shared copied = shared(rank, self, true); !copied.places.empty())
+    {
+      this->Copied.push_back(std::move(copied));
+    }
+  }
+}
+
+template <class Value>
+std::vector<Value> GhostCells::Exchange(const std::vector<Value>& owned, int arrays) const
+{
+  auto next = owned.begin();
+  for (const Shared& cells : this->Owned)
+  {
+    const auto end = next + static_cast<std::ptrdiff_t>(arrays * cells.places.size());
+    this->Comm.Send(cells.rank, MessageTag::GhostCells, std::vector<Value>(next, end));
+    next = end;
+  }
+  std::vector<Value> copied;
+  for (const Shared& cells : this->Copied)
+  {
+    const std::vector<Value> message = this->Comm.Receive<Value>(cells.rank, MessageTag::GhostCells);
+    copied.insert(copied.end(), message.begin(), message.end());
+  }
+  return copied;
+}
+
+template std::vector<float> GhostCells::Exchange(const std::vector<float>&, int) const;
+
+template <class Value>
+void GhostCells::Fill(Value* values, int arrays, std::size_t stride, std::size_t components) const
+{
+  std::vector<Value> owned;
+  for (const Shared& cells : this->Owned)
+  {
+    for (int array = 0; array < arrays; ++array)
+    {
+      for (const std::size_t place : cells.places)
+      {
+        const Value* const from = values + array * stride + place * components;
+        owned.insert(owned.end(), from, from + components);
+      }
+    }
+  }
+  const std::vector<Value> copied = this->Exchange(owned, arrays * static_cast<int>(components));
+  auto next = copied.begin();
+  for (const Shared& cells : this->Copied)
+  {
+    for (int array = 0; array < arrays; ++array)
+    {
+      for (const std::size_t place : cells.places)
+      {
+        std::copy_n(next, components, values + array * stride + place * components);
+        next += static_cast<std::ptrdiff_t>(components);
+      }
+    }
+  }
+}
+
+template void GhostCells::Fill(double*, int, std::size_t, std::size_t) const;
+template void GhostCells::Fill(float*, int, std::size_t, std::size_t) const;
+
+std::vector<std::size_t> GhostCells::PlacesOf(const std::vector<Shared>& shared)
+{
+  std::vector<std::size_t> places;
+  for (const Shared& cells : shared)
+  {
+    places.insert(places.end(), cells.places.begin(), cells.places.end());
+  }
+  return places;
+}
+
+template <class Value>
+void GhostCells::AddToOwners(std::vector<Value>& values) const
+{
+  for (const Shared& copied : this->Copied)
+  {
+    std::vector<Value> message(copied.places.size());
+    std::transform(
+      copied.places.begin(), copied.places.end(), message.begin(), [&](std::size_t place) { return values[place]; });
+    this->Comm.Send(copied.rank, MessageTag::GhostCells, message);
+  }
+  for (const Shared& owned : this->Owned)
+  {
+    const std::vector<Value> message = this->Comm.Receive<Value>(owned.rank, MessageTag::GhostCells);
+    for (std::size_t i = 0; i < message.size(); ++i)
+    {
+      values[owned.places[i]] += message[i];
+    }
+  }
+}
+
+template void GhostCells::AddToOwners(std::vector<double>&) const;
+template void GhostCells::AddToOwners(std::vector<std::int64_t>&) const;
+
+Halo::Halo(Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers)
+  : All(partition.whole)
+  , Around(periodic)
+  , OwnBox(partition.blocks[communicator.Rank()])
+  , Box(WithHalo(this->OwnBox, partition.whole, periodic, layers))
+{
+  std::vector<std::vector<VoxelBox>> ghosts;
+  for (const VoxelBox& block : partition.blocks)
+  {
+    ghosts.push_back(PartsByPeriods(WithHalo(block, partition.whole, periodic, layers), partition.whole));
+  }
+  this->Ghosts.emplace(communicator, partition.blocks, ghosts, this->Box, partition.whole.size);
 }
 
 Grid Halo::KnownGrid() const
 {
-  return BlockPartition{ this->Partition.whole, { this->Known() } }.OwnGrid(0);
-}
-
-/// Images of all ranks' known voxels.
-std::vector<VoxelBox> Halo::Images(const std::array<int, 3>& periods) const
-{
-  std::vector<VoxelBox> images;
-  for (const VoxelBox& box : this->Boxes)
-  {
-    images.push_back(this->Image(box, periods));
-  }
-  return images;
-}
-
-/// The box of known voxels that an image corresponds to.
-VoxelBox Halo::PlaceOf(const VoxelBox& image, const std::array<int, 3>& periods) const
-{
-  VoxelBox place = image;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    place.first[axis] += periods[axis] * this->Partition.whole.size[axis];
-  }
-  return place;
+  return BlockPartition{ this->All, { this->Box } }.OwnGrid(0);
 }
 
 std::vector<float> Halo::Spread(const std::vector<float>& own, int components) const
 {
-  const VoxelBox& known = this->Known();
-  std::vector<float> values(known.VoxelCount() * static_cast<std::size_t>(components));
-  for (const std::array<int, 3>& periods : this->Periods)
-  {
-    const std::vector<VoxelBox> wanted = this->Images(periods);
-    const std::vector<float> part = ValuesInBox(this->Comm, this->Partition, wanted, own, components);
-    PutPart(part, values, known, this->PlaceOf(wanted[this->Comm.Rank()], periods), components);
-  }
+  std::vector<float> values(this->Box.VoxelCount() * static_cast<std::size_t>(components));
+  PutPart(own, values, this->Box, this->OwnBox, components);
+  this->Ghosts->FillComponents(values, components);
   return values;
-}
-
-std::vector<std::int64_t> Halo::Gather(const std::vector<std::int64_t>& known) const
-{
-  std::vector<std::int64_t> sums(this->Own().VoxelCount(), 0);
-  for (const std::array<int, 3>& periods : this->Periods)
-  {
-    const std::vector<VoxelBox> found = this->Images(periods);
-    const VoxelBox place = this->PlaceOf(found[this->Comm.Rank()], periods);
-    const std::vector<std::int64_t> part =
-      SumsInBlock(this->Comm, this->Partition, found, PartOf(known, this->Known(), place));
-    std::transform(part.begin(), part.end(), sums.begin(), sums.begin(), std::plus<std::int64_t>());
-  }
-  return sums;
 }
 
 Field Halo::Spread(const Field& own, std::vector<float>& values) const
@@ -109,10 +232,67 @@ Field Halo::Spread(const Field& own, std::vector<float>& values) const
   {
     return own;
   }
-  const std::size_t count = this->Own().VoxelCount() * static_cast<std::size_t>(own.components);
+  const std::size_t count = this->OwnBox.VoxelCount() * static_cast<std::size_t>(own.components);
   values = this->Spread(std::vector<float>(own.values, own.values + count), own.components);
   Field known = own;
   known.values = values.data();
   return known;
+}
+
+std::vector<std::int64_t> Halo::Gather(std::vector<std::int64_t> known) const
+{
+  this->Ghosts->AddToOwners(known);
+  return PartOf(known, this->Box, this->OwnBox);
+}
+
+std::array<bool, 3> GoesRoundAlone(
+  const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic)
+{
+  std::array<bool, 3> alone = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    alone[axis] = periodic[axis] && own.size[axis] == gridSize[axis];
+  }
+  return alone;
+}
+
+std::vector<VoxelBox> LayersBeside(
+  const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic)
+{
+  const std::array<bool, 3> alone = GoesRoundAlone(own, gridSize, periodic);
+  std::vector<VoxelBox> layers;
+  for (int face = 0; face < 6 && own.VoxelCount() > 0; ++face)
+  {
+    const int axis = face / 2;
+    const int place = face % 2 ? EndOf(own, axis) : own.first[axis] - 1;
+    if ((place >= 0 && place < gridSize[axis]) || (periodic[axis] && !alone[axis]))
+    {
+      layers.push_back(own);
+      layers.back().first[axis] = place;
+      layers.back().size[axis] = 1;
+    }
+  }
+  return layers;
+}
+
+VoxelBox Hull(const VoxelBox& own, const std::vector<VoxelBox>& others)
+{
+  VoxelBox hull = own;
+  for (const VoxelBox& other : others)
+  {
+    if (other.VoxelCount() == 0)
+    {
+      continue;
+    }
+    const VoxelBox before = hull;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const bool any = before.VoxelCount() > 0;
+      const int end = any ? std::max(EndOf(before, axis), EndOf(other, axis)) : EndOf(other, axis);
+      hull.first[axis] = any ? std::min(before.first[axis], other.first[axis]) : other.first[axis];
+      hull.size[axis] = end - hull.first[axis];
+    }
+  }
+  return hull;
 }
 }

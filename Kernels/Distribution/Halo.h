@@ -7,10 +7,64 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace tyndall
 {
+/// Exchange of ghost cells: each cell of a grid is owned by one rank, and other ranks hold copies of its value.
+class GhostCells
+{
+public:
+  /// @param communicator  must outlive this
+  /// @param own  the box that each rank owns, disjoint; a box may be empty
+  /// @param ghosts  boxes of each rank's ghost cells; cells within the grid that the rank owns itself are left out
+  /// @param held  a box that contains this rank's own cells and its ghost cells; arrays cover it, x fastest
+  /// @param gridSize  cells along each axis; ghost cells beyond an end of the grid wrap around, all cells of a box by
+  ///   the same number of periods, and may be images of the rank's own cells. Zeros: no ghost cells lie beyond the grid
+  GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
+    const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held,
+    const std::array<int, 3>& gridSize = { 0, 0, 0 });
+
+  /// Copies the owners' values to the ghost cells. Collective, with the same number of arrays on all ranks.
+  /// @param values  `arrays` arrays over the held box, `stride` values apart, each with `components` values per cell
+  template <class Value>
+  void Fill(Value* values, int arrays, std::size_t stride, std::size_t components = 1) const;
+  void Fill(std::vector<double>& values) const { this->Fill(values.data(), 1, 0); }
+  /// @param values  one array of `components` per cell
+  void FillComponents(std::vector<float>& values, int components) const
+  {
+    this->Fill(values.data(), 1, 0, static_cast<std::size_t>(components));
+  }
+
+  /// Indices of own cells of which other ranks have copies, once for each of these ranks.
+  std::vector<std::size_t> OwnedPlaces() const { return PlacesOf(this->Owned); }
+  /// Indices of this rank's ghost cells.
+  std::vector<std::size_t> CopiedPlaces() const { return PlacesOf(this->Copied); }
+  /// Exchanges values that are kept elsewhere than in arrays over the held box. Collective.
+  /// @param owned  values at OwnedPlaces(), those of several arrays in succession for each rank that has copies
+  /// @return values at CopiedPlaces(), in the same order by owner
+  template <class Value>
+  std::vector<Value> Exchange(const std::vector<Value>& owned, int arrays = 1) const;
+
+  /// Adds the values of the ghost cells to the owners' values, in rank order. Collective.
+  template <class Value>
+  void AddToOwners(std::vector<Value>& values) const;
+
+private:
+  /// The cells exchanged with a rank, which may be this one.
+  struct Shared
+  {
+    int rank;
+    std::vector<std::size_t> places; ///< indices into arrays over the held box
+  };
+  static std::vector<std::size_t> PlacesOf(const std::vector<Shared>& shared);
+
+  Communicator& Comm;
+  std::vector<Shared> Owned;  ///< own cells that are ghost cells of a rank
+  std::vector<Shared> Copied; ///< ghost cells of this rank, by their owner
+};
+
 /// A rank's block with a halo of `layers` layers of ghost voxels, clipped at the ends of the grid, and the exchange of
 /// their values. Along a periodic axis the halo wraps around; ghost voxels may then be images of the block's own
 /// voxels.
@@ -21,11 +75,11 @@ public:
 
   /// The block, and the block with its halo, in voxels of the whole grid; the halo may reach beyond the grid's ends.
   /// Empty if the block is empty.
-  const VoxelBox& Own() const { return this->Partition.blocks[this->Comm.Rank()]; }
-  const VoxelBox& Known() const { return this->Boxes[this->Comm.Rank()]; }
+  const VoxelBox& Own() const { return this->OwnBox; }
+  const VoxelBox& Known() const { return this->Box; }
   Grid KnownGrid() const; ///< without voxels if the block is empty
   const std::array<bool, 3>& Periodic() const { return this->Around; }
-  const Grid& Whole() const { return this->Partition.whole; }
+  const Grid& Whole() const { return this->All; }
 
   /// Extends values of the own voxels to the halo. Collective.
   /// @param own  `components` per own voxel, x fastest
@@ -35,18 +89,24 @@ public:
   Field Spread(const Field& own, std::vector<float>& values) const;
   /// The transpose of Spread: for each own voxel, the sum over ranks of what they found for it. The numbers are
   /// integers, so the order of ranks does not matter. Collective.
-  std::vector<std::int64_t> Gather(const std::vector<std::int64_t>& known) const;
+  std::vector<std::int64_t> Gather(std::vector<std::int64_t> known) const;
 
 private:
-  VoxelBox Image(const VoxelBox& box, const std::array<int, 3>& periods) const;
-  std::vector<VoxelBox> Images(const std::array<int, 3>& periods) const;
-  VoxelBox PlaceOf(const VoxelBox& image, const std::array<int, 3>& periods) const;
-
-  Communicator& Comm;
-  const BlockPartition& Partition;
-  const std::array<bool, 3> Around; ///< periodic axes
-  std::vector<VoxelBox> Boxes;      ///< by rank
-  std::vector<std::array<int, 3>>
-    Periods; ///< shifts, in whole grid periods along each axis, at which some rank's box has voxels
+  Grid All;
+  std::array<bool, 3> Around; ///< periodic axes
+  VoxelBox OwnBox, Box;
+  std::optional<GhostCells> Ghosts;
 };
+
+/// The periodic axes along which the box spans the whole grid, so that it is its own neighbour.
+std::array<bool, 3> GoesRoundAlone(
+  const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic);
+
+/// The layers of cells, one cell thick, beyond the faces of a box: within the grid, and across the ends of periodic
+/// axes unless the box is its own neighbour there. None for an empty box.
+std::vector<VoxelBox> LayersBeside(
+  const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic = {});
+
+/// The smallest box that contains `own` and `others`.
+VoxelBox Hull(const VoxelBox& own, const std::vector<VoxelBox>& others);
 }

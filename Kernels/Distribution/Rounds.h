@@ -4,9 +4,11 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <stdexcept>
 #include <vector>
 
 namespace tyndall
@@ -31,7 +33,12 @@ public:
   /// @param reach  voxels that a traveller may go beyond its block before it is sent on; the same on all ranks
   /// @param periodic  periodic axes, whose ends touch
   Rounds(Communicator& communicator, const BlockPartition& partition, int reach = 1,
-    const std::array<bool, 3>& periodic = {});
+    const std::array<bool, 3>& periodic = {})
+    : Comm(communicator)
+    , Partition(partition)
+    , Neighbours(NeighboursOf(partition, communicator.Rank(), reach, periodic))
+  {
+  }
 
   /// Traces the travellers that arrived (in the first round: those that start here), and returns those that continue in
   /// other blocks.
@@ -84,7 +91,16 @@ private:
     return parcels;
   }
 
-  std::size_t NeighbourWith(const int* voxel) const;
+  std::size_t NeighbourWith(const int* voxel) const
+  {
+    const auto holds = [&](int rank) { return Holds(this->Partition.blocks[static_cast<std::size_t>(rank)], voxel); };
+    const auto to = std::find_if(this->Neighbours.begin(), this->Neighbours.end(), holds);
+    if (to == this->Neighbours.end())
+    {
+      throw std::logic_error("Light has left a block into one that does not touch it.");
+    }
+    return static_cast<std::size_t>(to - this->Neighbours.begin());
+  }
 
   Communicator& Comm;
   const BlockPartition& Partition;

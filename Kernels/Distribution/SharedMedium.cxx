@@ -1,7 +1,7 @@
 #include "Distribution/SharedMedium.h"
 
 #include "Device/Errors.h"
-#include "PhaseFunction/UsedCosines.h"
+#include "PhaseFunction/PhaseOfMedium.h"
 
 #include <algorithm>
 #include <functional>

@@ -206,8 +206,9 @@ void Lattice::StepBlocks(int steps)
   this->Wrap(this->Next);
   cl::Kernel step =
     this->TheDevice.Kernel("step_blocks", kernel_source::LatticeBlocks, this->Options + Define("BLOCK", edge));
+  this->TheInfo.steps = steps;
   With(step, this->TheInfo, this->Resistance, this->Squared, this->Albedo, this->Turning, this->Kept, this->Source,
-    this->Endless, this->Next, this->Sends, this->Now, this->Shown, cl_int(steps));
+    this->Endless, this->Next, this->Sends, this->Now, this->Shown);
   this->Queue.enqueueNDRangeKernel(
     step, cl::NullRange, WholeBlocks(this->Size, edge), cl::NDRange(group, group, group));
   this->Next.Swap(this->Sends);

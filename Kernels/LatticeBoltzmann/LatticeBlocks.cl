@@ -35,7 +35,7 @@ __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_bl
   const __global float* resistance, const __global float* squared, const __global float* albedo,
   const __global float* turning, const __global float* kept, const __global float* source,
   const __global float* endless, const __global float* came, __global float* goes, __global float* densities,
-  __global float* fluence, int steps)
+  __global float* fluence)
 {
   __local float block[DIRECTIONS * IN_BLOCK];
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
@@ -53,7 +53,7 @@ __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_bl
     mean[i] = 0.0f;
   }
   barrier(CLK_LOCAL_MEM_FENCE);
-  for (int step = 0; step < steps; ++step)
+  for (int step = 0; step < lattice.steps; ++step)
   {
     sum = half_source;
     FOR_DIRECTIONS(i)
@@ -82,7 +82,7 @@ __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_bl
       densities[i * lattice.stride + at] = block[i * IN_BLOCK + me];
       if (neighbour_in_block(lattice, i, 1) < 0)
       {
-        goes[i * lattice.stride + at] = mean[i] / (float)steps;
+        goes[i * lattice.stride + at] = mean[i] / (float)lattice.steps;
       }
     }
     fluence[((ulong)z * lattice.size[1] + y) * lattice.size[0] + x] = sum;

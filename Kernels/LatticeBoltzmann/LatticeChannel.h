@@ -6,7 +6,6 @@
 #include "LatticeBoltzmann/LatticeProblem.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
-#include "LatticeBoltzmann/Settling.h"
 #include "Light/LightField.h"
 
 #include <optional>
@@ -14,6 +13,13 @@
 
 namespace tyndall
 {
+/// Steps that were taken before and count towards the limits.
+struct StepsBefore
+{
+  int steps = 0;
+  double seconds = 0.0;
+};
+
 /// Solve of one colour channel on this rank's block, whose result is added to the LightField of all channels.
 /// Collective.
 class LatticeChannel

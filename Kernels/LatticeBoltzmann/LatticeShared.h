@@ -33,7 +33,16 @@ typedef struct
   float albedo[6];   ///< albedo of the faces -x, +x, ... +z
   float incoming[6]; ///< fluence / n^2 of the diffuse light outside each face, W / length^2
   ulong stride;      ///< stride of the densities between directions
+  int steps;         ///< with blocks: steps until they exchange light
 } LatticeInfo;
+
+/// A sweep along the lines of links of a pair of directions.
+typedef struct
+{
+  LatticeInfo lattice; ///< with no incoming light if the sweep is without sources
+  int pair;            ///< directions 2 pair and 2 pair + 1
+  int writes;          ///< 1: also write densities, in the layout of step_lattice
+} LinePass;
 SHARED_END
 
 #ifndef __OPENCL_C_VERSION__

@@ -1,8 +1,8 @@
 #include "LatticeBoltzmann/LatticeVoxels.h"
 
 #include "Device/Errors.h"
+#include "LatticeBoltzmann/FindUncollided.h"
 #include "LatticeBoltzmann/LatticeShared.h"
-#include "LatticeBoltzmann/WhereLightIsLost.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
@@ -91,15 +91,6 @@ private:
   int Common = 0;
   bool Close = true, IsDiagonal = false;
 };
-}
-
-double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) const
-{
-  const auto channels = static_cast<std::size_t>(this->image.fluence.components);
-  const std::size_t of = channels > 1 ? static_cast<std::size_t>(channel) : 0;
-  const double fluence = this->image.fluence.At(voxel, channel);
-  const double moment = this->firstMoments.empty() ? 0.0 : this->firstMoments[6 * (voxel * channels + of) + face];
-  return fluence > 0.0 ? std::min(moment / fluence, 0.5) : 0.0;
 }
 
 double LatticeWeight(int directions, int i)

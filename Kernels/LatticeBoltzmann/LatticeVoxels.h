@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Distribution/Domain.h"
-#include "LatticeBoltzmann/LatticeBox.h"
+#include "LatticeBoltzmann/FindUncollided.h"
 #include "LatticeBoltzmann/LatticeProblem.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "Lights/Rgb.h"
@@ -14,18 +14,6 @@
 
 namespace tyndall
 {
-/// Uncollided light by known voxel: an image and the arrays it refers to.
-struct Uncollided
-{
-  std::vector<float> fluence, netFlux;
-  std::vector<float> firstMoments; ///< LightField::firstMoments, for the image's channels; empty: not known
-  UncollidedImage image;           ///< `escaped` is set on the lowest rank that has voxels, 0 on others
-  Rgb lost = {};                   ///< power that entered and was not deposited anywhere, W; set on the same rank
-
-  /// Distance, 0 to 1/2 voxel, from a voxel's centre towards a face to the mean place where its light collides.
-  double Nearer(std::size_t voxel, int channel, std::size_t face) const;
-};
-
 /// Weight of a lattice direction in isotropic light; the weights add up to 1.
 double LatticeWeight(int directions, int i);
 

@@ -1,7 +1,7 @@
 #include "Medium/Coarsening.h"
 
 #include "Device/HostThreads.h"
-#include "Medium/GridOfBox.h"
+#include "Medium/VoxelBox.h"
 
 #include <algorithm>
 

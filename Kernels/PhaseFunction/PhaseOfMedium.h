@@ -1,10 +1,15 @@
 #pragma once
 
+#include "Device/HostThreads.h"
 #include "Medium/Field.h"
 #include "PhaseFunction/PhaseFunction.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <vector>
 
 namespace tyndall
 {
@@ -42,4 +47,90 @@ private:
   std::array<double, 3> MeanCosines = {};
   Field ByVoxel;
 };
+
+// Mean cosines by voxel are used only in voxels that scatter; elsewhere they are meaningless, and may be any number or
+// NaN.
+
+/// Smallest and largest mean cosine of the voxels that scatter, by channel; infinity and minus infinity for a channel
+/// in which none scatters.
+struct MeanCosineRange
+{
+  MeanCosineRange()
+  {
+    this->least.fill(std::numeric_limits<double>::infinity());
+    this->greatest.fill(-std::numeric_limits<double>::infinity());
+  }
+  /// @param g, sigma_s  by voxel, for `voxels` voxels
+  MeanCosineRange(const Field& g, const Field& sigma_s, std::size_t voxels)
+    : MeanCosineRange()
+  {
+    for (std::size_t i = 0; i < voxels; ++i)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        if (sigma_s.At(i, c) > 0.0f)
+        {
+          this->least[c] = std::min<double>(this->least[c], g.At(i, c));
+          this->greatest[c] = std::max<double>(this->greatest[c], g.At(i, c));
+        }
+      }
+    }
+  }
+
+  bool IsEven() const ///< whether g is uniform in each channel
+  {
+    bool even = true;
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      even = even && this->least[c] >= this->greatest[c];
+    }
+    return even;
+  }
+
+  std::array<double, 3> least, greatest;
+};
+
+/// Phase function of a medium with g by voxel: one function per channel if all voxels that scatter have the same g,
+/// else by voxel. A channel in which no voxel scatters gets the g of another channel.
+/// @param kind  a kind with one mean cosine (PhaseFunction::WithMeanCosine), else InvalidInput is thrown
+/// @param range  range of g in the whole medium, of which `g` may cover a part
+inline PhaseOfMedium PhaseByVoxel(const PhaseFunction& kind, const Field& g, const MeanCosineRange& range)
+{
+  if (!range.IsEven())
+  {
+    return PhaseOfMedium(kind, g);
+  }
+  double any = 0.0;
+  for (const double cosine : range.least)
+  {
+    any = std::isfinite(cosine) ? cosine : any;
+  }
+  std::array<PhaseFunction, 3> functions;
+  std::transform(range.least.begin(), range.least.end(), functions.begin(),
+    [&](double cosine) { return kind.WithMeanCosine(std::isfinite(cosine) ? cosine : any); });
+  return PhaseOfMedium(functions);
+}
+
+/// @return g with values outside (-1, 1) replaced by 0 in voxels that do not scatter; empty if there are none to
+///   replace
+inline std::vector<float> WithoutUnusedCosines(const Field& g, const Field& sigma_s, std::size_t voxels)
+{
+  const auto components = static_cast<std::size_t>(g.components);
+  const std::size_t count = g.values ? voxels * components : 0;
+  const auto isUnused = [&](std::size_t i) {
+    const auto scatters = [&](int channel) { return sigma_s.At(i / components, channel) > 0.0f; };
+    const bool used = components == 3 ? scatters(static_cast<int>(i % 3)) : scatters(0) || scatters(1) || scatters(2);
+    return !used && !(std::abs(g.values[i]) < 1.0f);
+  };
+  if (!AnyInThreads(count, isUnused))
+  {
+    return {};
+  }
+  std::vector<float> used(g.values, g.values + count);
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    used[i] = isUnused(i) ? 0.0f : used[i];
+  }
+  return used;
+}
 }

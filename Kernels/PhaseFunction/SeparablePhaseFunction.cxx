@@ -4,7 +4,6 @@
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
 #include "Numerics/NumberText.h"
-#include "Numerics/SphericalHarmonics.h"
 
 #include <Eigen/Dense>
 

@@ -2,7 +2,6 @@
 
 #include "Device/HostThreads.h"
 #include "Distribution/BoxExchange.h"
-#include "Distribution/MessageTags.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>

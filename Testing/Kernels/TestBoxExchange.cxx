@@ -1,6 +1,6 @@
 #include "Distribution/BoxExchange.h"
 #include "Distribution/BrickedBytes.h"
-#include "Distribution/GhostCells.h"
+#include "Distribution/Halo.h"
 #include "Distribution/RanksInThreads.h"
 
 #include <gtest/gtest.h>

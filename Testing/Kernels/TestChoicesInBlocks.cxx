@@ -5,7 +5,7 @@
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
-#include "PhaseFunction/UsedCosines.h"
+#include "PhaseFunction/PhaseOfMedium.h"
 
 #include <algorithm>
 #include <cmath>

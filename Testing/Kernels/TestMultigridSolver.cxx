@@ -2,7 +2,7 @@
 
 #include "DeviceTest.h"
 
-#include "Distribution/GhostCells.h"
+#include "Distribution/Halo.h"
 #include "Distribution/RanksInThreads.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 

@@ -7,7 +7,7 @@
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "DiscreteOrdinates/OrdinatesParts.h"
-#include "DiscreteOrdinates/OrdinatesQuality.h"
+#include "DiscreteOrdinates/OrdinatesSettings.h"
 
 #include <algorithm>
 #include <string>

@@ -2,7 +2,7 @@
 #include "Difference.h"
 #include "MediumScene.h"
 
-#include "DiscreteOrdinates/OrdinatesQuality.h"
+#include "DiscreteOrdinates/OrdinatesSettings.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Problem/PropagationQuality.h"

@@ -1,7 +1,7 @@
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "Numerics/SphericalHarmonics.h"
+#include "Numerics/Legendre.h"
 #include "Reference/ReferenceTable.h"
 
 #include "Device/Errors.h"

@@ -5,7 +5,7 @@
 #include "MediumScene.h"
 
 #include "Numerics/Constants.h"
-#include "Numerics/SphericalHarmonics.h"
+#include "Numerics/Legendre.h"
 #include "Reference/ReferenceTable.h"
 #include "Viewing/Sources/Aureole.h"
 

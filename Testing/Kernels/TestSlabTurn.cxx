@@ -6,7 +6,7 @@
 #include "Device/Errors.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
-#include "Numerics/SphericalHarmonics.h"
+#include "Numerics/Legendre.h"
 
 #include <gmock/gmock.h>
 

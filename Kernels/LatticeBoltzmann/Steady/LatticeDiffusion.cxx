@@ -15,26 +15,19 @@ LatticeDiffusion::LatticeDiffusion(
   : TheDomain(problem.TheDomain())
   , Block(this->TheDomain, settings.periodic, 1, true)
 {
-  Matrix matrix;
-  this->TheDomain.Collective([&] { matrix = this->MatrixOf(problem.Box(), settings, voxels); });
-  if (!this->TheDomain.IsSerial())
-  {
-    this->OverRanks =
-      std::make_unique<MultigridOverRanks>(this->TheDomain.Comm(), this->TheDomain.Partition(), settings.periodic);
-    this->OverRanks->SetMatrix(matrix.conductance, matrix.loss);
-    return;
-  }
-  const Grid& grid = this->TheDomain.Whole();
-  this->OnDevice = std::make_unique<MultigridSolver>(device, grid.size, grid.spacing);
-  std::vector<float> conductance;
-  for (const std::vector<float>& ofAxis : matrix.conductance)
-  {
-    conductance.insert(conductance.end(), ofAxis.begin(), ofAxis.end());
-  }
-  this->OnDevice->Conductance().Write(InRows(this->OnDevice->Rows(), conductance, 3).data());
-  this->OnDevice->Loss().Write(InRows(this->OnDevice->Rows(), matrix.loss).data());
-  this->OnDevice->Coarsen();
-  this->Found = ExactValues(device, grid.VoxelCount(), "diffusion of the lattice");
+  this->TheDomain.Collective([&] {
+    const Matrix matrix = this->MatrixOf(problem.Box(), settings, voxels);
+    this->Multigrid = std::make_unique<MultigridSolver>(device, this->TheDomain, settings.periodic);
+    std::vector<float> conductance;
+    for (const std::vector<float>& ofAxis : matrix.conductance)
+    {
+      conductance.insert(conductance.end(), ofAxis.begin(), ofAxis.end());
+    }
+    this->Multigrid->Conductance().Write(InRows(this->Multigrid->Rows(), conductance, 3).data());
+    this->Multigrid->Loss().Write(InRows(this->Multigrid->Rows(), matrix.loss).data());
+    this->Found = ExactValues(device, matrix.loss.size(), "diffusion of the lattice");
+  });
+  this->Multigrid->Coarsen();
 }
 
 LatticeDiffusion::Matrix LatticeDiffusion::MatrixOf(
@@ -79,25 +72,19 @@ LatticeDiffusion::Matrix LatticeDiffusion::MatrixOf(
 
 LatticeDiffusion::Values LatticeDiffusion::Solve(const Values& residual, double unit)
 {
-  if (this->OnDevice)
-  {
-    this->OnDevice->Right().Write(InRows(this->OnDevice->Rows(), residual).data());
-    this->Found.Fill(0.0);
-    this->OnDevice->Solve(this->Found, unit, Reduction);
-    return this->Found.Read();
-  }
   std::vector<float> right;
-  Values values, found;
   this->TheDomain.Collective([&] {
     right.assign(this->Block.WithGhosts().grid.VoxelCount(), 0.0f);
-    values.assign(right.size(), 0.0);
-    found.resize(residual.size());
     for (std::size_t i = 0; i < residual.size(); ++i)
     {
       right[this->Block.PlaceOf(i)] = static_cast<float>(residual[i]);
     }
+    this->Multigrid->Right().Write(InRows(this->Multigrid->Rows(), right).data());
+    this->Found.Fill(0.0);
   });
-  this->OverRanks->Solve(values, right, unit, Reduction);
+  this->Multigrid->Solve(this->Found, unit, Reduction);
+  const Values values = this->Found.Read();
+  Values found(residual.size());
   for (std::size_t i = 0; i < found.size(); ++i)
   {
     found[i] = values[this->Block.PlaceOf(i)];

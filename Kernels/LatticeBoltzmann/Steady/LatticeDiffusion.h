@@ -5,7 +5,6 @@
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
 #include "LightPropagation/Diffusion/BlockWithGhosts.h"
-#include "LightPropagation/Diffusion/MultigridOverRanks.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 
 #include <array>
@@ -15,8 +14,7 @@
 namespace tyndall
 {
 /// Diffusion limit of a lattice for fluence / n^2 (numerics.md, Eq. (L12)), the preconditioner of SteadyLattice: a
-/// symmetric positive definite seven-point stencil, solved by conjugate gradients with multigrid, on one rank on the
-/// device, on several ranks on their hosts.
+/// symmetric positive definite seven-point stencil, solved by conjugate gradients with multigrid.
 class LatticeDiffusion
 {
 public:
@@ -44,8 +42,7 @@ private:
 
   const Domain& TheDomain;
   const BlockWithGhosts Block;
-  std::unique_ptr<MultigridSolver> OnDevice;     ///< null on several ranks
-  std::unique_ptr<MultigridOverRanks> OverRanks; ///< null on one rank
-  ExactValues Found;
+  std::unique_ptr<MultigridSolver> Multigrid;
+  ExactValues Found; ///< by voxel with ghosts
 };
 }

@@ -5,18 +5,316 @@
 // what they send up without light from ahead, and R, the fraction of light from ahead that they return. The upward pass
 // finds U and R of every voxel, the downward pass the densities. All terms are positive, so that there is no
 // cancellation.
-#include "LatticeBoltzmann/Steady/LatticeLine.cl"
+#include "LatticeBoltzmann/LatticeLink.cl"
+#include "Numerics/Exact.cl"
+
+// In single precision the weights add up to 1 only to 1e-8, and thick voxels would gain or lose that much in every
+// collision.
+#define EXACT_WEIGHT(i) (DIRECTIONS == 6 ? (exact)1 / 6 : (i) < 6 ? (exact)1 / 12 : (exact)1 / 24)
+
+// Arrays by voxel: fraction of the density that continues straight, fraction that links transmit, n^2, and light that
+// collisions redistribute isotropically, W / length^2.
+#define MEDIUM                                                                                 \
+  const __global exact *straight, const __global float *passes, const __global float *squared, \
+    const __global exact *even
+
+typedef struct
+{
+  int at[3];
+  int face;  // of the grid that was passed, -1: none. Then `at` is the last voxel; OtherBlock: the line goes on there
+  int other; // of a corner the second one, else the same
+} Place;
+
+// Fractions of light that a link transmits up the line and down it.
+typedef struct
+{
+  exact up, down;
+} Link;
+
+static ulong voxel_at(LatticeInfo lattice, const int* at)
+{
+  return ((ulong)at[2] * lattice.size[1] + at[1]) * lattice.size[0] + at[0];
+}
+
+static bool is_endless(const __global float* endless, ulong voxel, int pair)
+{
+  return ENDLESS && ((int)endless[voxel] >> pair & 1);
+}
+
+static Place next_along(LatticeInfo lattice, Place place, int i)
+{
+  Place next = place;
+  bool leaves_block = false;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int size = lattice.size[a], to = place.at[a] + Ways[i][a], face = 2 * a + (to < 0 ? 0 : 1);
+    const bool beyond = to < 0 || to >= size, inner = lattice.inner >> face & 1, periodic = lattice.periodic >> a & 1;
+    leaves_block = leaves_block || (beyond && inner);
+    next.other = beyond && !inner && !periodic ? face : next.other;
+    next.face = next.face < 0 ? next.other : next.face;
+    next.at[a] = beyond ? (to + size) % size : to;
+  }
+  next.face = next.face < 0 && leaves_block ? OtherBlock : next.face;
+  if (next.face >= 0)
+  {
+    for (int a = 0; a < 3; ++a)
+    {
+      next.at[a] = place.at[a];
+    }
+  }
+  return next;
+}
+
+// The link between two voxels, from the fraction that links of each transmit (passes) and n^2 of each (squared).
+static Link link_of(exact passes_a, exact passes_b, exact squared_a, exact squared_b)
+{
+  const exact own = 1 / passes_a, other = 1 / passes_b;
+  const exact by_a = BENDS ? 1 / squared_a : 1, by_b = BENDS ? 1 / squared_b : 1;
+  const exact both = 2 / (own * by_a + other * by_b + fabs(by_a - by_b));
+  const Link link = { fmin(both * by_a, (exact)1), fmin(both * by_b, (exact)1) };
+  return link;
+}
+
+static Link link_between(MEDIUM, ulong a, ulong b)
+{
+  return link_of(passes[a], passes[b], BENDS ? squared[a] : 1, BENDS ? squared[b] : 1);
+}
+
+// A face of the grid, or the mean of two at an edge: incident light, and the fraction of outgoing light that it
+// reflects.
+typedef struct
+{
+  exact in, back;
+} Border;
+
+static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, Place past, int i)
+{
+  const exact incoming = 0.5f * (lattice.incoming[past.face] + lattice.incoming[past.other]);
+  const exact albedo = 0.5f * (lattice.albedo[past.face] + lattice.albedo[past.other]);
+  const exact passing = 2 / (1 / (exact)passes[voxel] + 1);
+  const Border border = { passing * EXACT_WEIGHT(i) * incoming * (BENDS ? squared[voxel] : 1.0f),
+    1 - passing * (1 - albedo) };
+  return border;
+}
+
+// Finds where the work-item's line begins, and whether there is one. Lines along an axis are numbered by the two other
+// coordinates; diagonal lines by the coordinate along the third axis and an index along the first rows of the plane.
+static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
+{
+  const int u = get_global_id(0), v = get_global_id(1);
+  int moving[2] = { -1, -1 }, moves = 0, still[2], stills = 0;
+  for (int a = 0; a < 3; ++a)
+  {
+    if (Ways[i][a] != 0)
+    {
+      moving[moves++] = a;
+    }
+    else
+    {
+      still[stills++] = a;
+    }
+  }
+  place->face = place->other = -1;
+  const int a = moving[0], b = moving[1];
+  const bool round_a = lattice.periodic >> a & 1, round_b = moves > 1 ? lattice.periodic >> b & 1 : true;
+  const int first_a = Ways[i][a] > 0 ? 0 : lattice.size[a] - 1;
+  *closed = round_a && round_b;
+  if (moves == 1)
+  {
+    place->at[still[0]] = u;
+    place->at[still[1]] = v;
+    place->at[a] = first_a;
+    return true;
+  }
+  const int size_a = lattice.size[a], size_b = lattice.size[b], first_b = Ways[i][b] > 0 ? 0 : size_b - 1;
+  place->at[still[0]] = v;
+  if (*closed)
+  {
+    int x = size_a, y = size_b;
+    while (y > 0)
+    {
+      const int rest = x % y;
+      x = y;
+      y = rest;
+    }
+    place->at[a] = u;
+    place->at[b] = 0;
+    return u < x;
+  }
+  place->at[a] = u < size_a ? u : first_a;
+  place->at[b] = u < size_a ? first_b : u - size_a;
+  return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
+}
+
+// U and R of a voxel, found in the upward pass.
+typedef struct
+{
+  exact sends, returns;
+} Behind;
+
+// Updates U and R across one voxel: light that arrives from behind is arrived + back * (what the voxel sends down).
+static Behind pass_voxel(exact straight, exact source, exact arrived, exact back)
+{
+  const Behind behind = { straight * (arrived + back * source) + source, straight * straight * back };
+  return behind;
+}
+
+// Light incident on the next voxel up: what arrives there, and the fraction of what it sends down that returns.
+static Behind cross_up(Link link, Behind here)
+{
+  const exact again = 1 / (1 - here.returns * (1 - link.up));
+  const Behind next = { link.up * here.sends * again, 1 - link.down + link.up * link.down * here.returns * again };
+  return next;
+}
+
+// Light at a link for known light sent down it: what arrives above and below the link, and what is sent up.
+typedef struct
+{
+  exact up_arrives, lower, up;
+} Crossed;
+
+// @param below  U and R of the voxel below: what it sends up, and the fraction of incident light that it returns
+static Crossed cross_down(Link link, Behind below, exact down)
+{
+  const exact up = (below.sends + below.returns * link.down * down) / (1 - below.returns * (1 - link.up));
+  const Crossed crossed = { link.up * up + (1 - link.down) * down, link.down * down + (1 - link.up) * up, up };
+  return crossed;
+}
+
+// Beginning of a line or piece: light that arrives in its first voxel from behind, the fraction of what that voxel
+// sends down that returns, and, if it is cut there, the fraction transmitted of what is sent up the cut.
+typedef struct
+{
+  exact arrived, back, part;
+} Beginning;
+
+// Beginnings at a face of the grid, and at a cut, where the light sent up is not known yet.
+static Beginning begin_at_border(Border low)
+{
+  const Beginning begin = { low.in, low.back, 0 };
+  return begin;
+}
+static Beginning begin_at_cut(Link link)
+{
+  const Beginning begin = { 0, 1 - link.down, link.up };
+  return begin;
+}
+
+// Light sent down to the cut of a line, if x is sent up there and B is sent down to the last voxel:
+// sent + round x + gives_back B.
+typedef struct
+{
+  exact sent, round, gives_back;
+} Cut;
+
+// The last voxel of a line, and its response to light sent up the cut.
+typedef struct
+{
+  Place place;
+  ulong voxel;
+  int voxels;
+  exact part;
+  Cut cut;
+} Top;
+
+// The upward pass.
+//   is_cut  true: the line is cut behind the first voxel
+//   behind  [voxel][2], U and R
+//   share   [voxel], if the line is cut: T, the voxel's response to light sent up the cut
+static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begin, bool is_cut, __global exact* behind,
+  __global exact* share)
+{
+  const exact weight = EXACT_WEIGHT(i);
+  const ulong first_voxel = voxel_at(lattice, place.at);
+  Top top = { place, first_voxel, 1, begin.part, { weight * even[first_voxel], 0, straight[first_voxel] } };
+  exact arrived = begin.arrived, back = begin.back;
+  for (;;)
+  {
+    const Behind here = pass_voxel(straight[top.voxel], weight * even[top.voxel], arrived, back);
+    behind[2 * top.voxel] = here.sends;
+    behind[2 * top.voxel + 1] = here.returns;
+    if (is_cut)
+    {
+      top.part *= straight[top.voxel];
+      share[top.voxel] = top.part;
+    }
+    const Place next = next_along(lattice, top.place, i);
+    const ulong ahead = voxel_at(lattice, next.at);
+    if (next.face >= 0 || ahead == first_voxel)
+    {
+      return top;
+    }
+    const Link link = link_between(straight, passes, squared, even, top.voxel, ahead);
+    if (is_cut)
+    {
+      const exact again = 1 / (1 - here.returns * (1 - link.up));
+      const exact down = top.cut.gives_back * again;
+      top.cut.sent += down * (link.down * weight * even[ahead] + (1 - link.up) * here.sends);
+      top.cut.round += down * (1 - link.up) * top.part;
+      top.cut.gives_back = down * link.down * straight[ahead];
+      top.part *= link.up * again;
+    }
+    const Behind beyond = cross_up(link, here);
+    arrived = beyond.sends;
+    back = beyond.returns;
+    top.place = next;
+    top.voxel = ahead;
+    ++top.voxels;
+  }
+}
+
+// Index of a voxel in the densities of one direction, in the layout of step_lattice.
+static ulong density_at(LatticeInfo lattice, const int* at)
+{
+  return (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + LatticeFirst;
+}
+
+// The downward pass.
+//   comes     light sent down to the last voxel
+//   round     light sent up the cut, if the line is cut; else 0
+//   first     light that arrives in the first voxel from before it, and the fraction of what it sends down that returns
+//   sum       [voxel], W / length^2: arriving light is added
+static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, exact round, Border first, bool is_cut,
+  const __global exact* behind, const __global exact* share, __global exact* sum, __global float* densities, int writes)
+{
+  const exact weight = EXACT_WEIGHT(i);
+  for (; top.voxels > 0; --top.voxels)
+  {
+    const exact source = weight * even[top.voxel], down = straight[top.voxel] * comes + source;
+    Place below = top.place;
+    ulong other = top.voxel;
+    Crossed crossed = { first.in + first.back * down, 0, 0 };
+    if (top.voxels > 1)
+    {
+      below = next_along(lattice, top.place, i + 1);
+      other = voxel_at(lattice, below.at);
+      const Link link = link_between(straight, passes, squared, even, other, top.voxel);
+      const Behind of_other = { behind[2 * other] + (is_cut ? share[other] * round : 0), behind[2 * other + 1] };
+      crossed = cross_down(link, of_other, down);
+    }
+    sum[top.voxel] += crossed.up_arrives + comes;
+    if (writes)
+    {
+      const ulong at = density_at(lattice, top.place.at);
+      densities[i * lattice.stride + at] = straight[top.voxel] * crossed.up_arrives + source;
+      densities[(i + 1) * lattice.stride + at] = down;
+    }
+    comes = crossed.lower;
+    top.place = below;
+    top.voxel = other;
+  }
+}
 
 // Solves all lines of the directions 2 pair and 2 pair + 1. One work-item per line.
-//   incident  factor of the incident light, 1 or 0
 //   behind    [voxel][2], scratch
 //   share     [voxel], scratch: T of closed lines, the voxel's response to light that wraps around
 //   sum       [voxel], W / length^2: arriving light is added
 //   endless   [voxel], with ENDLESS: bit mask of the direction pairs whose line is endless; such lines carry no light
-//   writes    1: also write densities, in the layout of step_lattice
-__kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact incident, __global exact* behind,
-  __global exact* share, __global exact* sum, __global float* densities, const __global float* endless, int writes)
+__kernel void sweep_lines(LinePass pass, MEDIUM, __global exact* behind, __global exact* share, __global exact* sum,
+  __global float* densities, const __global float* endless)
 {
+  const LatticeInfo lattice = pass.lattice;
+  const int pair = pass.pair;
   const int i = 2 * pair;
   Place place;
   bool closed;
@@ -38,7 +336,7 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact incident,
   }
   else
   {
-    low = border_at(lattice, straight, passes, squared, even, voxel, before, incident, i);
+    low = border_at(lattice, straight, passes, squared, even, voxel, before, i);
   }
   const Beginning begin = closed ? begin_at_cut(closing) : begin_at_border(low);
   const Top top = go_up(lattice, straight, passes, squared, even, place, i, begin, closed, behind, share);
@@ -60,10 +358,162 @@ __kernel void sweep_lines(LatticeInfo lattice, MEDIUM, int pair, exact incident,
   else
   {
     const Place past = next_along(lattice, top.place, i);
-    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, incident, i);
+    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, i);
     const exact rest = 1 - high.back * returns;
     comes = rest > 0 ? (high.in + high.back * sends) / rest : 0;
   }
-  go_down(
-    lattice, straight, passes, squared, even, top, i, comes, round, low, closed, behind, share, sum, densities, writes);
+  go_down(lattice, straight, passes, squared, even, top, i, comes, round, low, closed, behind, share, sum, densities,
+    pass.writes);
+}
+
+// Pieces of lines of links in a rank's block; the other pieces of a line lie in other blocks, or across a periodic axis
+// in this one. The upward pass finds a piece's response to light at its ends, and what it sends without such light.
+// When all pieces of a line have been joined (PiecesOfLines.h), the downward pass finds the densities.
+
+#define PIECE (get_global_id(1) * get_global_size(0) + get_global_id(0))
+
+typedef struct
+{
+  Place place; // the first voxel
+  bool is_cut; // another piece precedes it
+  Link link;   // to that piece
+  Border low;  // the grid's face, if no piece precedes it
+} Piece;
+
+// below    [piece][2], for the voxel before the piece: fraction that links transmit, n^2
+// endless  as in sweep_lines
+// @return false: no piece begins here, or its line is endless
+static bool begin_piece(
+  LatticeInfo lattice, MEDIUM, int pair, const __global exact* below, const __global float* endless, Piece* piece)
+{
+  const int i = 2 * pair;
+  bool closed;
+  if (!begin_line(lattice, i, &piece->place, &closed))
+  {
+    return false;
+  }
+  const Place before = next_along(lattice, piece->place, i + 1);
+  const ulong voxel = voxel_at(lattice, piece->place.at);
+  if (is_endless(endless, voxel, pair))
+  {
+    return false;
+  }
+  piece->is_cut = before.face == OtherBlock;
+  piece->link.up = piece->link.down = piece->low.in = piece->low.back = 0;
+  if (piece->is_cut)
+  {
+    const exact own = BENDS ? squared[voxel] : 1, other = BENDS ? below[2 * PIECE + 1] : 1;
+    piece->link = link_of(below[2 * PIECE], passes[voxel], other, own);
+  }
+  else
+  {
+    piece->low = border_at(lattice, straight, passes, squared, even, voxel, before, i);
+  }
+  return true;
+}
+
+// The last voxel of a piece.
+static Top last_of_piece(LatticeInfo lattice, Place place, int i)
+{
+  int ways = INT_MAX;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int ahead = Ways[i][a] > 0 ? lattice.size[a] - 1 - place.at[a] : place.at[a];
+    ways = Ways[i][a] != 0 ? min(ways, ahead) : ways;
+  }
+  for (int a = 0; a < 3; ++a)
+  {
+    place.at[a] += ways * Ways[i][a];
+  }
+  const Top top = { place, voxel_at(lattice, place.at), ways + 1, 0, { 0, 0, 0 } };
+  return top;
+}
+
+// Upward pass of the pieces along a pair of directions. One work-item per piece; arrays as in sweep_lines, and
+//   sent  [piece][8], for x sent up the cut before it and B sent down to its last voxel (PieceOfLine). With s[k] for
+//         the eight values: the last voxel sends up s[0] + s[2] x + s[3] B, the first one sends down s[1] + s[4] x +
+//         s[5] B; the link before the piece transmits the fractions s[6] upwards and s[7] downwards
+__kernel void pieces_up(LinePass pass, MEDIUM, const __global exact* below, const __global float* endless,
+  __global exact* behind, __global exact* share, __global exact* sent)
+{
+  const LatticeInfo lattice = pass.lattice;
+  const int pair = pass.pair;
+  Piece piece;
+  if (!begin_piece(lattice, straight, passes, squared, even, pair, below, endless, &piece))
+  {
+    for (int k = 0; k < 8; ++k)
+    {
+      sent[8 * PIECE + k] = 0;
+    }
+    return;
+  }
+  const int i = 2 * pair;
+  const Beginning begin = piece.is_cut ? begin_at_cut(piece.link) : begin_at_border(piece.low);
+  Top top = go_up(lattice, straight, passes, squared, even, piece.place, i, begin, piece.is_cut, behind, share);
+  const exact sends = behind[2 * top.voxel], returns = behind[2 * top.voxel + 1];
+  const Place past = next_along(lattice, top.place, i);
+  if (past.face != OtherBlock)
+  {
+    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, i);
+    const exact rest = 1 - high.back * returns;
+    const exact again = rest > 0 ? top.cut.gives_back / rest : 0;
+    top.cut.sent += again * (high.in + high.back * sends);
+    top.cut.round += again * high.back * top.part;
+    top.cut.gives_back = 0;
+  }
+  __global exact* of = sent + 8 * PIECE;
+  of[0] = sends;
+  of[1] = top.cut.sent;
+  of[2] = top.part;
+  of[3] = returns;
+  of[4] = top.cut.round;
+  of[5] = top.cut.gives_back;
+  of[6] = piece.link.up;
+  of[7] = piece.link.down;
+}
+
+// Downward pass of the pieces, after pieces_up.
+//   joined  [piece][3]: x, B, and what the first voxel of the next piece sends down
+//   densities  also those that the voxels before and after the piece send into it
+__kernel void pieces_down(LinePass pass, MEDIUM, const __global exact* below, const __global float* endless,
+  const __global exact* behind, const __global exact* share, const __global exact* joined, __global exact* sum,
+  __global float* densities)
+{
+  const LatticeInfo lattice = pass.lattice;
+  const int pair = pass.pair;
+  Piece piece;
+  if (!begin_piece(lattice, straight, passes, squared, even, pair, below, endless, &piece))
+  {
+    return;
+  }
+  const int i = 2 * pair;
+  const ulong first_at = density_at(lattice, piece.place.at);
+  const Top top = last_of_piece(lattice, piece.place, i);
+  const ulong last_at = density_at(lattice, top.place.at);
+  const __global exact* of = joined + 3 * PIECE;
+  const exact round = piece.is_cut ? of[0] : 0;
+  exact comes = of[1];
+  const Place past = next_along(lattice, top.place, i);
+  if (past.face != OtherBlock)
+  {
+    const Border high = border_at(lattice, straight, passes, squared, even, top.voxel, past, i);
+    const exact sends = behind[2 * top.voxel] + (piece.is_cut ? share[top.voxel] * round : 0);
+    const exact rest = 1 - high.back * behind[2 * top.voxel + 1];
+    comes = rest > 0 ? (high.in + high.back * sends) / rest : 0;
+  }
+  else if (pass.writes)
+  {
+    densities[(i + 1) * lattice.stride + last_at + lattice.offset[i]] = of[2];
+  }
+  if (piece.is_cut)
+  {
+    piece.low.in = piece.link.up * round;
+    piece.low.back = 1 - piece.link.down;
+    if (pass.writes)
+    {
+      densities[i * lattice.stride + first_at - lattice.offset[i]] = round;
+    }
+  }
+  go_down(lattice, straight, passes, squared, even, top, i, comes, round, piece.low, piece.is_cut, behind, share, sum,
+    densities, pass.writes);
 }

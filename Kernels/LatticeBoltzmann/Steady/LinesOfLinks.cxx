@@ -1,12 +1,12 @@
 #include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 
 #include "Device/Defines.h"
-#include "Distribution/BoxExchange.h"
 #include "LatticeBoltzmann/LatticeShared.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -16,7 +16,7 @@ namespace
 {
 constexpr int PairsAtOnce = 3; ///< pairs of directions of cut lines swept together
 constexpr std::size_t PieceValues = 8, JoinedValues = 3,
-                      SweepValues = 2; ///< numbers of a piece, as CutLines.cl has them
+                      SweepValues = 2; ///< numbers of a piece, as LatticeLines.cl has them
 
 /// Extracts the values of the box's own voxels.
 std::vector<float> OwnOf(const LatticeBox& box, const std::vector<float>& known)
@@ -68,7 +68,6 @@ LinesOfLinks::LinesOfLinks(Device& device, const LatticeProblem& problem, const 
   });
   if (cuts)
   {
-    this->ExchangeJoins();
     this->ExchangeParts();
   }
 }
@@ -113,29 +112,45 @@ void LinesOfLinks::LoadCutLines()
   }
 }
 
-/// The lines that this rank joins, and all of its pieces.
+/// The lines that this rank joins, and the pieces that it exchanges with other ranks.
 LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
 {
+  const int self = this->TheDomain.Rank();
   Pair pair;
-  pair.range = pieces.Range(this->TheDomain.Rank());
-  const std::vector<PiecesOfLines::Line> lines = pieces.LinesFrom(this->TheDomain.Rank());
-  std::vector<Shared> byRank(this->TheDomain.Comm().Ranks());
-  for (const PiecesOfLines::Line& line : lines)
-  {
+  pair.range = pieces.Range(self);
+  std::vector<PiecesOfLines::Line> lines;
+  std::vector<Shared> sent(this->TheDomain.Comm().Ranks()), received = sent; // by rank
+  pieces.ForLines([&](int joining, const PiecesOfLines::Line& line) {
     for (const PiecesOfLines::Piece& piece : line.pieces)
     {
-      byRank[piece.rank].pieces.push_back(piece.number);
+      if (piece.rank == self)
+      {
+        sent[joining].pieces.push_back(piece.number);
+      }
+      if (joining == self)
+      {
+        received[piece.rank].pieces.push_back(piece.number);
+      }
     }
-  }
+    if (joining == self)
+    {
+      lines.push_back(line);
+    }
+  });
   std::vector<std::size_t> next; // by rank, index of its first piece that has no place yet
   std::size_t all = 0;
-  for (std::size_t rank = 0; rank < byRank.size(); ++rank)
+  for (int rank = 0; rank < static_cast<int>(sent.size()); ++rank)
   {
     next.push_back(all);
-    all += byRank[rank].pieces.size();
-    if (!byRank[rank].pieces.empty())
+    all += received[rank].pieces.size();
+    sent[rank].rank = received[rank].rank = rank;
+    if (!received[rank].pieces.empty())
     {
-      pair.receivedFrom.push_back({ static_cast<int>(rank), std::move(byRank[rank].pieces) });
+      pair.receivedFrom.push_back(std::move(received[rank]));
+    }
+    if (!sent[rank].pieces.empty())
+    {
+      pair.sentTo.push_back(std::move(sent[rank]));
     }
   }
   for (const PiecesOfLines::Line& line : lines)
@@ -149,45 +164,7 @@ LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
   return pair;
 }
 
-/// Sends each rank the pieces of its block that this rank joins: for each pair their number, and which.
-void LinesOfLinks::ExchangeJoins()
-{
-  if (this->Box.Count() == 0)
-  {
-    return;
-  }
-  std::vector<std::vector<std::size_t>> toEach(this->TheDomain.Comm().Ranks());
-  for (const Pair& pair : this->Pairs)
-  {
-    std::vector<std::vector<std::size_t>> ofPair(toEach.size());
-    for (const Shared& shared : pair.receivedFrom)
-    {
-      ofPair[shared.rank] = shared.pieces;
-    }
-    for (std::size_t rank = 0; rank < toEach.size(); ++rank)
-    {
-      toEach[rank].push_back(ofPair[rank].size());
-      toEach[rank].insert(toEach[rank].end(), ofPair[rank].begin(), ofPair[rank].end());
-    }
-  }
-  const std::vector<std::vector<std::size_t>> ofEach =
-    NumbersOfEach(this->TheDomain.Comm(), this->TheDomain.Partition(), toEach);
-  for (std::size_t rank = 0; rank < ofEach.size(); ++rank)
-  {
-    auto next = ofEach[rank].begin();
-    for (auto pair = this->Pairs.begin(); pair != this->Pairs.end() && next != ofEach[rank].end(); ++pair)
-    {
-      const auto first = next + 1;
-      next = first + static_cast<std::ptrdiff_t>(*next);
-      if (first != next)
-      {
-        pair->sentTo.push_back({ static_cast<int>(rank), { first, next } });
-      }
-    }
-  }
-}
-
-/// The array `below` of CutLines.cl; 1 for pieces that begin at a face of the grid.
+/// The array `below` of LatticeLines.cl; 1 for pieces that begin at a face of the grid.
 LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) const
 {
   const VoxelBox& block = this->TheDomain.Own();
@@ -215,6 +192,7 @@ LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) 
 void LinesOfLinks::ExchangeParts()
 {
   this->Failure = {};
+  this->BeginPass(false, false);
   const int pairs = static_cast<int>(this->Pairs.size());
   if (pairs > 0)
   {
@@ -222,7 +200,7 @@ void LinesOfLinks::ExchangeParts()
   }
   for (int pair = 0; pair < pairs; ++pair)
   {
-    this->GoUp(pair, this->Slots.front(), 0.0, { SweepValues, PieceValues - SweepValues, PieceValues });
+    this->GoUp(pair, this->Slots.front(), { SweepValues, PieceValues - SweepValues, PieceValues });
     const Values received = this->Receive(this->Pairs[pair].receivedFrom, 2 * pair, PieceValues - SweepValues);
     this->Failure.Attempt([&] {
       for (auto next = received.begin(); next != received.end(); next += PieceValues - SweepValues)
@@ -277,32 +255,26 @@ std::string LinesOfLinks::Options() const
     Define("PUBLISHED", 0) + Define("ENDLESS", !voxels.endless.empty());
 }
 
-/// A kernel of CutLines.cl with its arguments up to `endless` set.
-cl::Kernel LinesOfLinks::Kernel(const char* name, int pair, double incident) const
+/// Runs a kernel of LatticeLines.cl.
+/// @param arguments  those after `even`
+template <class... Arguments>
+void LinesOfLinks::Run(const char* name, int pair, const Arguments&... arguments)
 {
-  cl::Kernel lines = this->TheDevice.Kernel(name, kernel_source::CutLines, this->Options());
-  With(lines, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
-    cl_int(pair));
-  SetExact(this->TheDevice, lines, 6, incident);
-  SetFrom(lines, 7, this->Pairs[pair].below.Handle(), this->Endless);
-  return lines;
-}
-
-void LinesOfLinks::Run(cl::Kernel& kernel, int pair)
-{
+  cl::Kernel kernel = this->TheDevice.Kernel(name, kernel_source::LatticeLines, this->Options());
+  this->Pass.pair = pair;
+  With(kernel, this->Pass, this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(), arguments...);
   const std::array<std::size_t, 2>& range = this->Pairs[pair].range;
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(range[0], range[1]));
   this->TheDevice.Finish();
 }
 
-void LinesOfLinks::GoUp(int pair, Slot& slot, double incident, Part part)
+void LinesOfLinks::GoUp(int pair, Slot& slot, Part part)
 {
   const std::vector<Shared>& sentTo = this->Pairs[pair].sentTo;
   Values values;
   this->Failure.Attempt([&] {
-    cl::Kernel up = this->Kernel("pieces_up", pair, incident);
-    SetFrom(up, 9, slot.behind.Handle(), slot.share.Handle(), slot.sent.Handle());
-    this->Run(up, pair);
+    this->Run("pieces_up", pair, this->Pairs[pair].below.Handle(), this->Endless, slot.behind.Handle(),
+      slot.share.Handle(), slot.sent.Handle());
     values = sentTo.empty() ? Values() : slot.sent.Read();
   });
   this->Send(sentTo, 2 * pair, part, values);
@@ -338,7 +310,7 @@ void LinesOfLinks::Join(int pair)
   this->Send(of.receivedFrom, 2 * pair + 1, { 0, JoinedValues, 0 }, joined);
 }
 
-void LinesOfLinks::GoDown(int pair, Slot& slot, double incident, bool writes)
+void LinesOfLinks::GoDown(int pair, Slot& slot)
 {
   const std::vector<Shared>& sentTo = this->Pairs[pair].sentTo;
   const Values received = this->Receive(sentTo, 2 * pair + 1, JoinedValues);
@@ -354,32 +326,25 @@ void LinesOfLinks::GoDown(int pair, Slot& slot, double incident, bool writes)
       }
     }
     slot.joined.Write(joined);
-    cl::Kernel down = this->Kernel("pieces_down", pair, incident);
-    SetFrom(down, 9, slot.behind.Handle(), slot.share.Handle(), slot.joined.Handle(), this->Arriving.Handle(),
-      this->Densities->Densities(), cl_int(writes));
-    this->Run(down, pair);
+    this->Run("pieces_down", pair, this->Pairs[pair].below.Handle(), this->Endless, slot.behind.Handle(),
+      slot.share.Handle(), slot.joined.Handle(), this->Arriving.Handle(), this->Densities->Densities());
   });
 }
 
 /// Upward and downward pass of lines that no block cuts.
-void LinesOfLinks::SweepWhole(int pair, double incident, bool writes)
+void LinesOfLinks::SweepWhole(int pair)
 {
-  cl::Kernel lines = this->TheDevice.Kernel("sweep_lines", kernel_source::LatticeLines, this->Options());
-  Slot& slot = this->Slots.front();
-  With(lines, this->Densities->Info(), this->Straight.Handle(), this->Passes, this->Squared, this->Even.Handle(),
-    cl_int(pair));
-  SetExact(this->TheDevice, lines, 6, incident);
-  SetFrom(lines, 7, slot.behind.Handle(), slot.share.Handle(), this->Arriving.Handle(), this->Densities->Densities(),
-    this->Endless, cl_int(writes));
-  this->Run(lines, pair);
+  const Slot& slot = this->Slots.front();
+  this->Run("sweep_lines", pair, slot.behind.Handle(), slot.share.Handle(), this->Arriving.Handle(),
+    this->Densities->Densities(), this->Endless);
 }
 
 /// Sweeps several pairs at once, so that a rank need not wait for each.
-void LinesOfLinks::SweepCut(int begin, int end, double incident, bool writes)
+void LinesOfLinks::SweepCut(int begin, int end)
 {
   for (int pair = begin; pair < end; ++pair)
   {
-    this->GoUp(pair, this->Slots[pair - begin], incident, { 0, SweepValues, PieceValues });
+    this->GoUp(pair, this->Slots[pair - begin], { 0, SweepValues, PieceValues });
   }
   for (int pair = begin; pair < end; ++pair)
   {
@@ -387,13 +352,26 @@ void LinesOfLinks::SweepCut(int begin, int end, double incident, bool writes)
   }
   for (int pair = begin; pair < end; ++pair)
   {
-    this->GoDown(pair, this->Slots[pair - begin], incident, writes);
+    this->GoDown(pair, this->Slots[pair - begin]);
   }
 }
 
-LinesOfLinks::Values LinesOfLinks::Sweep(const Values& even, double incident, bool writes, const Monitor& monitor)
+void LinesOfLinks::BeginPass(bool withIncident, bool writes)
+{
+  this->Pass = {};
+  this->Pass.writes = writes;
+  if (this->Densities)
+  {
+    this->Pass.lattice = this->Densities->Info();
+    std::transform(std::begin(this->Pass.lattice.incoming), std::end(this->Pass.lattice.incoming),
+      std::begin(this->Pass.lattice.incoming), [&](float light) { return withIncident ? light : 0.0f; });
+  }
+}
+
+LinesOfLinks::Values LinesOfLinks::Sweep(const Values& even, bool withIncident, bool writes, const Monitor& monitor)
 {
   this->Failure = {};
+  this->BeginPass(withIncident, writes);
   const int pairs = static_cast<int>(this->Pairs.size());
   this->Failure.Attempt([&] {
     if (pairs > 0)
@@ -409,12 +387,12 @@ LinesOfLinks::Values LinesOfLinks::Sweep(const Values& even, double incident, bo
     const int end = std::min(begin + atOnce, pairs);
     if (cuts)
     {
-      this->SweepCut(begin, end, incident, writes);
+      this->SweepCut(begin, end);
     }
     this->Failure.Attempt([&] {
       if (!cuts)
       {
-        this->SweepWhole(begin, incident, writes);
+        this->SweepWhole(begin);
       }
       this->Work += end - begin;
       Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work)); // the number of sweeps is not known in advance

@@ -8,7 +8,6 @@
 #include "LatticeBoltzmann/LatticeProblem.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LatticeBoltzmann/LatticeVoxels.h"
-#include "LatticeBoltzmann/Steady/JoinedLine.h"
 #include "LatticeBoltzmann/Steady/PiecesOfLines.h"
 
 #include <array>
@@ -33,10 +32,10 @@ public:
 
   /// Collective.
   /// @param even  W / length^2 that collisions and sources emit isotropically, by own voxel
-  /// @param incident  factor of the incident light, 1 or 0
+  /// @param withIncident  whether light is incident through the faces of the grid
   /// @param writes  whether densities are written, including those beyond the block's faces
   /// @return light that arrives in each own voxel, W / length^2
-  Values Sweep(const Values& even, double incident, bool writes, const Monitor& monitor);
+  Values Sweep(const Values& even, bool withIncident, bool writes, const Monitor& monitor);
 
 private:
   /// Pieces whose values this rank exchanges with another, in an order that both know.
@@ -65,7 +64,7 @@ private:
   {
     std::size_t first = 0, count = 0, of = 0;
   };
-  struct Slot ///< scratch arrays of LatticeLines.cl and CutLines.cl for one pair in progress
+  struct Slot ///< scratch arrays of LatticeLines.cl for one pair in progress
   {
     ExactValues behind, share, sent, joined;
   };
@@ -73,19 +72,19 @@ private:
   void Load();
   void LoadCutLines();
   Pair LinesFrom(const PiecesOfLines& pieces) const;
-  void ExchangeJoins();
   Values Below(const PiecesOfLines& pieces, int pair) const;
   void ExchangeParts();
   void Send(const std::vector<Shared>& to, int tag, Part part, const Values& values);
   Values Receive(const std::vector<Shared>& from, int tag, std::size_t width);
-  void GoUp(int pair, Slot& slot, double incident, Part part);
+  void GoUp(int pair, Slot& slot, Part part);
   void Join(int pair);
-  void GoDown(int pair, Slot& slot, double incident, bool writes);
-  void SweepWhole(int pair, double incident, bool writes);
-  void SweepCut(int begin, int end, double incident, bool writes);
+  void GoDown(int pair, Slot& slot);
+  void SweepWhole(int pair);
+  void SweepCut(int begin, int end);
   std::string Options() const;
-  cl::Kernel Kernel(const char* name, int pair, double incident) const;
-  void Run(cl::Kernel& kernel, int pair);
+  void BeginPass(bool withIncident, bool writes);
+  template <class... Arguments>
+  void Run(const char* name, int pair, const Arguments&... arguments);
 
   Device& TheDevice;
   const Domain& TheDomain;
@@ -98,6 +97,7 @@ private:
   std::size_t MostPieces = 1;
   ExactValues Straight, Even, Arriving;
   Buffer<float> Passes, Squared, Endless;
+  LinePass Pass = {};  ///< of the current sweep
   HeldFailure Failure; ///< held during a sweep
   double Work = 0.0;
 };

@@ -72,7 +72,7 @@ std::vector<double> SteadyLattice::Arriving(const Values& scaled, bool withSourc
 {
   Values even;
   this->TheDomain.Collective([&] { even = this->EvenOf(scaled, withSources); });
-  return this->Lines.Sweep(even, withSources ? 1.0 : 0.0, writes, monitor);
+  return this->Lines.Sweep(even, withSources, writes, monitor);
 }
 
 /// The residual of Eq. (L9), W / length^2.

@@ -1,7 +1,7 @@
 #include "LightPropagation/Accuracy/PreviewLight.h"
 
 #include "Distribution/BoxExchange.h"
-#include "Distribution/SharedFigures.h"
+#include "Distribution/SharedLight.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Problem/SceneChecks.h"
 

@@ -1,7 +1,7 @@
 #include "LightPropagation/Angular/AngularBasis.h"
 
 #include "Numerics/Constants.h"
-#include "Numerics/SphericalHarmonics.h"
+#include "Numerics/Legendre.h"
 
 #include <cmath>
 

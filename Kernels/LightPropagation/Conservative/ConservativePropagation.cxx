@@ -9,7 +9,7 @@
 #include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Conservative/SourceIteration.h"
 #include "LightPropagation/Convergence.h"
-#include "LightPropagation/Emission/GlobalStatistics.h"
+#include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/PlaneParallel/PlaneParallelPropagation.h"
 #include "LightPropagation/Problem/GridAxes.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"

@@ -1,7 +1,7 @@
 #include "LightPropagation/Conservative/WarmStart.h"
 
 #include "Device/GroupSize.h"
-#include "Distribution/KeptInBlocks.h"
+#include "Distribution/SharedLight.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 

@@ -1,6 +1,6 @@
 #include "LightPropagation/Diffusion/BlockWithGhosts.h"
 
-#include "Medium/GridOfBox.h"
+#include "Medium/VoxelBox.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include "Device/Buffer.h"
 #include "Distribution/Domain.h"
-#include "Distribution/GhostCells.h"
+#include "Distribution/Halo.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 
 #include <array>

@@ -1,7 +1,6 @@
 #include "LightPropagation/Diffusion/MultigridExchange.h"
 
 #include "Distribution/BoxExchange.h"
-#include "Distribution/MessageTags.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 #include "TyndallKernelSources.h"
 

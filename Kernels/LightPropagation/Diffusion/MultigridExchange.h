@@ -2,7 +2,7 @@
 
 #include "Device/ExactValues.h"
 #include "Distribution/Domain.h"
-#include "Distribution/GhostCells.h"
+#include "Distribution/Halo.h"
 #include "LightPropagation/Diffusion/MultigridLayout.h"
 
 #include <array>

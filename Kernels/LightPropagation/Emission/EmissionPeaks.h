@@ -1,5 +1,6 @@
 #pragma once
 
+#include "LightPropagation/Problem/PropagationProblem.h"
 #include "Lights/Rgb.h"
 #include "Medium/Medium.h"
 
@@ -55,4 +56,9 @@ constexpr double EmissionPartOfAll = 0.5; ///< minimum fraction of the emitted p
 
 /// Emission of a voxel, averaged over the three channels.
 double EmissionBrightness(const Field& emission, std::size_t voxel);
+
+/// Whether a few bright voxels dominate the emission, so that a serial solve might trace their light along exact rays
+/// (EmissionPeaks.h), which a solve on several ranks does not. Necessary, not sufficient: a serial solve also requires
+/// that the voxels lie close together and do not absorb their own emission. Collective.
+bool MayHaveEmissionPeaks(const PropagationProblem& problem);
 }

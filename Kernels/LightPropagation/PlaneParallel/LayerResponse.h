@@ -1,6 +1,6 @@
 #pragma once
 
-#include "PhaseFunction/DeltaM.h"
+#include "PhaseFunction/PhaseFunction.h"
 
 #include <Eigen/Core>
 #include <vector>

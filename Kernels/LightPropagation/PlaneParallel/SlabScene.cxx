@@ -1,7 +1,7 @@
 #include "LightPropagation/PlaneParallel/SlabScene.h"
 
 #include "Numerics/Constants.h"
-#include "Numerics/SphericalHarmonics.h"
+#include "Numerics/Legendre.h"
 
 #include <algorithm>
 #include <cmath>

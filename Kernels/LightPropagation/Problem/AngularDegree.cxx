@@ -1,7 +1,7 @@
 #include "LightPropagation/Problem/AngularDegree.h"
 
 #include "LightPropagation/Angular/AngularBasis.h"
-#include "PhaseFunction/UsedCosines.h"
+#include "PhaseFunction/PhaseOfMedium.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
-#include "Numerics/SphericalHarmonics.h"
 
 #include <algorithm>
 #include <cmath>

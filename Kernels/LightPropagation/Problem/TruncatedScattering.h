@@ -4,7 +4,7 @@
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "Medium/Medium.h"
-#include "PhaseFunction/DeltaM.h"
+#include "PhaseFunction/PhaseFunction.h"
 
 #include <array>
 #include <cstdint>

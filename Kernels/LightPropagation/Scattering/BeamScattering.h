@@ -2,7 +2,7 @@
 
 #include "Device/Buffer.h"
 #include "LightPropagation/Angular/AngularBasis.h"
-#include "PhaseFunction/DeltaM.h"
+#include "PhaseFunction/PhaseFunction.h"
 
 #include <array>
 #include <cstddef>

@@ -2,7 +2,6 @@
 
 #include "Device/Defines.h"
 #include "Device/GroupSize.h"
-#include "Distribution/MessageTags.h"
 #include "Distribution/Rounds.h"
 #include "Photons/Marching/PhotonPacking.h"
 

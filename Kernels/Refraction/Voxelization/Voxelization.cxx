@@ -2,7 +2,7 @@
 
 #include "Device/Defines.h"
 #include "Device/Sizes.h"
-#include "Medium/GridOfBox.h"
+#include "Medium/VoxelBox.h"
 #include "Refraction/Voxelization/SampleLattice.h"
 #include "Refraction/Voxelization/VoxelizationShared.h"
 #include "TyndallKernelSources.h"

@@ -1,7 +1,7 @@
 #include "Viewing/Blocks/ShadowsInBlocks.h"
 
 #include "Device/Errors.h"
-#include "Distribution/MessageTags.h"
+#include "Distribution/Communicator.h"
 #include "Viewing/Sources/SmallLights.h"
 
 #include <algorithm>

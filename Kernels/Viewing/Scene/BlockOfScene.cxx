@@ -2,7 +2,7 @@
 
 #include "Distribution/BlockPartition.h"
 #include "Distribution/BoxExchange.h"
-#include "Distribution/GhostCells.h"
+#include "Distribution/Halo.h"
 #include "Medium/Traits.h"
 #include "Numerics/Vectors.h"
 

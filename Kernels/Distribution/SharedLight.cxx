@@ -1,7 +1,8 @@
-#include "Distribution/SharedFigures.h"
+#include "Distribution/SharedLight.h"
 
 #include <algorithm>
 #include <sstream>
+#include <vector>
 
 namespace tyndall
 {
@@ -60,6 +61,25 @@ std::vector<std::string> ShareLines(Communicator& communicator, bool found, cons
   }
   return shared;
 }
+
+/// Compares powers and rates of the domain, which are the same on all ranks that kept light of the same solve.
+bool IsOfOneSolve(Communicator& communicator, const KeptLight& kept)
+{
+  std::vector<double> values(kept.firstScattered.begin(), kept.firstScattered.end());
+  values.insert(values.end(), kept.rate.begin(), kept.rate.end());
+  const std::size_t count = values.size();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    values.push_back(-values[i]);
+  }
+  const std::vector<double> largest = communicator.Largest(values);
+  bool same = true;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    same = same && largest[i] == -largest[count + i];
+  }
+  return same;
+}
 }
 
 void ShareFigures(Communicator& communicator, bool found, LightField& light)
@@ -85,5 +105,12 @@ void ShareFigures(Communicator& communicator, bool found, LightField& light)
   light.device = WordsOfAny(communicator, found ? light.device : std::string());
   light.doubts.clear();
   light.leftOut = ShareLines(communicator, found, light.leftOut);
+}
+
+std::string WhyNotBegunOnAny(Communicator& communicator, const KeptLight& kept, const std::string& whyNot)
+{
+  const std::string words = WordsOfAny(communicator, whyNot);
+  const bool same = IsOfOneSolve(communicator, kept);
+  return !words.empty() ? words : same ? std::string() : "the ranks have it of different solves";
 }
 }

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "Distribution/Communicator.h"
+#include "Light/KeptLight.h"
 #include "Light/LightField.h"
+
+#include <string>
 
 namespace tyndall
 {
@@ -10,4 +13,9 @@ namespace tyndall
 /// since a preview is not judged. Collective.
 /// @param found  true on the one rank that has the result
 void ShareFigures(Communicator& communicator, bool found, LightField& light);
+
+/// Why a distributed solve cannot start from kept light, the same clause on all ranks; empty if it can. Each rank keeps
+/// the light of its block; if one cannot start from it, none does. Collective.
+/// @param whyNot  the reason on this rank, from WhyNotBegun
+std::string WhyNotBegunOnAny(Communicator& communicator, const KeptLight& kept, const std::string& whyNot);
 }
