@@ -25,7 +25,6 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   , TheDevice(device)
   , Scene(scene)
   , Angles(angles)
-  , ScatteredAway(1.0 - angles.phase.Peak())
 {
   for (std::size_t i = 0; i < this->Voxels; ++i)
   {
@@ -34,8 +33,8 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
     this->AnyScattering = this->AnyScattering || this->Scattering.back() > 0.0f;
     this->AnyEmission = this->AnyEmission || scene.medium.emission.At(i, scene.channel) > 0.0f;
   }
-  this->SigmaT = this->Load("sigma_t", 1.0, this->ScatteredAway);
-  this->SigmaS = this->Load("sigma_s", 0.0, this->ScatteredAway);
+  this->SigmaT = this->Load("sigma_t", 1.0, this->ScatteredAway());
+  this->SigmaS = this->Load("sigma_s", 0.0, this->ScatteredAway());
   this->Scale = Buffer<float>(device, this->Voxels, "the sources");
   this->Direct = Buffer<float>(device, this->Voxels, "fluence_direct");
   this->Light.order = Buffer<float>(device, this->Voxels, "fluence of an order");
@@ -229,7 +228,7 @@ ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values, 
   }
   const double volume = this->Layout.grid.VoxelVolume();
   const std::vector<double> sums = this->Scene.domain.Sum(
-    std::vector<double>{ powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway) });
+    std::vector<double>{ powers.absorbed * volume, powers.scattered * volume * (lamps ? 1.0 : this->ScatteredAway()) });
   return { sums[0], sums[1] };
 }
 
@@ -241,7 +240,7 @@ double ChannelArrays::MagnitudeOf(const std::vector<float>& values, const std::v
     const double other = others.empty() ? 0.0 : others[i];
     sum += std::abs(values[i] - other) * this->Scattering[i];
   }
-  return this->Scene.domain.Sum(sum * this->Layout.grid.VoxelVolume() * this->ScatteredAway);
+  return this->Scene.domain.Sum(sum * this->Layout.grid.VoxelVolume() * this->ScatteredAway());
 }
 
 void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const
@@ -249,7 +248,7 @@ void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double facto
   std::vector<float> scattered(this->Voxels);
   for (std::size_t i = 0; i < this->Voxels; ++i)
   {
-    scattered[i] = static_cast<float>(factor * this->ScatteredAway * this->Scattering[i] * values[i] / (4.0 * Pi));
+    scattered[i] = static_cast<float>(factor * this->ScatteredAway() * this->Scattering[i] * values[i] / (4.0 * Pi));
   }
   const Buffer<float> even(this->TheDevice, scattered, "the last light");
   cl::Kernel add = this->TheDevice.Kernel("add_even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));

@@ -71,6 +71,10 @@ public:
   const std::unique_ptr<FaceLight> Faces; ///< null: no face reflects
 
 private:
+  double ScatteredAway() const
+  {
+    return 1.0 - this->Angles.phase.Peak();
+  } ///< scattered fraction without the forward peak
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
   std::unique_ptr<SweepOperator> SweepOf(
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request);
@@ -84,7 +88,6 @@ private:
   Device& TheDevice;
   const OrdinatesScene& Scene;
   const OrdinatesAngles& Angles;
-  double ScatteredAway; ///< 1 minus the forward peak
   std::vector<float> Absorption, Scattering;
   bool AnyEmission = false, AnyScattering = false;
   std::unique_ptr<const SweptDirections> OfVacuum; ///< quadrature of emission of empty voxels; null: none, or swept

@@ -76,7 +76,7 @@ FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSet
     const std::array<double, 3>& omega = direction.omega;
     const Rgb seen =
       environment.smooth.Empty() ? Rgb{} : Lookup(environment.smooth, { -omega[0], -omega[1], -omega[2] });
-    far.radiance.push_back({ seen[0] + shining.sky[0], seen[1] + shining.sky[1], seen[2] + shining.sky[2] });
+    far.radiance.push_back(seen + shining.sky);
   }
   return far;
 }

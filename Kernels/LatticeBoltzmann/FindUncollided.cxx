@@ -107,22 +107,10 @@ private:
   const LatticeBox& Box;
   int Channel;
 };
-}
 
-double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) const
-{
-  const auto channels = static_cast<std::size_t>(this->image.fluence.components);
-  const std::size_t of = channels > 1 ? static_cast<std::size_t>(channel) : 0;
-  const double fluence = this->image.fluence.At(voxel, channel);
-  const double moment = this->firstMoments.empty() ? 0.0 : this->firstMoments[6 * (voxel * channels + of) + face];
-  return fluence > 0.0 ? std::min(moment / fluence, 0.5) : 0.0;
-}
-
-double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel)
-{
-  return NearerBy(ThicknessOf(medium, voxel, 0, channel));
-}
-
+/// Estimate of the first moments of collisions (LightField::firstMoments) for uncollided light that is known by voxel
+/// only: along its mean direction it decays as exp(-k x), where k follows from the fluence of the next voxel downstream
+/// (numerics.md, Eq. (L14)). Empty if the image has no mean direction.
 std::vector<float> EstimatedFirstMoments(const UncollidedImage& image, const Medium& medium, const LatticeBox& box)
 {
   if (!image.meanDirection.values)
@@ -146,6 +134,21 @@ std::vector<float> EstimatedFirstMoments(const UncollidedImage& image, const Med
     }
   }
   return moments;
+}
+}
+
+double Uncollided::Nearer(std::size_t voxel, int channel, std::size_t face) const
+{
+  const auto channels = static_cast<std::size_t>(this->image.fluence.components);
+  const std::size_t of = channels > 1 ? static_cast<std::size_t>(channel) : 0;
+  const double fluence = this->image.fluence.At(voxel, channel);
+  const double moment = this->firstMoments.empty() ? 0.0 : this->firstMoments[6 * (voxel * channels + of) + face];
+  return fluence > 0.0 ? std::min(moment / fluence, 0.5) : 0.0;
+}
+
+double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel)
+{
+  return NearerBy(ThicknessOf(medium, voxel, 0, channel));
 }
 
 namespace
@@ -226,10 +229,10 @@ Uncollided BySweep(Device& device, const LatticeProblem& problem, const LatticeS
   {
     found.image.escaped = EscapedByChannel(light);
     const EnergyBalance& sums = light.balance;
+    const Rgb lost = sums.entered - sums.absorbed - sums.escaped - sums.leftOver;
     for (int c = 0; c < channels; ++c)
     {
-      const int of = light.channels > 1 ? c : 0;
-      found.lost[c] = sums.entered[of] - sums.absorbed[of] - sums.escaped[of] - sums.leftOver[of];
+      found.lost[c] = lost[light.channels > 1 ? c : 0];
     }
   }
   return found;

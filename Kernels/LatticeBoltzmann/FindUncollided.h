@@ -30,11 +30,6 @@ struct Uncollided
 /// (numerics.md, Eq. (L14), k = sigma_t h).
 double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel);
 
-/// Estimate of the first moments of collisions (LightField::firstMoments) for uncollided light that is known by voxel
-/// only: along its mean direction it decays as exp(-k x), where k follows from the fluence of the next voxel downstream
-/// (numerics.md, Eq. (L14)). Empty if the image has no mean direction.
-std::vector<float> EstimatedFirstMoments(const UncollidedImage& image, const Medium& medium, const LatticeBox& box);
-
 /// Uncollided light by known voxel: that of another solver if given, else that of lamps and environment by light
 /// propagation maps. Diffuse sky and face light is excluded; it is incident on the lattice itself. Collective.
 Uncollided FindUncollided(

@@ -11,7 +11,6 @@
 #include "Refraction/Index/IndexField.h"
 
 #include <algorithm>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -168,10 +167,7 @@ void SumPowers(const Domain& domain, LightField& light)
     powers.push_back(&face);
   }
   SumOverRanks(domain, powers);
-  for (std::size_t c = 0; c < 3; ++c)
-  {
-    balance.leftOver[c] = balance.entered[c] + balance.emitted[c] - balance.absorbed[c] - balance.escaped[c];
-  }
+  balance.leftOver = balance.entered + balance.emitted - balance.absorbed - balance.escaped;
 }
 
 /// Sets `converged` and adds warnings; light is in the user's units.
@@ -194,9 +190,7 @@ void FinishLight(LightField& light, const Device& device, const LatticeProblem& 
 {
   const Domain& domain = problem.TheDomain();
   SumPowers(domain, light);
-  const Rgb allLost = domain.Sum(lost);
-  std::transform(light.balance.entered.begin(), light.balance.entered.end(), allLost.begin(),
-    light.balance.entered.begin(), std::plus<double>());
+  light.balance.entered += domain.Sum(lost);
   const bool anisotropic = problem.IsAnisotropic();
   domain.Collective([&] { DescribeLight(light, device, anisotropic, settings, thickest); });
   if (settings.scheme == LatticeScheme::Conservative)

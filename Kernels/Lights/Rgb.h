@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 
 namespace tyndall
@@ -11,6 +12,25 @@ using Rgb = std::array<double, 3>;
 inline double Sum(const Rgb& rgb)
 {
   return rgb[0] + rgb[1] + rgb[2];
+}
+
+inline Rgb& operator+=(Rgb& rgb, const Rgb& other)
+{
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    rgb[c] += other[c];
+  }
+  return rgb;
+}
+
+inline Rgb operator+(Rgb rgb, const Rgb& other)
+{
+  return rgb += other;
+}
+
+inline Rgb operator-(const Rgb& rgb, const Rgb& other)
+{
+  return { rgb[0] - other[0], rgb[1] - other[1], rgb[2] - other[2] };
 }
 
 inline Rgb Times(const Rgb& rgb, double factor)

@@ -33,11 +33,8 @@ struct EnteringRays
 
   void Add(const Rgb& radiance, double power, double exactRays, double wholeRays)
   {
-    for (int c = 0; c < 3; ++c)
-    {
-      this->exact[c] += exactRays * radiance[c] * power;
-      this->whole[c] += wholeRays * radiance[c] * power;
-    }
+    this->exact += Times(Times(radiance, exactRays), power);
+    this->whole += Times(Times(radiance, wholeRays), power);
   }
 };
 }
@@ -91,12 +88,7 @@ void BoundaryLight::FindRange()
 
 Rgb BoundaryLight::Incoming(int direction, int face) const
 {
-  Rgb radiance = this->Faces[face];
-  for (int c = 0; c < 3; ++c)
-  {
-    radiance[c] += this->FromFarAway[direction][c];
-  }
-  return radiance;
+  return this->Faces[face] + this->FromFarAway[direction];
 }
 
 bool BoundaryLight::IsLit(int direction) const
@@ -124,10 +116,10 @@ std::array<Rgb, 6> BoundaryLight::IncomingPower() const
     for (int axis = 0; axis < 3; ++axis)
     {
       const int face = FaceOf(directions[d], axis);
-      const Rgb radiance = this->Incoming(static_cast<int>(d), face);
-      for (int c = 0; c < 3 && !this->Periodic[axis]; ++c)
+      if (!this->Periodic[axis])
       {
-        power[face][c] += directions[d].weight * std::abs(directions[d].omega[axis]) * radiance[c];
+        power[face] +=
+          Times(this->Incoming(static_cast<int>(d), face), directions[d].weight * std::abs(directions[d].omega[axis]));
       }
     }
   }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 
+#include "Device/GroupSize.h"
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Uncollided/Lamps/LampBeams.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
@@ -95,8 +96,7 @@ void AddWithFirstMoments(
     With(add, info, *to.sigma_t, cl_ulong(to.sigma_t_first), *ofBeam.path, *ofBeam.partialCurrents,
       beyond.values ? *beyond.values : *ofBeam.path, cl_ulong(group.first), *to.deposit.path, *to.deposit.firstMoments,
       cl_ulong(to.first), cl_ulong(to.stride));
-    volume.device.Queue().enqueueNDRangeKernel(
-      add, cl::NullRange, cl::NDRange(grid.VoxelCount(), to.channels), cl::NullRange);
+    Launch(volume.device, add, cl::NDRange(grid.VoxelCount(), to.channels));
   }
   volume.device.Finish(); // the beam's arrays are released
 }
@@ -120,10 +120,7 @@ SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const
   deposit.partialCurrents = &partialCurrents;
   const SweepTally tally = SweepBeam(volume, light, true, deposit, monitor);
   const BeyondFaces beyond = volume.fetchBeyond ? volume.fetchBeyond(partialCurrents) : BeyondFaces();
-  if (volume.layout.grid.VoxelCount() > 0)
-  {
-    AddWithFirstMoments(volume, light, deposit, beyond);
-  }
+  AddWithFirstMoments(volume, light, deposit, beyond);
   return tally;
 }
 }

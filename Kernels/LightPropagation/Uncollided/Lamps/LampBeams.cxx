@@ -248,7 +248,7 @@ void LampBeams::FollowInRounds(const Rows& rows, LampShares& found, const Monito
 LampBeams::Beams LampBeams::Starting(const Rows& rows) const
 {
   Beams own;
-  for (std::size_t r = 0; r < rows.size() && !this->TheDomain.IsEmpty(); ++r)
+  for (std::size_t r = 0; r < rows.size(); ++r)
   {
     for (int b = 0; b < rows[r].count; ++b)
     {
@@ -326,10 +326,7 @@ void LampBeams::AddToOwners()
   this->TheDomain.Collective([&] {
     this->Sums = std::make_unique<LampSums>(
       this->TheDevice, this->Lamp, this->Volume.deposit, this->Volume.stride, this->TheDomain.Whole());
-    if (!this->TheDomain.IsEmpty())
-    {
-      this->Sums->Sums().Write(own.data());
-    }
+    this->Sums->Sums().Write(own.data());
     if (!cells.empty())
     {
       this->Sums->Cells().Write(cells.data());
