@@ -1,7 +1,6 @@
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 
 #include "Device/Errors.h"
-#include "DiscreteOrdinates/OrdinatesParts.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "DiscreteOrdinates/UpwindSweep.h"
+#include "Distribution/Communicator.h"
 #include "Distribution/Domain.h"
-#include "Distribution/HeldFailure.h"
 #include "LightPropagation/Sweep/Pipelined/BlockContact.h"
 #include "LightPropagation/Sweep/Pipelined/SweepSchedule.h"
 

@@ -1,7 +1,6 @@
 #include "Distribution/Communicator.h"
 
 #include "Device/Errors.h"
-#include "Distribution/HeldFailure.h"
 
 #include <algorithm>
 #include <exception>

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <cstring>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -160,5 +162,54 @@ public:
 protected:
   void Give(int to, int tag, std::vector<char> bytes) override;
   std::vector<char> Take(int from, int tag) override;
+};
+
+/// A rank received a shorter message than it expected. Communicator::Collective reports the error that caused it if
+/// another rank threw one.
+struct MissingMessage : std::runtime_error
+{
+  MissingMessage()
+    : std::runtime_error("Ranks were not sent as much as they wait for, and none says why: something that they were "
+                         "given differs. Give all ranks the same properties.")
+  {
+  }
+};
+
+/// Holds the first error of a rank while others still wait for its messages: the rank continues, sends empty messages,
+/// and throws at the end.
+struct HeldFailure
+{
+  /// Runs `work` and holds what it throws; does nothing after an earlier failure.
+  void Attempt(const std::function<void()>& work)
+  {
+    try
+    {
+      if (!this->broken)
+      {
+        work();
+      }
+    }
+    catch (...)
+    {
+      this->error = std::current_exception();
+      this->broken = true;
+    }
+  }
+
+  /// Throws the held error. Call it at the end, within Communicator::Collective.
+  void Throw() const
+  {
+    if (this->error)
+    {
+      std::rethrow_exception(this->error);
+    }
+    if (this->broken)
+    {
+      throw MissingMessage();
+    }
+  }
+
+  bool broken = false; ///< this rank has failed, or one upstream of it
+  std::exception_ptr error;
 };
 }

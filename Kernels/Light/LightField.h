@@ -3,6 +3,7 @@
 #include "Lights/Lights.h"
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,19 @@ struct EnergyBalance
   /// |entered + emitted - absorbed - escaped - leftOver| / (entered + emitted), of the worst channel; 0 without light
   double RelativeError(int channels) const;
 };
+
+inline double EnergyBalance::RelativeError(int channels) const
+{
+  double worst = 0.0;
+  for (int c = 0; c < channels; ++c)
+  {
+    const double in = this->entered[c] + this->emitted[c];
+    const double out = this->absorbed[c] + this->escaped[c] + this->leftOver[c];
+    const double error = in > 0.0 ? std::abs(in - out) / in : std::abs(out);
+    worst = error <= worst || std::isnan(worst) ? worst : error; // NaN propagates
+  }
+  return worst;
+}
 
 /// A row of the `convergence` table: one scattering order, or one sweep if source iteration is accelerated.
 struct ConvergenceRow

@@ -33,7 +33,7 @@ struct PropagationSettings
   /// scattering is anisotropic.
   int polarNodes = 0;
   /// Directions per cube face, a square number, for uncollided light of boundary sources, sky and environment
-  /// (UncollidedBoundary.h); 0: the same as for scattered light; -1: chosen so that the solve takes about a quarter
+  /// (BoundaryLight.h); 0: the same as for scattered light; -1: chosen so that the solve takes about a quarter
   /// longer at most, where this reduces the error (LightSources.h).
   int uncollidedDirections = -1;
   /// Offset the rays of each direction differently within a voxel (RayBundles.h). With more than 100

@@ -1,5 +1,5 @@
 #include "Device/Errors.h"
-#include "Distribution/HeldFailure.h"
+#include "Distribution/Communicator.h"
 #include "Distribution/RanksInThreads.h"
 
 #include <gtest/gtest.h>

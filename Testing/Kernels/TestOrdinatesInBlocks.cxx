@@ -6,7 +6,7 @@
 
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
-#include "DiscreteOrdinates/OrdinatesParts.h"
+#include "DiscreteOrdinates/OrdinatesScene.h"
 #include "DiscreteOrdinates/OrdinatesSettings.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "Device/Buffer.h"
 #include "Device/ExactValues.h"
 #include "Device/Monitor.h"
-#include "Distribution/HeldFailure.h"
+#include "Distribution/Communicator.h"
 #include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/LatticeProblem.h"
 #include "LatticeBoltzmann/LatticeSettings.h"

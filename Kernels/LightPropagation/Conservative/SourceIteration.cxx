@@ -6,7 +6,7 @@
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
-#include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
 #include "LightPropagation/Scattering/MomentScattering.h"
-#include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 
 #include <algorithm>

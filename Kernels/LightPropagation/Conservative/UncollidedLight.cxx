@@ -3,7 +3,7 @@
 #include "LightPropagation/Diffusion/LampPassing.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
-#include "LightPropagation/Uncollided/UncollidedBoundary.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 

@@ -1,8 +1,8 @@
 #include "LightPropagation/Emission/UncollidedEmission.h"
 
 #include "LightPropagation/Emission/EmissionRays.h"
+#include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
-#include "LightPropagation/Uncollided/UncollidedBoundary.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #include "Device/Monitor.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
-#include "Distribution/HeldFailure.h"
 #include "Medium/VoxelBox.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/Scene/Camera.h"

@@ -1,7 +1,6 @@
 // Where a lamp's beams meet the faces of the box. Options as for LampBeams.cl.
 #pragma once
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
-#include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 #include "Numerics/FixedPoint.cl"
 
 #define INSIDE 0

@@ -18,7 +18,6 @@
 #include "LightPropagation/Uncollided/Lamps/BeamFaces.cl"
 #include "LightPropagation/Uncollided/Lamps/BeamPower.cl"
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
-#include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Numerics.cl"
 

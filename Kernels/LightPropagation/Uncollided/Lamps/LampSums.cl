@@ -1,8 +1,8 @@
 // Adds the deposits of a lamp's beams, which are in fixed point, to the arrays of a deposit. Options as for
 // LampBeams.cl.
 
+#include "LightPropagation/Uncollided/Lamps/BeamPower.cl"
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
-#include "LightPropagation/Uncollided/Lamps/LampUnits.cl"
 #include "Numerics/Numerics.cl"
 
 #define DEEPEST 7 // maximum number of halvings of a voxel close to a rectangle
