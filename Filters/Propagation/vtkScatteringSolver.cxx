@@ -61,14 +61,6 @@ void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light
   spread(light.scatteredMoments, static_cast<int>(ofMoments[0]));
   spread(light.straightOn, static_cast<int>(ofMoments[1]));
 }
-
-tyndall::LitColor ColorOf(
-  const tyndall::SolverScene& scene, const tyndall::FloatField& fluence, const tyndall::ToneMapping& tones)
-{
-  return scene.domain.IsSerial()
-    ? tyndall::ColorLitMedium(scene.medium, fluence, tones)
-    : tyndall::ColorLitMediumInBlocks(scene.domain.Comm(), scene.domain.Partition(), scene.medium, fluence, tones);
-}
 }
 
 vtkScatteringSolver::vtkScatteringSolver()
@@ -397,7 +389,7 @@ void vtkScatteringSolver::Color(
   tyndall::ToneMapping tones;
   tones.exposure = this->Exposure;
   tones.curve = static_cast<tyndall::ToneCurve>(this->ToneCurve);
-  tyndall::LitColor lit = ColorOf(scene, fluence, tones);
+  tyndall::LitColor lit = tyndall::ColorLitMedium(scene.domain, scene.medium, fluence, tones);
   if (pieces.IsDecomposed())
   {
     std::vector<float> rgba(lit.rgba.begin(), lit.rgba.end());

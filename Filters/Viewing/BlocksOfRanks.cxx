@@ -1,24 +1,19 @@
 #include "BlocksOfRanks.h"
 
 #include "CasterProperties.h"
-#include "Pieces/PieceBlocks.h"
-#include "Viewing/Scene/BlockOfScene.h"
-#include "Viewing/Scene/GridBlock.h"
+#include "Common/LightTransportData.h"
+#include "Pieces/UpdateExtent.h"
+#include "Viewing/ToneMapping.h"
 
 #include "vtkImageData.h"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 #include <utility>
 
 namespace tyndall
 {
-std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own)
-{
-  std::vector<double> all(own.size() * static_cast<std::size_t>(communicator.Ranks()), 0.0);
-  std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(own.size()) * communicator.Rank());
-  return communicator.Sum(all);
-}
-
 namespace
 {
 /// Axes of the first rank that has a part of the image. Collective.
@@ -39,37 +34,27 @@ OwnAxes AxesOfFirst(Communicator& communicator, vtkImageData* image)
 }
 }
 
+BlocksOfRanks::BlocksOfRanks(vtkImageData* whole)
+  : Pieces(whole)
+  , AxesOfAll(OwnAxesOf(whole))
+{
+  GridOf(whole); // checks it
+}
+
 BlocksOfRanks::BlocksOfRanks(Communicator& communicator, vtkImageData* image)
-  : Comm(communicator)
-  , Rank(static_cast<std::size_t>(communicator.Rank()))
-  , Blocks(static_cast<std::size_t>(communicator.Ranks()))
+  : Pieces(communicator, nullptr, image)
   , AxesOfAll(AxesOfFirst(communicator, image))
 {
-  const PieceBlocks pieces(communicator, nullptr, image);
-  this->Tiled = pieces.MakeUpTheWhole();
-  this->Parts = pieces.Partition();
-  this->OfPieces = pieces.HeldByRanks();
-  bool isFirst = true;                                                        // first of the ranks with a block
-  for (std::size_t rank = 0; rank < pieces.Partition().blocks.size(); ++rank) // no ranks are listed if none has cells
+  if (!this->Over().Partition().blocks.empty()) // none is listed if no rank has cells
   {
-    GridBlock& block = this->Blocks[rank];
-    const VoxelBox& own = pieces.Partition().blocks[rank];
-    const VoxelBox& held = pieces.HeldByRanks()[rank];
-    block.whole = pieces.Partition().whole;
-    block.first = held.first;
-    block.begin = own.first;
-    block.end = { EndOf(own, 0), EndOf(own, 1), EndOf(own, 2) };
-    if (own.VoxelCount() > 0)
-    {
-      block.showsBackgroundBeside = isFirst;
-      isFirst = false;
-    }
+    const auto rank = static_cast<std::size_t>(communicator.Rank());
+    this->OwnBlock = BlockOfRank(this->Over().Partition(), communicator.Rank(), this->Given()[rank]);
   }
 }
 
 bool BlocksOfRanks::AreGiven(const std::vector<VoxelBox>& held) const
 {
-  return std::equal(held.begin(), held.end(), this->OfPieces.begin(), [](const VoxelBox& a, const VoxelBox& b) {
+  return std::equal(held.begin(), held.end(), this->Given().begin(), [](const VoxelBox& a, const VoxelBox& b) {
     return (a.VoxelCount() == 0 && b.VoxelCount() == 0) || (a.first == b.first && a.size == b.size);
   });
 }
@@ -78,88 +63,115 @@ std::vector<VoxelBox> BlocksOfRanks::HeldFor(const ViewSettings& settings, bool 
 {
   std::vector<VoxelBox> needed;
   bool enough = true;
-  for (std::size_t rank = 0; rank < this->OfPieces.size(); ++rank)
+  for (std::size_t rank = 0; rank < this->Given().size(); ++rank)
   {
-    const VoxelBox& own = this->Parts.blocks[rank];
-    needed.push_back(own.VoxelCount() > 0 ? HeldBox(own, this->Parts.whole, settings, moments, surface) : VoxelBox());
-    enough = enough && Common(needed[rank], this->OfPieces[rank]).VoxelCount() == needed[rank].VoxelCount();
+    const VoxelBox& own = this->Over().Partition().blocks[rank];
+    needed.push_back(
+      own.VoxelCount() > 0 ? HeldBox(own, this->Over().Whole(), settings, moments, surface) : VoxelBox());
+    enough = enough && Common(needed[rank], this->Given()[rank]).VoxelCount() == needed[rank].VoxelCount();
   }
-  return enough ? this->OfPieces : needed;
+  return enough ? this->Given() : needed;
 }
 
-/// Sorts blocks front to back.
-/// @param ranks  the rank of each element of `pixels`
-BlocksOfRanks::Seen BlocksOfRanks::InOrder(
-  const std::vector<std::size_t>& ranks, std::vector<BlockPixels> pixels, const Camera& camera) const
-{
-  std::vector<GridBlock> blocks;
-  for (std::size_t rank : ranks)
-  {
-    blocks.push_back(this->Blocks[rank]);
-  }
-  Seen seen;
-  for (int number : FrontToBack(blocks, InOwnAxes(camera, this->AxesOfAll)))
-  {
-    seen.own = ranks[number] == this->Rank ? seen.frontToBack.size() : seen.own;
-    seen.frontToBack.push_back(std::move(pixels[number]));
-  }
-  return seen;
-}
-
-std::optional<BlocksOfRanks::Seen> BlocksOfRanks::Exchange(
+std::optional<SeenBlocks> BlocksOfRanks::Exchange(
   const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const
 {
-  constexpr std::size_t words = 9;
-  const std::vector<double> said = SaidByAll(this->Comm,
-    { failed ? 1.0 : 0.0, 1.0 * own.rect.begin[0], 1.0 * own.rect.begin[1], 1.0 * own.rect.end[0],
-      1.0 * own.rect.end[1], 1.0 * wanted.begin[0], 1.0 * wanted.begin[1], 1.0 * wanted.end[0], 1.0 * wanted.end[1] });
-  const auto rectOf = [&](std::size_t rank, std::size_t from) {
-    const double* const at = said.data() + words * rank + from;
-    return PixelRect{ { static_cast<int>(at[0]), static_cast<int>(at[1]) },
-      { static_cast<int>(at[2]), static_cast<int>(at[3]) } };
-  };
-  for (std::size_t rank = 0; rank < this->Blocks.size(); ++rank)
-  {
-    if (said[words * rank] > 0.0)
-    {
-      return std::nullopt;
-    }
-  }
+  return ExchangePixels(this->Over(), own, wanted, failed, InOwnAxes(camera, this->AxesOfAll));
+}
 
-  std::vector<int> partners;
-  for (std::size_t rank = 0; rank < this->Blocks.size(); ++rank)
+bool FitTogether(const BlocksOfRanks& blocks, bool able, std::vector<double> properties, double arrays)
+{
+  properties.insert(properties.end(), { able ? 1.0 : 0.0, blocks.HasOwn() ? 1.0 : 0.0, arrays });
+  const std::vector<double> said = SaidByAll(blocks.Over().Comm(), properties);
+  const auto count = static_cast<std::ptrdiff_t>(properties.size());
+  std::optional<double> first; // arrays of the first rank with a block
+  bool fit = blocks.MakeUpTheWhole();
+  for (auto rank = said.begin(); rank != said.end(); rank += count)
   {
-    const bool gets = !Overlap(own.rect, rectOf(rank, 5)).IsEmpty();
-    const bool gives = !Overlap(wanted, rectOf(rank, 1)).IsEmpty();
-    if (rank != this->Rank && (gets || gives))
+    const double* const state = &*rank + count - 3;
+    fit = fit && state[0] > 0.0 && std::equal(rank, rank + count - 3, said.begin());
+    if (state[1] > 0.0)
     {
-      partners.push_back(static_cast<int>(rank));
+      first = first.value_or(state[2]);
+      fit = fit && state[2] == *first;
     }
   }
-  auto arrived = this->Comm.Exchange<BlockPixel>(partners, [&] {
-    std::vector<std::vector<BlockPixel>> parcels;
-    for (const int partner : partners)
-    {
-      parcels.push_back(PartIn(rectOf(static_cast<std::size_t>(partner), 5), own).pixels);
-    }
-    return parcels;
-  });
+  return fit;
+}
 
-  std::vector<std::size_t> from;
-  std::vector<BlockPixels> pixels;
-  if (this->HasOwn())
+double ExposureOfParts(const Domain& domain, const Picture& part, const PixelRect& counted, bool background)
+{
+  Picture own = part; // cropped to the pixels that count
+  own = PartOf(std::move(own), counted);
+  const std::vector<int> here = LuminanceCounts(own.radiance, background ? std::vector<float>() : own.alpha);
+  const std::vector<double> all = domain.Sum(std::vector<double>(here.begin(), here.end()));
+  return ExposureOfCounts({ all.begin(), all.end() });
+}
+
+PixelRect RectOf(const std::array<int, 6>& extent)
+{
+  return { { extent[0], extent[2] }, { extent[1] + 1, extent[3] + 1 } };
+}
+
+PixelRect OwnPixels(const Communicator& communicator, const std::array<int, 6>& all)
+{
+  std::array<int, 6> own = PartOfExtent(all, communicator.Rank(), communicator.Ranks());
+  for (int last : { 1, 3 }) // pieces share their border pixels
   {
-    from.push_back(this->Rank);
-    pixels.push_back(own);
+    own[last] -= own[last] < all[last] ? 1 : 0;
   }
-  for (std::size_t i = 0; i < partners.size(); ++i)
+  return RectOf(own);
+}
+
+PixelRect Around(const PixelRect& a, const PixelRect& b)
+{
+  if (a.IsEmpty() || b.IsEmpty())
   {
-    if (!arrived[i].empty())
+    return a.IsEmpty() ? b : a;
+  }
+  PixelRect around;
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    around.begin[axis] = std::min(a.begin[axis], b.begin[axis]);
+    around.end[axis] = std::max(a.end[axis], b.end[axis]);
+  }
+  return around;
+}
+
+std::vector<std::string> OnAllLists(Communicator& communicator, const std::vector<std::string>& own, bool says)
+{
+  std::vector<int> ranks(static_cast<std::size_t>(communicator.Ranks()));
+  std::iota(ranks.begin(), ranks.end(), 0);
+  std::vector<char> said; // each line with its end, after a letter for the list
+  for (const std::string& line : own)
+  {
+    said.insert(said.end(), line.begin(), line.end());
+    said.push_back('\n');
+  }
+  said.insert(said.begin(), says ? 1 : 0, '+');
+  const auto arrived =
+    communicator.Exchange<char>(ranks, [&] { return std::vector<std::vector<char>>(ranks.size(), said); });
+  std::vector<std::string> common;
+  bool any = false;
+  for (const std::vector<char>& list : arrived)
+  {
+    std::vector<std::string> lines;
+    for (auto from = list.begin() + (list.empty() ? 0 : 1); from != list.end();)
     {
-      from.push_back(static_cast<std::size_t>(partners[i]));
-      pixels.push_back({ Overlap(wanted, rectOf(from.back(), 1)), std::move(arrived[i]) });
+      const auto end = std::find(from, list.end(), '\n');
+      lines.emplace_back(from, end);
+      from = std::next(end);
     }
+    const auto isMissing = [&](const std::string& line) {
+      return std::find(lines.begin(), lines.end(), line) == lines.end();
+    };
+    if (any && !list.empty())
+    {
+      common.erase(std::remove_if(common.begin(), common.end(), isMissing), common.end());
+    }
+    common = any ? common : lines;
+    any = any || !list.empty();
   }
-  return this->InOrder(from, std::move(pixels), camera);
+  return common;
 }
 }

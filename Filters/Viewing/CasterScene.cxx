@@ -1,90 +1,287 @@
 #include "CasterScene.h"
 
+#include "Common/ArrayRanges.h"
+#include "Common/PhaseFunctionData.h"
+#include "Distribution/BoxExchange.h"
 #include "Distribution/SharedMedium.h"
+#include "Medium/BoxFaces.h"
+#include "Medium/VoxelBox.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
 #include "vtkMediumRayCaster.h"
 
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkNew.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+
 namespace tyndall
 {
-std::unique_ptr<CasterScene> MakeScene(const ViewedInputs& viewed, const Field& ior, const Illumination& illumination,
-  const InputsKey& key, ViewSettings settings, const BlockOfScene* ofScene)
+namespace
 {
-  auto scene = std::make_unique<CasterScene>();
-  const bool sky = !illumination.environment.Empty() || illumination.sky != Rgb{};
-  if (!viewed.fluence.IsThere() && illumination.lights.empty() && !viewed.medium.emission.IsThere() &&
-    !(sky && viewed.ior.IsThere()))
+/// Reads the solver's field data on light at the box's faces; empty if there are none, or they do not fit these voxels.
+/// @param parts  components per channel
+FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, int parts)
+{
+  FaceValues faces;
+  vtkDataArray* const said = image->GetFieldData()->GetArray(name);
+  if (!said || said->GetNumberOfTuples() != static_cast<vtkIdType>(tuples) ||
+    (said->GetNumberOfComponents() != parts && said->GetNumberOfComponents() != 3 * parts))
   {
-    scene->doubts.emplace_back("The medium is dark: it has no array fluence (a solver makes it, e.g. "
-                               "LightPropagationMaps), there are no Lights, and it does not emit.");
+    return faces;
   }
-  scene->key = key;
-  scene->grid = viewed.medium.medium.grid;
-  scene->lightsAlone = !viewed.fluence.IsThere() && !illumination.lights.empty();
-  settings.shadowRays |= scene->lightsAlone;
-  scene->caster = std::make_unique<MediumRayCaster>(
-    *key.device, viewed.medium.medium, viewed.Light(), illumination, settings, ior, ofScene);
-  const std::vector<std::string>& warnings = scene->caster->Warnings();
-  scene->doubts.insert(scene->doubts.end(), warnings.begin(), warnings.end());
-  scene->made.Modified();
-  return scene;
+  faces.components = said->GetNumberOfComponents();
+  faces.values.resize(static_cast<std::size_t>(said->GetNumberOfValues()));
+  for (vtkIdType i = 0; i < said->GetNumberOfValues(); ++i)
+  {
+    faces.values[i] = static_cast<float>(said->GetComponent(i / faces.components, i % faces.components));
+  }
+  return faces;
 }
 
-std::unique_ptr<CasterScene> MakeSceneOfBlock(
-  const RankPieces& pieces, const InputsKey& key, std::vector<VoxelBox>& held)
+/// All fields with a value per voxel, in an order that is the same on all ranks.
+std::vector<FloatField*> FieldsOf(ViewedInputs& inputs)
 {
-  Communicator& communicator = pieces.communicator;
-  const BlockPartition& partition = pieces.blocks.Partition();
-  const auto rank = static_cast<std::size_t>(communicator.Rank());
-  ViewedInputs viewed;
-  SharedScene own;
-  communicator.Collective([&] {
-    if (pieces.HasOwn())
+  return { &inputs.medium.sigma_a, &inputs.medium.sigma_s, &inputs.medium.emission, &inputs.medium.g, &inputs.fluence,
+    &inputs.direct, &inputs.meanDirection, &inputs.moments.moments, &inputs.moments.straightOn };
+}
+}
+
+SolvedLight ViewedInputs::Light() const
+{
+  SolvedLight light = { this->fluence, this->direct, this->meanDirection };
+  light.surface = this->surface.Seen();
+  light.facePower = this->power.Seen();
+  for (std::size_t i = 0; i < 18 && !this->albedo.values.empty(); ++i)
+  {
+    light.faceAlbedo[i / 3][i % 3] = this->albedo.Seen().At(i / 3, this->albedo.components == 3 ? i % 3 : 0);
+  }
+  light.scatteredMoments = this->moments.moments;
+  light.straightOn = this->moments.straightOn;
+  light.lampsApart = this->moments.lampsApart;
+  return light;
+}
+
+ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const Grid& whole)
+{
+  const auto read = [&](int number, Components components) {
+    return ReadChosenCells(filter, number, image, ViewedNames[number], Need::Optional, components);
+  };
+  ViewedInputs inputs;
+  inputs.medium = ReadMedium(filter, image);
+  inputs.fluence = read(ViewedFluence, { 1, 3 });
+  inputs.direct = read(ViewedFluenceDirect, { 1, 3 });
+  inputs.ior = read(ViewedIndex, { 1 });
+  inputs.meanDirection = read(ViewedMeanDirection, { 3 });
+  // Moments and light at faces belong to the array `fluence` that the solver wrote.
+  if (inputs.fluence.IsThere() &&
+    ChosenArray(filter, ViewedFluence, image, ViewedNames[ViewedFluence]) == image->GetCellData()->GetArray("fluence"))
+  {
+    inputs.moments = ReadMoments(image);
+    const std::size_t cells = BoxFaceCellCount(whole);
+    inputs.surface = ReadFaces(image, SurfaceRadianceFact, cells, static_cast<int>(SurfaceCosines.size()));
+    inputs.power = ReadFaces(image, FacePowerFact, cells, 1);
+    inputs.albedo = ReadFaces(image, FaceAlbedoFact, 6, 1);
+  }
+  return inputs;
+}
+
+double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
+{
+  std::string words = PhaseInWords(image);
+  const auto add = [&](vtkDataArray* array) {
+    words += array ? "," + std::to_string(array->GetNumberOfComponents()) : ",";
+  };
+  for (int number = SigmaA; number < ViewedArrayCount; ++number)
+  {
+    add(ChosenArray(filter, number, image, ViewedNames[number]));
+  }
+  for (const char* name : { "g", MomentsArray, StraightOnArray })
+  {
+    add(image->GetCellData()->GetArray(name));
+  }
+  vtkNew<vtkImageData> facts;
+  for (const char* name : { SurfaceRadianceFact, FacePowerFact, FaceAlbedoFact, LampsApartFact })
+  {
+    if (vtkDataArray* const fact = image->GetFieldData()->GetArray(name))
     {
-      viewed = ReadViewed(pieces.filter, pieces.image, partition.whole);
+      facts->GetFieldData()->AddArray(fact);
+    }
+  }
+  const std::uint64_t number = ContentKey(facts) ^ std::hash<std::string>()(words);
+  return static_cast<double>(number >> 11); // the 53 bits that a double represents exactly
+}
+
+namespace
+{
+/// Crops the values on the faces of the whole grid to the faces of a block's arrays.
+/// @param size  voxels of the block's arrays
+void KeepFacesOf(const GridBlock& block, const std::array<int, 3>& size, ViewedInputs& inputs)
+{
+  for (FaceValues* const faces : { &inputs.surface, &inputs.power })
+  {
+    if (!faces->values.empty())
+    {
+      faces->values = FacesOfBlock(faces->values, faces->components, block, size);
+    }
+  }
+}
+
+/// Gathers an array of the voxels in this rank's wanted box from the ranks' blocks. Collective.
+/// @param wanted  boxes by rank, in voxels of the whole; empty if a rank has no block
+std::vector<float> SpreadTo(const std::vector<VoxelBox>& wanted, const BlocksOfRanks& blocks, const Field& field)
+{
+  const Domain& domain = blocks.Over();
+  const auto components = static_cast<int>(domain.Max(field.values ? 1.0 * field.components : 0.0));
+  if (components == 0)
+  {
+    return {};
+  }
+  const VoxelBox& given = blocks.Given()[static_cast<std::size_t>(domain.Rank())];
+  std::vector<float> values;
+  domain.Collective([&] {
+    if (!domain.IsEmpty())
+    {
+      const std::size_t count = given.VoxelCount() * static_cast<std::size_t>(components);
+      values = PartOf({ field.values, field.values + count }, given, domain.Own(), components);
     }
   });
-  AgreeOnMeanCosine(communicator, pieces.HasOwn(), viewed.medium.g, viewed.medium.medium);
-  communicator.Collective([&] {
-    if (pieces.HasOwn())
+  return ValuesInBox(domain.Comm(), domain.Partition(), wanted, values, components);
+}
+
+/// The inputs of the voxels in this rank's wanted box, gathered from the ranks' blocks. Collective.
+/// @param image  its field data describe the phase function
+ViewedInputs SpreadTo(
+  const std::vector<VoxelBox>& wanted, const BlocksOfRanks& blocks, vtkImageData* image, const ViewedInputs& inputs)
+{
+  const Domain& domain = blocks.Over();
+  ViewedInputs spread = inputs;
+  const VoxelBox& box = wanted[static_cast<std::size_t>(domain.Rank())];
+  for (FloatField* const field : FieldsOf(spread))
+  {
+    const int components = field->Components();
+    std::vector<float> values = SpreadTo(wanted, blocks, *field);
+    if (box.VoxelCount() > 0 && !values.empty())
     {
-      own = SharedSceneOf(viewed.medium.medium, viewed.Light(), viewed.ior, pieces.settings);
+      *field = FloatField(ArrayOf<vtkFloatArray>("", std::move(values), components));
+    }
+  }
+  domain.Collective([&] {
+    if (box.VoxelCount() > 0)
+    {
+      MediumInput& medium = spread.medium;
+      medium.medium.grid = GridOfBox(box, domain.Whole());
+      medium.medium.sigma_a = medium.sigma_a;
+      medium.medium.sigma_s = medium.sigma_s;
+      medium.medium.emission = medium.emission;
+      vtkNew<vtkImageData> asLarge; // an image of these arrays' size
+      asLarge->SetDimensions(box.size[0] + 1, box.size[1] + 1, box.size[2] + 1);
+      asLarge->SetFieldData(image->GetFieldData());
+      medium.medium.phase = ReadPhase(asLarge, medium.g, medium.sigma_s);
+    }
+  });
+  AgreeOnMeanCosine(domain.Comm(), box.VoxelCount() > 0, spread.medium.g, spread.medium.medium);
+  return spread;
+}
+
+/// Fetches what this rank's block needs of its neighbours. Collective.
+/// @param viewed  this rank's inputs; set to those of the voxels held[rank]
+/// @param held  set to the voxels that each rank's ray caster holds
+/// @param ior   set to the refractive index of the voxels BlockOfScene::known, if it varies
+BlockOfScene FetchHalo(
+  const SceneSource& source, ViewedInputs& viewed, std::vector<VoxelBox>& held, std::vector<float>& ior)
+{
+  const Domain& domain = source.Over();
+  const ViewSettings& settings = source.settings;
+  AgreeOnMeanCosine(domain.Comm(), !domain.IsEmpty(), viewed.medium.g, viewed.medium.medium);
+  SharedScene own;
+  domain.Collective([&] {
+    if (!domain.IsEmpty())
+    {
+      own = SharedSceneOf(viewed.medium.medium, viewed.Light(), viewed.ior, settings);
     }
   });
   BlockOfScene ofScene;
-  ofScene.shared = PictureInBlocks::Shared(communicator, pieces.HasOwn() ? &own : nullptr);
-  const std::vector<double> shown =
-    communicator.Largest({ viewed.moments.moments.IsThere() ? 1.0 : 0.0, viewed.surface.values.empty() ? 0.0 : 1.0 });
-  held = pieces.blocks.HeldFor(pieces.settings, shown[0] > 0.0, shown[1] > 0.0);
-
-  const VoxelBox& given = pieces.blocks.Given()[rank];
-  std::vector<float> ior;
-  if (ofScene.shared.index.Varies() || !pieces.settings.leaveOut)
+  ofScene.shared = PictureInBlocks::Shared(domain, domain.IsEmpty() ? nullptr : &own);
+  held = source.blocks.HeldFor(
+    settings, domain.Any(viewed.moments.moments.IsThere()), domain.Any(!viewed.surface.values.empty()));
+  const auto rank = static_cast<std::size_t>(domain.Rank());
+  if (ofScene.shared.index.Varies() || !settings.leaveOut)
   {
     std::vector<VoxelBox> known = held;
     for (std::size_t other = 0; other < known.size(); ++other)
     {
-      const VoxelBox& block = partition.blocks[other];
-      known[other] =
-        block.VoxelCount() > 0 ? KnownBox(block, held[other], partition.whole, pieces.settings) : VoxelBox();
+      const VoxelBox& block = domain.Partition().blocks[other];
+      known[other] = block.VoxelCount() > 0 ? KnownBox(block, held[other], domain.Whole(), settings) : VoxelBox();
     }
-    ior = SpreadTo(known, given, communicator, partition, viewed.ior);
+    ior = SpreadTo(known, source.blocks, viewed.ior);
     ofScene.known = known[rank];
   }
-  if (!pieces.blocks.AreGiven(held))
+  if (!source.blocks.AreGiven(held))
   {
-    viewed = SpreadTo(held, given, communicator, partition, pieces.image, viewed);
+    viewed = SpreadTo(held, source.blocks, source.image, viewed);
+  }
+  ofScene.block = BlockOfRank(domain.Partition(), domain.Rank(), held[rank]);
+  return ofScene;
+}
+}
+
+std::unique_ptr<CasterScene> MakeScene(
+  const SceneSource& source, const InputsKey& key, const Illumination& illumination)
+{
+  const Domain& domain = source.Over();
+  ViewedInputs viewed;
+  domain.Collective([&] {
+    if (!domain.IsEmpty())
+    {
+      viewed = ReadViewed(source.filter, source.image, source.Block() ? source.Block()->whole : domain.Whole());
+    }
+  });
+  std::vector<VoxelBox> held;
+  std::vector<float> known;
+  BlockOfScene part;
+  if (!domain.IsSerial())
+  {
+    part = FetchHalo(source, viewed, held, known);
   }
   std::unique_ptr<CasterScene> scene;
-  communicator.Collective([&] {
-    if (pieces.HasOwn())
+  domain.Collective([&] {
+    if (domain.IsEmpty())
     {
-      ofScene.block = pieces.blocks.Own();
-      ofScene.block.first = held[rank].first;
-      KeepFacesOf(ofScene.block, held[rank].size, viewed);
-      scene = MakeScene(
-        viewed, { ior.empty() ? nullptr : ior.data(), 1 }, pieces.illumination, key, pieces.settings, &ofScene);
-      scene->held = held;
+      return;
     }
+    const Grid& grid = viewed.medium.medium.grid;
+    if (source.Block())
+    {
+      KeepFacesOf(domain.IsSerial() ? *source.Block() : part.block, grid.size, viewed);
+    }
+    scene = std::make_unique<CasterScene>();
+    const bool sky = !illumination.environment.Empty() || illumination.sky != Rgb{};
+    if (!viewed.fluence.IsThere() && illumination.lights.empty() && !viewed.medium.emission.IsThere() &&
+      !(sky && viewed.ior.IsThere()))
+    {
+      scene->doubts.emplace_back("The medium is dark: it has no array fluence (a solver makes it, e.g. "
+                                 "LightPropagationMaps), there are no Lights, and it does not emit.");
+    }
+    scene->key = key;
+    scene->grid = grid;
+    scene->held = held;
+    scene->lightsAlone = !viewed.fluence.IsThere() && !illumination.lights.empty();
+    ViewSettings settings = source.settings;
+    settings.shadowRays |= scene->lightsAlone;
+    const Field ior = domain.IsSerial() ? Field(viewed.ior) : Field{ known.empty() ? nullptr : known.data(), 1 };
+    scene->caster = std::make_unique<MediumRayCaster>(*key.device, viewed.medium.medium, viewed.Light(), illumination,
+      settings, ior, domain.IsSerial() ? nullptr : &part);
+    const std::vector<std::string>& warnings = scene->caster->Warnings();
+    scene->doubts.insert(scene->doubts.end(), warnings.begin(), warnings.end());
+    scene->made.Modified();
   });
   return scene;
 }

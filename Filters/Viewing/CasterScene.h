@@ -2,9 +2,8 @@
 
 #include "BlocksOfRanks.h"
 #include "Common/InputsKey.h"
-#include "Distribution/Communicator.h"
+#include "Common/LightTransportData.h"
 #include "Lights/Lights.h"
-#include "ViewedInputs.h"
 #include "Viewing/MediumRayCaster.h"
 
 #include "vtkTimeStamp.h"
@@ -18,6 +17,48 @@ class vtkMediumRayCaster;
 
 namespace tyndall
 {
+/// Indices, for SetInputArrayToProcess, of the arrays that a ray caster reads beside those of MediumArray.
+enum ViewedArrays
+{
+  ViewedFluence = 3,
+  ViewedFluenceDirect = 4,
+  ViewedIndex = 5,
+  ViewedMeanDirection = 6,
+  ViewedArrayCount = 7
+};
+
+/// Default names of the arrays, by index.
+constexpr const char* ViewedNames[ViewedArrayCount] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct",
+  "ior", "mean_direction" };
+
+/// Values on the boundary faces of the whole image, cell by cell (BoxFaces.h); empty if not known.
+struct FaceValues
+{
+  std::vector<float> values;
+  int components = 0;
+
+  Field Seen() const { return { this->values.empty() ? nullptr : this->values.data(), this->components }; }
+};
+
+/// A medium and its light as input of the ray caster, with the arrays that own the values.
+struct ViewedInputs
+{
+  MediumInput medium;
+  FloatField fluence, direct, ior, meanDirection;
+  MomentsInput moments;
+  FaceValues surface, power, albedo; ///< light at the faces
+
+  SolvedLight Light() const;
+};
+
+/// @param whole  the grid of which the image is a part; field data on light at faces covers all of it
+/// @throws InvalidInput as ReadChosenCells and Check
+ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const Grid& whole);
+
+/// Hash of which of the arrays read an image has, and of the field data used: these must be the same in all ranks'
+/// pieces.
+double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image);
+
 /// Medium, light and illumination on the device, ready for rendering.
 struct CasterScene
 {
@@ -30,29 +71,27 @@ struct CasterScene
   std::unique_ptr<MediumRayCaster> caster;
 };
 
-/// @param ior  refractive index of each voxel; of a block, in the voxels that `ofScene` says
-/// @param ofScene  the block of the scene that the medium is, rendered as part of the whole; null if it is no block
-std::unique_ptr<CasterScene> MakeScene(const ViewedInputs& viewed, const Field& ior, const Illumination& illumination,
-  const InputsKey& key, ViewSettings settings, const BlockOfScene* ofScene);
-
-/// What each rank knows when ranks with one piece of the medium each prepare their scenes.
-struct RankPieces
+/// What a scene is made from.
+struct SceneSource
 {
   vtkMediumRayCaster* filter;
-  Communicator& communicator;
-  const BlocksOfRanks& blocks;
-  vtkImageData* image; ///< this rank's piece
-  const Illumination& illumination;
+  vtkImageData* image; ///< this rank's piece, or the complete image
   ViewSettings settings;
+  const BlocksOfRanks& blocks;
+  const GridBlock* alone = nullptr; ///< the image is this block of a larger grid, rendered alone; null: it is not
 
-  bool HasOwn() const { return this->blocks.HasOwn(); }
+  const Domain& Over() const { return this->blocks.Over(); }
+  /// The block that the image is; null: it is the complete grid.
+  const GridBlock* Block() const
+  {
+    return this->alone ? this->alone : this->Over().IsSerial() ? nullptr : &this->blocks.Own();
+  }
 };
 
-/// Prepares the scene of this rank's block: its voxels and a halo, which is fetched from the neighbours if the input
-/// has none. Collective.
-/// @param held  set to the voxels that each rank's ray caster holds, by rank
+/// Prepares the scene: of the complete image, of a block that is rendered alone, or of each rank's block with a halo,
+/// which is fetched from the neighbours if the input has none. Collective.
 /// @return null if this rank has no block
 /// @throws on all ranks, if on one
-std::unique_ptr<CasterScene> MakeSceneOfBlock(
-  const RankPieces& pieces, const InputsKey& key, std::vector<VoxelBox>& held);
+std::unique_ptr<CasterScene> MakeScene(
+  const SceneSource& source, const InputsKey& key, const Illumination& illumination);
 }

@@ -1,6 +1,5 @@
 #include "vtkLitVolumeMapper.h"
 
-#include "AskedView.h"
 #include "BlocksOfRanks.h"
 #include "CasterProperties.h"
 #include "Common/LightTransportData.h"

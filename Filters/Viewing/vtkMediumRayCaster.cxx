@@ -1,25 +1,23 @@
 #include "vtkMediumRayCaster.h"
 
-#include "AskedView.h"
 #include "BlocksOfRanks.h"
 #include "CasterProperties.h"
 #include "CasterScene.h"
+#include "Common/ArrayRanges.h"
 #include "Common/AvailableMemory.h"
 #include "Common/Failure.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
+#include "Common/LightTransportWriting.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/PrintMembers.h"
 #include "Device/Clock.h"
 #include "Device/Device.h"
-#include "PictureOfBlocks.h"
-#include "PictureWriting.h"
 #include "Pieces/ControllerCommunicator.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/Ranks.h"
 #include "Pieces/UpdateExtent.h"
 #include "Pieces/WholeInputs.h"
-#include "ViewedInputs.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/Scene/ViewSettings.h"
@@ -30,21 +28,24 @@
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
+#include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,35 @@ namespace
 std::array<int, 6> WholePicture(vtkMediumRayCaster* filter)
 {
   return { 0, filter->GetImageSize()[0] - 1, 0, filter->GetImageSize()[1] - 1, 0, 0 };
+}
+
+/// Writes a picture as an image: point data `color` (red, green, blue, alpha), `radiance`, `alpha`, `depth`.
+/// @param first  column and row of the picture's first pixel
+/// @throws InvalidInput if a pixel is not finite; the message names it
+void WritePicture(
+  tyndall::Picture&& picture, const std::array<int, 2>& first, std::vector<std::uint8_t>&& color, vtkImageData* output)
+{
+  output->SetExtent(first[0], first[0] + picture.width - 1, first[1], first[1] + picture.height - 1, 0, 0);
+  output->SetOrigin(0.0, 0.0, 0.0);
+  output->SetSpacing(1.0, 1.0, 1.0);
+  output->SetDirectionMatrix(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+  vtkPointData* const pixels = output->GetPointData();
+  const auto shown = tyndall::ArrayOf<vtkUnsignedCharArray>("color", std::move(color), 4);
+  tyndall::LeaveRanges(shown);
+  pixels->SetScalars(shown);
+  const auto pixelName = [&first, width = static_cast<std::size_t>(picture.width)](std::size_t pixel) {
+    return "pixel (" + std::to_string(first[0] + pixel % width) + ", " + std::to_string(first[1] + pixel / width) +
+      ") from below";
+  };
+  for (const auto& [name, values, components] : { std::tuple("radiance", &picture.radiance, 3),
+         std::tuple("alpha", &picture.alpha, 1), std::tuple("depth", &picture.depth, 1) })
+  {
+    const tyndall::ArrayRanges ranges =
+      tyndall::RequireFinite(name, values->data(), values->size(), components, pixelName);
+    const auto array = tyndall::ArrayOf<vtkFloatArray>(name, std::move(*values), components);
+    tyndall::LeaveRanges(ranges, array);
+    pixels->AddArray(array);
+  }
 }
 }
 
@@ -141,18 +171,25 @@ int vtkMediumRayCaster::RequestUpdateExtent(
   return done;
 }
 
-tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, Use use, const tyndall::GridBlock* block)
+tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, const tyndall::SceneSource& source)
 {
+  const tyndall::GridBlock* const block = source.Block();
   tyndall::InputsKey key;
   key.device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget);
   vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
   key.Add(tyndall::GridOf(image));
   key.AddGhosts(image);
-  key.Add({ static_cast<double>(use) });
+  key.Add({ source.alone ? 1.0 : 0.0, block ? 1.0 : 0.0 });
   for (int axis = 0; block && axis < 3; ++axis)
   {
     key.Add(
       { 1.0 * block->first[axis], 1.0 * block->whole.size[axis], 1.0 * block->begin[axis], 1.0 * block->end[axis] });
+  }
+  if (!source.Over().IsSerial())
+  {
+    // The width of the halo that a block needs depends on these settings.
+    const bool reflects = source.settings.surfaceReflection != tyndall::SurfaceReflection::None;
+    key.Add({ reflects ? source.settings.stepSize : 0.0 });
   }
   tyndall::AddPhase(key, image);
   key.Add({ 1.0 * this->EnvironmentUp, this->EnvironmentAzimuth });
@@ -197,25 +234,32 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::TakeKept(
   return stays ? std::move(kept) : nullptr;
 }
 
+/// Finds or prepares the scene. Cached scenes are reused on all ranks or on none. Collective.
+/// @return null if this rank has no block
 std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindScene(
-  vtkInformationVector** inputs, const tyndall::ViewSettings& settings, const tyndall::GridBlock* block)
+  vtkInformationVector** inputs, const tyndall::SceneSource& source)
 {
   this->SceneKept = false;
   this->ForgetOldScene();
-  const tyndall::InputsKey key = this->KeyOf(inputs, block ? Use::Piece : Use::Whole, block);
-  if (std::unique_ptr<tyndall::CasterScene> kept = this->TakeKept(key, settings))
+  const tyndall::Domain& domain = source.Over();
+  tyndall::InputsKey key;
+  std::unique_ptr<tyndall::CasterScene> scene;
+  domain.Collective([&] {
+    if (!domain.IsEmpty())
+    {
+      key = this->KeyOf(inputs, source);
+      scene = this->TakeKept(key, source.settings);
+    }
+  });
+  if (!domain.Any(!domain.IsEmpty() && !scene))
   {
     this->SceneKept = true;
-    return kept;
+    return scene;
   }
-  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
-  const tyndall::Grid grid = tyndall::GridOf(image);
-  tyndall::ViewedInputs viewed = tyndall::ReadViewed(this, image, block ? block->whole : grid);
-  if (block)
-  {
-    tyndall::KeepFacesOf(*block, grid.size, viewed);
-  }
-  return tyndall::MakeScene(viewed, viewed.ior, this->ReadIllumination(inputs), key, settings, nullptr);
+  scene.reset(); // free its memory before the next one is prepared
+  tyndall::Illumination illumination;
+  domain.Collective([&] { illumination = this->ReadIllumination(inputs); });
+  return tyndall::MakeScene(source, key, illumination);
 }
 
 bool vtkMediumRayCaster::SeesRadianceBehind()
@@ -245,146 +289,77 @@ struct vtkMediumRayCaster::Shot
   std::vector<std::string> leftOut;
 };
 
-/// Functions that render with the filter's own camera, serially or on several ranks together.
-struct vtkMediumRayCaster::Taking
+/// Whether the ranks' pieces fit together, with equal properties and arrays. Collective.
+bool vtkMediumRayCaster::PiecesFit(const tyndall::BlocksOfRanks& blocks, vtkImageData* image)
 {
-  std::function<tyndall::Picture()> take;
-  std::function<double(const tyndall::Picture&)> exposureOf;
-  std::function<bool(bool)> onAnyRank;
-};
-
-/// Renders the picture of a shot, and chooses its exposure if that is 0, from a picture without BackgroundColor.
-/// @param shot  its exposure is that of the display; 0: automatic
-void vtkMediumRayCaster::Expose(const Taking& taking, Shot& shot)
-{
-  const double start = tyndall::ClockSeconds();
-  shot.picture = taking.take();
-  if (shot.exposure == 0.0)
-  {
-    shot.exposure = taking.exposureOf(shot.picture);
-    tyndall::ViewSettings settings = tyndall::SettingsOf(this, shot.exposure);
-    const bool shows = shot.scene && shot.scene->caster->ShowsBackgroundColor() &&
-      settings.backgroundColor != tyndall::BackgroundOf(this, 0.0);
-    if (taking.onAnyRank(shows))
+  double arrays = 0.0;
+  const tyndall::Ending ending = tyndall::EndingOf([&] {
+    if (blocks.MakeUpTheWhole() && blocks.HasOwn())
     {
-      if (shot.scene)
-      {
-        settings.shadowRays |= shot.scene->lightsAlone;
-        shot.scene->caster->Adopt(settings);
-      }
-      shot.picture = taking.take();
-    }
-  }
-  shot.seconds = tyndall::ClockSeconds() - start;
-}
-
-/// Renders the whole medium on this rank.
-/// @param exposure  0: automatic
-vtkMediumRayCaster::Shot vtkMediumRayCaster::SeeWhole(vtkInformationVector** inputs, double exposure)
-{
-  Shot shot;
-  shot.exposure = exposure;
-  shot.scene = this->FindScene(inputs, tyndall::SettingsOf(this, exposure));
-  this->SayDoubts(*shot.scene);
-  const tyndall::Camera camera = tyndall::CameraOf(this, shot.scene->grid);
-  Taking taking;
-  taking.take = [&] { return shot.scene->caster->Render(camera, tyndall::MonitorOf(this)); };
-  taking.exposureOf = [this](const tyndall::Picture& picture) {
-    return tyndall::AutomaticExposure(
-      picture.radiance, this->SeesRadianceBehind() ? std::vector<float>() : picture.alpha);
-  };
-  taking.onAnyRank = [](bool own) { return own; };
-  this->Expose(taking, shot);
-  shot.leftOut = shot.scene->caster->LeftOut();
-  return shot;
-}
-
-/// Finds or prepares the scene of this rank's block. The cached scenes are reused on all ranks or on none. Collective.
-std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindSceneOfBlock(
-  const tyndall::RankPieces& pieces, vtkInformationVector** inputs, std::vector<tyndall::VoxelBox>& held)
-{
-  this->SceneKept = false;
-  this->ForgetOldScene();
-  tyndall::InputsKey key;
-  std::unique_ptr<tyndall::CasterScene> scene;
-  pieces.communicator.Collective([&] {
-    if (pieces.HasOwn())
-    {
-      key = this->KeyOf(inputs, Use::Block, &pieces.blocks.Own());
-      // The width of the halo that a block needs depends on these settings.
-      const bool reflects = pieces.settings.surfaceReflection != tyndall::SurfaceReflection::None;
-      key.Add({ reflects ? pieces.settings.stepSize : 0.0 });
-      scene = this->TakeKept(key, pieces.settings);
+      arrays = tyndall::ArraysInANumber(this, image);
     }
   });
-  if (tyndall::OnAnyRank(pieces.communicator, pieces.HasOwn() && !scene))
-  {
-    scene.reset(); // free its memory before the next one is prepared
-    return tyndall::MakeSceneOfBlock(pieces, key, held);
-  }
-  this->SceneKept = true;
-  held = scene ? scene->held : std::vector<tyndall::VoxelBox>(pieces.blocks.Given().size());
-  return scene;
+  std::vector<double> properties = tyndall::PropertiesAsNumbers(this);
+  properties.push_back(this->FirstExposure);
+  return tyndall::FitTogether(blocks, ending.kind == tyndall::Ending::Done, std::move(properties), arrays);
 }
 
-/// Renders with one piece of the medium per rank. Collective.
-/// @param inputs  the medium's piece; the other inputs are whole
+/// Renders the medium, with one piece of it per rank, or all of it on one. Chooses the exposure if that is 0, from a
+/// picture without BackgroundColor. Collective.
+/// @param inputs  the medium, or its piece; the other inputs are whole
+/// @param exposure  0: automatic
 /// @param asked   extent of the picture that is requested from this rank
 /// @return the part of the picture with that extent; nothing, on all ranks, if the pieces do not fit together:
 ///   rendering the whole then reports why
-std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::SeeBlocks(
-  vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked)
+std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::See(
+  const tyndall::BlocksOfRanks& blocks, vtkInformationVector** inputs, double exposure, const std::array<int, 6>& asked)
 {
-  vtkImageData* const image = vtkImageData::GetData(inputs.Vectors()[MEDIUM]);
-  const std::unique_ptr<tyndall::Communicator> communicator =
-    tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
-  const tyndall::BlocksOfRanks blocks(*communicator, image);
+  vtkImageData* const image = vtkImageData::GetData(inputs[MEDIUM]);
+  if (!blocks.Over().IsSerial() && !this->PiecesFit(blocks, image))
+  {
+    return std::nullopt;
+  }
+  const tyndall::Domain& domain = blocks.Over();
   Shot shot;
   shot.exposure = exposure;
-  tyndall::BlockToCast own;
-  own.ofFilter = tyndall::PropertiesAsNumbers(this);
-  own.ofFilter.push_back(this->FirstExposure);
-  const bool has = blocks.MakeUpTheWhole() && blocks.HasOwn();
-  own.able = tyndall::EndingOf([&] {
-    if (has)
-    {
-      own.ofArrays = tyndall::ArraysInANumber(this, image);
-    }
-  }).kind == tyndall::Ending::Done;
-  if (!tyndall::CanCast(*communicator, blocks, own))
-  {
-    return std::nullopt;
-  }
-  tyndall::Illumination illumination;
-  communicator->Collective([&] { illumination = this->ReadIllumination(inputs.Vectors()); });
-  const tyndall::RankPieces pieces = { this, *communicator, blocks, image, illumination,
-    tyndall::SettingsOf(this, exposure) };
-  std::vector<tyndall::VoxelBox> held;
-  shot.scene = this->FindSceneOfBlock(pieces, inputs.Vectors(), held);
+  shot.scene = this->FindScene(inputs, { this, image, tyndall::SettingsOf(this, exposure), blocks });
   tyndall::MediumRayCaster* const caster = shot.scene ? shot.scene->caster.get() : nullptr;
-  own.ofBlocks = caster ? caster->SharedByBlocks() : own.ofBlocks;
-  if (!tyndall::CanCast(*communicator, blocks, own))
-  {
-    return std::nullopt;
-  }
   if (shot.scene)
   {
     this->SayDoubts(*shot.scene);
   }
-  const tyndall::PixelRect counted = tyndall::OwnPixels(*communicator, WholePicture(this));
+  const double start = tyndall::ClockSeconds();
+  const tyndall::PixelRect counted = tyndall::OwnPixels(domain.Comm(), WholePicture(this));
   const tyndall::PixelRect part = tyndall::Around(tyndall::RectOf(asked), counted);
-  tyndall::PictureInBlocks ofBlock(*communicator, blocks.Partition(), held, caster);
-  const tyndall::PictureOfBlocks picture({ *communicator, this, blocks, ofBlock, caster },
-    tyndall::CameraOf(this, blocks.Whole()), { this->ImageSize[0], this->ImageSize[1] }, part, counted);
-  Taking taking;
-  taking.take = [&] { return picture.Take(); };
-  taking.exposureOf = [&](
-                        const tyndall::Picture& taken) { return picture.Exposure(taken, this->SeesRadianceBehind()); };
-  taking.onAnyRank = [&](bool here) { return tyndall::OnAnyRank(*communicator, here); };
-  this->Expose(taking, shot);
+  const std::vector<tyndall::VoxelBox> held =
+    shot.scene ? shot.scene->held : std::vector<tyndall::VoxelBox>(domain.Partition().blocks.size());
+  tyndall::PictureInBlocks picture(domain, held, caster);
+  const tyndall::Camera camera = tyndall::CameraOf(this, blocks.Whole());
+  const auto take = [&] {
+    shot.picture = picture.Take(camera, { this->ImageSize[0], this->ImageSize[1] }, part, tyndall::MonitorOf(this));
+  };
+  take();
+  if (shot.exposure == 0.0)
+  {
+    const tyndall::PixelRect ofPart = { { counted.begin[0] - part.begin[0], counted.begin[1] - part.begin[1] },
+      { counted.end[0] - part.begin[0], counted.end[1] - part.begin[1] } };
+    shot.exposure = tyndall::ExposureOfParts(domain, shot.picture, ofPart, this->SeesRadianceBehind());
+    tyndall::ViewSettings settings = tyndall::SettingsOf(this, shot.exposure);
+    if (domain.Any(
+          caster && caster->ShowsBackgroundColor() && settings.backgroundColor != tyndall::BackgroundOf(this, 0.0)))
+    {
+      if (caster)
+      {
+        settings.shadowRays |= shot.scene->lightsAlone;
+        caster->Adopt(settings);
+      }
+      take();
+    }
+  }
+  shot.seconds = tyndall::ClockSeconds() - start;
   shot.first = part.begin;
-  shot.leftOut = tyndall::OnAllLists(
-    *communicator, shot.scene ? shot.scene->caster->LeftOut() : std::vector<std::string>(), shot.scene != nullptr);
+  shot.leftOut =
+    tyndall::OnAllLists(domain.Comm(), caster ? caster->LeftOut() : std::vector<std::string>(), caster != nullptr);
   return shot;
 }
 
@@ -398,7 +373,7 @@ void vtkMediumRayCaster::CropToRequest(Shot&& shot, vtkInformationVector* output
   vtkImageData* const output = vtkImageData::GetData(outputs);
   if (shot.picture.width > 0) // else no pixels are requested from this rank
   {
-    tyndall::WritePicture(std::move(shot.picture), shot.first, std::move(color), output);
+    WritePicture(std::move(shot.picture), shot.first, std::move(color), output);
   }
   const std::string device = tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget)->Name();
   std::vector<std::string> settings = tyndall::Words(tyndall::SettingsOf(this, shot.exposure));
@@ -429,15 +404,18 @@ int vtkMediumRayCaster::RequestData(
     const bool automatic = this->Exposure == 0.0;
     const double exposure = automatic && this->AutoExposure == FIRST_PICTURE ? this->FirstExposure : this->Exposure;
     const std::array<int, 6> asked = tyndall::ExtentAskedFor(outputs->GetInformationObject(0), WholePicture(this));
+    const auto medium = [&] { return vtkImageData::GetData(inputs.Vectors()[MEDIUM]); };
     std::optional<Shot> shot;
     if (ranks)
     {
-      shot = this->SeeBlocks(ranks, inputs, exposure, asked);
+      const std::unique_ptr<tyndall::Communicator> communicator =
+        tyndall::CommunicatorOf(ranks, [this] { return tyndall::IsStoppedByOthers(this); });
+      shot = this->See(tyndall::BlocksOfRanks(*communicator, medium()), inputs.Vectors(), exposure, asked);
     }
     if (!shot)
     {
       inputs.MakeWhole();
-      shot = this->SeeWhole(inputs.Vectors(), exposure);
+      shot = this->See(tyndall::BlocksOfRanks(medium()), inputs.Vectors(), exposure, WholePicture(this));
     }
     if (automatic || this->AutoExposure == EACH_PICTURE)
     {
@@ -473,7 +451,9 @@ bool vtkMediumRayCaster::See(const tyndall::AskedView& view, tyndall::Picture& p
       ports[MEDIUM] = medium;
     }
     tyndall::NoteOwnAxes(this, axes);
-    std::unique_ptr<tyndall::CasterScene> scene = this->FindScene(ports.data(), settings, block);
+    const tyndall::BlocksOfRanks alone(vtkImageData::GetData(ports[MEDIUM]));
+    std::unique_ptr<tyndall::CasterScene> scene =
+      this->FindScene(ports.data(), { this, vtkImageData::GetData(ports[MEDIUM]), settings, alone, block });
     this->SayDoubts(*scene);
     seen = !block || scene->caster->CastsBlocks();
     if (seen)

@@ -9,22 +9,19 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
-class vtkMultiProcessController;
+class vtkImageData;
 
 namespace tyndall
 {
+class BlocksOfRanks;
 class Device;
 struct AskedView;
 struct CasterScene;
-struct GridBlock;
 struct InputsKey;
 struct Picture;
-struct RankPieces;
+struct SceneSource;
 struct ViewSettings;
-struct VoxelBox;
-class WholeInputs;
 }
 
 /**
@@ -104,7 +101,7 @@ class WholeInputs;
  * to rounding. Rays that bend, are reflected or meet a table continue from rank to rank, and lamps cast shadows across
  * pieces; data that a piece needs beyond its ghost cells (for the index, angular moments, light at the surface of thick
  * voxels) are fetched from the other ranks. Every rank instead gathers the whole medium if properties differ between
- * ranks, pieces overlap without ghost flags, or cells `g` are uniform in one piece and not in another.
+ * ranks, or pieces overlap without ghost flags.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks
@@ -338,29 +335,16 @@ private:
   /// does not, because it looks the same at any exposure.
   bool SeesRadianceBehind();
 
-  enum class Use
-  {
-    Whole,
-    Piece, ///< one piece, rendered alone or composited with others, without exchange of rays
-    Block  ///< a block of ranks that render the whole together, with exchange of rays
-  };
   void ForgetOldScene();
-  /// @param block  the block of a larger image that the medium is; null if it is none
-  tyndall::InputsKey KeyOf(vtkInformationVector** inputs, Use use, const tyndall::GridBlock* block);
+  tyndall::InputsKey KeyOf(vtkInformationVector** inputs, const tyndall::SceneSource& source);
   std::unique_ptr<tyndall::CasterScene> TakeKept(const tyndall::InputsKey& key, const tyndall::ViewSettings& settings);
-  std::unique_ptr<tyndall::CasterScene> FindScene(
-    vtkInformationVector** inputs, const tyndall::ViewSettings& settings, const tyndall::GridBlock* block = nullptr);
+  std::unique_ptr<tyndall::CasterScene> FindScene(vtkInformationVector** inputs, const tyndall::SceneSource& source);
   void SayDoubts(tyndall::CasterScene& scene);
 
   struct Shot;
-  struct Taking;
-  void Expose(const Taking& taking, Shot& shot);
-  Shot SeeWhole(vtkInformationVector** inputs, double exposure);
-  /// @param held  set to the voxels that each rank's ray caster holds, by rank
-  std::unique_ptr<tyndall::CasterScene> FindSceneOfBlock(
-    const tyndall::RankPieces& pieces, vtkInformationVector** inputs, std::vector<tyndall::VoxelBox>& held);
-  std::optional<Shot> SeeBlocks(
-    vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs, double exposure, const std::array<int, 6>& asked);
+  bool PiecesFit(const tyndall::BlocksOfRanks& blocks, vtkImageData* image);
+  std::optional<Shot> See(const tyndall::BlocksOfRanks& blocks, vtkInformationVector** inputs, double exposure,
+    const std::array<int, 6>& asked);
   void CropToRequest(Shot&& shot, vtkInformationVector* outputs);
 
   std::string Device;

@@ -71,16 +71,6 @@ SourceFunction SourceFunctionOf(const Medium& medium, const Field& fluence)
   return found;
 }
 
-/// The ranks over which the domain is decomposed; a single rank holds all of it.
-struct Spread
-{
-  Communicator& others;
-  const BlockPartition& partition;
-
-  const VoxelBox& Own() const { return this->partition.blocks[this->others.Rank()]; }
-  Grid OwnGrid() const { return this->partition.OwnGrid(this->others.Rank()); }
-};
-
 /// Radiance and transmittance of a column of voxels, or of a part of it.
 struct SeenColumn
 {
@@ -136,15 +126,15 @@ void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Ac
 }
 
 /// Radiance and transmittance of the view columns in a block, along an axis; for each column from below and from above.
-std::vector<SeenColumn> SeenInBlock(const Spread& spread, int axis, const SourceFunction& source)
+std::vector<SeenColumn> SeenInBlock(const Domain& domain, int axis, const SourceFunction& source)
 {
-  const Grid grid = spread.OwnGrid();
+  const Grid grid = domain.OwnGrid();
   const std::array<std::size_t, 3> stride = grid.Strides();
   const PlaneAxes plane = AcrossAxis(axis);
-  const VoxelBox& own = spread.Own();
+  const VoxelBox& own = domain.Own();
   const auto along = static_cast<std::ptrdiff_t>(stride[axis]);
   std::vector<SeenColumn> seen;
-  ForColumnsOfView(spread.partition.whole, axis, own, [&](int u, int v) {
+  ForColumnsOfView(domain.Whole(), axis, own, [&](int u, int v) {
     const std::size_t near = (u - own.first[plane.u]) * stride[plane.u] + (v - own.first[plane.v]) * stride[plane.v];
     const std::size_t far = near + (grid.size[axis] - 1) * stride[axis];
     seen.push_back(LookAlong(source, grid.spacing[axis], near, along, grid.size[axis]));
@@ -196,13 +186,13 @@ SeenPixels BehindEachOther(
 
 /// Exposure by AutomaticExposure for parallel views along the axes from both sides, with a subset of the columns. The
 /// first rank composites the views. Collective.
-double ExposureAlongAxes(const Spread& spread, const SourceFunction& source)
+double ExposureAlongAxes(const Domain& domain, const SourceFunction& source)
 {
-  Communicator& others = spread.others;
+  Communicator& others = domain.Comm();
   SeenPixels seen;
   for (int axis = 0; axis < 3; ++axis)
   {
-    std::vector<std::vector<SeenColumn>> byRank = { SeenInBlock(spread, axis, source) };
+    std::vector<std::vector<SeenColumn>> byRank = { SeenInBlock(domain, axis, source) };
     if (others.Rank() > 0)
     {
       others.Send(0, MessageTag::ColumnsOfSight, byRank[0]);
@@ -212,7 +202,7 @@ double ExposureAlongAxes(const Spread& spread, const SourceFunction& source)
     {
       byRank.push_back(others.Receive<SeenColumn>(rank, MessageTag::ColumnsOfSight));
     }
-    const SeenPixels ofAxis = BehindEachOther(spread.partition, axis, byRank);
+    const SeenPixels ofAxis = BehindEachOther(domain.Partition(), axis, byRank);
     seen.radiance.insert(seen.radiance.end(), ofAxis.radiance.begin(), ofAxis.radiance.end());
     seen.alpha.insert(seen.alpha.end(), ofAxis.alpha.begin(), ofAxis.alpha.end());
   }
@@ -257,27 +247,25 @@ void FillFromNeighbours(
 }
 
 /// Source function of a block and its ghost cells. Collective.
-SourceFunction WithNeighbours(const Spread& spread, const SourceFunction& own)
+SourceFunction WithNeighbours(const Domain& domain, const SourceFunction& own)
 {
   std::vector<VoxelBox> wanted;
-  for (const VoxelBox& block : spread.partition.blocks)
+  for (const VoxelBox& block : domain.Partition().blocks)
   {
-    wanted.push_back(block.VoxelCount() > 0 ? Grown(block, 1, spread.partition.whole) : VoxelBox());
+    wanted.push_back(block.VoxelCount() > 0 ? Grown(block, 1, domain.Whole()) : VoxelBox());
   }
-  return { ValuesInBox(spread.others, spread.partition, wanted, own.radiance, 3),
-    ValuesInBox(spread.others, spread.partition, wanted, own.extinction, 1) };
+  return { ValuesInBox(domain.Comm(), domain.Partition(), wanted, own.radiance, 3),
+    ValuesInBox(domain.Comm(), domain.Partition(), wanted, own.extinction, 1) };
 }
 
-void FillEmptyVoxels(const Spread& spread, SourceFunction& source)
+void FillEmptyVoxels(const Domain& domain, SourceFunction& source)
 {
-  const bool alone = spread.others.Ranks() == 1;
-  const SourceFunction others = alone ? SourceFunction() : WithNeighbours(spread, source);
-  const SourceFunction& around = alone ? source : others; // the voxels read are never the ones written
-  const VoxelBox& own = spread.Own();
-  const VoxelBox box = alone ? own : Grown(own, 1, spread.partition.whole);
-  Grid grid = spread.partition.whole;
+  const SourceFunction around = WithNeighbours(domain, source);
+  const VoxelBox& own = domain.Own();
+  const VoxelBox box = Grown(own, 1, domain.Whole());
+  Grid grid = domain.Whole();
   grid.size = box.size;
-  const Grid ofBlock = spread.OwnGrid();
+  const Grid ofBlock = domain.OwnGrid();
   InThreads(source.extinction.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t voxel = begin; voxel < end; ++voxel)
     {
@@ -295,12 +283,12 @@ void FillEmptyVoxels(const Spread& spread, SourceFunction& source)
 }
 
 /// Optical depths of all columns of the whole grid along an axis, row by row in the plane across it. Collective.
-std::vector<double> ColumnDepths(const Spread& spread, int axis, const std::vector<float>& extinction)
+std::vector<double> ColumnDepths(const Domain& domain, int axis, const std::vector<float>& extinction)
 {
   const PlaneAxes plane = AcrossAxis(axis);
-  const Grid& whole = spread.partition.whole;
-  const VoxelBox& own = spread.Own();
-  const std::array<std::size_t, 3> stride = spread.OwnGrid().Strides();
+  const Grid& whole = domain.Whole();
+  const VoxelBox& own = domain.Own();
+  const std::array<std::size_t, 3> stride = domain.OwnGrid().Strides();
   const auto row = static_cast<std::size_t>(whole.size[plane.u]);
   const auto columns = static_cast<std::size_t>(own.VoxelCount() > 0 ? own.size[plane.u] * own.size[plane.v] : 0);
   std::vector<double> depths(row * static_cast<std::size_t>(whole.size[plane.v]), 0.0);
@@ -317,20 +305,20 @@ std::vector<double> ColumnDepths(const Spread& spread, int axis, const std::vect
       depths[(own.first[plane.v] + v) * row + own.first[plane.u] + u] = sum * whole.spacing[axis];
     }
   });
-  return spread.others.Sum(depths);
+  return domain.Sum(depths);
 }
 
 /// Opacity of the densest of the three axis-parallel columns through each voxel: about the largest opacity that a ray
 /// through the voxel has.
-std::vector<float> LargestOpacities(const Spread& spread, const std::vector<float>& extinction)
+std::vector<float> LargestOpacities(const Domain& domain, const std::vector<float>& extinction)
 {
   std::array<std::vector<double>, 3> depths;
   for (int axis = 0; axis < 3; ++axis)
   {
-    depths[axis] = ColumnDepths(spread, axis, extinction);
+    depths[axis] = ColumnDepths(domain, axis, extinction);
   }
-  const Grid grid = spread.OwnGrid();
-  const VoxelBox& own = spread.Own();
+  const Grid grid = domain.OwnGrid();
+  const VoxelBox& own = domain.Own();
   std::vector<float> opacities(extinction.size());
   InThreads(extinction.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t voxel = begin; voxel < end; ++voxel)
@@ -342,7 +330,7 @@ std::vector<float> LargestOpacities(const Spread& spread, const std::vector<floa
         const PlaneAxes plane = AcrossAxis(axis);
         const auto column = static_cast<std::size_t>(own.first[plane.u] + place[plane.u]) +
           static_cast<std::size_t>(own.first[plane.v] + place[plane.v]) *
-            static_cast<std::size_t>(spread.partition.whole.size[plane.u]);
+            static_cast<std::size_t>(domain.Whole().size[plane.u]);
         most = std::max(most, static_cast<float>(depths[axis][column]));
       }
       opacities[voxel] = std::min(static_cast<float>(-std::expm1(-most) / AsGoodAsOpaque), 1.0f);
@@ -403,33 +391,25 @@ double LargestProduct(const std::vector<float>& a, const std::vector<float>& b)
 }
 }
 
-LitColor ColorLitMedium(const Medium& medium, const Field& fluence, const ToneMapping& tones)
+LitColor ColorLitMedium(const Domain& domain, const Medium& medium, const Field& fluence, const ToneMapping& tones)
 {
-  SingleRank alone;
-  return ColorLitMediumInBlocks(alone, { medium.grid, { { { 0, 0, 0 }, medium.grid.size } } }, medium, fluence, tones);
-}
-
-LitColor ColorLitMediumInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
-  const Field& fluence, const ToneMapping& tones)
-{
-  const Spread spread = { communicator, partition };
   SourceFunction source;
-  communicator.Collective([&] {
+  domain.Collective([&] {
     Check(tones);
-    source = spread.Own().VoxelCount() > 0 ? SourceFunctionOf(medium, fluence) : SourceFunction();
+    source = domain.IsEmpty() ? SourceFunction() : SourceFunctionOf(medium, fluence);
   });
   ToneMapping used = tones;
-  used.exposure = tones.exposure > 0.0 ? tones.exposure : ExposureAlongAxes(spread, source);
-  const std::vector<float> most = LargestOpacities(spread, source.extinction);
+  used.exposure = tones.exposure > 0.0 ? tones.exposure : ExposureAlongAxes(domain, source);
+  const std::vector<float> most = LargestOpacities(domain, source.extinction);
   Dim(most, source.radiance);
-  FillEmptyVoxels(spread, source);
+  FillEmptyVoxels(domain, source);
 
   LitColor lit;
   lit.exposure = used.exposure;
   lit.rgba = ToneMap(source.radiance, {}, used);
   const std::vector<float> factors = VeilFactors(source.radiance, lit.rgba, most, used);
-  const double densest = communicator.Largest({ LargestProduct(factors, source.extinction) })[0];
-  const double edge = ShortestEdge(partition.whole);
+  const double densest = domain.Max(LargestProduct(factors, source.extinction));
+  const double edge = ShortestEdge(domain.Whole());
   lit.distance = densest > 0.0 ? std::max(edge, ResolvedDepth / densest) : edge;
   InThreads(factors.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t voxel = begin; voxel < end; ++voxel)

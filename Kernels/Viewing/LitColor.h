@@ -1,7 +1,6 @@
 #pragma once
 
-#include "Distribution/BlockPartition.h"
-#include "Distribution/Communicator.h"
+#include "Distribution/Domain.h"
 #include "Medium/Medium.h"
 #include "Viewing/ToneMapping.h"
 
@@ -34,16 +33,13 @@ struct LitColor
 ///
 /// Distance: the voxel's shortest edge, or more where the medium is so thin that 8 bits would not resolve its opacity.
 ///
-/// @param fluence  1 or 3 components, W / length^2
-/// @param tones  exposure 0: chosen by AutomaticExposure from parallel views along the axes, from both sides
+/// On a domain that is decomposed into blocks each rank computes the colours of its own voxels, with the exposure and
+/// distance of the whole domain. A rank stores a ghost layer and the optical depths of the whole grid's columns; the
+/// first rank also stores what the columns show. Collective.
+///
+/// @param medium, fluence  of the rank's block; ignored if it has no voxels. fluence: 1 or 3 components, W / length^2
+/// @param tones  the same on all ranks; exposure 0: chosen by AutomaticExposure from parallel views along the axes,
+///   from both sides
 /// @throws InvalidInput for an exposure out of its range
-LitColor ColorLitMedium(const Medium& medium, const Field& fluence, const ToneMapping& tones);
-
-/// ColorLitMedium for a domain that is decomposed into blocks: each rank computes the colours of its own voxels, with
-/// the exposure and distance of the whole domain. A rank stores at most one ghost layer and the optical depths of the
-/// whole grid's columns; the first rank also stores what the columns show. Collective.
-/// @param medium, fluence  of the rank's block; ignored if it has no voxels
-/// @param tones  the same on all
-LitColor ColorLitMediumInBlocks(Communicator& communicator, const BlockPartition& partition, const Medium& medium,
-  const Field& fluence, const ToneMapping& tones);
+LitColor ColorLitMedium(const Domain& domain, const Medium& medium, const Field& fluence, const ToneMapping& tones);
 }

@@ -2,12 +2,14 @@
 
 #include "Device/Errors.h"
 #include "Light/LeftOut.h"
+#include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
-#include "Viewing/Rays/ViewInfos.h"
-#include "Viewing/Scene/ViewChecks.h"
+#include "Viewing/Rays/RayCasting.h"
 
 #include <algorithm>
 #include <functional>
+#include <string>
+#include <utility>
 
 #include <glm/vec3.hpp>
 
@@ -15,6 +17,83 @@ namespace tyndall
 {
 namespace
 {
+constexpr float LeastViewedIndex = 1e-3f;
+constexpr float LargestViewedIndex = 1e3f;
+constexpr float FacesAlike = 1e-3f; ///< relative tolerance, for smoothing of structures near the border
+
+IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
+{
+  IndexRange range = { ior.values[0], ior.values[0] };
+  const std::array<int, 3>& size = grid.size;
+  for (int k = 0; k < size[2]; ++k)
+  {
+    for (int j = 0; j < size[1]; ++j)
+    {
+      const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
+      const float* row = ior.values + grid.IndexOf({ 0, j, k });
+      const int step = wholeRow ? 1 : std::max(size[0] - 1, 1); // otherwise only the row's two ends
+      for (int i = 0; i < size[0]; i += step)
+      {
+        range.least = std::min(range.least, row[i]);
+        range.largest = std::max(range.largest, row[i]);
+      }
+    }
+  }
+  return range;
+}
+
+/// Warnings about what may not look as intended, a sentence each: an unlit table, a surface index that the medium never
+/// has, an index that varies over the box's faces.
+/// @param ior    refractive index; null: constant
+/// @param index  the range of `ior`
+std::vector<std::string> DoubtsAbout(
+  const ViewSettings& settings, const SolvedLight& light, const Field& ior, const IndexRange& index, const Grid& grid)
+{
+  std::vector<std::string> doubts;
+  if (settings.tableFace >= 0 && !light.fluence.values)
+  {
+    doubts.push_back(
+      "The table is dark: it is lit by fluence, which is missing. PhotonMarcher and other solvers make it.");
+  }
+  if (!ior.values)
+  {
+    return doubts;
+  }
+  if (settings.surfaceReflection != SurfaceReflection::None && settings.surfaceIndex > 0.0 &&
+    !(settings.surfaceIndex > index.least && settings.surfaceIndex <= index.largest))
+  {
+    doubts.push_back("No surface reflects: its index is " + Text("%g", settings.surfaceIndex) +
+      ", those of the grid are from " + Text("%g", index.least) + " to " + Text("%g", index.largest) + ".");
+  }
+  const IndexRange faces = RangeOnFaces(ior, grid);
+  if (faces.largest - faces.least > FacesAlike * faces.largest)
+  {
+    doubts.push_back("The refractive index varies over the faces of the box, from " + Text("%g", faces.least) + " to " +
+      Text("%g", faces.largest) +
+      ": light is not bent there, and looks brighter or darker by n^2. Give the box a margin.");
+  }
+  return doubts;
+}
+
+/// @throws InvalidInput for a refractive index that is not finite, lies outside [1e-3, 1e3] or does not have exactly
+///   one component
+void CheckViewedIndex(const Field& ior, const Grid& grid)
+{
+  if (ior.values && ior.components != 1)
+  {
+    throw InvalidInput("ior has " + std::to_string(ior.components) + " components a voxel; a refractive index has 1.");
+  }
+  CheckIndex(ior, grid);
+  for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
+  {
+    if (ior.values[i] < LeastViewedIndex || ior.values[i] > LargestViewedIndex)
+    {
+      throw InvalidInput("ior is " + Text("%g", ior.values[i]) + " in voxel " + VoxelName(grid, i) +
+        " (the first such voxel); rays are followed where it is from 0.001 to 1000.");
+    }
+  }
+}
+
 /// The lights for which shadow rays are traced.
 const std::vector<Light>& LampsOf(const SolvedLight& light, const Illumination& illumination, const ViewSettings& asked)
 {
@@ -66,10 +145,11 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Fil
       ViewTraitsOf(medium, filled, light, ior, this->Settings, device.KernelWidth(), block ? &block->shared : nullptr))
   , Scene(device, medium, light, ior, this->Traits, block)
   , Samples(device, filled, this->Scene, this->Traits, block)
-  , Sources(device, medium, LampsOf(light, illumination, asked), this->Settings.rectangleSamples, this->Traits,
-      this->Part ? &*this->Part : nullptr)
+  , Sources(device, medium, LampsOf(light, illumination, asked), this->Settings, this->Traits, this->Scene,
+      this->Samples, this->Part ? &*this->Part : nullptr)
   , Behind(device, medium, light, illumination, ior, this->Settings, this->Traits, block)
-  , Rays(device, this->Scene, this->Samples, this->Behind, this->Traits)
+  , Rays(device, this->Scene, this->Samples, this->Behind, this->Traits, this->Settings,
+      this->Part ? &*this->Part : nullptr)
   , Omitted(this->LeftOutNow())
   , Doubts(
       DoubtsAbout(this->Settings, light, this->Traits.bends && !block ? ior : Field{}, this->Traits.index, medium.grid))
@@ -107,7 +187,7 @@ std::vector<std::string> MediumRayCaster::LeftOutNow() const
       : "surface reflection: no refractive index is as large "
         "as the surface's, or none is smaller");
   omit(traits.hasTable, "table: none");
-  omit(this->Behind.FacesOfGround() != 0, "ground: no face of the box gives back light, or it is not shown");
+  omit(this->Behind.HasGround(), "ground: no face of the box gives back light, or it is not shown");
   omit(this->Behind.HasSurfaceLight(),
     "light at the surface: no thick voxels at the faces of the box, or it is not known there");
   return omitted;
@@ -139,9 +219,13 @@ bool MediumRayCaster::ShowsBackgroundColor() const
   return this->Settings.showBackground && !this->Behind.IsSky() && !this->Behind.HasEnvironment();
 }
 
+/// Packs the samples for a pass, if they are packed for another.
 void MediumRayCaster::Pack(Packing what)
 {
-  this->Samples.Pack(what, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
+  if (this->Samples.PackedFor() != what)
+  {
+    this->Samples.Pack(what, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
+  }
 }
 
 void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monitor)
@@ -149,28 +233,25 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
   if (this->Traits.shadowRays)
   {
     this->PackForShadowRays();
-    this->Sources.SeeLights(camera, this->Settings.stepSize, this->Scene, this->Samples, monitor);
+    this->Sources.SeeLights(camera, monitor);
   }
   this->FinishSources(camera);
 }
 
-std::vector<float> MediumRayCaster::DepthsTowards(int light, const VoxelBox& asked, const Monitor& monitor)
+/// Packs the samples again: for shadow rays, once their light has changed or the picture's passes are to follow.
+void MediumRayCaster::PackForShadowRays()
 {
-  return this->Sources.DepthsTowards(light, asked, this->Settings.stepSize, this->Samples, monitor);
+  this->Samples.Pack(Packing::ForShadowRays, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
 }
 
-void MediumRayCaster::SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths)
-{
-  this->Sources.SeeLight(light, camera, part, depths, this->Scene, this->Samples);
-}
-
+/// Completes the sources, once the light of all lamps is known.
 void MediumRayCaster::FinishSources(const Camera& camera)
 {
   if (this->Traits.ShowsMoments())
   {
-    this->Sources.SeeMoments(camera, this->Scene);
+    this->Sources.SeeMoments(camera);
   }
-  this->Pack(Packing::Scattered);
+  this->Samples.Pack(Packing::Scattered, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
   this->Omitted = this->LeftOutNow(); // empty bricks are known now
   this->SourcesReady = true;
   if (this->Traits.PacksOnce())
@@ -179,45 +260,21 @@ void MediumRayCaster::FinishSources(const Camera& camera)
   }
 }
 
-/// @param sharp  parameters of the pass for unscattered light, which alone shows a sharp background, and which gives
-///   the picture's alpha and depth (numerics.md, section 14.7)
-MediumRayCaster::Pass MediumRayCaster::PassOf(const ViewInfo& view, bool sharp) const
-{
-  Pass pass = { view, OpticsInfoOf(this->Settings, this->Traits, this->Part ? &*this->Part : nullptr) };
-  if (this->Traits.ShowsMoments() && (sharp || !this->Behind.IsSky()))
-  {
-    // A background colour that is not a sky does not light the medium.
-    const bool seen = sharp && !this->Behind.IsSky();
-    pass.view.background =
-      Float4(seen ? Vector(this->Behind.Colour(this->Settings)) : glm::dvec3(0.0), view.background.s[3]);
-  }
-  if (sharp)
-  {
-    pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f; // already in the first pass
-  }
-  return pass;
-}
-
 /// @param from  progress that is reported at the begin, in [0, 1]
-Picture MediumRayCaster::Cast(
-  const ViewInfo& view, const std::vector<float>& ends, const Starts& starts, double from, const Monitor& monitor)
+Picture MediumRayCaster::Cast(const Camera& camera, const GridBlock* block, const std::vector<float>& ends,
+  const Starts& starts, double from, const Monitor& monitor)
 {
   const bool byMoments = this->Traits.ShowsMoments();
-  const bool ofBlock = view.block.whole.s[0] > 0;
-  this->Rays.Reserve(this->Settings, ends, ofBlock, starts.transmittance);
-  const Pass first = this->PassOf(view, false);
-  this->Rays.Cast(this->Settings, first.view, first.optics, from, byMoments ? 0.8 : 1.0, monitor);
-  Picture picture = this->Read(view);
+  this->Pack(Packing::Scattered);
+  Picture picture = this->Rays.Cast(
+    this->Rays.PassOf(camera, block, false), ends, starts.transmittance, from, byMoments ? 0.8 : 1.0, monitor);
   if (byMoments)
   {
     this->Pack(Packing::Unscattered);
-    this->Rays.Reserve(this->Settings, ends, ofBlock, starts.seen);
-    const Pass second = this->PassOf(view, true);
-    this->Rays.Cast(this->Settings, second.view, second.optics, 0.8, 1.0, monitor);
-    picture.sharp = this->Rays.ReadRadiance();
-    picture.sceneTransmittance = this->Rays.ReadTransmittance();
-    picture.alpha = this->Rays.ReadAlpha();
-    picture.depth = this->Rays.ReadDepth();
+    Picture sharp = this->Rays.Cast(this->Rays.PassOf(camera, block, true), ends, starts.seen, 0.8, 1.0, monitor);
+    sharp.sharp = std::exchange(sharp.radiance, std::move(picture.radiance));
+    sharp.transmittance = std::move(picture.transmittance);
+    return sharp;
   }
   return picture;
 }
@@ -229,36 +286,20 @@ Picture MediumRayCaster::Render(
   {
     throw InvalidInput("Rays that bend or meet a table cannot be cast through blocks of the medium one by one.");
   }
-  const ViewInfo view = this->Rays.ViewOf(camera, this->Settings, block);
+  this->Rays.PassOf(camera, block, false); // checks the camera
   Report(monitor, 0.0);
   const bool prepares = this->NeedsSources();
   if (prepares)
   {
     this->PrepareSources(camera, monitor);
   }
-  Picture picture = this->Cast(view, ends, {}, prepares && this->Traits.shadowRays ? 0.5 : 0.0, monitor);
+  Picture picture = this->Cast(camera, block, ends, {}, prepares && this->Traits.shadowRays ? 0.5 : 0.0, monitor);
   if (!block && !picture.sharp.empty())
   {
     std::transform(picture.radiance.begin(), picture.radiance.end(), picture.sharp.begin(), picture.radiance.begin(),
       std::plus<float>());
     picture.sharp.clear();
   }
-  return picture;
-}
-
-/// Reads the picture of the last pass.
-Picture MediumRayCaster::Read(const ViewInfo& view) const
-{
-  Picture picture;
-  picture.width = this->Settings.imageSize[0];
-  picture.height = this->Settings.imageSize[1];
-  picture.farDepth = view.marching.s[2];
-  picture.radiance = this->Rays.ReadRadiance();
-  picture.transmittance = this->Rays.ReadTransmittance();
-  picture.sceneTransmittance = picture.transmittance;
-  picture.missing = this->Rays.ReadMissing();
-  picture.alpha = this->Rays.ReadAlpha();
-  picture.depth = this->Rays.ReadDepth();
   return picture;
 }
 
@@ -281,38 +322,6 @@ MediumRayCaster::SharedNumbers MediumRayCaster::SharedByBlocks() const
 Picture MediumRayCaster::RenderBehind(
   const Camera& camera, const GridBlock& block, const Starts& starts, const Monitor& monitor)
 {
-  if (this->Samples.PackedFor() != Packing::Scattered)
-  {
-    this->Pack(Packing::Scattered);
-  }
-  return this->Cast(this->Rays.ViewOf(camera, this->Settings, &block), {}, starts, 0.0, monitor);
-}
-
-Picture MediumRayCaster::CastStraight(const Camera& camera, const Monitor& monitor)
-{
-  return this->RenderBehind(camera, this->Part->block, {}, monitor);
-}
-
-MediumRayCaster::Pass MediumRayCaster::BeginPass(const Camera& camera, bool sharp)
-{
-  const Packing what = sharp ? Packing::Unscattered : Packing::Scattered;
-  if (this->Samples.PackedFor() != what)
-  {
-    this->Pack(what);
-  }
-  Pass pass = this->PassOf(this->Rays.ViewOf(camera, this->Settings, &this->Part->block), sharp);
-  RayCasting::OfRounds(pass.view);
-  return pass;
-}
-
-std::vector<RayOnItsWay> MediumRayCaster::StartRays(const Pass& pass, const PixelRows& rows) const
-{
-  return this->Rays.Start(this->Settings, pass.view, pass.optics, rows);
-}
-
-std::vector<RayOnItsWay> MediumRayCaster::MarchRays(
-  const Pass& pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const
-{
-  return this->Rays.March(this->Settings, pass.view, pass.optics, rays, monitor);
+  return this->Cast(camera, &block, {}, starts, 0.0, monitor);
 }
 }

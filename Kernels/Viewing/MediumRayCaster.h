@@ -10,7 +10,6 @@
 #include "Viewing/Samples/PackedSamples.h"
 #include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/Camera.h"
-#include "Viewing/Scene/GridBlock.h"
 #include "Viewing/Scene/SceneOnDevice.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewSettings.h"
@@ -144,41 +143,6 @@ public:
   /// @throws Aborted
   Picture RenderBehind(const Camera& camera, const GridBlock& block, const Starts& starts, const Monitor& monitor = {});
 
-  // Steps of Render for blocks that are rendered together (Blocks/PictureInBlocks.h); the caster must have been
-  // constructed with its block. Other blocks need the result of each step before their next one.
-
-  const BlockOfScene& Block() const { return *this->Part; }
-  double StepSize() const { return this->Settings.stepSize; }
-  bool ShowsMoments() const { return this->Traits.ShowsMoments(); }
-  bool NeedsSources() const { return !this->SourcesReady || this->Traits.sourcesDependOnCamera; }
-  /// The lights for which shadow rays are traced.
-  const std::vector<SmallLight>& LightsOfBlock() const { return this->Sources.LightsOfBlock(); }
-  void PackForShadowRays() { this->Pack(Packing::ForShadowRays); }
-  /// See SeenSources. @throws Aborted
-  std::vector<float> DepthsTowards(int light, const VoxelBox& asked, const Monitor& monitor);
-  void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths);
-  /// Completes the sources after SeeLight was called for all lights.
-  void FinishSources(const Camera& camera);
-  /// Renders the block with straight rays.
-  Picture CastStraight(const Camera& camera, const Monitor& monitor);
-
-  /// Kernel parameters for rays that travel from block to block.
-  struct Pass
-  {
-    ViewInfo view;
-    OpticsInfo optics;
-  };
-  /// @param sharp  parameters for the unscattered light from behind the medium, which is rendered in a second pass;
-  ///   only if ShowsMoments()
-  Pass BeginPass(const Camera& camera, bool sharp);
-  std::size_t RaysThatFit() const { return this->Rays.CountThatFits(this->Settings); }
-  std::vector<RayOnItsWay> StartRays(const Pass& pass, const PixelRows& rows) const;
-  /// See RayCasting. @throws Aborted
-  std::vector<RayOnItsWay> MarchRays(const Pass& pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
-
-  /// Transmittance below which rays end.
-  double MinimumTransmittance() const { return this->Settings.minimumTransmittance; }
-
   /// Descriptions of the features that were left out because the scene does not need them.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }
 
@@ -186,15 +150,18 @@ public:
   const std::vector<std::string>& Warnings() const { return this->Doubts; }
 
 private:
+  friend class PictureInBlocks; // takes the steps of Render together with other ranks
+
   MediumRayCaster(Device& device, const Medium& medium, const FilledBricks& filled, const SolvedLight& light,
     const Illumination& illumination, const ViewSettings& settings, const Field& ior, const BlockOfScene* block);
   std::vector<std::string> LeftOutNow() const;
+  bool NeedsSources() const { return !this->SourcesReady || this->Traits.sourcesDependOnCamera; }
   void PrepareSources(const Camera& camera, const Monitor& monitor);
+  void PackForShadowRays();
+  void FinishSources(const Camera& camera);
   void Pack(Packing what);
-  Pass PassOf(const ViewInfo& view, bool sharp) const;
-  Picture Cast(
-    const ViewInfo& view, const std::vector<float>& ends, const Starts& starts, double from, const Monitor& monitor);
-  Picture Read(const ViewInfo& view) const;
+  Picture Cast(const Camera& camera, const GridBlock* block, const std::vector<float>& ends, const Starts& starts,
+    double from, const Monitor& monitor);
 
   std::optional<BlockOfScene> Part; ///< set if the medium is one block of a larger grid
   bool LampsShine = false;

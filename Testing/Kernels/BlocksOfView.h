@@ -4,7 +4,6 @@
 
 #include "Distribution/BoxExchange.h"
 #include "Viewing/Scene/BlockOfScene.h"
-#include "Viewing/Scene/GridBlock.h"
 
 /// Scenes that are spread over blocks.
 namespace viewing

@@ -4,7 +4,7 @@
 
 #include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Blocks/ShownBlock.h"
-#include "Viewing/Scene/GridBlock.h"
+#include "Viewing/Scene/BlockOfScene.h"
 
 using namespace viewing;
 

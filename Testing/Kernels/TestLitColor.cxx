@@ -43,7 +43,7 @@ struct LitBox
     this->medium.sigma_a = { this->sigma_a.data(), components };
     this->medium.sigma_s = { this->sigma_s.data(), components };
     this->medium.emission = { this->emission.empty() ? nullptr : this->emission.data(), 1 };
-    return ColorLitMedium(this->medium, { this->fluence.data(), 1 }, tones);
+    return ColorLitMedium(Domain(this->medium.grid), this->medium, { this->fluence.data(), 1 }, tones);
   }
 };
 
@@ -202,7 +202,7 @@ TEST(LitColor, IsTheSameInBlocks)
       medium.grid = partition.OwnGrid(communicator.Rank());
       medium.sigma_a = { sigma_a.data(), 1 };
       medium.sigma_s = { sigma_s.data(), 1 };
-      const LitColor lit = ColorLitMediumInBlocks(communicator, partition, medium, { fluence.data(), 1 }, tones);
+      const LitColor lit = ColorLitMedium(Domain(communicator, partition), medium, { fluence.data(), 1 }, tones);
       EXPECT_NEAR(lit.exposure, expected.exposure, 1e-6 * expected.exposure);
       EXPECT_NEAR(lit.distance, expected.distance, 1e-5 * expected.distance);
       const std::vector<float> rgba(expected.rgba.begin(), expected.rgba.end());

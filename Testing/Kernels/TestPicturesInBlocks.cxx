@@ -3,9 +3,8 @@
 #include "BlocksOfView.h"
 
 #include "Distribution/RanksInThreads.h"
-#include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
-#include "Viewing/Scene/GridBlock.h"
+#include "Viewing/Scene/BlockOfScene.h"
 
 #include <memory>
 #include <mutex>
@@ -57,71 +56,52 @@ Spread SpreadOver(const Scene& scene, const Cuts& cuts, bool nothing)
   return spread;
 }
 
-/// The picture that ranks make together.
+/// The picture that ranks make together, of which each gets a part: some rows.
 Picture SeenBy(Device& device, const Scene& scene, const Spread& spread, const Camera& camera,
   std::size_t* handed = nullptr, const WorkAtOnce& atOnce = {})
 {
   const auto ranks = static_cast<int>(spread.blocks.size());
-  std::vector<BlockPixels> seen(spread.blocks.size());
+  std::vector<Picture> parts(spread.blocks.size());
   std::vector<std::size_t> traffic(spread.blocks.size());
-  bool inRounds = false;
-  float farDepth = 0.0f;
-  std::vector<std::unique_ptr<MediumRayCaster>> casters(spread.blocks.size());
   std::mutex one;
   RunInThreads(ranks, [&](Communicator& communicator) {
     const auto rank = static_cast<std::size_t>(communicator.Rank());
+    const Domain domain(communicator, spread.partition);
     const GridBlock& block = spread.blocks[rank];
     BlockOfScene ofScene = { block, spread.known[rank], {} };
     Scene part;
     SharedScene own;
-    const bool has = block.OwnVoxels() > 0;
-    if (has)
+    if (!domain.IsEmpty())
     {
       part = PartOf(scene, block, spread.held[rank], spread.known[rank]);
       Scene held = PartOf(scene, block, spread.held[rank], spread.held[rank]);
       own = SharedSceneOf(held.MediumSeen(), held.LightSeen(), Scene::See(held.ior, 1), scene.settings);
     }
-    ofScene.shared = PictureInBlocks::Shared(communicator, has ? &own : nullptr);
-    communicator.Collective([&] {
+    ofScene.shared = PictureInBlocks::Shared(domain, domain.IsEmpty() ? nullptr : &own);
+    std::unique_ptr<MediumRayCaster> caster;
+    domain.Collective([&] {
       const std::lock_guard<std::mutex> lock(one);
-      casters[rank].reset(has ? new MediumRayCaster(part.Caster(device, &ofScene)) : nullptr);
+      caster.reset(domain.IsEmpty() ? nullptr : new MediumRayCaster(part.Caster(device, &ofScene)));
     });
-    PictureInBlocks picture(communicator, spread.partition, spread.held, casters[rank].get(), atOnce);
-    const Picture taken = picture.Take(camera, scene.settings.imageSize);
-    seen[rank] = SeenPart(taken);
+    PictureInBlocks picture(domain, spread.held, caster.get(), atOnce);
+    const std::array<int, 2>& size = scene.settings.imageSize;
+    const auto row = [&](std::size_t n) { return size[1] * static_cast<int>(n) / ranks; };
+    parts[rank] = picture.Take(camera, size, { { 0, row(rank) }, { size[0], row(rank + 1) } });
     traffic[rank] = picture.Traffic().handed;
-    inRounds = picture.GoesInRounds();
-    farDepth = has ? taken.farDepth : farDepth;
   });
   if (handed)
   {
     *handed = std::accumulate(traffic.begin(), traffic.end(), std::size_t{ 0 });
   }
-  std::vector<BlockPixels> frontToBack;
-  const std::vector<int> order = FrontToBack(spread.blocks, camera);
-  for (int number : order)
+  Picture all;
+  all.farDepth = parts[0].farDepth;
+  for (const Picture& part : parts)
   {
-    frontToBack.push_back(seen[static_cast<std::size_t>(number)]);
+    all.radiance.insert(all.radiance.end(), part.radiance.begin(), part.radiance.end());
+    all.alpha.insert(all.alpha.end(), part.alpha.begin(), part.alpha.end());
+    all.depth.insert(all.depth.end(), part.depth.begin(), part.depth.end());
   }
-  if (!inRounds)
-  {
-    for (std::size_t i = 0; i < order.size(); ++i)
-    {
-      MediumRayCaster* const caster = casters[static_cast<std::size_t>(order[i])].get();
-      const Starts starts =
-        caster ? StartsBehind(frontToBack, i, scene.settings.imageSize, scene.settings.minimumTransmittance) : Starts();
-      if (!starts.IsEmpty())
-      {
-        const GridBlock& block = spread.blocks[static_cast<std::size_t>(order[i])];
-        TakeFrom(caster->RenderBehind(camera, block, starts), starts, seen[static_cast<std::size_t>(order[i])]);
-      }
-    }
-    for (std::size_t i = 0; i < order.size(); ++i)
-    {
-      frontToBack[i] = seen[static_cast<std::size_t>(order[i])];
-    }
-  }
-  return PictureOfAll(frontToBack, { { 0, 0 }, scene.settings.imageSize }, farDepth);
+  return all;
 }
 
 void ExpectSame(const Picture& found, const Picture& whole)
@@ -383,15 +363,16 @@ TEST_F(PicturesInBlocks, FailTogether)
   std::vector<int> aborted(3);
   RunInThreads(3, [&](Communicator& communicator) {
     const auto rank = static_cast<std::size_t>(communicator.Rank());
+    const Domain domain(communicator, spread.partition);
     const Scene held = PartOf(scene, spread.blocks[rank], spread.held[rank], spread.held[rank]);
     const SharedScene own = SharedSceneOf(held.MediumSeen(), held.LightSeen(), Scene::See(held.ior, 1), scene.settings);
-    const BlockOfScene block = { spread.blocks[rank], spread.known[rank], PictureInBlocks::Shared(communicator, &own) };
+    const BlockOfScene block = { spread.blocks[rank], spread.known[rank], PictureInBlocks::Shared(domain, &own) };
     MediumRayCaster caster =
       PartOf(scene, spread.blocks[rank], spread.held[rank], spread.known[rank]).Caster(this->GetDevice(), &block);
-    PictureInBlocks picture(communicator, spread.partition, spread.held, &caster);
+    PictureInBlocks picture(domain, spread.held, &caster);
     try
     {
-      picture.Take(scene.Framed(), scene.settings.imageSize, [&](double) { return rank != 1; });
+      picture.Take(scene.Framed(), scene.settings.imageSize, {}, [&](double) { return rank != 1; });
     }
     catch (const Aborted&)
     {
@@ -423,7 +404,8 @@ TEST_F(PicturesInBlocks, SayThatRanksHaveOtherLights)
       }
       try
       {
-        PictureInBlocks picture(communicator, spread.partition, spread.held, caster ? &*caster : nullptr);
+        const Domain domain(communicator, spread.partition);
+        PictureInBlocks picture(domain, spread.held, caster ? &*caster : nullptr);
       }
       catch (const InvalidInput& error)
       {

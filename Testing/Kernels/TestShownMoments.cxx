@@ -7,7 +7,7 @@
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
 #include "Reference/ReferenceTable.h"
-#include "Viewing/Sources/Aureole.h"
+#include "Viewing/Sources/SeenSources.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 #include "ViewScene.h"
 
-#include "Viewing/Samples/SampleBricks.h"
+#include "Viewing/Samples/PackedSamples.h"
 #include "Viewing/Scene/ViewTraits.h"
 
 #include <cstdlib>

@@ -3,16 +3,21 @@
 #include "Device/Buffer.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
+#include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/SolvedLight.h"
 #include "Viewing/Scene/ViewSettings.h"
+#include "Viewing/Scene/ViewShared.h"
 #include "Viewing/Scene/ViewTraits.h"
 
 #include <array>
 
 namespace tyndall
 {
+/// Voxels per row and number of rows of a face: along y and z, x and z, or x and y.
+std::array<int, 2> FaceSize(const Grid& grid, int face);
+
 /// What rays see when they leave or enter the medium: environment and sky, ground, table, and surface light of
-/// optically thick voxels. Arrays that the scene does not need are empty.
+/// optically thick voxels.
 class Backdrop
 {
 public:
@@ -22,27 +27,24 @@ public:
 
   /// Whether the background is the illumination's sky and not the settings' background colour.
   bool IsSky() const { return this->UnderSky; }
-  Rgb Colour(const ViewSettings& settings) const { return this->UnderSky ? this->Sky : settings.backgroundColor; }
+  bool HasEnvironment() const { return this->Size[0] > 0; }
+  bool HasGround() const { return this->GroundBits != 0; }
+  bool HasSurfaceLight() const { return this->HasSurface; }
 
-  bool HasEnvironment() const { return this->Width > 0; }
-  std::array<int, 2> EnvironmentSize() const { return { this->Width, this->Height }; } ///< pixels
-  const Rotation& ToPicture() const { return this->Turn; } ///< from world axes to the environment's axes
-  const Buffer<cl_float4>& Environment() const { return this->Pixels; }
-  /// If moments are shown: the part of the environment that is seen only by unscattered light.
-  const Buffer<cl_float4>& SharpEnvironment() const { return this->SharpPixels; }
-
-  int FacesOfGround() const { return this->GroundBits; }                ///< bit mask of the reflecting faces
-  const Buffer<cl_float4>& Ground() const { return this->GroundCells; } ///< see BackdropTables.h
-  const Buffer<cl_float4>& Table() const { return this->TableCells; }   ///< see BackdropTables.h
-  bool HasSurfaceLight() const { return this->SurfaceCells.Size() > 0; }
-  const Buffer<cl_float4>& SurfaceLight() const { return this->SurfaceCells; } ///< see BackdropTables.h
+  /// All tables one after the other; empty if there is none.
+  const Buffer<cl_float4>& Tables() const { return this->Cells; }
+  /// Sets what the kernels need to know of the background and the tables.
+  /// @param sharp  only what unscattered light shows of the environment, if moments are shown
+  void Describe(const ViewSettings& settings, bool sharp, ViewInfo& view) const;
 
 private:
-  bool UnderSky = false;
+  bool UnderSky = false, HasSurface = false;
   Rgb Sky = {};
-  int Width = 0, Height = 0;
-  Rotation Turn = {};
-  Buffer<cl_float4> Pixels, SharpPixels, TableCells, GroundCells, SurfaceCells;
-  int GroundBits = 0;
+  std::array<int, 2> Size = {}; ///< pixels of the environment
+  Rotation Turn = {};           ///< from world axes to the environment's axes
+  int GroundBits = 0;           ///< bit mask of the reflecting faces
+  cl_int4 First = {};           ///< ViewInfo::backdrop
+  int FirstSharp = 0;           ///< index of the environment's peaks
+  Buffer<cl_float4> Cells;
 };
 }

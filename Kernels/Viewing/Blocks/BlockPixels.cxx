@@ -1,6 +1,9 @@
 #include "Viewing/Blocks/BlockPixels.h"
 
+#include "Viewing/Scene/BlockOfScene.h"
+
 #include <algorithm>
+#include <utility>
 
 namespace tyndall
 {
@@ -129,6 +132,94 @@ void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels)
       }
     }
   });
+}
+
+std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own)
+{
+  std::vector<double> all(own.size() * static_cast<std::size_t>(communicator.Ranks()), 0.0);
+  std::copy(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(own.size()) * communicator.Rank());
+  return communicator.Sum(all);
+}
+
+std::optional<SeenBlocks> ExchangePixels(
+  const Domain& domain, const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera)
+{
+  constexpr std::size_t words = 8; // corners of both rectangles
+  if (domain.Any(failed))
+  {
+    return std::nullopt;
+  }
+  const std::vector<double> said = SaidByAll(domain.Comm(),
+    { 1.0 * own.rect.begin[0], 1.0 * own.rect.begin[1], 1.0 * own.rect.end[0], 1.0 * own.rect.end[1],
+      1.0 * wanted.begin[0], 1.0 * wanted.begin[1], 1.0 * wanted.end[0], 1.0 * wanted.end[1] });
+  const auto rectOf = [&](int rank, std::size_t from) {
+    const double* const at = said.data() + words * static_cast<std::size_t>(rank) + from;
+    return PixelRect{ { static_cast<int>(at[0]), static_cast<int>(at[1]) },
+      { static_cast<int>(at[2]), static_cast<int>(at[3]) } };
+  };
+  std::vector<int> partners;
+  for (int rank = 0; rank < domain.Comm().Ranks(); ++rank)
+  {
+    const bool gets = !Overlap(own.rect, rectOf(rank, 4)).IsEmpty();
+    const bool gives = !Overlap(wanted, rectOf(rank, 0)).IsEmpty();
+    if (rank != domain.Rank() && (gets || gives))
+    {
+      partners.push_back(rank);
+    }
+  }
+  auto arrived = domain.Comm().Exchange<BlockPixel>(partners, [&] {
+    std::vector<std::vector<BlockPixel>> parcels;
+    for (const int partner : partners)
+    {
+      parcels.push_back(PartIn(rectOf(partner, 4), own).pixels);
+    }
+    return parcels;
+  });
+
+  std::vector<GridBlock> blocks;
+  std::vector<BlockPixels> pixels;
+  std::optional<std::size_t> ownNumber;
+  if (!domain.IsEmpty())
+  {
+    ownNumber = 0;
+    blocks.push_back(BlockOfRank(domain.Partition(), domain.Rank()));
+    pixels.push_back(own);
+  }
+  for (std::size_t i = 0; i < partners.size(); ++i)
+  {
+    if (!arrived[i].empty())
+    {
+      blocks.push_back(BlockOfRank(domain.Partition(), partners[i]));
+      pixels.push_back({ Overlap(wanted, rectOf(partners[i], 0)), std::move(arrived[i]) });
+    }
+  }
+  SeenBlocks seen;
+  for (const int number : FrontToBack(blocks, camera))
+  {
+    seen.own = ownNumber && number == 0 ? seen.frontToBack.size() : seen.own;
+    seen.frontToBack.push_back(std::move(pixels[number]));
+  }
+  return seen;
+}
+
+Picture PartOf(Picture&& picture, const PixelRect& rect)
+{
+  if (rect.begin == std::array<int, 2>{ 0, 0 } && rect.end == std::array<int, 2>{ picture.width, picture.height })
+  {
+    return std::move(picture);
+  }
+  Picture part;
+  part.width = rect.IsEmpty() ? 0 : rect.end[0] - rect.begin[0];
+  part.height = rect.IsEmpty() ? 0 : rect.end[1] - rect.begin[1];
+  part.farDepth = picture.farDepth;
+  ForPixels(rect, [&](int column, int row, std::size_t) {
+    const auto pixel = static_cast<std::ptrdiff_t>(row) * picture.width + column;
+    const auto radiance = picture.radiance.begin() + 3 * pixel;
+    part.radiance.insert(part.radiance.end(), radiance, radiance + 3);
+    part.alpha.push_back(picture.alpha[pixel]);
+    part.depth.push_back(picture.depth[pixel]);
+  });
+  return part;
 }
 
 Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect, float farDepth)

@@ -1,10 +1,13 @@
 #pragma once
 
+#include "Distribution/Domain.h"
 #include "Viewing/Rays/Picture.h"
+#include "Viewing/Scene/Camera.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace tyndall
@@ -122,6 +125,30 @@ Starts StartsBehind(
 
 /// Replaces the pixels that `starts` selects by those of the picture `again`, which was rendered with these starts.
 void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels);
+
+/// Pixels of the blocks that are in view.
+struct SeenBlocks
+{
+  std::vector<BlockPixels> frontToBack;
+  std::size_t own = 0; ///< index of this rank's block, if it has one
+};
+
+/// Exchanges pixels: this rank receives the other blocks' pixels within `wanted`. Each rank sends to each only the
+/// pixels that it wants. Collective.
+/// @param own     this block's pixels; empty if it is out of view, or this rank has no block
+/// @param wanted  the pixels that this rank needs
+/// @param failed  this rank failed to render its block
+/// @return nothing, on all ranks, if one of them failed
+std::optional<SeenBlocks> ExchangePixels(
+  const Domain& domain, const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera);
+
+/// Gathers numbers from all ranks, in the order of ranks (allgather). Collective, with the same count of numbers on all
+/// ranks.
+/// @throws InvalidInput on all ranks, if the counts differ
+std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own);
+
+/// Crops radiance, alpha and depth of a picture to a rectangle.
+Picture PartOf(Picture&& picture, const PixelRect& rect);
 
 /// Composites all blocks in a rectangle: radiance, alpha (of the medium, without the background) and depth.
 /// @param farDepth  Picture::farDepth of the blocks' pictures

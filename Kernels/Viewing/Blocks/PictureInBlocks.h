@@ -1,10 +1,9 @@
 #pragma once
 
 #include "Device/Monitor.h"
-#include "Distribution/BlockPartition.h"
-#include "Distribution/Communicator.h"
+#include "Distribution/Domain.h"
 #include "Distribution/Rounds.h"
-#include "Viewing/Blocks/ShadowsInBlocks.h"
+#include "Viewing/Blocks/BlockPixels.h"
 #include "Viewing/MediumRayCaster.h"
 #include "Viewing/Rays/Picture.h"
 #include "Viewing/Scene/Camera.h"
@@ -20,22 +19,23 @@ namespace tyndall
 /// medium, the picture or the number of ranks.
 struct WorkAtOnce
 {
-  /// voxels of one block for which shadow rays are traced at a time
-  std::size_t voxels = ShadowsInBlocks::PortionVoxels;
+  /// Voxels for which shadow rays are traced at a time, summed over all ranks: at least one row of each. 12 bytes each.
+  std::size_t voxels = 65536;
   /// Primary rays that travel between ranks at a time, summed over all ranks: at least those of four rows of pixels,
   /// fewer if a device has too little memory. Rays split off from them are not counted. 140 bytes each.
   std::size_t rays = 131072;
 };
 
-/// A rank's contribution to the picture of a domain that is decomposed into blocks (numerics.md, section 14.9). A rank
-/// stores its own block with halos only.
+/// A picture of a domain, of which each rank holds its own block with halos only (numerics.md, section 14.9). On one
+/// rank it is the picture that the caster renders.
 ///
-///  - Straight rays: each rank renders its block, and the pictures are composited (BlockPixels.h).
+///  - Straight rays: each rank renders its block, and the pictures are composited (BlockPixels.h). Rays whose start
+///    depends on the blocks in front are cast again.
 ///  - Rays that bend, or meet a table: they travel from rank to rank in rounds, as photons do, a few rows of pixels at
 ///    a time. A step is taken on the rank whose block contains its midpoint; entry into and exit from the grid are
 ///    computed with the coordinates of the whole domain, so that the rays do not depend on the decomposition.
 ///  - Shadow rays: each rank computes the optical length, within its block, of the paths from other blocks' voxels to a
-///    light; these are summed (ShadowsInBlocks.h).
+///    light; these are summed.
 ///
 /// The constructor and Take are collective; ranks without voxels take part.
 class PictureInBlocks
@@ -44,40 +44,43 @@ public:
   /// Combines the ranks' shared scene properties, before they construct their casters; the result is the same on all
   /// ranks. Collective.
   /// @param own  properties of this rank's block; null: it has no voxels
-  static SharedScene Shared(Communicator& communicator, const SharedScene* own);
+  static SharedScene Shared(const Domain& domain, const SharedScene* own);
 
-  /// @param communicator, partition, held  must outlive this object
+  /// @param domain, held  must outlive this object
   /// @param held  for each rank, the voxels its arrays cover, ghost cells included
-  /// @param own   caster of this rank's block, for the medium in the box held[rank]; null: it has no voxels
+  /// @param own   caster of this rank's block, for the medium in the box held[rank]; null: it has no voxels. On one
+  ///   rank a caster of the whole domain, without a block
   /// @param atOnce  the same on all ranks
-  PictureInBlocks(Communicator& communicator, const BlockPartition& partition, const std::vector<VoxelBox>& held,
-    MediumRayCaster* own, const WorkAtOnce& atOnce = {});
+  /// @throws InvalidInput  on all ranks, if the lights differ between ranks
+  PictureInBlocks(
+    const Domain& domain, const std::vector<VoxelBox>& held, MediumRayCaster* own, const WorkAtOnce& atOnce = {});
 
-  /// Whether rays travel from rank to rank; the same on all ranks. If so, a rank's picture is already attenuated by the
-  /// other blocks.
-  bool GoesInRounds() const { return this->InRounds; }
-
-  /// Computes this rank's contribution to the picture: that of its block, or, if GoesInRounds(), of the rays that end
-  /// in it. Collective.
-  /// @param size  pixels
+  /// Renders the picture together with the other ranks. Collective.
+  /// @param size  of the picture, pixels
+  /// @param part  the pixels that this rank wants
+  /// @return these pixels: radiance, alpha (of the medium, without the background) and depth
   /// @throws  collective error: what one rank throws, all throw
-  Picture Take(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor = {});
+  Picture Take(
+    const Camera& camera, const std::array<int, 2>& size, const PixelRect& part, const Monitor& monitor = {});
 
   /// Rays that this rank has sent to others so far.
   const RoundsTraffic& Traffic() const { return this->Between->Traffic(); }
 
 private:
+  void Follow(int light, const std::vector<VoxelBox>& portions, const Camera& camera, const Monitor& monitor);
+  void FindShadows(const Camera& camera, const Monitor& monitor);
   void FindSources(const Camera& camera, const Monitor& monitor);
-  void CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor);
   std::vector<RayOnItsWay> Follow(
-    const MediumRayCaster::Pass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& of);
-  std::vector<RayOnItsWay> InOrder(std::vector<RayOnItsWay> rays, int width) const;
+    const RayCasting::Pass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& monitor);
+  void CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor);
+  Picture CastOwn(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor);
+  void LookAgain(const Camera& camera, const std::array<int, 2>& size, BlockPixels& own, const Monitor& monitor);
 
-  Communicator& Comm;
-  const BlockPartition& Partition;
+  const Domain& Over;
+  const std::vector<VoxelBox>& Held;
   MediumRayCaster* Own;
-  ShadowsInBlocks Shadows;
-  std::size_t RaysAtOnce;
+  WorkAtOnce AtOnce;
+  std::vector<SmallLight> Lights; ///< the same on all ranks
   std::optional<Rounds> Between;
   bool InRounds = false, ByMoments = false;
 };

@@ -1,18 +1,62 @@
 // Entry of rays into the box, and what they see when they leave it: part of BentView.cl and RayRounds.cl.
 //
+// The host gives
+//   TABLE  1: a face of the box is a table
+//
 // Along a bent ray L / n^2 changes only by emission, scattering and absorption (numerics.md, Eq. (109)): sources and
 // backgrounds are divided by the local n^2, and the picture is multiplied by n^2 at the ray's entry.
 
 #pragma once
-#include "Viewing/Backdrop/Background.cl"
-#include "Viewing/Backdrop/GroundLight.cl"
+#include "Viewing/Backdrop/Backdrop.cl"
 #include "Viewing/Rays/BentRays.cl"
 #include "Viewing/Rays/Crossing.cl"
 #include "Viewing/Rays/RayPackets.cl"
-#include "Viewing/Rays/SurfaceReflection.cl"
-#include "Viewing/Rays/Table.cl"
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
+
+#if TABLE
+#define REACH_OF_TABLE 2e-3f // voxels; rounding error of a ray's exit point relative to the face
+
+// Radiance of a white table where rays meet it, interpolated between voxel centres.
+inline rgb table_light(const surroundings* s, __global const float4* backdrop, real3 place)
+{
+  const real3 p = in_block(s, place);
+  const int axis = s->o->face.x;
+  const int row = s->o->face.z + 2;
+  const real x = (axis == 0 ? p.y : p.x) + (real)0.5f;
+  const real y = (axis == 2 ? p.y : p.z) + (real)0.5f;
+  const integer i = to_integer(x);
+  const integer j = to_integer(y);
+  const real across = x - to_real(i);
+  const real up = y - to_real(j);
+  const integer first = j * row + i;
+  return between_four(backdrop + s->v->backdrop.w, first, first + row, across, up);
+}
+
+// Selects the rays that leave the box through the table.
+inline integer meet_table(const surroundings* s, const ray_packets* t, integer left_box)
+{
+  const int axis = s->o->face.x;
+  const real sign = (real)(s->o->face.y ? 1.0f : -1.0f);
+  const real place = axis == 0 ? t->at.x : axis == 1 ? t->at.y : t->at.z;
+  const real heading = axis == 0 ? t->velocity.x : axis == 1 ? t->velocity.y : t->velocity.z;
+  const float face = s->o->face.y ? (float)(axis == 0 ? s->v->size.x : axis == 1 ? s->v->size.y : s->v->size.z) : 0.0f;
+  return left_box & (fabs(place - (real)face) < (real)REACH_OF_TABLE) & (heading * sign > (real)0.0f);
+}
+
+// Adds the table's diffuse radiance to rays that end on it; `towards` becomes their mirrored direction.
+inline void end_on_table(
+  const surroundings* s, __global const float4* backdrop, real3 p, integer ends, light* l, real3* towards)
+{
+  const float4 table = s->o->table;
+  rgb shine = table_light(s, backdrop, p);
+  shine.r *= (real)table.x;
+  shine.g *= (real)table.y;
+  shine.b *= (real)table.z;
+  add_background(shine, ends ? (real)1.0f : (real)0.0f, l);
+  *towards = chosen(ends, stretched(*towards, s->o->flip), *towards);
+}
+#endif
 
 // Result accumulated over all marches of a pixel: light divided by n^2, and transmittance and depth along the primary
 // ray.
@@ -65,8 +109,7 @@ inline spectrum mirrored_part(integer mirrors, spectrum now, spectrum before)
 //   set_off    those of them that were in the box
 //   primary    those that come from the camera
 inline void arrive(const surroundings* s, const ray_packets* t, integer ends_here, integer set_off, integer primary,
-  __global const float4* lit, __global const float4* environment, __global const float4* ground, crossed* half_way,
-  seeing* to)
+  __global const float4* backdrop, crossed* half_way, seeing* to)
 {
   integer out = ends_here & set_off & (t->inside == 0);
 #if ENDS
@@ -91,7 +134,7 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer ends_her
   ends = meet_table(s, t, out);
   if (any_lane(ends))
   {
-    end_on_table(s, lit, t->at, ends, &to->l, &towards);
+    end_on_table(s, backdrop, t->at, ends, &to->l, &towards);
     part = ends ? (real)s->o->table.w : part;
     const integer mirrors = ends & primary;
     to->mirrored.at = chosen(mirrors, t->at, to->mirrored.at);
@@ -106,12 +149,11 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer ends_her
   to->left = seen ? left : to->left;
   const real where = left > (real)0.5f ? (real)s->v->marching.z : distance_to_half(*half_way);
   to->depth = seen ? where : to->depth;
-  rgb behind = look_behind(s->v, towards, environment);
-  const int faces = s->v->environment.z;
-  if (faces != 0)
+  rgb behind = look_behind(s->v, towards, backdrop);
+  if (s->v->environment.z != 0)
   {
     behind =
-      ground_or_behind(ground, faces, in_block(s, t->at), t->velocity, out & (ends == 0), SAMPLES_SIZE(s), behind);
+      ground_or_behind(s->v, backdrop, in_block(s, t->at), t->velocity, out & (ends == 0), SAMPLES_SIZE(s), behind);
   }
   part = ends_here ? part : (real)0.0f;
   add_background(behind, part * (real)s->v->background.w / square, &to->l);

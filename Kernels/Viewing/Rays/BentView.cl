@@ -22,16 +22,14 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
   return any_lane(t->inside);
 }
 
-// lit      radiance of a white table divided by n^2, a float4 a voxel with a border
 // bending  see surroundings
+// limits, picture  see View.cl
 __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const float4* restrict bending,
-  __global const float4* restrict lit, __global const char* restrict bricks,
-  __global const float4* restrict environment, __global const float4* restrict ground,
-  __global const float* restrict ends, __global float* restrict radiance, __global float* restrict alpha,
-  __global float* restrict depth)
+  __global const char* restrict bricks, __global const float4* restrict backdrop, __global const float* restrict limits,
+  __global float* restrict picture)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -43,7 +41,7 @@ __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* re
     bricks };
   seeing to;
 #if ENDS
-  const real end = ends_of(&v, ends, column, row);
+  const real end = ends_of(&v, limits, column, row);
 #else
   const real end = (real)ENDLESS;
 #endif
@@ -66,11 +64,10 @@ __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* re
     }
     const integer set_off = t.inside;
     march(&s, &t, &to.l, &half_way, &w);
-    arrive(&s, &t, (integer)-1, set_off, (integer)(pass == 0 ? -1 : 0), lit, environment, ground, &half_way, &to);
+    arrive(&s, &t, (integer)-1, set_off, (integer)(pass == 0 ? -1 : 0), backdrop, &half_way, &to);
   }
   to.l.radiance.r *= to.entrySquare;
   to.l.radiance.g *= to.entrySquare;
   to.l.radiance.b *= to.entrySquare;
-  const canvas picture = { radiance, alpha, depth };
   paint(&v, picture, column, row, to.l.radiance, (real)1.0f - to.left, to.depth);
 }

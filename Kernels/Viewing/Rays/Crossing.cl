@@ -5,8 +5,7 @@
 // The host gives
 //   THIN_STEPS  1: the optical length of every step is at most 2
 //   PHASE, PHASE_CHANNELS  scattering of light of a known direction, see PhaseFunction.cl
-//   FLOW_WITH_G 1: `flow` is the light's mean direction times g; 0: the mean direction alone
-//   VARIED_G    1: `cosines` holds g by voxel
+//   FLOW        with PHASE, what `flow` holds, as in ScatteredLight.cl
 //   GLOW        1: emission is stored separately from scattered light
 //   SHOWN       0, or the value with which ShownSamples.cl packed; BEAMS 1: with lamps' light, in `flow`
 //   BLOCK       1: the medium is a block of a larger grid, whose rays are straight; may be omitted
@@ -28,9 +27,9 @@ typedef struct
   __global const float4*
     samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
   __global const float4* extinctions; // coloured sigma_t
-  __global const float4* flow;        // x, y, z of the light's mean direction, times g with FLOW_WITH_G
+  __global const float4* flow;        // x, y, z of the light's mean direction, see FLOW
   __global const float4* glow;        // emission
-  __global const float4* cosines;     // with VARIED_G: red, green, blue of g
+  __global const float4* cosines;     // red, green, blue of g, see FLOW
   __global const float* phaseRows;    // of PHASE 2 and 5
   PhaseInfo phase;
 } scenery;
@@ -100,13 +99,15 @@ inline rgb passed_of(light l)
 
 #if BLOCK
 // Transmittance of the blocks in front of this one; 1 if there are none.
-inline rgb starts_of(const ViewInfo* v, __global const float* starts, int column, int row)
+//   limits  see ends_of
+inline rgb starts_of(const ViewInfo* v, __global const float* limits, int column, int row)
 {
   rgb part = { (real)1.0f, (real)1.0f, (real)1.0f };
   if (v->has.y == 0)
   {
     return part;
   }
+  __global const float* starts = limits + (v->has.x ? PIXELS(v) : 0);
   const integer pixel = nearest_pixels(v, column, row);
 #define FETCH(n)                                    \
   LANE(part.r, n) = starts[3 * LANE(pixel, n)];     \
@@ -225,17 +226,17 @@ __attribute__((always_inline)) inline rgb scattered_towards_eye(
   const real3 b = { flow.r, flow.g, flow.b };
   const real square = product(b, b);
   const real along = product(b, v);
-#if FLOW_WITH_G && PHASE == 1
+#if FLOW == 2 && PHASE == 1
   const real f = henyey_greenstein(square, along);
   const rgb even = { f, f, f };
   return even;
-#elif FLOW_WITH_G
+#elif FLOW == 2
   const real f = schlick(square, along, scene->phaseRows);
   const rgb even = { f, f, f };
   return even;
 #else
   phase_parameters p = parameters_of(&scene->phase);
-#if VARIED_G
+#if FLOW == 3
   gather(scene->cosines, at, size, &p.first, &none);
 #endif
   return scattered_of_channels(square, along, p, scene->phaseRows);

@@ -3,25 +3,44 @@
 #include "Device/Defines.h"
 #include "Device/Errors.h"
 #include "Device/Sizes.h"
+#include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
-#include "Viewing/Rays/ViewInfos.h"
+#include "Viewing/Backdrop/Backdrop.h"
 #include "Viewing/Samples/Marching.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <string>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 namespace tyndall
 {
 namespace
 {
+constexpr int RoundsAtMost = 16;                   ///< longest path of a ray, in units of the sum of the box's edges
+constexpr double BentStretch = 4.0;                ///< voxels between checks whether rays still bend
+constexpr double SurfacePrecision = 1.0e-3;        ///< voxels
 constexpr std::size_t PixelsStartedAtOnce = 65536; ///< each takes 140 bytes
 /// size of the first launch; its run time determines the size of the next
 constexpr std::size_t RaysMarchedFirst = 4096;
+
+/// Largest depth of the box's corners along the view axis.
+double FarDepth(const Grid& grid, const glm::dvec3& eye, const glm::dvec3& forward)
+{
+  double farDepth = 0.0;
+  for (int corner = 0; corner < 8; ++corner)
+  {
+    const glm::dvec3 at(
+      corner & 1 ? grid.Length(0) : 0.0, corner & 2 ? grid.Length(1) : 0.0, corner & 4 ? grid.Length(2) : 0.0);
+    farDepth = std::max(farDepth, glm::dot(at - eye, forward));
+  }
+  return farDepth;
+}
 
 /// Width and height of a packet in pixels, as in View.cl.
 std::array<int, 2> PacketPixels(int width)
@@ -33,158 +52,207 @@ std::array<int, 2> PacketPixels(int width)
 }
 }
 
-ViewInfo RayCasting::ViewOf(const Camera& camera, const ViewSettings& settings, const GridBlock* block) const
+/// Parameters of the picture, its camera and the phase function.
+ViewInfo RayCasting::ViewOf(const Camera& camera, const GridBlock* block) const
 {
-  ViewInfo view = ViewInfoOf(camera, settings, this->Traits, block);
-  const std::array<int, 2> environment = this->Behind.EnvironmentSize();
-  view.background = Float4(Vector(this->Behind.Colour(settings)), settings.showBackground ? 1.0 : 0.0);
-  view.bricks = Int4(this->Samples.BrickCount());
-  view.environment = Int4({ environment[0], environment[1], this->Behind.FacesOfGround() });
-  for (int row = 0; row < 3; ++row)
+  const ViewTraits& traits = this->Traits;
+  const ViewSettings& settings = this->Settings;
+  const Grid& grid = block ? block->whole : traits.grid;
+  const auto axes = Axes(camera);
+  CheckDistance(camera, grid);
+  const glm::dvec3 inverseSpacing = 1.0 / Vector(grid.spacing);
+  const glm::dvec3 eye = Vector(camera.position) - Vector(grid.origin);
+  const glm::dvec3 forward = Vector(axes[2]);
+  const double halfHeight = camera.parallelProjection ? camera.parallelScale : std::tan(camera.viewAngle * Pi / 360.0);
+  const double aspect =
+    camera.aspect > 0.0 ? camera.aspect : static_cast<double>(settings.imageSize[0]) / settings.imageSize[1];
+  ViewInfo view = {};
+  view.eye = Float4(eye * inverseSpacing, camera.parallelProjection ? 1.0 : 0.0);
+  view.forward = Float4(forward, 0.0);
+  view.right = Float4(halfHeight * aspect * Vector(axes[0]), camera.shift[0]);
+  view.up = Float4(halfHeight * Vector(axes[1]), camera.shift[1]);
+  view.inverseSpacing = Float4(inverseSpacing, 0.0);
+  view.marching = Float4({ settings.stepSize, settings.minimumTransmittance, FarDepth(grid, eye, forward) }, 0.0);
+  view.picture = Int4({ settings.imageSize[0], settings.imageSize[1], 0 });
+  view.size = Int4(traits.grid.size);
+  if (block)
   {
-    view.toPicture[row] = Float4(Vector(this->Behind.ToPicture()[row]));
+    view.block = BlockInfoOf(*block);
   }
+  if (block && !traits.OnlyStraight()) // rays that travel between blocks
+  {
+    view.held = view.size;
+    view.size = view.block.whole;
+  }
+  view.bricks = Int4(this->Samples.BrickCount());
+  view.phase = traits.phase.parameters;
   return view;
 }
 
-void RayCasting::Reserve(
-  const ViewSettings& settings, const std::vector<float>& ends, bool ofBlock, const std::vector<float>& starts)
-{
-  const std::size_t pixels = static_cast<std::size_t>(settings.imageSize[0]) * settings.imageSize[1];
-  if (this->Alpha.Size() != pixels)
-  {
-    Buffer<float> radiance(this->TheDevice, 3 * pixels, "the picture");
-    Buffer<float> alpha(this->TheDevice, pixels, "the picture's alpha");
-    Buffer<float> depth(this->TheDevice, pixels, "the picture's depth");
-    this->Radiance.Swap(radiance); // after all allocations succeeded
-    this->Alpha.Swap(alpha);
-    this->Depth.Swap(depth);
-  }
-  const std::size_t passed = ofBlock ? 3 * pixels : 0;
-  if (this->Passed.Size() != passed)
-  {
-    this->Passed = Buffer<float>(this->TheDevice, passed, "what the block lets through");
-  }
-  const std::size_t missing = ofBlock && this->Behind.HasSurfaceLight() ? 3 * pixels : 0;
-  if (this->Missing.Size() != missing)
-  {
-    this->Missing = Buffer<float>(this->TheDevice, missing, "light at the surface");
-  }
-  if (!ends.empty() && ends.size() != pixels)
-  {
-    throw InvalidInput("There are ends of " + std::to_string(ends.size()) + " rays for a picture of " +
-      std::to_string(pixels) + " pixels.");
-  }
-  if (this->Ends.Size() != ends.size())
-  {
-    this->Ends = Buffer<float>(this->TheDevice, ends.size(), "where rays end");
-  }
-  this->Ends.Write(ends.data());
-  if (this->Starts.Size() != starts.size())
-  {
-    this->Starts = Buffer<float>(this->TheDevice, starts.size(), "what comes through other blocks");
-  }
-  this->Starts.Write(starts.data());
-}
-
-std::string RayCasting::Options(const ViewSettings& settings) const
+/// Parameters of surface, table and bent rays.
+OpticsInfo RayCasting::OpticsOf() const
 {
   const ViewTraits& traits = this->Traits;
+  const ViewSettings& settings = this->Settings;
+  const BlockOfScene* const ofWhole = this->Part;
+  const Grid& grid = traits.grid;
+  const double index = traits.SurfaceIndex(settings);
+  const int face = std::max(settings.tableFace, 0);
+  const std::array<int, 3>& size = ofWhole ? ofWhole->block.whole.size : grid.size;
+  const double edges = 1.0 * size[0] + size[1] + size[2];
+  const double halvings = std::log2(settings.stepSize / SurfacePrecision);
+  OpticsInfo optics = {};
+  optics.spacing = Float4(Vector(grid.spacing), 0.0);
+  optics.surface = Float4({ index * index, settings.surfaceReflectance, VoxelsBesideSurface }, 0.0);
+  optics.table = Float4(Vector(settings.tableColor), settings.tableReflectance);
+  optics.face = Int4({ face / 2, face % 2, FaceSize(grid, face)[0] });
+  optics.flip = { { face / 2 == 0 ? -1.0f : 1.0f, face / 2 == 1 ? -1.0f : 1.0f, face / 2 == 2 ? -1.0f : 1.0f, 0.0f } };
+  optics.limits = Int4({ static_cast<int>(std::min(1e9, std::ceil(RoundsAtMost * edges / settings.stepSize))),
+    static_cast<int>(std::clamp(BentStretch / settings.stepSize, 1.0, 1e3)),
+    static_cast<int>(std::ceil(std::max(halvings, 1.0))) });
+  if (ofWhole)
+  {
+    optics.knownFirst = Int4(ofWhole->known.first);
+    optics.knownSize = Int4(ofWhole->known.size);
+  }
+  return optics;
+}
+
+RayCasting::Pass RayCasting::PassOf(const Camera& camera, const GridBlock* block, bool sharp) const
+{
+  Pass pass = { this->ViewOf(camera, block), this->OpticsOf() };
+  this->Behind.Describe(this->Settings, sharp, pass.view);
+  if (this->Traits.ShowsMoments() && sharp == this->Behind.IsSky())
+  {
+    // A sky is scattered light, and a background colour that is not a sky does not light the medium.
+    pass.view.background = { { 0.0f, 0.0f, 0.0f, pass.view.background.s[3] } };
+  }
+  if (sharp)
+  {
+    pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f; // already in the first pass
+  }
+  return pass;
+}
+
+std::string RayCasting::Options(const std::string& ofKernel) const
+{
+  const ViewTraits& traits = this->Traits;
+  const ViewSettings& settings = this->Settings;
   // Largest optical length of a step; up to 2 the kernel uses a faster formula. Bent steps can be slightly longer.
   const double longest = traits.largestSigmaT * settings.stepSize *
     *std::max_element(traits.grid.spacing.begin(), traits.grid.spacing.end());
   return traits.PacketOptions() + Define("SKIP_BRICKS", traits.SkipsBricks(settings)) +
     Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) + Define("GLOW", traits.GlowsApart()) +
     traits.PhaseOptions(traits.knowsFlow) + StepOption(LongestSteps(traits.grid, settings.stepSize)) +
-    this->Samples.ShownOptions();
+    this->Samples.ShownOptions() + ofKernel;
 }
 
-std::string RayCasting::BentOptions(const ViewSettings& settings) const
+std::string RayCasting::BentOptions(bool rounds) const
 {
-  const int surface = this->Traits.Reflects(settings) ? static_cast<int>(settings.surfaceReflection) : 0;
-  return this->Options(settings) + Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) +
-    Define("TABLE", this->Traits.hasTable);
+  const int surface = this->Traits.Reflects(this->Settings) ? static_cast<int>(this->Settings.surfaceReflection) : 0;
+  return this->Options(Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) +
+    Define("TABLE", this->Traits.hasTable) + Define("ENDS", !rounds && this->Limits.Size() > 0) +
+    Define("ROUNDS", rounds));
 }
 
-cl::Kernel RayCasting::Kernel(const ViewSettings& settings, bool ofBlock) const
+cl::Kernel RayCasting::Kernel(bool ofBlock) const
 {
-  if (this->Traits.OnlyStraight())
+  return this->Traits.OnlyStraight()
+    ? this->TheDevice.Kernel("cast_rays", kernel_source::StraightView, this->Options(Define("BLOCK", ofBlock)))
+    : this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView, this->BentOptions(false));
+}
+
+Picture RayCasting::Cast(const Pass& pass, const std::vector<float>& ends, const std::vector<float>& starts,
+  double from, double to, const Monitor& monitor)
+{
+  ViewInfo view = pass.view;
+  const bool ofBlock = view.block.whole.s[0] > 0, hasMissing = ofBlock && this->Behind.HasSurfaceLight();
+  const std::size_t pixels = Count(view.picture.s[0]) * Count(view.picture.s[1]);
+  if (!ends.empty() && ends.size() != pixels)
   {
-    return this->TheDevice.Kernel(
-      "cast_rays", kernel_source::StraightView, this->Options(settings) + Define("BLOCK", ofBlock));
+    throw InvalidInput("There are ends of " + std::to_string(ends.size()) + " rays for a picture of " +
+      std::to_string(pixels) + " pixels.");
   }
-  return this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView,
-    this->BentOptions(settings) + Define("ENDS", this->Ends.Size() > 0) + Define("ROUNDS", 0));
-}
+  const std::size_t values = 5 + (ofBlock ? 3 : 0) + (hasMissing ? 3 : 0); // see View.cl
+  if (this->Pixels.Size() != values * pixels)
+  {
+    this->Pixels = Buffer<float>(this->TheDevice, values * pixels, "the picture");
+  }
+  std::vector<float> limits = ends;
+  limits.insert(limits.end(), starts.begin(), starts.end());
+  if (this->Limits.Size() != limits.size())
+  {
+    this->Limits = Buffer<float>(this->TheDevice, limits.size(), "where rays end");
+  }
+  this->Limits.Write(limits.data());
+  view.has = { { !ends.empty(), !starts.empty(), this->Behind.HasSurfaceLight(), 0 } };
 
-const Buffer<cl_float4>& RayCasting::Environment() const
-{
-  return this->Samples.PackedFor() == Packing::Unscattered ? this->Behind.SharpEnvironment()
-                                                           : this->Behind.Environment();
-}
-
-void RayCasting::Cast(
-  const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, double from, double to, const Monitor& monitor)
-{
   const PackedSamples& s = this->Samples;
-  const Backdrop& b = this->Behind;
-  const Buffer<cl_float4>& environment = this->Environment();
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
-  cl::Kernel cast = this->Kernel(settings, view.block.whole.s[0] > 0);
-  view.has = { { this->Ends.Size() > 0, this->Starts.Size() > 0, b.HasSurfaceLight(), 0 } };
+  cl::Kernel cast = this->Kernel(ofBlock);
   // Batches consist of whole work-groups; otherwise the next batch would render the last rows again.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
   const std::size_t rows = RoundUp<std::size_t>(view.picture.s[1], group * packet[1]) / (group * packet[1]);
-  const double samples = LongestSteps(this->Traits.grid, settings.stepSize) * group * group * packet[0] * packet[1];
+  const double samples =
+    LongestSteps(this->Traits.grid, this->Settings.stepSize) * group * group * packet[0] * packet[1];
   const auto launch = [&](const Patch& part) {
     view.picture.s[2] = part.row * group;
     view.picture.s[3] = part.column * group;
     if (this->Traits.OnlyStraight())
     {
       With(cast, view, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows, s.Bricks(),
-        s.Records(), environment, b.Ground(), b.SurfaceLight(), this->Ends, this->Starts, this->Radiance, this->Alpha,
-        this->Depth, this->Passed, this->Missing);
+        s.Records(), this->Behind.Tables(), this->Limits, this->Pixels);
     }
     else
     {
-      With(cast, view, optics, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows,
-        s.Bending(), b.Table(), s.Bricks(), environment, b.Ground(), this->Ends, this->Radiance, this->Alpha,
-        this->Depth);
+      With(cast, view, pass.optics, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(),
+        this->Scene.phaseRows, s.Bending(), s.Bricks(), this->Behind.Tables(), this->Limits, this->Pixels);
     }
     this->TheDevice.Queue().enqueueNDRangeKernel(
       cast, cl::NullRange, cl::NDRange(part.columns * group, part.rows * group), cl::NDRange(group, group));
   };
   InBatches(this->TheDevice, BatchesOfRows(rows, across, samples, from, to), monitor,
     [&](std::size_t first, std::size_t count) { InPatches(first, count, across, launch); });
-}
 
-void RayCasting::OfRounds(ViewInfo& view)
-{
-  view.held = view.size;
-  view.size = view.block.whole;
+  Picture picture;
+  picture.width = view.picture.s[0];
+  picture.height = view.picture.s[1];
+  picture.farDepth = view.marching.s[2];
+  this->Pixels.ReadInPlace([&](const float* next) {
+    const auto take = [&](int each) {
+      const float* const begin = next;
+      next += Count(each) * pixels;
+      return std::vector<float>(begin, next);
+    };
+    picture.radiance = take(3);
+    picture.alpha = take(1);
+    picture.depth = take(1);
+    picture.transmittance = ofBlock ? take(3) : std::vector<float>();
+    picture.sceneTransmittance = picture.transmittance;
+    picture.missing = hasMissing ? take(3) : std::vector<float>();
+  });
+  return picture;
 }
 
 /// Largest number of rays that are split off one ray while it is in a block.
-std::size_t RayCasting::MostSplitOff(const ViewSettings& settings) const
+std::size_t RayCasting::MostSplitOff() const
 {
-  return (this->Traits.Reflects(settings) ? 1 : 0) + (this->Traits.hasTable ? 1 : 0);
+  return (this->Traits.Reflects(this->Settings) ? 1 : 0) + (this->Traits.hasTable ? 1 : 0);
 }
 
-std::size_t RayCasting::CountThatFits(const ViewSettings& settings) const
+std::size_t RayCasting::CountThatFits() const
 {
   const std::size_t limit = this->TheDevice.MemoryLimit(), taken = this->TheDevice.BytesInUse();
-  const std::size_t kinds =
-    1 + this->MostSplitOff(settings); // of rays of a pixel; each has room for all that it may split
+  const std::size_t kinds = 1 + this->MostSplitOff(); // of rays of a pixel; each has room for all that it may split
   return std::max<std::size_t>((limit - std::min(taken, limit)) / (4 * kinds * kinds * sizeof(RayOnItsWay)), 1);
 }
 
-std::vector<RayOnItsWay> RayCasting::Start(
-  const ViewSettings& settings, ViewInfo view, const OpticsInfo& optics, const PixelRows& asked) const
+std::vector<RayOnItsWay> RayCasting::Start(const Pass& pass, const PixelRows& asked) const
 {
+  ViewInfo view = pass.view;
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
-  cl::Kernel start = this->TheDevice.Kernel(
-    "start_rays", kernel_source::RayRounds, this->BentOptions(settings) + Define("ENDS", 0) + Define("ROUNDS", 1));
+  cl::Kernel start = this->TheDevice.Kernel("start_rays", kernel_source::RayRounds, this->BentOptions(true));
   const std::size_t width = Count(view.picture.s[0]), end = Count(asked.end);
   const std::size_t rows =
     RoundUp<std::size_t>(std::max<std::size_t>(PixelsStartedAtOnce / width, 1), Count(packet[1]));
@@ -194,7 +262,7 @@ std::vector<RayOnItsWay> RayCasting::Start(
   {
     const std::size_t count = std::min(rows, end - row);
     view.picture.s[2] = static_cast<int>(row);
-    With(start, view, optics, this->Samples.Bending(), started);
+    With(start, view, pass.optics, this->Samples.Bending(), started);
     this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange,
       cl::NDRange(RoundUp<std::size_t>(width, 4 * Count(packet[0])) / Count(packet[0]),
         RoundUp<std::size_t>(count, Count(packet[1])) / Count(packet[1])),
@@ -206,26 +274,24 @@ std::vector<RayOnItsWay> RayCasting::Start(
   return all;
 }
 
-std::vector<RayOnItsWay> RayCasting::March(const ViewSettings& settings, const ViewInfo& view, const OpticsInfo& optics,
-  std::vector<RayOnItsWay>& rays, const Monitor& monitor) const
+std::vector<RayOnItsWay> RayCasting::March(
+  const Pass& pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const
 {
+  ViewInfo view = pass.view;
   const PackedSamples& s = this->Samples;
-  const Backdrop& b = this->Behind;
-  cl::Kernel march = this->TheDevice.Kernel(
-    "march_rays", kernel_source::RayRounds, this->BentOptions(settings) + Define("ENDS", 0) + Define("ROUNDS", 1));
+  cl::Kernel march = this->TheDevice.Kernel("march_rays", kernel_source::RayRounds, this->BentOptions(true));
   const std::size_t width = Count(this->Traits.packetWidth);
   const Buffer<RayOnItsWay> onDevice(this->TheDevice, rays, "rays on their way");
-  const Buffer<RayOnItsWay> born(
-    this->TheDevice, this->MostSplitOff(settings) * rays.size(), "rays that are split off");
+  const Buffer<RayOnItsWay> born(this->TheDevice, this->MostSplitOff() * rays.size(), "rays that are split off");
   Batches batches;
   batches.count = rays.size();
   batches.whole = 4 * width;
   batches.first = RaysMarchedFirst;
   batches.growth = 8.0;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t first, std::size_t count) {
-    With(march, view, optics, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows,
-      s.Bending(), b.Table(), s.Bricks(), this->Environment(), b.Ground(), onDevice, born, cl_int(first),
-      cl_int(count));
+    view.range = Int4({ static_cast<int>(first), static_cast<int>(first + count), 0 });
+    With(march, view, pass.optics, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows,
+      s.Bending(), s.Bricks(), this->Behind.Tables(), onDevice, born);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       march, cl::NullRange, cl::NDRange(RoundUp<std::size_t>(count, 4 * width) / width), cl::NDRange(4));
   });

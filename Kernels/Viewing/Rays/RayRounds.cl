@@ -13,6 +13,33 @@
 
 #define BORN ((SURFACE > 0) + TABLE) // largest number of rays that are split off one ray
 
+// State of a ray that sets off: the caller sets `pixel`, `where`, `at`, `velocity` and `left`.
+inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, float entry_square, float far_depth)
+{
+  ray->kind = kind;
+  ray->state = state;
+  ray->steps = 0;
+  ray->met = met;
+  ray->radiance[0] = ray->radiance[1] = ray->radiance[2] = 0.0f;
+  ray->halfWay[0] = ray->halfWay[1] = 0.0f;
+  ray->halfWay[2] = ray->halfWay[3] = 1.0f;
+  ray->square = 0.0f;
+  ray->since = -1.0f;
+  ray->entrySquare = entry_square;
+  ray->seen = 1.0f;
+  ray->depth = far_depth;
+}
+
+// Three components of each lane of a real3, into an array of a ray.
+#define STORE_TRIPLE(array, from, n) \
+  ray->array[0] = LANE((from).x, n); \
+  ray->array[1] = LANE((from).y, n); \
+  ray->array[2] = LANE((from).z, n);
+#define STORE_VOXEL(from, n)              \
+  ray->where[0] = (int)LANE((from).x, n); \
+  ray->where[1] = (int)LANE((from).y, n); \
+  ray->where[2] = (int)LANE((from).z, n);
+
 // Starts the rays through pixels that enter the domain in this block, or that miss it while this block shows the
 // background to them; for other pixels there is no ray (pixel -1). A work-item is a packet of pixels in rows from
 // v.picture.z on.
@@ -32,33 +59,16 @@ __kernel void start_rays(
   const integer enters = t.inside != (integer)0;
   const integer own = enters ? is_own(&s, t.at) : (integer)(v.block.first.w != 0 ? -1 : 0);
   const integer pixel = pixels_of(&v, column, row), inside = in_picture(&v, column, row);
-#define START(n)                                                                     \
-  if (LANE(inside, n))                                                               \
-  {                                                                                  \
-    __global RayOnItsWay* ray = rays + (LANE(pixel, n) - v.picture.z * v.picture.x); \
-    ray->pixel = LANE(own, n) ? LANE(pixel, n) : -1;                                 \
-    ray->kind = RayIsPrimary;                                                        \
-    ray->state = LANE(enters, n) ? RayGoesOn : RayMisses;                            \
-    ray->steps = 0;                                                                  \
-    ray->met = 0;                                                                    \
-    ray->where[0] = (int)LANE(t.at.x, n);                                            \
-    ray->where[1] = (int)LANE(t.at.y, n);                                            \
-    ray->where[2] = (int)LANE(t.at.z, n);                                            \
-    ray->at[0] = LANE(t.at.x, n);                                                    \
-    ray->at[1] = LANE(t.at.y, n);                                                    \
-    ray->at[2] = LANE(t.at.z, n);                                                    \
-    ray->velocity[0] = LANE(t.velocity.x, n);                                        \
-    ray->velocity[1] = LANE(t.velocity.y, n);                                        \
-    ray->velocity[2] = LANE(t.velocity.z, n);                                        \
-    ray->left[0] = ray->left[1] = ray->left[2] = 1.0f;                               \
-    ray->radiance[0] = ray->radiance[1] = ray->radiance[2] = 0.0f;                   \
-    ray->halfWay[0] = ray->halfWay[1] = 0.0f;                                        \
-    ray->halfWay[2] = ray->halfWay[3] = 1.0f;                                        \
-    ray->square = 0.0f;                                                              \
-    ray->since = -1.0f;                                                              \
-    ray->entrySquare = LANE(entry_square, n);                                        \
-    ray->seen = 1.0f;                                                                \
-    ray->depth = v.marching.z;                                                       \
+#define START(n)                                                                                                 \
+  if (LANE(inside, n))                                                                                           \
+  {                                                                                                              \
+    __global RayOnItsWay* ray = rays + (LANE(pixel, n) - v.picture.z * v.picture.x);                             \
+    ray->pixel = LANE(own, n) ? LANE(pixel, n) : -1;                                                             \
+    set_off(ray, RayIsPrimary, LANE(enters, n) ? RayGoesOn : RayMisses, 0, LANE(entry_square, n), v.marching.z); \
+    STORE_VOXEL(t.at, n)                                                                                         \
+    STORE_TRIPLE(at, t.at, n)                                                                                    \
+    STORE_TRIPLE(velocity, t.velocity, n)                                                                        \
+    ray->left[0] = ray->left[1] = ray->left[2] = 1.0f;                                                           \
   }
   EACH_LANE(START)
 #undef START
@@ -142,16 +152,10 @@ inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, i
     __global RayOnItsWay* ray = rays + first + 0x##n;                   \
     ray->state = LANE(a->state, n);                                     \
     ray->steps = LANE(a->t.steps, n);                                   \
-    ray->where[0] = (int)LANE(where.x, n);                              \
-    ray->where[1] = (int)LANE(where.y, n);                              \
-    ray->where[2] = (int)LANE(where.z, n);                              \
+    STORE_VOXEL(where, n)                                               \
     ray->met = LANE(a->w.met, n);                                       \
-    ray->at[0] = LANE(a->t.at.x, n);                                    \
-    ray->at[1] = LANE(a->t.at.y, n);                                    \
-    ray->at[2] = LANE(a->t.at.z, n);                                    \
-    ray->velocity[0] = LANE(a->t.velocity.x, n);                        \
-    ray->velocity[1] = LANE(a->t.velocity.y, n);                        \
-    ray->velocity[2] = LANE(a->t.velocity.z, n);                        \
+    STORE_TRIPLE(at, a->t.at, n)                                        \
+    STORE_TRIPLE(velocity, a->t.velocity, n)                            \
     STORE_SPECTRUM(a->to.l.left, n)                                     \
     ray->radiance[0] = LANE(a->to.l.radiance.r, n);                     \
     ray->radiance[1] = LANE(a->to.l.radiance.g, n);                     \
@@ -169,7 +173,6 @@ inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, i
 #undef STORE
 }
 
-#if BORN
 // Stores the rays that were split off from a packet; pixel -1 where a split-off ray carries no light.
 //   slot  index among the BORN rays of each ray
 inline void store_born(const surroundings* s, const arrivals* a, const waiting* born, int kind, int slot,
@@ -182,72 +185,55 @@ inline void store_born(const surroundings* s, const arrivals* a, const waiting* 
   l.left = born->left;
   const integer shines = most_left(l) > (real)0.0f;
   const real3 where = middle_of_next(s, &t);
-#define STORE(n)                                                      \
-  if (first + 0x##n < count)                                          \
-  {                                                                   \
-    __global RayOnItsWay* ray = rays + BORN * (first + 0x##n) + slot; \
-    ray->pixel = LANE(shines, n) ? LANE(a->pixel, n) : -1;            \
-    ray->kind = kind;                                                 \
-    ray->state = RayGoesOn;                                           \
-    ray->steps = 0;                                                   \
-    ray->met = -1;                                                    \
-    ray->where[0] = (int)LANE(where.x, n);                            \
-    ray->where[1] = (int)LANE(where.y, n);                            \
-    ray->where[2] = (int)LANE(where.z, n);                            \
-    ray->at[0] = LANE(born->at.x, n);                                 \
-    ray->at[1] = LANE(born->at.y, n);                                 \
-    ray->at[2] = LANE(born->at.z, n);                                 \
-    ray->velocity[0] = LANE(born->velocity.x, n);                     \
-    ray->velocity[1] = LANE(born->velocity.y, n);                     \
-    ray->velocity[2] = LANE(born->velocity.z, n);                     \
-    STORE_SPECTRUM(born->left, n)                                     \
-    ray->radiance[0] = ray->radiance[1] = ray->radiance[2] = 0.0f;    \
-    ray->halfWay[0] = ray->halfWay[1] = 0.0f;                         \
-    ray->halfWay[2] = ray->halfWay[3] = 1.0f;                         \
-    ray->square = 0.0f;                                               \
-    ray->since = -1.0f;                                               \
-    ray->entrySquare = LANE(a->to.entrySquare, n);                    \
-    ray->seen = 1.0f;                                                 \
-    ray->depth = s->v->marching.z;                                    \
+#define STORE(n)                                                                     \
+  if (first + 0x##n < count)                                                         \
+  {                                                                                  \
+    __global RayOnItsWay* ray = rays + BORN * (first + 0x##n) + slot;                \
+    ray->pixel = LANE(shines, n) ? LANE(a->pixel, n) : -1;                           \
+    set_off(ray, kind, RayGoesOn, -1, LANE(a->to.entrySquare, n), s->v->marching.z); \
+    STORE_VOXEL(where, n)                                                            \
+    STORE_TRIPLE(at, born->at, n)                                                    \
+    STORE_TRIPLE(velocity, born->velocity, n)                                        \
+    STORE_SPECTRUM(born->left, n)                                                    \
   }
   EACH_LANE(STORE)
 #undef STORE
 }
-#endif
 
-// Marches rays first to first + count - 1 up to the block's boundary or their end. A work-item is a packet of rays.
+// Marches the rays [v.range.x, v.range.y) up to the block's boundary or their end. A work-item is a packet of rays.
 //   born  receives BORN rays per ray, see store_born
 __kernel void march_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const float4* restrict bending,
-  __global const float4* restrict lit, __global const char* restrict bricks,
-  __global const float4* restrict environment, __global const float4* restrict ground,
-  __global RayOnItsWay* restrict rays, __global RayOnItsWay* restrict born, int first, int count)
+  __global const char* restrict bricks, __global const float4* restrict backdrop, __global RayOnItsWay* restrict rays,
+  __global RayOnItsWay* restrict born)
 {
-  const int own = first + get_global_id(0) * REAL_WIDTH;
-  if (own >= first + count)
+  const int own = v.range.x + get_global_id(0) * REAL_WIDTH;
+  if (own >= v.range.y)
   {
     return;
   }
   const surroundings s = { &v, &o, { samples, extinctions, flow, glow, cosines, phase_rows, v.phase }, bending,
     bricks };
-  arrivals a = load(rays, own, first + count);
-  const integer set_off = (a.state == (integer)RayGoesOn) | (a.state == (integer)RayIsOut);
+  arrivals a = load(rays, own, v.range.y);
+  const integer was_inside = (a.state == (integer)RayGoesOn) | (a.state == (integer)RayIsOut);
   const integer misses = a.state == (integer)RayMisses;
   march(&s, &a.t, &a.to.l, &a.half_way, &a.w);
 
   const integer spent = a.t.inside & ((most_left(a.to.l) <= (real)v.marching.y) | (a.t.steps >= (integer)o.limits.x));
-  const integer out = set_off & (a.t.inside == 0);
+  const integer out = was_inside & (a.t.inside == 0);
   const integer ends = spent | (out & is_own(&s, a.t.at)) | misses;
-  arrive(&s, &a.t, ends, set_off, a.kind == (integer)RayIsPrimary, lit, environment, ground, &a.half_way, &a.to);
+  arrive(&s, &a.t, ends, was_inside, a.kind == (integer)RayIsPrimary, backdrop, &a.half_way, &a.to);
   const integer ended = ends | (a.state == (integer)RayHasEnded);
   a.state = ended ? (integer)RayHasEnded : out ? (integer)RayIsOut : (integer)RayGoesOn;
-  store(&a, middle_of_next(&s, &a.t), rays, own, first + count);
-#if SURFACE
-  store_born(&s, &a, &a.w.reflected, RayIsReflected, 0, born, own, first + count);
-#endif
-#if TABLE
-  store_born(&s, &a, &a.to.mirrored, RayIsMirrored, BORN - 1, born, own, first + count);
-#endif
+  store(&a, middle_of_next(&s, &a.t), rays, own, v.range.y);
+  if (SURFACE)
+  {
+    store_born(&s, &a, &a.w.reflected, RayIsReflected, 0, born, own, v.range.y);
+  }
+  if (TABLE)
+  {
+    store_born(&s, &a, &a.to.mirrored, RayIsMirrored, BORN - 1, born, own, v.range.y);
+  }
 }

@@ -4,22 +4,17 @@
 //   SKIP_BRICKS  1: rays skip bricks without extinction or emission
 //   BLOCK        1: the medium is a block of a larger grid
 
-#include "Viewing/Backdrop/Background.cl"
-#include "Viewing/Backdrop/GroundLight.cl"
-#include "Viewing/Backdrop/SurfaceLight.cl"
+#include "Viewing/Backdrop/Backdrop.cl"
 #include "Viewing/Rays/Crossing.cl"
 #include "Viewing/Rays/View.cl"
-#include "Viewing/Samples/BlockRays.cl"
 #include "Viewing/Samples/Sampling.cl"
 
+// limits, picture  see View.cl
 __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const char* restrict bricks, __global const int* restrict records,
-  __global const float4* restrict environment, __global const float4* restrict ground,
-  __global const float4* restrict surface, __global const float* restrict ends, __global const float* restrict starts,
-  __global float* restrict radiance, __global float* restrict alpha, __global float* restrict depth,
-  __global float* restrict passed, __global float* restrict missing)
+  __global const float4* restrict backdrop, __global const float* restrict limits, __global float* restrict picture)
 {
   const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
   const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
@@ -31,7 +26,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const camera_rays seen = rays_through(&v, column, row);
   const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
     seen.d.z * (real)v.inverseSpacing.z };
-  const real end = v.has.x ? ends_of(&v, ends, column, row) : (real)ENDLESS;
+  const real end = v.has.x ? ends_of(&v, limits, column, row) : (real)ENDLESS;
   const integer open = end >= (real)ENDLESS; // no opaque surface hides what is behind
   real before;
 #if BLOCK
@@ -55,7 +50,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
 #endif
   light l = unlit((real)1.0f);
 #if BLOCK
-  l.before = starts_of(&v, starts, column, row);
+  l.before = starts_of(&v, limits, column, row);
 #endif
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
   for (int n = 0; n < steps;)
@@ -104,24 +99,24 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   {
 #if BLOCK
     // How much of it is visible depends on all that the ray meets, in other blocks too.
-    paint_part(&v, missing, column, row, surface_light(surface, packet, seen.d, enters ? before : (real)0.0f, v.size));
+    paint_triple(&v, picture + MISSING_LIGHT(&v), column, row,
+      surface_light(&v, backdrop, packet, seen.d, enters ? before : (real)0.0f, v.size));
 #else
-    add_surface_light(surface_light(surface, packet, seen.d, before, v.size), &l);
+    add_surface_light(surface_light(&v, backdrop, packet, seen.d, before, v.size), &l);
 #endif
   }
-  rgb behind = look_behind(&v, seen.d, environment);
+  rgb behind = look_behind(&v, seen.d, backdrop);
   if (v.environment.z != 0)
   {
     behind = ground_or_behind(
-      ground, v.environment.z, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
+      &v, backdrop, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
   }
   add_background(behind, sees_behind ? (real)v.background.w : (real)0.0f, &l);
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
-  const canvas picture = { radiance, alpha, depth };
 #if BLOCK
   // The background hides all blocks behind it: alpha is 1 there.
   const real kept = sees_behind ? (real)(1.0f - v.background.w) : (real)1.0f;
-  paint_part(&v, passed, column, row, passed_of(l));
+  paint_triple(&v, picture + PASSED_PART(&v), column, row, passed_of(l));
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left * kept, where);
 #else
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left, where);

@@ -68,26 +68,17 @@ inline integer nearest_pixels(const ViewInfo* v, int column, int row)
 }
 
 // Depths along the view axis at which a packet's rays end; ENDLESS for rays that do not.
-inline real ends_of(const ViewInfo* v, __global const float* ends, int column, int row)
+//   limits  these depths, one per pixel if v.has.x, then the transmittance of the blocks in front, three per pixel if
+//           v.has.y
+inline real ends_of(const ViewInfo* v, __global const float* limits, int column, int row)
 {
   const integer pixel = nearest_pixels(v, column, row);
   real end;
-#define FETCH(n) LANE(end, n) = ends[LANE(pixel, n)];
+#define FETCH(n) LANE(end, n) = limits[LANE(pixel, n)];
   EACH_LANE(FETCH)
 #undef FETCH
   return end;
 }
-
-// Output arrays of a picture.
-//   radiance  3 per pixel, W / (length^2 sr)
-//   alpha     1 - mean transmittance
-//   depth     along the view axis, where the mean transmittance falls to 1/2
-typedef struct
-{
-  __global float* radiance;
-  __global float* alpha;
-  __global float* depth;
-} canvas;
 
 // Pixel indices of a packet whose first pixel is (column, row). See in_picture for those outside the picture.
 inline integer pixels_of(const ViewInfo* v, int column, int row)
@@ -100,34 +91,43 @@ inline integer in_picture(const ViewInfo* v, int column, int row)
   return (to_integer(ACROSS) + column < (integer)v->picture.x) & (to_integer(UPWARDS) + row < (integer)v->picture.y);
 }
 
-// Writes 3 values per pixel: a block's transmittance or its surface light.
-inline void paint_part(const ViewInfo* v, __global float* parts, int column, int row, rgb part)
+// A picture is one array, in parts of a value or three per pixel, one part after the other:
+//   radiance  3, W / (length^2 sr)
+//   alpha     1 - mean transmittance
+//   depth     along the view axis, where the mean transmittance falls to 1/2
+//   for a block of a larger grid: 3, its transmittance; with surface light 3, that light
+#define PIXELS(v) ((size_t)(v)->picture.x * (v)->picture.y)
+#define PASSED_PART(v) (5 * PIXELS(v))
+#define MISSING_LIGHT(v) (8 * PIXELS(v))
+
+// Writes a part of three values per pixel.
+inline void paint_triple(const ViewInfo* v, __global float* part, int column, int row, rgb triple)
 {
   const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);
-#define PAINT(n)                        \
-  if (LANE(inside, n))                  \
-  {                                     \
-    const int p = LANE(pixel, n);       \
-    parts[3 * p] = LANE(part.r, n);     \
-    parts[3 * p + 1] = LANE(part.g, n); \
-    parts[3 * p + 2] = LANE(part.b, n); \
+#define PAINT(n)                         \
+  if (LANE(inside, n))                   \
+  {                                      \
+    const int p = LANE(pixel, n);        \
+    part[3 * p] = LANE(triple.r, n);     \
+    part[3 * p + 1] = LANE(triple.g, n); \
+    part[3 * p + 2] = LANE(triple.b, n); \
   }
   EACH_LANE(PAINT)
 #undef PAINT
 }
 
-inline void paint(const ViewInfo* v, canvas picture, int column, int row, rgb radiance, real opaque, real where)
+inline void paint(
+  const ViewInfo* v, __global float* picture, int column, int row, rgb radiance, real opaque, real where)
 {
+  paint_triple(v, picture, column, row, radiance);
+  __global float* alpha = picture + 3 * PIXELS(v);
+  __global float* depth = picture + 4 * PIXELS(v);
   const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);
-#define PAINT(n)                                       \
-  if (LANE(inside, n))                                 \
-  {                                                    \
-    const int p = LANE(pixel, n);                      \
-    picture.radiance[3 * p] = LANE(radiance.r, n);     \
-    picture.radiance[3 * p + 1] = LANE(radiance.g, n); \
-    picture.radiance[3 * p + 2] = LANE(radiance.b, n); \
-    picture.alpha[p] = LANE(opaque, n);                \
-    picture.depth[p] = LANE(where, n);                 \
+#define PAINT(n)                             \
+  if (LANE(inside, n))                       \
+  {                                          \
+    alpha[LANE(pixel, n)] = LANE(opaque, n); \
+    depth[LANE(pixel, n)] = LANE(where, n);  \
   }
   EACH_LANE(PAINT)
 #undef PAINT

@@ -7,7 +7,7 @@
 //   BENDS        1: the refractive index varies
 //   SHOWN        nonzero: samples were packed by ShownSamples.cl, and only the extinction tells whether they are empty
 
-#include "Viewing/Samples/SamplePlaces.cl"
+#include "Viewing/Samples/SampleLayout.cl"
 #include "Viewing/Scene/ViewShared.h"
 
 // Whether a sample has extinction or a source.
@@ -30,15 +30,15 @@ static int is_filled(
 
 // Classifies each brick: 1 if it is empty, -1 if it, or a neighbouring sample that is interpolated into it, has
 // extinction or a source, 0 with BENDS if rays bend in it. Bricks that are not `seen` (ViewTraits.h) are empty.
-//   known   size of `bending`, voxels; `before` of them precede the first sample along each axis
 #if BRICKED
 // find_empty_bricks for samples stored in bricks. The samples around a brick of voxels are those in the record of the
 // same number, and the first two along an axis of the next record.
-__kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 before,
-  __global const float4* restrict samples, __global const float4* restrict extinctions,
-  __global const float4* restrict glow, __global const float4* restrict bending, __global const uchar* restrict seen,
-  __global const int* restrict records, __global char* restrict bricks)
+__kernel void find_empty_bricks(PackInfo info, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict glow,
+  __global const float4* restrict bending, __global const uchar* restrict seen, __global const int* restrict records,
+  __global char* restrict bricks)
 {
+  const int4 size = info.size, brick_count = info.bricks;
   const int i = get_global_id(0), j = get_global_id(1), k = get_global_id(2);
   if (i >= brick_count.x)
   {
@@ -66,14 +66,13 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 be
   bricks[brick] = filled ? -1 : 1;
 }
 #else
-__kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 before,
-  __global const float4* restrict samples, __global const float4* restrict extinctions,
-  __global const float4* restrict glow, __global const float4* restrict bending, __global const uchar* restrict seen,
-  __global const int* restrict records, __global char* restrict bricks)
+__kernel void find_empty_bricks(PackInfo info, __global const float4* restrict samples,
+  __global const float4* restrict extinctions, __global const float4* restrict glow,
+  __global const float4* restrict bending, __global const uchar* restrict seen, __global const int* restrict records,
+  __global char* restrict bricks)
 {
-  const int i = get_global_id(0);
-  const int j = get_global_id(1);
-  const int k = get_global_id(2);
+  const int4 size = info.size, brick_count = info.bricks;
+  const int i = get_global_id(0), j = get_global_id(1), k = get_global_id(2);
   if (i >= brick_count.x)
   {
     return;
@@ -105,7 +104,8 @@ __kernel void find_empty_bricks(int4 size, int4 brick_count, int4 known, int4 be
         const int place = z * slice + y * row + x;
         filled |= is_filled(place, samples, extinctions, glow);
 #if BENDS
-        const int there = ((z + before.z) * (known.y + 2) + y + before.y) * (known.x + 2) + x + before.x;
+        const int there =
+          ((z + info.before.z) * (info.known.y + 2) + y + info.before.y) * (info.known.x + 2) + x + info.before.x;
         bends |= any(bending[there].xyz != (float3)(0.0f));
 #endif
       }

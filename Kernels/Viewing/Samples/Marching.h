@@ -1,25 +1,47 @@
 #pragma once
 
 #include "Device/Batches.h"
+#include "Device/Defines.h"
 #include "Medium/Grid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <string>
 
 namespace tyndall
 {
 /// Number of steps of the longest straight ray through the grid.
 /// @param stepSize  voxels
-double LongestSteps(const Grid& grid, double stepSize);
+inline double LongestSteps(const Grid& grid, double stepSize)
+{
+  return std::hypot(grid.size[0], grid.size[1], grid.size[2]) / stepSize + 1.0;
+}
 
 /// Compiler option that sets MANY_STEPS in the marching kernels, for rays of up to `longestSteps` steps.
-std::string StepOption(double longestSteps);
+inline std::string StepOption(double longestSteps)
+{
+  constexpr double ManySteps = 4096.0; // from which accumulated rounding errors reach 1e-4
+  return Define("MANY_STEPS", longestSteps > ManySteps);
+}
 
 /// Splits a grid of work (rows of cells) into batches: whole rows, or parts of rows where a whole row would run too
 /// long to be aborted.
 /// @param samples  largest number of samples per cell
 /// @param from, to  progress that is reported at the begin and the end, in [0, 1]
-Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples, double from, double to);
+inline Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples, double from, double to)
+{
+  constexpr double SamplesAtOnce = 3.2e7; // between two progress reports: under a second on one old core
+  const double atOnce = std::max(SamplesAtOnce / std::max(samples, 1.0), 1.0);
+  Batches batches;
+  batches.count = rows * cells;
+  batches.whole = atOnce >= static_cast<double>(cells) ? cells : 1;
+  batches.most = static_cast<std::size_t>(std::min(atOnce, static_cast<double>(batches.count)));
+  batches.first = std::max<std::size_t>(1, rows / 8) * cells;
+  batches.from = from;
+  batches.to = to;
+  return batches;
+}
 
 /// A rectangular part of such a batch.
 struct Patch

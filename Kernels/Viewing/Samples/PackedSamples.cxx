@@ -19,88 +19,86 @@ namespace tyndall
 {
 namespace
 {
-/// King's moves from each brick to the nearest brick of another kind, computed by sweeps that propagate distances from
-/// neighbours.
-class Moves
+/// Whether a brick's record holds the sample of any filled voxel: voxels of its own brick, and the last ones of the
+/// preceding bricks, because the border shifts samples by one voxel.
+bool IsFilled(const FilledBricks& filled, const std::array<int, 3>& cells)
 {
-public:
-  Moves(const std::vector<cl_char>& bricks, const std::array<int, 3>& count)
-    : Bricks(bricks)
-    , Count(count)
-    , Found(bricks.size(), 127)
+  std::array<int, 3> low, high;
+  for (int a = 0; a < 3; ++a)
   {
-    const std::ptrdiff_t row = count[0], slice = row * count[1];
-    for (int neighbour = 0; neighbour < Neighbours; ++neighbour)
+    low[a] = std::max(cells[a] - 1, 0);
+    high[a] = std::min(cells[a], filled.count[a] - 1);
+  }
+  bool any = false;
+  for (int k = low[2]; k <= high[2]; ++k)
+  {
+    for (int j = low[1]; j <= high[1]; ++j)
     {
-      this->Offsets[neighbour] = (neighbour % 3 - 1) + (neighbour / 3 % 3 - 1) * row + (neighbour / 9 - 1) * slice;
+      const unsigned char* const row = filled.RowOf(j * BrickEdge, k * BrickEdge);
+      any = any || std::count(row + low[0], row + high[0] + 1, 1) > 0;
     }
   }
+  return any;
+}
+}
 
-  /// @param side  1: use the neighbours before a brick in memory; -1: those after it
-  void Relax(int i, int j, int k, int side)
+SampleBricks SampleBricksOf(const FilledBricks& filled, const Grid& grid, bool paired)
+{
+  SampleBricks bricks;
+  bricks.edges = { SampleEdge, paired ? static_cast<int>(BrickEdge) : static_cast<int>(SampleEdge), SampleEdge };
+  for (int a = 0; a < 3; ++a)
   {
-    const std::ptrdiff_t here = (static_cast<std::ptrdiff_t>(k) * this->Count[1] + j) * this->Count[0] + i;
-    const bool inside =
-      i > 0 && j > 0 && k > 0 && i + 1 < this->Count[0] && j + 1 < this->Count[1] && k + 1 < this->Count[2];
-    int moves = this->Found[here];
-    for (int neighbour = 0; neighbour < Neighbours; ++neighbour)
+    bricks.count[a] = grid.size[a] / BrickEdge + 1;
+  }
+  const auto each = static_cast<cl_int>(bricks.SamplesEach());
+  bricks.bricks.push_back(-1);
+  for (int k = 0; k < bricks.count[2]; ++k)
+  {
+    for (int j = 0; j < bricks.count[1]; ++j)
     {
-      if (inside ||
-        this->IsThere(
-          i + side * (neighbour % 3 - 1), j + side * (neighbour / 3 % 3 - 1), k + side * (neighbour / 9 - 1)))
+      for (int i = 0; i < bricks.count[0]; ++i)
       {
-        const std::ptrdiff_t there = here + side * this->Offsets[neighbour];
-        moves = std::min(moves, this->Bricks[there] != this->Bricks[here] ? 1 : this->Found[there] + 1);
+        const bool isFilled = IsFilled(filled, { i, j, k });
+        bricks.first.push_back(isFilled ? static_cast<cl_int>(bricks.bricks.size()) * each : 0);
+        if (isFilled)
+        {
+          bricks.bricks.push_back(static_cast<cl_int>(bricks.first.size() - 1));
+        }
       }
     }
-    this->Found[here] = moves;
   }
+  return bricks;
+}
 
-  int operator[](std::size_t brick) const { return this->Found[brick]; }
-
-private:
-  static constexpr int Neighbours = 13; ///< neighbours on either side
-
-  bool IsThere(int i, int j, int k) const
-  {
-    return i >= 0 && j >= 0 && k >= 0 && i < this->Count[0] && j < this->Count[1] && k < this->Count[2];
-  }
-
-  const std::vector<cl_char>& Bricks;
-  const std::array<int, 3> Count;
-  std::array<std::ptrdiff_t, Neighbours> Offsets;
-  std::vector<int> Found;
-};
-
+namespace
+{
 /// Multiplies each brick's kind (1 empty, -1 filled, 0 where rays bend) by the number of king's moves to the nearest
-/// brick of another kind, at most 127; two sweeps find it exactly.
+/// brick of another kind, at most 127: two sweeps that propagate distances from neighbours, the second backwards, find
+/// it exactly.
 void FindDistances(std::vector<cl_char>& bricks, const std::array<int, 3>& count)
 {
-  Moves moves(bricks, count);
-  for (int k = 0; k < count[2]; ++k)
+  const auto total = static_cast<std::ptrdiff_t>(bricks.size());
+  const std::ptrdiff_t row = count[0], slice = row * count[1];
+  std::vector<int> moves(bricks.size(), 127);
+  for (const int side : { 1, -1 })
   {
-    for (int j = 0; j < count[1]; ++j)
+    for (std::ptrdiff_t n = 0; n < total; ++n)
     {
-      for (int i = 0; i < count[0]; ++i)
+      const std::ptrdiff_t here = side > 0 ? n : total - 1 - n;
+      const std::ptrdiff_t i = here % row, j = here / row % count[1], k = here / slice;
+      for (int neighbour = 0; neighbour < 13; ++neighbour) // those before it in memory, or after it
       {
-        moves.Relax(i, j, k, 1);
+        const int x = side * (neighbour % 3 - 1), y = side * (neighbour / 3 % 3 - 1), z = side * (neighbour / 9 - 1);
+        if (i + x >= 0 && i + x < row && j + y >= 0 && j + y < count[1] && k + z >= 0 && k + z < count[2])
+        {
+          const std::ptrdiff_t there = here + x + y * row + z * slice;
+          moves[here] = std::min(moves[here], bricks[there] != bricks[here] ? 1 : moves[there] + 1);
+        }
       }
     }
   }
-  for (int k = count[2] - 1; k >= 0; --k)
-  {
-    for (int j = count[1] - 1; j >= 0; --j)
-    {
-      for (int i = count[0] - 1; i >= 0; --i)
-      {
-        moves.Relax(i, j, k, -1);
-      }
-    }
-  }
-  for (std::size_t brick = 0; brick < bricks.size(); ++brick)
-  {
-    bricks[brick] = static_cast<cl_char>(bricks[brick] * moves[brick]);
-  }
+  std::transform(bricks.begin(), bricks.end(), moves.begin(), bricks.begin(),
+    [](cl_char kind, int distance) { return static_cast<cl_char>(kind * distance); });
 }
 
 std::size_t PaddedCount(const Grid& grid)
@@ -214,22 +212,34 @@ void PackedSamples::Pack(
   }
 }
 
+/// Kernel parameters of packing.
+PackInfo PackedSamples::InfoOf(const ViewedComponents& components) const
+{
+  PackInfo info = {};
+  info.size = Int4(this->Traits.grid.size);
+  info.bricks = Int4(this->Count);
+  info.known = Int4(this->KnownSize);
+  info.before = Int4(this->KnownBefore);
+  info.components = components;
+  info.single = this->Traits.singleScatteringOnly ? 1 : 0;
+  info.g = this->Traits.phase.parameters.first.s[0];
+  return info;
+}
+
 void PackedSamples::PackSources(const SceneOnDevice& scene, const Buffer<float>& direct)
 {
   const ViewTraits& traits = this->Traits;
   const bool forShadowRays = this->For == Packing::ForShadowRays;
   const bool bends = traits.bends && !forShadowRays; // shadow rays are straight
-  const std::string options = traits.SampleOptions() + Define("FLOW", traits.knowsFlow) +
-    Define("FLOW_WITH_G", traits.knowsFlow && traits.FlowHasG()) + Define("VARIED_G", traits.PacksCosines()) +
-    Define("GLOW", traits.GlowsApart()) + Define("SHADOW_RAYS", traits.shadowRays && !forShadowRays) +
-    Define("BENDS", bends);
-  const cl_int single = traits.singleScatteringOnly ? 1 : 0;
-
-  cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight, options);
-  With(pack, Int4(traits.grid.size), traits.Components(), single, traits.phase.parameters.first.s[0],
-    scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(), scene.arrays[3].Handle(),
-    scene.arrays[4].Handle(), direct, scene.meanDirection.Handle(), scene.ior, scene.meanCosines, this->Samples(),
-    this->Extinctions(), this->Flow(), this->Glow(), this->Cosines(), this->SeenGroups, this->BricksOfRecords);
+  ViewedComponents components = traits.Components();
+  components.direct = traits.shadowRays && !forShadowRays ? 6 : 0;
+  cl::Kernel pack = this->TheDevice.Kernel("pack_samples", kernel_source::ScatteredLight,
+    traits.SampleOptions() + Define("FLOW", traits.Flow()) + Define("GLOW", traits.GlowsApart()) +
+      Define("BENDS", bends));
+  With(pack, this->InfoOf(components), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
+    scene.arrays[3].Handle(), scene.arrays[4].Handle(), direct, scene.meanDirection.Handle(), scene.ior,
+    scene.meanCosines, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(), this->Cosines(),
+    this->SeenGroups, this->BricksOfRecords);
   this->Launch(pack, traits.grid.size);
   this->FindBricks(bends, false);
 }
@@ -246,30 +256,27 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
 {
   const ViewTraits& traits = this->Traits;
   const bool bends = traits.bends && this->For != Packing::ForShadowRays;
-  const std::string options = traits.SampleOptions() + Define("GLOW", traits.GlowsApart()) + Define("BENDS", bends) +
-    Define("AUREOLE", traits.aureoleChannels > 0);
   ViewedComponents components = traits.Components();
   components.straightOn = this->For == Packing::Unscattered ? 0 : components.straightOn;
-  cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples, options + this->ShownOptions());
-  With(pack, Int4(traits.grid.size), components, scene.arrays[0].Handle(), scene.arrays[1].Handle(),
-    scene.arrays[2].Handle(), scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(),
-    this->Flow(), this->Glow(), this->SeenGroups);
+  cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples,
+    traits.SampleOptions() + Define("GLOW", traits.GlowsApart()) + Define("BENDS", bends) +
+      Define("AUREOLE", traits.aureoleChannels > 0) + this->ShownOptions());
+  With(pack, this->InfoOf(components), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
+    scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
+    this->SeenGroups);
   this->Launch(pack, traits.grid.size);
   this->FindBricks(bends, true);
 }
 
 void PackedSamples::FindBricks(bool bends, bool shown)
 {
-  const ViewTraits& traits = this->Traits;
-  const std::string options = Define("COLOURED", traits.coloured) + Define("GREY", traits.grey) +
-    Define("BRICKED", traits.bricked) + Define("GLOW", traits.GlowsApart()) + Define("BENDS", bends) +
-    Define("SHOWN", shown);
-  const cl_int4 size = Int4(this->Traits.grid.size), bricks = Int4(this->Count);
-  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::EmptyBricks, options);
-  With(find, size, bricks, Int4(this->KnownSize), Int4(this->KnownBefore), this->Samples(), this->Extinctions(),
-    this->Glow(), this->Gradients, this->Seen, this->First, this->Distances);
+  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::EmptyBricks,
+    this->Traits.SampleOptions() + Define("GLOW", this->Traits.GlowsApart()) + Define("BENDS", bends) +
+      Define("SHOWN", shown));
+  With(find, this->InfoOf({}), this->Samples(), this->Extinctions(), this->Glow(), this->Gradients, this->Seen,
+    this->First, this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
-    cl::NDRange(RoundUp<std::size_t>(bricks.s[0], 4), bricks.s[1], bricks.s[2]), cl::NDRange(4, 1, 1));
+    cl::NDRange(RoundUp<std::size_t>(this->Count[0], 4), this->Count[1], this->Count[2]), cl::NDRange(4, 1, 1));
   std::vector<cl_char> distances = this->Distances.Read();
   this->EmptyBricks = std::find(distances.begin(), distances.end(), 1) != distances.end();
   FindDistances(distances, this->Count);

@@ -1,16 +1,44 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "Device/OpenCL.h"
 #include "Device/ZeroedBuffer.h"
-#include "Viewing/Samples/SampleBricks.h"
+#include "Medium/FilledBricks.h"
 #include "Viewing/Scene/SceneOnDevice.h"
+#include "Viewing/Scene/ViewShared.h"
 #include "Viewing/Scene/ViewTraits.h"
 
 #include <array>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace tyndall
 {
+/// Memory layout of samples in bricks, for a medium that is mostly empty.
+///
+/// A cell is the cube between eight neighbouring samples: cell (i, j, k) has sample (i, j, k) of the grid with its
+/// border of one voxel as its lower corner, so an axis of n voxels has n + 1 cells. A brick of 8^3 cells owns a record:
+/// all samples at its cells' corners, x fastest, including those on its upper faces, which the next brick's record
+/// repeats, so that interpolation reads one record only. Empty bricks share record 0, which is zero.
+struct SampleBricks
+{
+  std::array<int, 3> count = { 0, 0, 0 }; ///< bricks of cells along each axis
+  std::array<int, 3> edges = { 0, 0, 0 }; ///< samples of a record along each axis
+  std::vector<cl_int> first;              ///< index of the first sample of each brick's record, bricks x fastest
+  std::vector<cl_int> bricks;             ///< the brick that owns each record; -1: none
+
+  std::size_t SamplesEach() const
+  {
+    return static_cast<std::size_t>(this->edges[0]) * static_cast<std::size_t>(this->edges[1]) *
+      static_cast<std::size_t>(this->edges[2]);
+  }
+  std::size_t SampleCount() const { return this->bricks.size() * this->SamplesEach(); }
+};
+
+/// @param paired  each sample also holds the next one along y, so the samples on the upper y faces are left out
+SampleBricks SampleBricksOf(const FilledBricks& filled, const Grid& grid, bool paired);
+
 /// What the packed samples are used for.
 enum class Packing
 {
@@ -44,6 +72,8 @@ public:
   /// source and grey extinction, see ScatteredLight.cl
   const cl::Buffer& Samples() const { return this->Sources.Handle(); }
   const cl::Buffer& Extinctions() const { return this->ColouredExtinctions.Handle(); }
+  /// Samples that hold the extinction: coloured, or with the source.
+  const cl::Buffer& Sigma() const { return this->Traits.coloured ? this->Extinctions() : this->Samples(); }
   /// The light's mean direction, times g if ViewTraits::FlowHasG; with ShownSamples.cl, the lamps' light.
   const cl::Buffer& Flow() const { return this->Directions.Handle(); }
   const cl::Buffer& Glow() const { return this->Emission.Handle(); }     ///< emission, if ViewTraits::GlowsApart
@@ -55,6 +85,7 @@ public:
 
 private:
   void PackBending(const Grid& known, const Buffer<float>& ior);
+  PackInfo InfoOf(const ViewedComponents& components) const;
   void PackSources(const SceneOnDevice& scene, const Buffer<float>& direct);
   void PackShown(const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
   void Launch(cl::Kernel& kernel, const std::array<int, 3>& size);

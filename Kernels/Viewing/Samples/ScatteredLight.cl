@@ -2,15 +2,14 @@
 // medium's arrays and from the light that a solver computed or that shadow rays find.
 //
 // The host gives
-//   SHADOW_RAYS  1: `direct` holds light of the lamps scattered towards the eye
-//   FLOW         1: the light's mean direction is packed; FLOW_WITH_G 1: multiplied by g
-//   VARIED_G     1: g varies by voxel and is packed separately
-//   GLOW         1: emission is packed separately
-//   BENDS        1: the refractive index varies
-//   BRICKED      1: samples are stored in bricks
+//   FLOW     what is packed of the light's mean direction: 0 nothing; 1 the direction; 2 times g, length at most
+//            LARGEST_FLOW; 3 the direction, and g by voxel separately
+//   GLOW     1: emission is packed separately
+//   BENDS    1: the refractive index varies
+//   BRICKED  1: samples are stored in bricks
 
 #include "Numerics/Prefetch.cl"
-#include "Viewing/Samples/Border.cl"
+#include "Viewing/Samples/SampleLayout.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
 #include "Viewing/Scene/ViewShared.h"
 
@@ -26,30 +25,30 @@ typedef struct
   __global const float* unscattered;
   __global const float* direct;
   __global const float* ior;
-  ViewedComponents components;
+  const PackInfo* info;
 } ingredients;
 
 // In-scattered radiance of one channel. `fluence` is the total fluence, `unscattered` its uncollided part; what shadow
 // rays show of the lamps is subtracted from the fluence, so that it does not count twice.
-//   single  1: only single scattering
-inline float in_scattered(const ingredients* from, int voxel, int channel, int single)
+inline float in_scattered(const ingredients* from, int voxel, int channel)
 {
-  const float whole = channel_of(from->fluence, voxel, from->components.fluence, channel);
-  const float first = channel_of(from->unscattered, voxel, from->components.unscattered, channel);
-#if SHADOW_RAYS
-  const float seen = from->direct[voxel * 6 + channel];
-  const float from_lights = fmin(from->direct[voxel * 6 + 3 + channel], first);
-  return seen + (single ? 0.0f : fmax(whole - from_lights, 0.0f) * PER_SPHERE);
-#else
+  const int single = from->info->single;
+  const float whole = channel_of(from->fluence, voxel, from->info->components.fluence, channel);
+  const float first = channel_of(from->unscattered, voxel, from->info->components.unscattered, channel);
+  if (from->info->components.direct)
+  {
+    const float seen = from->direct[voxel * 6 + channel];
+    const float from_lights = fmin(from->direct[voxel * 6 + 3 + channel], first);
+    return seen + (single ? 0.0f : fmax(whole - from_lights, 0.0f) * PER_SPHERE);
+  }
   return (single ? first : whole) * PER_SPHERE;
-#endif
 }
 
 // Source of a voxel (red, green, blue) and its grey extinction; with BENDS divided by n^2. Also returns the extinction
 // of all channels, and the emission, which with GLOW is not included in the source.
-inline float4 source_of(const ingredients* from, int voxel, int single, float4* sigma_t, float4* emitted)
+inline float4 source_of(const ingredients* from, int voxel, float4* sigma_t, float4* emitted)
 {
-  const ViewedComponents of = from->components;
+  const ViewedComponents of = from->info->components;
   float4 sigma_s = (float4)(0.0f);
   float4 source = (float4)(0.0f);
   *sigma_t = *emitted = (float4)(0.0f);
@@ -57,7 +56,7 @@ inline float4 source_of(const ingredients* from, int voxel, int single, float4* 
   sigma_s.c = channel_of(from->scattering, voxel, of.scattering, n);              \
   sigma_t->c = sigma_s.c + channel_of(from->absorption, voxel, of.absorption, n); \
   emitted->c = channel_of(from->emission, voxel, of.emission, n);                 \
-  source.c = sigma_s.c * in_scattered(from, voxel, n, single);
+  source.c = sigma_s.c * in_scattered(from, voxel, n);
   CHANNEL(x, 0)
   CHANNEL(y, 1)
   CHANNEL(z, 2)
@@ -82,9 +81,9 @@ static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
   if (get_local_id(0) == 0 || get_local_id(0) == BrickEdge)
   {
     const size_t next = (size_t)voxel + size.x * size.y;
-    PREFETCH(from->absorption + next * from->components.absorption, 0, 3);
-    PREFETCH(from->scattering + next * from->components.scattering, 0, 3);
-    PREFETCH(from->fluence + next * from->components.fluence, 0, 3);
+    PREFETCH(from->absorption + next * from->info->components.absorption, 0, 3);
+    PREFETCH(from->scattering + next * from->info->components.scattering, 0, 3);
+    PREFETCH(from->fluence + next * from->info->components.fluence, 0, 3);
   }
 }
 
@@ -98,7 +97,7 @@ static void put_nothing(int place, __global float4* samples, __global float4* ex
 #if FLOW
   flow[place] = (float4)(0.0f);
 #endif
-#if VARIED_G
+#if FLOW == 3
   cosines[place] = (float4)(0.0f);
 #endif
 #if GLOW
@@ -109,23 +108,22 @@ static void put_nothing(int place, __global float4* samples, __global float4* ex
 
 // Packs samples. Voxels that rays do not see (ViewTraits.h) are skipped.
 //
-// bricks   with BRICKED: the brick of each record (SampleBricks.h)
-// single   1: only light that was scattered once
+// bricks   with BRICKED: the brick of each record (SampleBricks)
 // samples  source (red, green, blue) and grey extinction; with GREY source and extinction here and at the next voxel
 //          along y
-// flow     with FLOW: the light's mean direction; with FLOW_WITH_G multiplied by g, length at most LARGEST_FLOW
-// cosines  with VARIED_G: g of red, green, blue
+// flow     the light's mean direction, see FLOW
+// cosines  with FLOW 3: g of red, green, blue
 // glow     with GLOW: emission, which is then not part of `samples`
 // ior      with BENDS: sources are divided by its square
-__kernel void pack_samples(int4 size, ViewedComponents of, int single, float g,
-  __global const float* restrict absorption, __global const float* restrict scattering,
-  __global const float* restrict emission, __global const float* restrict fluence,
-  __global const float* restrict unscattered, __global const float* restrict direct,
-  __global const float* restrict direction, __global const float* restrict ior,
+__kernel void pack_samples(PackInfo info, __global const float* restrict absorption,
+  __global const float* restrict scattering, __global const float* restrict emission,
+  __global const float* restrict fluence, __global const float* restrict unscattered,
+  __global const float* restrict direct, __global const float* restrict direction, __global const float* restrict ior,
   __global const float* restrict mean_cosines, __global float4* restrict samples, __global float4* restrict extinctions,
   __global float4* restrict flow, __global float4* restrict glow, __global float4* restrict cosines,
   __global const uchar* restrict seen, __global const int* restrict bricks)
 {
+  const int4 size = info.size;
 #if BRICKED
   int3 sample;
   const int place = place_in_records();
@@ -143,16 +141,16 @@ __kernel void pack_samples(int4 size, ViewedComponents of, int single, float g,
   const int place = padded_index(size);
 #endif
   const int voxel = voxel_of(sample, size);
-  const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior, of };
+  const ingredients from = { absorption, scattering, emission, fluence, unscattered, direct, ior, &info };
 #if BRICKED
   ask_for_next_slice(&from, size, voxel);
 #endif
   float4 sigma_t, emitted;
-  const float4 source = source_of(&from, voxel, single, &sigma_t, &emitted);
+  const float4 source = source_of(&from, voxel, &sigma_t, &emitted);
 #if GREY
   const int row = sample.y;
   float4 unused, also_unused;
-  const float4 next = source_of(&from, row > 0 && row < size.y ? voxel + size.x : voxel, single, &unused, &also_unused);
+  const float4 next = source_of(&from, row > 0 && row < size.y ? voxel + size.x : voxel, &unused, &also_unused);
   samples[place] = (float4)(source.x, source.w, next.x, next.w);
 #else
   samples[place] = source;
@@ -164,16 +162,17 @@ __kernel void pack_samples(int4 size, ViewedComponents of, int single, float g,
   const float3 mean = (float3)(direction[3 * voxel], direction[3 * voxel + 1], direction[3 * voxel + 2]);
   // A mean direction is at most 1 long.
   const float3 held = mean / fmax(length(mean), 1.0f);
-#if FLOW_WITH_G
-  const float here = of.meanCosines ? mean_cosines[voxel] : g;
+#if FLOW == 2
+  const float here = info.components.meanCosines ? mean_cosines[voxel] : info.g;
   flow[place] = (float4)(held * (here * fmin(1.0f, LARGEST_FLOW / fmax(fabs(here) * length(held), 1e-30f))), 0.0f);
 #else
   flow[place] = (float4)(held, 0.0f);
 #endif
 #endif
-#if VARIED_G
-  cosines[place] = (float4)(channel_of(mean_cosines, voxel, of.meanCosines, 0),
-    channel_of(mean_cosines, voxel, of.meanCosines, 1), channel_of(mean_cosines, voxel, of.meanCosines, 2), 0.0f);
+#if FLOW == 3
+  cosines[place] = (float4)(channel_of(mean_cosines, voxel, info.components.meanCosines, 0),
+    channel_of(mean_cosines, voxel, info.components.meanCosines, 1),
+    channel_of(mean_cosines, voxel, info.components.meanCosines, 2), 0.0f);
 #endif
 #if GLOW
   glow[place] = emitted;

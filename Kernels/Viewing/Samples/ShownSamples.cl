@@ -9,8 +9,7 @@
 //   AUREOLE      0: `direct` has no values for SHOWN 2
 //   COLOURED, BENDS, GLOW  as in ScatteredLight.cl
 
-#include "Viewing/Samples/Beside.cl"
-#include "Viewing/Samples/Border.cl"
+#include "Viewing/Samples/SampleLayout.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
 #include "Viewing/Scene/ViewShared.h"
 
@@ -52,14 +51,16 @@ inline float4 triple(__global const float* values, int voxel)
 //   samples  SHOWN 1: diffuse light times albedo; SHOWN 2: ratio of lamps' light scattered more than once to that
 //            scattered once; w: grey extinction
 //   beams    -ln of (lamps' light times albedo)
-//   of       straightOn 0: the extinction includes all scattering
-__kernel void pack_shown(int4 size, ViewedComponents of, __global const float* restrict absorption,
+//   info     components.straightOn 0: the extinction includes all scattering
+__kernel void pack_shown(PackInfo info, __global const float* restrict absorption,
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict straight_on, __global const float* restrict diffuse,
   __global const float* restrict direct, __global const float* restrict ior, __global float4* restrict samples,
   __global float4* restrict extinctions, __global float4* restrict beams, __global float4* restrict glow,
   __global const uchar* restrict seen)
 {
+  const int4 size = info.size;
+  const ViewedComponents of = info.components;
   if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))
   {
     return;

@@ -15,6 +15,8 @@ namespace tyndall
 {
 namespace
 {
+constexpr double FarthestCamera = 1e15; ///< lengths or voxels; their squares do not overflow a float
+
 std::array<double, 3> Array(const glm::dvec3& v)
 {
   return { v.x, v.y, v.z };
@@ -124,5 +126,25 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle, const std::a
   camera.position = Array(centre + distance * out);
   camera.parallelScale = margin * highest;
   return camera;
+}
+
+void CheckDistance(const Camera& camera, const Grid& grid)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double away = std::abs(camera.position[axis] - grid.origin[axis]);
+    if (!(away <= FarthestCamera && away / grid.spacing[axis] <= FarthestCamera))
+    {
+      throw InvalidInput("The camera is too far away: " + Text("%g", away) + " from the medium's corner along " +
+        "xyz"[axis] + ", " + Text("%g", away / grid.spacing[axis]) + " voxels; come closer than " +
+        Text("%g", FarthestCamera) + " of both.");
+    }
+    if (camera.parallelProjection && !(camera.parallelScale / grid.spacing[axis] <= FarthestCamera))
+    {
+      throw InvalidInput("The camera's parallel scale is " + Text("%g", camera.parallelScale) + ", " +
+        Text("%g", camera.parallelScale / grid.spacing[axis]) + " voxels along " + "xyz"[axis] +
+        "; it may be at most " + Text("%g", FarthestCamera) + " voxels.");
+    }
+  }
 }
 }

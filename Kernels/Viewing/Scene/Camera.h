@@ -38,4 +38,7 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle = 30.0,
 /// @throws InvalidInput if position and focal point coincide, viewUp is parallel to the view direction, or a number is
 ///   invalid
 std::array<std::array<double, 3>, 3> Axes(const Camera& camera);
+
+/// @throws InvalidInput if the camera is so far from the grid, or the picture so wide, that ray coordinates overflow
+void CheckDistance(const Camera& camera, const Grid& grid);
 }

@@ -28,4 +28,14 @@ struct SolvedLight
   Field facePower = {};
   std::array<Rgb, 6> faceAlbedo = {};
 };
+
+struct ViewSettings;
+
+/// @throws InvalidInput for a light array that is not finite or has a wrong number of components, or if the settings
+///   need an array that is missing
+void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& settings);
+
+/// Degree of angular moments with (degree + 1)^2 or 3 (degree + 1)^2 components.
+/// @throws InvalidInput for any other number of components
+int DegreeOf(const Field& moments);
 }

@@ -51,6 +51,9 @@ struct ViewSettings
   int packetWidth = 0;
 };
 
+/// @throws InvalidInput for a setting that is invalid in every scene
+void Check(const ViewSettings& settings);
+
 /// Sets the ray step and the samples of rectangular lights according to a quality, unless `settings` changes them from
 /// their defaults.
 ViewSettings AtQuality(Quality quality, ViewSettings settings);

@@ -11,9 +11,10 @@ enum
   SchlickRows = 1024,
   CosineRows = 2048,
   SpreadRows = 128,
-  AureoleColumns = 1024, // by cosine
-  AureoleRows = 64,      // by the square root of the optical length
-  AureoleDepth = 40      // the largest optical length
+  AureoleColumns = 1024,     // by cosine
+  AureoleRows = 64,          // by the square root of the optical length
+  AureoleDepth = 40,         // the largest optical length
+  SampleEdge = BrickEdge + 1 // samples along an edge of a brick of cells (SampleBricks)
 };
 
 /// Parameters of a phase function, for red, green and blue.
@@ -27,8 +28,21 @@ typedef struct
 /// Number of components of each array of the medium and its light: 0 (no array), 1 or 3.
 typedef struct
 {
-  int absorption, scattering, emission, fluence, unscattered, meanCosines, straightOn, unused;
+  int absorption, scattering, emission, fluence, unscattered, meanCosines, straightOn;
+  int direct; ///< 6 if shadow rays found the light of the lamps
 } ViewedComponents;
+
+/// Parameters of the kernels that pack samples.
+typedef struct
+{
+  int4 size;   ///< voxels
+  int4 bricks; ///< number of bricks along each axis
+  int4 known;  ///< voxels whose gradient of n^2 is stored
+  int4 before; ///< how many of them precede the first sample, along each axis
+  ViewedComponents components;
+  int single; ///< 1: only single scattering
+  float g;    ///< mean cosine, if it is the same in all voxels
+} PackInfo;
 
 /// A block of a larger grid, see GridBlock; indices of voxels of the whole grid.
 typedef struct
@@ -55,6 +69,8 @@ typedef struct
   int4 held;             ///< voxels of the block's arrays, for such rays
   int4 bricks;           ///< number of bricks along each axis
   int4 environment;      ///< width and height in pixels, 0: no environment; bit mask of reflecting faces
+  int4 backdrop;         ///< where environment, ground, surface light and table begin in the backdrop's array
+  int4 range;            ///< first ray of a launch and the one after its last, for rays that travel between blocks
   float4 toPicture[3];   ///< rows of the matrix from world axes to the environment's axes
   /// Flags, 1: rays end at a depth given for each pixel; other blocks are in front of this one, whose transmittance is
   /// given; there is surface light for optically thick voxels.
@@ -137,5 +153,7 @@ typedef struct
   float nearestSquare;
   int firstLight, lights;   ///< range of lights [firstLight, lights)
   int firstSlice, firstRow; ///< offsets of this launch
+  int beside;               ///< 1: also in voxels that have a scattering neighbour
+  int isGiven;              ///< 1: optical lengths towards the light are given, for a block of a larger grid
 } ShadowInfo;
 SHARED_END

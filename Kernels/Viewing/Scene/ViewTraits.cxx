@@ -4,7 +4,6 @@
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
 #include "Numerics/Vectors.h"
-#include "Viewing/Scene/ViewChecks.h"
 
 #include <algorithm>
 #include <array>
@@ -311,7 +310,6 @@ ViewedComponents ViewTraits::Components() const
 std::string ViewTraits::PhaseOptions(bool needed) const
 {
   return Define("PHASE", needed ? static_cast<int>(this->phase.formula) : 0) +
-    Define("PHASE_CHANNELS", this->phase.channels) + Define("FLOW_WITH_G", this->FlowHasG()) +
-    Define("VARIED_G", this->PacksCosines());
+    Define("PHASE_CHANNELS", this->phase.channels) + Define("FLOW", this->Flow());
 }
 }

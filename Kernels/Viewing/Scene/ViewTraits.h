@@ -92,10 +92,12 @@ struct ViewTraits
     return this->phase.channels == 1 &&
       (this->phase.formula == ViewedPhase::HenyeyGreenstein || this->phase.formula == ViewedPhase::Schlick);
   }
+  bool PacksCosines() const { return this->knowsFlow && this->phase.varies && !this->FlowHasG(); }
+  /// What is packed of the light's mean direction: the kernels' option FLOW, see ScatteredLight.cl.
+  int Flow() const { return !this->knowsFlow ? 0 : this->FlowHasG() ? 2 : this->PacksCosines() ? 3 : 1; }
   /// Whether the phase function is evaluated for light of a known direction.
   bool ReadsPhase() const { return this->knowsFlow || this->shadowRays; }
   bool ReadsMeanCosines() const { return this->ReadsPhase() && this->phase.varies; } ///< g by voxel
-  bool PacksCosines() const { return this->knowsFlow && this->phase.varies && !this->FlowHasG(); }
   /// Whether all rays are straight; these have their own kernel.
   bool OnlyStraight() const { return !this->bends && !this->hasTable; }
 

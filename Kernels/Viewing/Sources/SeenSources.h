@@ -4,15 +4,19 @@
 #include "Device/Monitor.h"
 #include "Medium/Medium.h"
 #include "Medium/VoxelBox.h"
+#include "PhaseFunction/PhaseFunction.h"
+#include "Viewing/Samples/Marching.h"
 #include "Viewing/Samples/PackedSamples.h"
 #include "Viewing/Scene/BlockOfScene.h"
 #include "Viewing/Scene/Camera.h"
 #include "Viewing/Scene/SceneOnDevice.h"
 #include "Viewing/Scene/SolvedLight.h"
+#include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/Scene/ViewShared.h"
 #include "Viewing/Scene/ViewTraits.h"
 
-#include <string>
+#include <array>
+#include <functional>
 #include <vector>
 
 namespace tyndall
@@ -22,21 +26,18 @@ namespace tyndall
 class SeenSources
 {
 public:
+  /// Settings, traits, scene, samples and block must outlive this object.
   /// @param lamps   lights for shadow rays; used if ViewTraits::shadowRays
-  /// @param rectangleSamples  samples along each edge of a rectangular light
-  /// @param traits  must outlive this object
-  /// @param block   the medium's place in a larger grid; must outlive this object. Null: the medium is the whole domain
+  /// @param block   the medium's place in a larger grid; null: the medium is the whole domain
   /// @throws DeviceError if they do not fit
-  SeenSources(Device& device, const Medium& medium, const std::vector<Light>& lamps, int rectangleSamples,
-    const ViewTraits& traits, const BlockOfScene* block);
+  SeenSources(Device& device, const Medium& medium, const std::vector<Light>& lamps, const ViewSettings& settings,
+    const ViewTraits& traits, const SceneOnDevice& scene, const PackedSamples& samples, const BlockOfScene* block);
 
-  /// Computes Direct() by shadow rays. Reports progress from 0 to 1/2 of a picture.
-  /// @param stepSize  step of shadow rays, voxels
-  /// @param samples   packed for shadow rays
+  /// Computes Direct() by shadow rays, through samples that are packed for them. Reports progress from 0 to 1/2 of a
+  /// picture.
   /// @throws Aborted
-  void SeeLights(const Camera& camera, double stepSize, const SceneOnDevice& scene, const PackedSamples& samples,
-    const Monitor& monitor);
-  void SeeMoments(const Camera& camera, const SceneOnDevice& scene);
+  void SeeLights(const Camera& camera, const Monitor& monitor);
+  void SeeMoments(const Camera& camera);
 
   // SeeLights split by light and by part of the block, for a medium that is one of several blocks: each block computes
   // the optical length of its own section of each shadow ray, and the sections are summed in between.
@@ -44,13 +45,11 @@ public:
   /// Optical length, within this block, of the paths from the voxels `asked` (indices of the whole grid) to a light, 3
   /// per voxel.
   /// @throws Aborted
-  std::vector<float> DepthsTowards(
-    int light, const VoxelBox& asked, double stepSize, const PackedSamples& samples, const Monitor& monitor);
+  std::vector<float> DepthsTowards(int light, const VoxelBox& asked, const Monitor& monitor);
   /// @param part    voxels (indices of the whole grid) that are contiguous in the medium's arrays: some rows along x of
   ///   one slice, or some slices
   /// @param depths  total optical length from each of these voxels to the light, 3 per voxel
-  void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths,
-    const SceneOnDevice& scene, const PackedSamples& samples);
+  void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths);
 
   /// Six values per voxel: light scattered towards the eye (3), and irradiance by the lights (3).
   const Buffer<float>& Direct() const { return this->OfLights; }
@@ -60,15 +59,31 @@ public:
 private:
   ShadowInfo InfoOfVoxels() const;
   ShadowInfo MakeShadowInfo(const Camera& camera) const;
-  std::string Options(double steps, bool given) const;
+  cl::Kernel Kernel(const char* name) const;
+  void Launch(cl::Kernel& kernel, const std::array<int, 3>& size, double samples, double to, const Monitor& monitor,
+    const std::function<void(const Patch& part)>& launch) const;
+  void SetArguments(cl::Kernel& see, const ShadowInfo& info, const Buffer<float>& given);
 
   Device& TheDevice;
+  const ViewSettings& Settings;
   const ViewTraits& Traits;
+  const SceneOnDevice& Scene;
+  const PackedSamples& Samples;
   const BlockOfScene* Block;
-  int LightCount = 0;
   std::vector<SmallLight> Small;
   Buffer<float> AureoleTables; ///< only if moments are shown and g does not vary
   Buffer<float> OfLights, OfMoments;
   Buffer<SmallLight> Lights;
 };
+
+/// Radiance that repeated forward scattering adds to the first scattering of a parallel beam (with the whole phase
+/// function), where the solver treats a part of scattering as unscattered (numerics.md, Eq. (112c)). Values are per
+/// steradian, per unit of beam irradiance and per optical length of scattering along the beam's path, tabulated by
+/// scattering angle and that optical length. Negative near the beam: the light treated as unscattered is in fact spread
+/// in angle.
+///
+/// The table has AureoleRows + 2 rows of AureoleColumns + 2 numbers, see ShadowRays.cl.
+/// @param straightOn  fraction of scattering that is treated as unscattered
+/// @param degree      degree of the moments that were solved for, used where straightOn is not a moment of the function
+std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn, int degree);
 }

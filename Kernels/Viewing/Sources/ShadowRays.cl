@@ -1,12 +1,7 @@
 // Direct light of the lamps in each voxel, and the part of it that is scattered towards the eye. The host gives
 //   PHASE, PHASE_CHANNELS  see PhaseFunction.cl
 //   AUREOLE      number of tables of repeated forward scattering: 0, 1, or 3 for red, green and blue
-//   BESIDE       1: also in voxels that have a scattering neighbour
-//   GIVEN        1: the medium is a block of a larger grid, and the optical length towards a light is the given sum of
-//                what each block finds
 
-#include "Viewing/Samples/Beside.cl"
-#include "Viewing/Samples/BlockRays.cl"
 #include "Viewing/Samples/PhaseFunction.cl"
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
@@ -49,24 +44,23 @@ inline way_to_light towards(const SmallLight* light, real3 place, real scatters,
 #else
 #define PASS(sigma, sum, rest) sum = fma(sigma, length, sum);
 #endif
-// Optical length along the shadow rays, by channel with COLOURED, else in `r`; the march stops above 30, where nothing
-// arrives.
-//   centre  voxel centres; with GIVEN in the whole grid, and only the section of the ray in the block counts
-inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, real3 centre,
-  __global const float4* samples, __global const float4* extinctions, __global const char* bricks)
+// Direction of shadow rays, voxels per unit length.
+inline real3 direction_of(const ShadowInfo* info, const way_to_light* way)
 {
   const real3 direction = { way->d.x / (real)info->spacing.x, way->d.y / (real)info->spacing.y,
     way->d.z / (real)info->spacing.z };
-  real before;
-#if GIVEN
-  integer enters, leaves;
-  const rays packet =
-    clip_to_block(centre, direction, way->distance, &info->block, info->step, &before, &enters, &leaves);
-#else
-  const rays packet = clip_to_box(centre, direction, way->distance, info->size, &before);
-#endif
-  const real stride = step_length(direction, info->step);
-  const real3 strides = strides_per_voxel(direction, stride);
+  return direction;
+}
+
+// Optical length along the shadow rays, by channel with COLOURED, else in `r`; the march stops above 30, where nothing
+// arrives.
+//   packet  the section of the rays that counts
+//   sigma   packed samples: the coloured extinction with COLOURED, else source and extinction
+inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, rays packet, __global const float4* sigma,
+  __global const char* bricks)
+{
+  const real stride = step_length(packet.direction, info->step);
+  const real3 strides = strides_per_voxel(packet.direction, stride);
   const int steps = (int)ceil(most_lanes(way->arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
   rgb depths = { (real)0.0f, (real)0.0f, (real)0.0f };
   rgb rests = depths; // see add_to
@@ -95,12 +89,12 @@ inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, re
       rgb colour;
       real w;
 #if COLOURED
-      gather(extinctions, &at, info->size, &colour, &w);
+      gather(sigma, &at, info->size, &colour, &w);
       PASS(colour.r, depths.r, rests.r)
       PASS(colour.g, depths.g, rests.g)
       PASS(colour.b, depths.b, rests.b)
 #else
-      gather_samples(samples, &at, info->size, &colour, &w);
+      gather_samples(sigma, &at, info->size, &colour, &w);
       PASS(w, depths.r, rests.r)
 #endif
     }
@@ -224,13 +218,22 @@ inline rgb triples_of(__global const float* values, integer voxel, int stride, i
   return found;
 }
 
-#if GIVEN
+// Writes three adjacent numbers for each voxel of a packet.
+inline void put_triples(__global float* values, integer voxel, int stride, int first, rgb triple)
+{
+#define WRITE(n)                                                   \
+  values[stride * LANE(voxel, n) + first] = LANE(triple.r, n);     \
+  values[stride * LANE(voxel, n) + first + 1] = LANE(triple.g, n); \
+  values[stride * LANE(voxel, n) + first + 2] = LANE(triple.b, n);
+  EACH_LANE(WRITE)
+#undef WRITE
+}
+
 // Computes the block's part of the optical lengths between the voxels of a box of the whole grid and the light
 // `firstLight`. One work-item per packet of a slice.
 //   depths  3 per voxel, see depths_on_the_way
 __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict lights,
-  __global const float4* restrict samples, __global const float4* restrict extinctions,
-  __global const char* restrict bricks, __global float* restrict depths)
+  __global const float4* restrict sigma, __global const char* restrict bricks, __global float* restrict depths)
 {
   const int first = get_global_id(0) * REAL_WIDTH;
   const int j = get_global_id(1) + info.firstRow;
@@ -246,32 +249,28 @@ __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict l
     centre.z * (real)info.spacing.z };
   const SmallLight light = lights[info.firstLight];
   const way_to_light way = towards(&light, place, (real)1.0f, info.nearestSquare);
-  const rgb found = depths_on_the_way(&info, &way, centre, samples, extinctions, bricks);
-  const integer voxel = i + (k * info.askedSize.y + j) * info.askedSize.x;
-#define KEEP(n)                                         \
-  {                                                     \
-    __global float* kept = depths + 3 * LANE(voxel, n); \
-    kept[0] = LANE(found.r, n);                         \
-    kept[1] = LANE(found.g, n);                         \
-    kept[2] = LANE(found.b, n);                         \
-  }
-  EACH_LANE(KEEP)
-#undef KEEP
+  real before;
+  integer enters, leaves;
+  const rays packet =
+    clip_to_block(centre, direction_of(&info, &way), way.distance, &info.block, info.step, &before, &enters, &leaves);
+  put_triples(depths, i + (k * info.askedSize.y + j) * info.askedSize.x, 3, 0,
+    depths_on_the_way(&info, &way, packet, sigma, bricks));
 }
-#endif
 
 // Computes the direct light of the lamps at each voxel's centre, and its scattering towards the eye. One work-item per
 // packet of a slice.
 //   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
 //           length^2; with AUREOLE, in place of the irradiance, the radiance added by repeated forward scattering, W /
 //           (length^2 sr). Added to the present values if firstLight > 0
-//   given   with GIVEN: optical lengths towards the only light, 3 for each voxel from the launch's first row on
+//   sigma   see depths_on_the_way
+//   given   if info.isGiven: optical lengths towards the only light, summed over all blocks of a larger grid, 3 for
+//           each voxel from the launch's first row on
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float* restrict mean_cosines,
-  __global const float* restrict phase_rows, __global const float4* restrict samples,
-  __global const float4* restrict extinctions, __global const char* restrict bricks,
-  __global const float* restrict absorption, __global const float* restrict straight_on,
-  __global const float* restrict aureole, __global const float* restrict given, __global float* restrict direct)
+  __global const float* restrict phase_rows, __global const float4* restrict sigma,
+  __global const char* restrict bricks, __global const float* restrict absorption,
+  __global const float* restrict straight_on, __global const float* restrict aureole,
+  __global const float* restrict given, __global float* restrict direct)
 {
   const int first = get_global_id(0) * REAL_WIDTH;
   const int j = get_global_id(1) + info.firstRow;
@@ -289,15 +288,16 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     channel_of(scattering, LANE(voxel, n), components, 1) + channel_of(scattering, LANE(voxel, n), components, 2);
   EACH_LANE(SCATTERS)
 #undef SCATTERS
-#if BESIDE
+  if (info.beside)
+  {
 #define SCATTERS_BESIDE(n)                                                                                     \
   if (!(LANE(scatters, n) > 0.0f))                                                                             \
   {                                                                                                            \
     LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), components, info.size) ? 1.0f : 0.0f; \
   }
-  EACH_LANE(SCATTERS_BESIDE)
+    EACH_LANE(SCATTERS_BESIDE)
 #undef SCATTERS_BESIDE
-#endif
+  }
   const int4 begin = info.block.first;
   const real3 centre = { to_real(i + begin.x) + (real)0.5f, (real)((float)(j + begin.y) + 0.5f),
     (real)((float)(k + begin.z) + 0.5f) }; // in the whole grid
@@ -326,12 +326,17 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     {
       continue;
     }
-#if GIVEN
-    const int before = info.size.x * (info.firstRow + info.size.y * info.firstSlice);
-    const rgb depths = triples_of(given, voxel - before, 3, 0);
-#else
-    const rgb depths = depths_on_the_way(&info, &way, centre, samples, extinctions, bricks);
-#endif
+    rgb depths;
+    if (info.isGiven)
+    {
+      depths = triples_of(given, voxel - info.size.x * (info.firstRow + info.size.y * info.firstSlice), 3, 0);
+    }
+    else
+    {
+      real before;
+      const rays packet = clip_to_box(centre, direction_of(&info, &way), way.distance, info.size, &before);
+      depths = depths_on_the_way(&info, &way, packet, sigma, bricks);
+    }
     const rgb arrived = arriving_through(&light, way.arriving, depths);
     // The light travels along -d.
     const real cosine = -(fma(way.d.x, out.x, fma(way.d.y, out.y, way.d.z * out.z))) * out_scale;
@@ -364,16 +369,6 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     towards_eye.b = fma(arrived.b, phase.b, towards_eye.b);
   }
 
-#define KEEP(n)                                         \
-  {                                                     \
-    __global float* kept = direct + 6 * LANE(voxel, n); \
-    kept[0] = LANE(towards_eye.r, n);                   \
-    kept[1] = LANE(towards_eye.g, n);                   \
-    kept[2] = LANE(towards_eye.b, n);                   \
-    kept[3] = LANE(irradiance.r, n);                    \
-    kept[4] = LANE(irradiance.g, n);                    \
-    kept[5] = LANE(irradiance.b, n);                    \
-  }
-  EACH_LANE(KEEP)
-#undef KEEP
+  put_triples(direct, voxel, 6, 0, towards_eye);
+  put_triples(direct, voxel, 6, 3, irradiance);
 }

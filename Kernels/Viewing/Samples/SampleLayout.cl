@@ -1,9 +1,19 @@
-// Indexing of samples, which have a border of one voxel that repeats the outermost voxels: the sample of a work-item,
-// and the voxel whose values it holds.
+// Memory layout of samples: in the order of voxels with a border of one voxel, or in bricks (SampleBricks.h).
 
 #pragma once
-#include "Medium/BrickShared.h"
-#include "Viewing/Samples/SamplePlaces.cl"
+#include "Viewing/Scene/ViewShared.h"
+
+#if BRICKED
+#define SAMPLE_ROWS (GREY ? BrickEdge : SampleEdge) // with GREY a sample holds that of the next row as well
+#define ROW_LENGTH(size) SampleEdge
+#define SLICE_LENGTH(size) (SampleEdge * SAMPLE_ROWS)
+#else
+#define ROW_LENGTH(size) ((size).x + 2)
+#define SLICE_LENGTH(size) (((size).x + 2) * ((size).y + 2))
+#endif
+
+// Indexing of samples, which have a border of one voxel that repeats the outermost voxels: the sample of a work-item,
+// and the voxel whose values it holds.
 
 inline int padded_index(int4 size)
 {

@@ -1,0 +1,159 @@
+// What rays see where they leave or enter the box: environment or colour, reflecting faces, light at the surface of
+// optically thick voxels. The tables are in one array, `backdrop`, from the indices ViewInfo::backdrop on (Backdrop.h).
+
+#pragma once
+#include "Viewing/Samples/Sampling.cl"
+#include "Viewing/Scene/ViewShared.h"
+
+// Angle of (x, y) from +x, in [-pi, pi], to 1e-7. PoCL's atan2 is scalar and costs ten times this.
+inline real angle_of(real y, real x)
+{
+  const real ax = fabs(x);
+  const real ay = fabs(y);
+  const real a = lesser(ax, ay) / greater(greater(ax, ay), (real)1e-30f);
+  const real s = a * a;
+  real p = fma((real)-0.00466877331f, s, (real)0.0241661895f);
+  p = fma(p, s, (real)-0.0593671008f);
+  p = fma(p, s, (real)0.099060969f);
+  p = fma(p, s, (real)-0.14016585f);
+  p = fma(p, s, (real)0.199692354f);
+  p = fma(p, s, (real)-0.333319597f);
+  p = fma(p, s, (real)0.999999898f) * a;
+  p = ay > ax ? (real)M_PI_2_F - p : p;
+  p = x < (real)0.0f ? (real)M_PI_F - p : p;
+  return copysign(p, y);
+}
+
+// Radiance of the environment in each direction, given in the environment's axes; the same as Lookup in Lights.h. The
+// picture has an additional column on either side, for periodic interpolation around z.
+inline rgb look_up(__global const float4* environment, real3 d, int4 size)
+{
+  const real polar = angle_of(sqrt(fma(d.x, d.x, d.y * d.y)), d.z);
+  real turn = angle_of(d.y, d.x) * (real)(0.5f * M_1_PI_F);
+  turn = turn < (real)0.0f ? turn + (real)1.0f : turn;
+  const real column = fma(turn, (real)(float)size.x, (real)-0.5f);
+  const real row = fma(polar, (real)(-M_1_PI_F * (float)size.y), (real)((float)size.y - 0.5f));
+  const real left = floor(column);
+  const real below = floor(row);
+  const real x = column - left;
+  const real y = row - below;
+  const integer i = to_integer(lesser(greater(left, (real)-1.0f), (real)(float)(size.x - 1))) + 1;
+  const real last = (real)(float)(size.y - 1);
+  const integer j0 = to_integer(lesser(greater(below, (real)0.0f), last)) * (size.x + 2) + i;
+  const integer j1 = to_integer(lesser(greater(below + (real)1.0f, (real)0.0f), last)) * (size.x + 2) + i;
+  return between_four(environment, j0, j1, x, y);
+}
+
+// Background radiance seen in each direction d, in world coordinates.
+inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* backdrop)
+{
+  rgb behind = { (real)v->background.x, (real)v->background.y, (real)v->background.z };
+  if (v->environment.x > 0)
+  {
+    const float4* m = v->toPicture;
+    const real3 turned = { d.x * m[0].x + d.y * m[0].y + d.z * m[0].z, d.x * m[1].x + d.y * m[1].y + d.z * m[1].z,
+      d.x * m[2].x + d.y * m[2].y + d.z * m[2].z };
+    const rgb seen = look_up(backdrop + v->backdrop.x, turned, v->environment);
+    behind.r += seen.r;
+    behind.g += seen.g;
+    behind.b += seen.b;
+  }
+  return behind;
+}
+
+// Finds the point at which a ray crosses a face of the box, in tables over the face cells: [face][row][cell of the
+// row], faces -x to +z, each with a border of one cell that repeats the outermost cells.
+
+typedef struct
+{
+  integer by_x, by_y; // whether the face's normal is along x, along y; neither: along z
+  integer face;       // -x, +x, -y, +y, -z, +z
+  integer at, row;    // index of the cell below and to the left, and cells per row
+  real a, b;          // interpolation weights of the next cell along the row, and of the next row
+} face_place;
+
+// Finds the face that a ray through point p, traced back against its direction, meets first.
+inline face_place face_behind(real3 p, real3 direction, int4 size)
+{
+  // The face with the shortest time since the ray crossed its plane.
+#define SINCE(c) \
+  ((direction.c > (real)0.0f ? p.c : (real)(float)size.c - p.c) / greater(fabs(direction.c), (real)1e-20f))
+  const real x = SINCE(x), y = SINCE(y), z = SINCE(z);
+#undef SINCE
+  face_place to;
+  to.by_x = (x <= y) & (x <= z);
+  to.by_y = (to.by_x == 0) & (y <= z);
+  const integer back = (to.by_x ? direction.x : to.by_y ? direction.y : direction.z) < (real)0.0f;
+  const integer one = (integer)1, none = (integer)0;
+  to.face = (to.by_x ? none : to.by_y ? (integer)2 : (integer)4) + (back ? one : none);
+
+  const int cells_x = (size.y + 2) * (size.z + 2), cells_y = (size.x + 2) * (size.z + 2),
+            cells_z = (size.x + 2) * (size.y + 2);
+  const integer first = to.by_x ? (back ? (integer)cells_x : (integer)0)
+    : to.by_y                   ? (back ? (integer)(2 * cells_x + cells_y) : (integer)(2 * cells_x))
+              : (back ? (integer)(2 * cells_x + 2 * cells_y + cells_z) : (integer)(2 * cells_x + 2 * cells_y));
+  to.row = to.by_x ? (integer)(size.y + 2) : (integer)(size.x + 2);
+  const real u = (to.by_x ? p.y : p.x) + (real)0.5f;
+  const real v = (to.by_x | to.by_y ? p.z : p.y) + (real)0.5f;
+  const integer i = to_integer(u);
+  const integer j = to_integer(v);
+  to.at = first + j * to.row + i;
+  to.a = u - to_real(i);
+  to.b = v - to_real(j);
+  return to;
+}
+
+// Reflecting faces of the box, seen from inside: matt ground, snow, a table.
+
+// Radiance that rays see behind the medium: that of a reflecting face if they leave through one, else `behind`.
+//   p     a point, in voxels, from which the ray leaves the box in a straight line
+//   size  voxels of the box of which the table has the faces
+inline rgb ground_or_behind(
+  const ViewInfo* v, __global const float4* backdrop, real3 p, real3 direction, integer leaves, int4 size, rgb behind)
+{
+  const real3 back = { -direction.x, -direction.y, -direction.z };
+  const face_place to = face_behind(p, back, size);
+  const integer is_ground = leaves & (((integer)v->environment.z >> to.face & (integer)1) != (integer)0);
+#if SHOWN == 2
+  const rgb seen = { (real)0.0f, (real)0.0f, (real)0.0f }; // it is in the picture already
+#else
+  const rgb seen = between_four(backdrop + v->backdrop.y, to.at, to.at + to.row, to.a, to.b);
+#endif
+  const rgb light = { is_ground ? seen.r : behind.r, is_ground ? seen.g : behind.g, is_ground ? seen.b : behind.b };
+  return light;
+}
+
+// Surface light of optically thick voxels, added where rays enter the box.
+
+// Lagrange basis polynomial at cosine x, for the node a among the cosines 0.05, 0.25, 0.6 and 1 (SurfaceCosines in
+// BoxFaces.h).
+#define PART_AT(x, a, b, c, d) (((x)-b) * ((x)-c) * ((x)-d) * (1.0f / ((a - b) * (a - c) * (a - d))))
+
+// Correction for the march of rays that enter the box: radiance at the eye; 0 for rays that start inside.
+//   d       unit vectors along the rays, world
+//   before  length in front of the entry; 0 for rays that do not enter
+inline rgb surface_light(
+  const ViewInfo* v, __global const float4* backdrop, rays packet, real3 d, real before, int4 size)
+{
+  __global const float4* table = backdrop + v->backdrop.z;
+  const face_place to = face_behind(packet.entry, packet.direction, size);
+  const real mu = fabs(to.by_x ? d.x : to.by_y ? d.y : d.z);
+  const int all = 2 * ((size.y + 2) * (size.z + 2) + (size.x + 2) * (size.z + 2) + (size.x + 2) * (size.y + 2));
+
+  rgb sum = { (real)0.0f, (real)0.0f, (real)0.0f };
+  const integer enters = before > (real)0.0f;
+#define ADD(n, part)                                                                   \
+  {                                                                                    \
+    const rgb seen = between_four(table + n * all, to.at, to.at + to.row, to.a, to.b); \
+    const real weight = enters ? part : (real)0.0f;                                    \
+    sum.r = fma(seen.r, weight, sum.r);                                                \
+    sum.g = fma(seen.g, weight, sum.g);                                                \
+    sum.b = fma(seen.b, weight, sum.b);                                                \
+  }
+  ADD(0, PART_AT(mu, 0.05f, 0.25f, 0.6f, 1.0f))
+  ADD(1, PART_AT(mu, 0.25f, 0.05f, 0.6f, 1.0f))
+  ADD(2, PART_AT(mu, 0.6f, 0.05f, 0.25f, 1.0f))
+  ADD(3, PART_AT(mu, 1.0f, 0.05f, 0.25f, 0.6f))
+#undef ADD
+  return sum;
+}
