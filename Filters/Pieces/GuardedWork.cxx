@@ -5,7 +5,7 @@
 #include "Common/ImageInput.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportWriting.h"
-#include "Device/CompilationListener.h"
+#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Pieces/ControllerCommunicator.h"
 #include "Pieces/GatheredImage.h"

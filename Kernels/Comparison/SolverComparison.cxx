@@ -1,7 +1,7 @@
 #include "Comparison/SolverComparison.h"
 
 #include "Comparison/ConvergedLight.h"
-#include "Device/CompilationListener.h"
+#include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 #include "LightPropagation/Published/PublishedModel.h"

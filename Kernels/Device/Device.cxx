@@ -1,14 +1,11 @@
 #include "Device/Device.h"
 
-#include "Device/CompilationListener.h"
 #include "Device/HostMemory.h"
 #include "Device/PoclCache.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <cstdlib>
-#include <future>
 #include <optional>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -20,10 +17,6 @@ namespace tyndall
 namespace
 {
 const char* const Pocl = "portable computing language"; ///< part of PoCL's platform name
-
-/// Prepended to every source. Clang warns that the calling convention of wide vectors depends on the target; kernel
-/// functions are never called from outside, so it does not matter.
-const char* const WideVectors = "#ifdef __clang__\n#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n";
 
 std::string Lower(std::string text)
 {
@@ -45,7 +38,6 @@ struct Shared
   std::map<std::string, std::shared_ptr<Device>> Devices;
   std::optional<PoclCache> Cache; ///< set once PoCL has been asked for devices
   std::vector<std::string> Warnings;
-  std::atomic<bool> HasCompiled{ false }; ///< whether a program was compiled rather than read from the cache
 };
 
 /// Never destroyed: an OpenCL platform may be unloaded before our statics are destroyed, and must not be called then.
@@ -58,7 +50,7 @@ Shared& TheShared()
 /// Called at the end of the process, so that the next one can detect files that were damaged since.
 void NoteWhatWasCompiled()
 {
-  if (TheShared().HasCompiled)
+  if (KernelPrograms::HaveCompiled())
   {
     NoteChecksums(TheShared().Cache->folder);
   }
@@ -75,8 +67,7 @@ std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
 {
   if (IsPocl(platform) && !shared.Cache)
   {
-    CompileForAnyGroup();
-    shared.Cache = ChoosePoclCache();
+    shared.Cache = PreparePocl();
     std::atexit(NoteWhatWasCompiled);
     if (!shared.Cache->warning.empty())
     {
@@ -232,19 +223,19 @@ Device::Device(const cl::Platform& platform, const cl::Device& device, std::stri
   : TheDevice(device)
   , DeviceName(device.getInfo<CL_DEVICE_NAME>() + " [" + platform.getInfo<CL_PLATFORM_NAME>() + "]")
   , Extensions(device.getInfo<CL_DEVICE_EXTENSIONS>())
-  , CacheFolder(std::move(cacheFolder))
   , Cpu(IsTakenAsCpu(device))
   , Units(static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()))
   , VectorWidth(static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>()))
   , LargestAllocation(device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>())
   , Memory(MemoryOf(device))
   , OnHost(HostMemory() / 4 * 3)
-  , Programs(std::make_shared<KeptPrograms>())
 {
   try
   {
     this->TheContext = cl::Context(device);
     this->TheQueue = cl::CommandQueue(this->TheContext, device);
+    this->Programs =
+      std::make_shared<KernelPrograms>(this->TheContext, device, this->DeviceName, std::move(cacheFolder));
   }
   catch (const cl::Error& error)
   {
@@ -259,7 +250,6 @@ Device::Device(Device& whole, const MemoryBudget& budget)
   , TheQueue(whole.TheQueue)
   , DeviceName(whole.DeviceName)
   , Extensions(whole.Extensions)
-  , CacheFolder(whole.CacheFolder)
   , Cpu(whole.Cpu)
   , Units(whole.Units)
   , VectorWidth(whole.VectorWidth)
@@ -284,132 +274,23 @@ bool Device::HasExtension(const std::string& name) const
   return !IsHidden(name) && (" " + this->Extensions + " ").find(" " + name + " ") != std::string::npos;
 }
 
-namespace
-{
-/// Advice for failures without a reported reason; empty if the platform has no known cache.
-std::string AdviceOnCache(const std::string& folder)
-{
-  return folder.empty()
-    ? std::string()
-    : " Its compiled kernels in \"" + folder + "\" may be damaged: delete that folder and start again.";
-}
-
-}
-
 cl::Kernel Device::Kernel(const char* name, std::string_view source, const std::string& options)
 {
-  try
-  {
-    const cl::Program program = this->ProgramOf(
-      name, std::string(source), "-cl-std=CL1.2 -DFOR_CPU=" + std::to_string(this->Cpu) + " " + options);
-    NoteKernel(program(), name);
-    return cl::Kernel(program, name);
-  }
-  catch (const cl::Error& error)
-  {
-    throw DeviceError("The kernel " + std::string(name) + " cannot be made on " + this->DeviceName + ": " +
-      error.what() + " gave " + std::to_string(error.err()) + "." + AdviceOnCache(this->CacheFolder));
-  }
+  return this->Programs->Kernel(name, source, "-DFOR_CPU=" + std::to_string(this->Cpu) + " " + options);
 }
 
-namespace
+std::string NameWithStreaming(const Device& ofSolve)
 {
-std::unique_lock<std::timed_mutex> LockHeard(std::timed_mutex& mutex)
-{
-  std::unique_lock<std::timed_mutex> lock(mutex, std::defer_lock);
-  if (const CompilationListener* listener = CompilationListener::OfThisThread())
+  const auto inMiB = [](std::size_t bytes) {
+    return std::to_string((bytes + (std::size_t(1) << 20) - 1) >> 20) + " MiB";
+  };
+  if (ofSolve.PeakHostBytes() == 0)
   {
-    listener->Wait([&](auto patience) { return lock.try_lock_for(patience); });
+    return ofSolve.Name();
   }
-  else
-  {
-    lock.lock();
-  }
-  return lock;
-}
-
-/// @return whether it took too long to have been read from a cache; false without a listener
-bool CallHeard(const std::function<void()>& build)
-{
-  const CompilationListener* listener = CompilationListener::OfThisThread();
-  if (!listener)
-  {
-    build();
-    return false;
-  }
-  std::future<void> built = std::async(std::launch::async, build);
-  const bool tookLong =
-    listener->Wait([&](auto patience) { return built.wait_for(patience) == std::future_status::ready; });
-  built.get();
-  return tookLong;
-}
-
-/// Builds a program.
-/// @return the compiler's log if it fails; empty if it succeeds
-std::string LogOfFailure(cl::Program& program, const cl::Device& device, const std::string& options, bool& tookLong)
-{
-  try
-  {
-    tookLong = CallHeard([&] { program.build({ device }, options.c_str()); }) || tookLong;
-    return {};
-  }
-  catch (const cl::Error& failed)
-  {
-    const std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
-    return log.empty() ? "OpenCL code " + std::to_string(failed.err()) : log;
-  }
-}
-}
-
-cl::Program Device::ProgramOf(const char* kernel, const std::string& text, const std::string& options)
-{
-  std::shared_ptr<KeptProgram> kept;
-  {
-    const std::lock_guard<std::mutex> lock(this->Programs->Guard);
-    std::shared_ptr<KeptProgram>& known = this->Programs->All[options + '\n' + text];
-    if (!known)
-    {
-      known = std::make_shared<KeptProgram>();
-    }
-    kept = known;
-  }
-  const std::unique_lock<std::timed_mutex> lock = LockHeard(kept->Building);
-  if (!kept->IsBuilt)
-  {
-    kept->Program = this->Build(kernel, text, options);
-    kept->IsBuilt = true;
-  }
-  return kept->Program;
-}
-
-cl::Program Device::Build(const char* kernel, const std::string& text, const std::string& options)
-{
-  if (!this->CacheFolder.empty())
-  {
-    RequireRoom(this->CacheFolder);
-  }
-  const WhileCompiling compiling;
-  const BuildMark mark(this->CacheFolder);
-  constexpr double ofCompiling = 0.1; // seconds; a shorter build was read from the cache
-  const double begun = ClockSeconds();
-  cl::Program program;
-  bool tookLong = false;
-  const std::string log = BuildBesideOthers([&] {
-    program = cl::Program(this->TheContext, WideVectors + text);
-    return LogOfFailure(program, this->TheDevice, options, tookLong);
-  });
-  if (!log.empty())
-  {
-    throw DeviceError("The kernel " + std::string(kernel) + " does not build on " + this->DeviceName + " with \"" +
-      options + "\":\n" + log +
-      (log.find("error") == std::string::npos ? AdviceOnCache(this->CacheFolder) : std::string()));
-  }
-  TheShared().HasCompiled = TheShared().HasCompiled || ClockSeconds() - begun > ofCompiling;
-  if (tookLong)
-  {
-    this->Programs->CompiledSince = true;
-  }
-  return program;
+  return ofSolve.Name() + ": " + inMiB(ofSolve.PeakBytes()) + " within the memory budget, " +
+    inMiB(ofSolve.PeakHostBytes()) +
+    (ofSolve.SharesHostMemory() ? " of volumes in host memory, in place" : " streamed from host memory");
 }
 
 namespace
@@ -562,7 +443,7 @@ void Device::TakePages(const cl::Buffer& memory, std::size_t bytes) const
 void Device::AwaitFirstRuns()
 {
   const CompilationListener* listener = CompilationListener::OfThisThread();
-  if (!listener || !this->Programs->CompiledSince.exchange(false))
+  if (!listener || !this->Programs->TakeCompiled())
   {
     return;
   }

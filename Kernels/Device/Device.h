@@ -1,18 +1,15 @@
 #pragma once
 
 #include "Device/Clock.h"
-#include "Device/CompilationListener.h"
 #include "Device/Errors.h"
+#include "Device/KernelPrograms.h"
 #include "Device/MemoryBudget.h"
-#include "Device/MemoryCount.h"
 #include "Device/OpenCL.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -119,34 +116,15 @@ public:
   void SetClock(Clock clock) { this->TheClock = std::move(clock); }
 
 private:
-  /// A program, built by the thread that needs it first. Only threads that need the same program wait.
-  struct KeptProgram
-  {
-    std::timed_mutex Building;
-    cl::Program Program;
-    bool IsBuilt = false;
-  };
-
-  /// Programs built for the device, shared by all views of it.
-  struct KeptPrograms
-  {
-    std::mutex Guard; ///< protects the map, not its elements
-    std::map<std::string, std::shared_ptr<KeptProgram>> All;
-    std::atomic<bool> CompiledSince{ false }; ///< a program was compiled since the last wait for the queue
-  };
-
   static bool IsHidden(const std::string& name);
   [[noreturn]] void Complain(const char* what, std::size_t bytes, const std::string& cause, const char* advice) const;
   Allocation AllocateOnHost(std::size_t bytes, cl_mem_flags flags, const char* what);
-  cl::Program ProgramOf(const char* kernel, const std::string& text, const std::string& options);
-  cl::Program Build(const char* kernel, const std::string& text, const std::string& options);
 
   cl::Device TheDevice;
   cl::Context TheContext;
   cl::CommandQueue TheQueue;
   std::string DeviceName;
   std::string Extensions;
-  std::string CacheFolder;
   bool Cpu = true;
   int Units = 1;
   int VectorWidth = 1;
@@ -157,6 +135,59 @@ private:
   MemoryCount OnHost;
   std::atomic<double> SecondsQueued{ 0.0 };
   Clock TheClock = WorkSeconds;
-  std::shared_ptr<KeptPrograms> Programs;
+  std::shared_ptr<KernelPrograms> Programs; ///< shared by all views of the device
 };
+
+/// The device's name for the user, followed, if a solve used host memory, by how much lay on the device and how much in
+/// host memory.
+/// @param ofSolve  the device with the solve's budget
+std::string NameWithStreaming(const Device& ofSolve);
+
+/// A compiler option that defines a macro for a kernel.
+inline std::string Define(const char* name, int value)
+{
+  return std::string(" -D") + name + "=" + std::to_string(value);
+}
+
+/// Work-group size for work-items that each process much data, a row or more. CPU: 1, so that all threads get some.
+/// GPU: the driver's choice, since groups of one would leave most lanes idle.
+/// @param dimensions  dimensions of the range, 1 to 3
+inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
+{
+  return !device.IsCpu() ? cl::NullRange
+    : dimensions == 1    ? cl::NDRange(1)
+    : dimensions == 2    ? cl::NDRange(1, 1)
+                         : cl::NDRange(1, 1, 1);
+}
+
+/// Runs a kernel over a range of work-items; over an empty range nothing.
+inline void Launch(
+  Device& device, const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group = cl::NullRange)
+{
+  const std::size_t* sizes = items.get();
+  if (std::find(sizes, sizes + items.dimensions(), 0) == sizes + items.dimensions())
+  {
+    device.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, items, group);
+  }
+}
+
+/// Work-items per group in sums by groups (Numerics/GroupSum.cl); 1 on a CPU.
+inline int SummingGroup(const Device& device)
+{
+  return device.IsCpu() ? 1 : 128;
+}
+
+/// Compiler option that defines GROUP for kernels that sum by groups.
+inline std::string SummingOption(const Device& device)
+{
+  return Define("GROUP", SummingGroup(device));
+}
+
+/// Runs a summing kernel with `groups` groups per channel.
+inline void RunSummingGroups(Device& device, const cl::Kernel& kernel, std::size_t groups, std::size_t channels = 1)
+{
+  const auto items = static_cast<std::size_t>(SummingGroup(device));
+  device.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, cl::NDRange(groups * items, channels), cl::NDRange(items, 1));
+}
 }

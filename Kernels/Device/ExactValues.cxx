@@ -1,6 +1,6 @@
 #include "Device/ExactValues.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 
 namespace tyndall
 {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <limits>
 
@@ -21,5 +22,46 @@ enum class Residence
 {
   AsBudgetSays,
   Device ///< as long as there is room: what kernels work in all the time
+};
+
+/// Lock-free, thread-safe count of the bytes allocated out of a limit.
+class MemoryCount
+{
+public:
+  explicit MemoryCount(std::size_t limit)
+    : Most(limit)
+  {
+  }
+
+  std::size_t Limit() const { return this->Most; }
+  std::size_t InUse() const { return this->Taken; }
+  std::size_t Left() const { return this->Most - this->Taken; }
+  std::size_t Peak() const { return this->Largest; } ///< largest InUse since ResetPeak
+  void ResetPeak() { this->Largest = this->InUse(); }
+
+  /// @return whether enough bytes were left; if not, none are taken
+  bool Take(std::size_t bytes)
+  {
+    std::size_t before = this->Taken;
+    do
+    {
+      if (bytes > this->Most - before)
+      {
+        return false;
+      }
+    } while (!this->Taken.compare_exchange_weak(before, before + bytes));
+    for (std::size_t peak = this->Largest; peak < before + bytes;)
+    {
+      this->Largest.compare_exchange_weak(peak, before + bytes);
+    }
+    return true;
+  }
+
+  /// Returns bytes obtained by Take.
+  void GiveBack(std::size_t bytes) { this->Taken -= bytes; }
+
+private:
+  const std::size_t Most;
+  std::atomic<std::size_t> Taken{ 0 }, Largest{ 0 };
 };
 }

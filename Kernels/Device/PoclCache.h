@@ -12,16 +12,22 @@ struct PoclCache
 {
   /// Free space that is required, bytes; the kernels of a scene take a part of it.
   static constexpr std::size_t Room = std::size_t(8) << 20;
+  static constexpr const char* Damaged = ".damaged"; ///< appended to the names of damaged files
 
   std::string folder;
   std::string warning; ///< why the folder is not PoCL's default, and what to do; empty if it is
 };
 
-/// Chooses PoCL's default folder (POCL_CACHE_DIR, or one of the user's) if it is writable; else a private one in the
-/// temporary directory. In that case it sets POCL_CACHE_DIR, so it must be called before PoCL is asked for devices.
-/// Damaged files are set aside.
-/// @throws DeviceError if neither is writable
-PoclCache ChoosePoclCache();
+/// Prepares PoCL before it is asked for devices; call it before any such OpenCL call, since PoCL reads its
+/// environment then. This is the only place where the process's environment is changed: PoCL has no other interface for
+/// these settings.
+///  - POCL_CACHE_DIR: left alone if PoCL's own folder (POCL_CACHE_DIR, or one of the user's) is writable; else a
+///    private folder in the temporary directory. Damaged files in it are set aside.
+///  - POCL_WORK_GROUP_SPECIALIZATION, unless it is set: 0, so that kernels are compiled once for any work-group size,
+///    and not again for nearly every new grid.
+/// Later calls return the same.
+/// @throws DeviceError if no folder is writable
+const PoclCache& PreparePocl();
 
 /// Why `bytes` bytes cannot be written to a folder, which is created if missing; empty if they can.
 std::string WhyNotWritable(const std::string& folder, std::size_t bytes = PoclCache::Room);
@@ -59,11 +65,6 @@ DamagedFiles SetDamagedAside(const std::string& folder);
 
 /// Notes the checksums of files that PoCL has written to the folder since the last call.
 void NoteChecksums(const std::string& folder);
-
-/// Prevents PoCL from compiling a kernel again for each work-group size, i.e. for nearly every new grid: sets the
-/// environment variable POCL_WORK_GROUP_SPECIALIZATION to 0 unless it is set, so that kernels are compiled once for any
-/// size. Call it before the first kernel is compiled.
-void CompileForAnyGroup();
 
 /// Checks free space; quick enough to be called before every program build.
 /// @throws DeviceError if the disk of the folder, which PoCL already uses, has become full

@@ -1,8 +1,7 @@
 #include "DiscreteOrdinates/AngularScattering.h"
 
 #include "Device/Batches.h"
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "TyndallKernelSources.h"
 

@@ -1,10 +1,9 @@
 #include "DiscreteOrdinates/ChannelArrays.h"
 
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Emission/UncollidedEmission.h"
-#include "LightPropagation/Sweep/SweepOfDevice.h"
+#include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/BoxFaces.h"

@@ -5,7 +5,7 @@
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
-#include "LightPropagation/Sweep/SweepWorkspace.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 

@@ -1,7 +1,6 @@
 #include "DiscreteOrdinates/LampScattering.h"
 
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"

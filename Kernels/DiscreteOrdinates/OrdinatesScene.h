@@ -11,7 +11,7 @@
 #include "LightPropagation/Conservative/FaceLight.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/PropagationSettings.h"
-#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"

@@ -3,7 +3,6 @@
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "Distribution/Communicator.h"
 #include "Distribution/Domain.h"
-#include "LightPropagation/Sweep/Pipelined/BlockContact.h"
 #include "LightPropagation/Sweep/Pipelined/SweepSchedule.h"
 
 #include <array>

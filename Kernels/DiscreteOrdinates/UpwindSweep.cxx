@@ -1,8 +1,7 @@
 #include "DiscreteOrdinates/UpwindSweep.h"
 
 #include "Device/Batches.h"
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"

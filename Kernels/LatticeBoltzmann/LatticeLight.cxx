@@ -1,6 +1,6 @@
 #include "LatticeBoltzmann/LatticeLight.h"
 
-#include "Device/DeviceWords.h"
+#include "Device/Device.h"
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"

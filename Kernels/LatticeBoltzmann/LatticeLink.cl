@@ -15,11 +15,7 @@
 #define FOR_DIRECTIONS(i) _Pragma("unroll") for (int i = 0; i < DIRECTIONS; ++i)
 
 // All links transmit everything and reflect nothing.
-#if PASSES_ALL && !BENDS && !REFLECTS
-#define PLAIN 1
-#else
-#define PLAIN 0
-#endif
+#define PLAIN (PASSES_ALL && !BENDS && !REFLECTS)
 
 __constant char Ways[18][3] = LATTICE_WAYS;
 

@@ -2,7 +2,7 @@
 //   STREAMS  1: densities exceed the caches; use streaming stores if the compiler has them
 #include "LatticeBoltzmann/LatticeLink.cl"
 
-#if STREAMS && defined(__has_builtin)
+#ifdef __has_builtin
 #if __has_builtin(__builtin_nontemporal_store)
 #define STORE_PAST_CACHES 1
 #endif
@@ -34,7 +34,7 @@ static void store_some(float16 values, __global float* to, ulong at, int voxels)
 static void store_densities(float16 values, __global float* to, ulong at, int voxels)
 {
 #ifdef STORE_PAST_CACHES
-  if (voxels >= WIDTH)
+  if (STREAMS && voxels >= WIDTH)
   {
     __builtin_nontemporal_store(values, (__global float16*)(to + at));
     return;

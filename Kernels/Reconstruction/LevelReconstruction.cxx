@@ -1,7 +1,7 @@
 #include "Reconstruction/Reconstruction.h"
 
 #include "Device/Batches.h"
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/HostThreads.h"
 #include "Device/Sizes.h"
 #include "Reconstruction/LightPyramid.h"

@@ -1,7 +1,6 @@
 #include "Reconstruction/LightPyramid.h"
 
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Numerics/PyramidLayout.h"
 #include "TyndallKernelSources.h"
 

@@ -41,7 +41,7 @@ struct Note
 Note NoteOfAll()
 {
   const char* device = std::getenv("TYNDALL_DEVICE");
-  return { tyndall::ChoosePoclCache().folder + "/tyndall-prepared", LibraryVersion() + (device ? device : "") + "\n" };
+  return { tyndall::PreparePocl().folder + "/tyndall-prepared", LibraryVersion() + (device ? device : "") + "\n" };
 }
 
 /// Runs at the lowest priority, and ends with the parent process.

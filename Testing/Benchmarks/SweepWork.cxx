@@ -75,8 +75,9 @@ SweepWork CountSweepWork(const Device& device, const Medium& medium, int directi
   for (int axis = 0; axis < 3; ++axis)
   {
     const std::vector<Bundle> bundles = BundlesAlong(axis, grid, {}, set, 1);
-    const SweepPlan plan(
-      device, grid, VoxelBox{}, axis, bundles, channels, {}, false, false, nullptr, {}, false, false);
+    SweepDescription sweep = { grid };
+    sweep.channels = channels;
+    const SweepPlan plan(device, sweep, { axis, bundles });
     const double thin = ThinRows(medium, plan.axes, plan.plane.thin);
     for (const Bundle& bundle : bundles)
     {

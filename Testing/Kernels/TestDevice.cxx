@@ -2,7 +2,7 @@
 
 #include "Device/Batches.h"
 #include "Device/Buffer.h"
-#include "Device/CompilationListener.h"
+#include "Device/Clock.h"
 #include "Device/HostMemory.h"
 #include "TyndallKernelSources.h"
 

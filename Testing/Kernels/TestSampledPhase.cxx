@@ -3,7 +3,7 @@
 #include "DeviceTest.h"
 #include "MediumScene.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Numerics/Legendre.h"
 #include "Photons/Scattering/PhotonScattering.h"
 #include "TyndallKernelSources.h"

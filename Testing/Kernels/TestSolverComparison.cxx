@@ -2,7 +2,7 @@
 
 #include "Comparison/PhotonReference.h"
 #include "Comparison/SolverComparison.h"
-#include "Device/CompilationListener.h"
+#include "Device/Clock.h"
 #include "Medium/Coarsening.h"
 
 #include <gtest/gtest.h>

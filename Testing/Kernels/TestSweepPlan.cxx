@@ -20,7 +20,9 @@ SweepPlan PlanOf(const Device& device, const std::array<int, 3>& size, int axis)
 {
   const Grid grid = { size, { 1.0, 1.0, 1.0 } };
   const std::vector<Bundle> bundles = BundlesAlong(axis, grid, {}, FittedDirections(25), 1);
-  return SweepPlan(device, grid, { { 0, 0, 0 }, size }, axis, bundles, 3, {}, false, false, nullptr, {}, false, false);
+  SweepDescription sweep = { grid };
+  sweep.channels = 3;
+  return SweepPlan(device, sweep, { axis, bundles });
 }
 }
 

@@ -1,6 +1,6 @@
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "DiscreteOrdinates/ChannelArrays.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "Medium/BoxFaces.h"

@@ -1,6 +1,6 @@
 #include "LatticeBoltzmann/Steady/LinesOfLinks.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "LatticeBoltzmann/LatticeShared.h"
 #include "TyndallKernelSources.h"
 

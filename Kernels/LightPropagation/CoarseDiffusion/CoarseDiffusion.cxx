@@ -1,6 +1,6 @@
 #include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
 
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
 #include "Medium/BoxFaces.h"

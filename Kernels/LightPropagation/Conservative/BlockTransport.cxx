@@ -1,6 +1,6 @@
 #include "LightPropagation/Conservative/BlockTransport.h"
 
-#include "LightPropagation/Sweep/SweepOfDevice.h"
+#include "LightPropagation/Sweep/SweepInMemory.h"
 
 namespace tyndall
 {

@@ -4,8 +4,8 @@
 #include "Distribution/Domain.h"
 #include "LightPropagation/Sweep/Pipelined/AcrossFaces.h"
 #include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
+#include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
-#include "LightPropagation/Sweep/SweepWorkspace.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 

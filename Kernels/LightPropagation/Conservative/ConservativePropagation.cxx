@@ -1,6 +1,6 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
-#include "Device/DeviceWords.h"
+#include "Device/Device.h"
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
 #include "Distribution/SharedMedium.h"

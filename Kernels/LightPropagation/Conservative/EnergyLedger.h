@@ -2,7 +2,7 @@
 
 #include "Device/Clock.h"
 #include "Light/LightField.h"
-#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 
 #include <array>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "LightPropagation/Conservative/FaceLight.h"
 
-#include "LightPropagation/Sweep/SpreadAside.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>

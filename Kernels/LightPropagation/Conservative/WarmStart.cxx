@@ -1,6 +1,6 @@
 #include "LightPropagation/Conservative/WarmStart.h"
 
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Distribution/SharedLight.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"

@@ -1,6 +1,6 @@
 #include "LightPropagation/Diffusion/AndersonMixing.h"
 
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 
 #include "TyndallKernelSources.h"

@@ -1,6 +1,6 @@
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"

@@ -58,7 +58,7 @@ static float passes_border(float tau, float r, float k)
 // Adds the light of one lamp that crosses faces directly after first scattering (numerics.md, Eqs. (66) to (69)).
 // path           of the lamp, W length
 // swept          sigma_t of the sweeps: larger than sigma_t if scattering is not taken as isotropic
-// first_moments  of the lamp's deposit, as in Sweep/Deposit.h, [channel][face][stride]
+// first_moments  of the lamp's deposit, as in Sweep/SweepOperator.h, [channel][face][stride]
 // passed         [channel][face][stride] W, added to
 // all_path       of all lamps, W length, added to
 __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,

@@ -20,7 +20,7 @@ struct LampLight
   const Buffer<float>* sigma_s;
   const Buffer<float>* swept;        ///< sigma_t of the sweeps
   const Buffer<float>* path;         ///< W length, of the lamp
-  const Buffer<float>* firstMoments; ///< first moments of the lamp's deposit, as in Sweep/Deposit.h
+  const Buffer<float>* firstMoments; ///< first moments of the lamp's deposit, as in Sweep/SweepOperator.h
   const Buffer<float>* passed;       ///< W, added to
   const Buffer<float>* allPath;      ///< W length, added to
 };

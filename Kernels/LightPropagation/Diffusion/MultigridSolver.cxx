@@ -1,7 +1,6 @@
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 
 #include "TyndallKernelSources.h"

@@ -1,7 +1,6 @@
 #include "LightPropagation/Emission/EmissionFans.h"
 
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

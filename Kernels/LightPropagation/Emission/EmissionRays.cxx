@@ -9,7 +9,7 @@
 #include "TyndallKernelSources.h"
 
 #include "Device/Batches.h"
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "LightPropagation/PropagationSettings.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Emission/EmissionPeaks.h"
-#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 
 #include "Device/Monitor.h"
@@ -20,8 +20,8 @@ namespace tyndall
 /// Guarantees: the light has the symmetries of the scene, and absorbed, scattered and escaped power add up to the
 /// emitted power.
 ///
-/// Requires that no axis is periodic. Does not compute first moments of the deposit (Deposit.h): the loss is taken as
-/// uniform in each voxel.
+/// Requires that no axis is periodic. Does not compute first moments of the deposit (Deposit::firstMoments): the loss
+/// is taken as uniform in each voxel.
 ///
 /// @param firstChannel  the peak's channel that is the volume's first one
 /// @param error  accepted difference of the two halves of a voxel's rays, relative to their sum

@@ -1,6 +1,6 @@
 #include "LightPropagation/Published/ParallelPropagation.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Uncollided/GivenLight.h"

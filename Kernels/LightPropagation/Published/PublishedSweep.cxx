@@ -1,6 +1,6 @@
 #include "LightPropagation/Published/PublishedSweep.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "TyndallKernelSources.h"
 

@@ -3,7 +3,7 @@
 #include "Device/Buffer.h"
 #include "LightPropagation/Published/PublishedModel.h"
 #include "LightPropagation/Published/PublishedVolumes.h"
-#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 
 #include <array>
 #include <functional>

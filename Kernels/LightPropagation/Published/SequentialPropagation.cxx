@@ -2,7 +2,7 @@
 
 #include "Light/ChannelReduction.h"
 #include "LightPropagation/Published/OrderLedger.h"
-#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 
 #include <algorithm>

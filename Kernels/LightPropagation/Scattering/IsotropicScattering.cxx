@@ -1,7 +1,6 @@
 #include "LightPropagation/Scattering/IsotropicScattering.h"
 
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/Constants.h"

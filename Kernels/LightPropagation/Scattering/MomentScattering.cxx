@@ -1,6 +1,6 @@
 #include "LightPropagation/Scattering/MomentScattering.h"
 
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Device/ExactValues.h"
-#include "LightPropagation/Sweep/Deposit.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "Lights/Lights.h"
 
 #include <array>

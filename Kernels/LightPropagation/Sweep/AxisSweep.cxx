@@ -1,295 +1,202 @@
 #include "LightPropagation/Sweep/AxisSweep.h"
 
-#include "Device/Defines.h"
-#include "Device/ExactValues.h"
-#include "Device/GroupSize.h"
-#include "LightPropagation/Sweep/Slices/SliceStream.h"
-#include "LightPropagation/Sweep/SweepBorder.h"
-#include "LightPropagation/Sweep/SweepDefines.h"
+#include "Device/Device.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
-#include "LightPropagation/Sweep/SweepPlan.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <map>
 #include <string>
 
 namespace tyndall
 {
-namespace
+AxisSweep::AxisSweep(Device& device, const SweepVolume& volume, const AxisBundles& rays,
+  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
+  : TheDevice(device)
+  , Plan(device, Describe(volume, periodic), rays)
+  , Workspace(workspace)
+  , SameBoundary(sameBoundary)
+  , Kernel(device, this->Plan)
 {
-using BundleMaps = cl_int2; ///< for map_power: members, first float of the maps
-
-std::vector<BundleMaps> MapsOf(const SweepPlan& plan)
-{
-  std::vector<BundleMaps> maps;
-  for (const BundleInfo& bundle : plan.bundleRows)
-  {
-    maps.push_back({ { bundle.members, bundle.map } });
-  }
-  return maps;
-}
-}
-
-struct AxisSweep::Implementation
-{
-  Implementation(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
-    const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
-    : TheDevice(device)
-    , Plan(device, volume.grid, volume.box, axis, bundles, volume.channels, periodic, volume.deposit.flux != nullptr,
-        volume.deposit.partialCurrents != nullptr, volume.angular, volume.moments, volume.faceIn != nullptr,
-        volume.octantSource != nullptr)
-    , Workspace(workspace)
-    , SameBoundary(sameBoundary)
-  {
-    this->MakeBuffers();
-  }
-
-  void MakeBuffers();
-  void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
-  void DarkenSides();
-  void DarkenBeside();
-  /// Which sources and boundary light a launch has.
-  struct Entry
-  {
-    bool source = false;    ///< the medium has a source
-    bool border = false;    ///< light is incident on the faces that rays pass sideways
-    bool byCells = false;   ///< that light is given by cells
-    bool mapsEmpty = false; ///< the maps' memory is uninitialised
-  };
-  void CrossOnce(const SweepVolume& volume, const Entry& entry, const Monitor& monitor);
-  void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
-
-  /// The planes that each unit crosses in each launch.
-  struct Schedule
-  {
-    const Buffer<cl_int2>& planes;
-    int launches;
-    const SliceStream::Schedule& streamed; ///< the same for a streamed volume
-  };
-  Schedule Rounds() const
-  {
-    return { this->RoundSchedule, static_cast<int>(this->Plan.units.size()), this->StreamedRounds };
-  }
-  void Launch(const SweepVolume& volume, const Entry& entry, const Buffer<CrossingInfo>& crossings,
-    const Schedule& schedule, const Monitor& monitor);
-  cl::Kernel MapsKernel(const char* name);
-  cl::Kernel SweepKernel(const Deposit& to, bool byCells);
-  FaceInfo Faces(std::size_t firstChannel, const Deposit& to) const;
-  void EnterByCells(const SweepVolume& volume);
-  const cl::Buffer& CellsOf(const Deposit& to);
-  void TakeFaceCells(const Deposit& to);
-  void LeaveByCells(const SweepVolume& volume);
-
-  /// Ray maps, laid out as in SweepBorder.
-  Buffer<float>& Maps() { return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps; }
-  bool IsPeriodic() const { return this->Plan.periodic[this->Plan.axes.axis]; }
-  void CountSideways();
-  void CountEnds();
-  void SumMaps();
-  std::array<Rgb, 2> PowerInMaps() const;
-  Rgb PowerOnTheWay();
-
-  Device& TheDevice;
-  SweepPlan Plan;
-  SweepWorkspace& Workspace;
-  bool SameBoundary;
-
-  Buffer<float> OwnMaps;           ///< maps of a periodic axis
-  Buffer<float> Outside, Radiance; ///< as SweepBorder has them
-  Buffer<float> Sideways;          ///< power that left sideways, W: [plane][unit][-u, +u, -v, +v][channel]
-  ExactValues FaceCells;           ///< escaped power by cell, as Deposit::faceOut: [unit][channel][cell]
-  bool HasFaceCells = false;
-  Buffer<float> Sums; ///< power in the maps: [way][bundle][row][channel]
-  Buffer<BundleInfo> Bundles;
-  Buffer<BundleMaps> MapPlaces;
-  Buffer<UnitInfo> Units;
-  Buffer<float> Coefficients;
-  Buffer<cl_int2> FirstSchedule, RoundSchedule;
-  Buffer<CrossingInfo> FirstCrossings;
-  Buffer<OwnLightInfo> FirstOwnLight;
-  Buffer<cl_int> FunctionPlaces;
-  std::unique_ptr<SliceStream> Stream; ///< for a volume in host memory; null: it is swept in place
-  SliceStream::Schedule StreamedFirst, StreamedRounds;
-
-  std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by SweepVolume::first
-  bool SidesDark = false;                                      ///< Outside and Radiance are zero
-  bool Dark = false;                                           ///< the current sweep has no light to carry
-  SweepTally Tally;                                            ///< of the current sweep
-};
-
-void AxisSweep::Implementation::MakeBuffers()
-{
-  Device& device = this->TheDevice;
   const SweepPlan& plan = this->Plan;
-  const std::size_t channels = static_cast<std::size_t>(plan.channels);
-  this->Workspace.Reserve(
-    device, this->IsPeriodic() ? 0 : 2 * plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
+  workspace.Reserve(device, this->IsPeriodic() ? 0 : 2 * plan.eachWay.maps, plan.units.size() * plan.ScratchFloats());
   if (this->IsPeriodic())
   {
     this->OwnMaps =
-      Buffer<float>(device, 2 * plan.mapsEachWay, "the light propagation maps", CL_MEM_READ_WRITE, Residence::Device);
+      Buffer<float>(device, 2 * plan.eachWay.maps, "the light propagation maps", CL_MEM_READ_WRITE, Residence::Device);
     this->OwnMaps.Fill(0.0f);
   }
-  this->Stream = SliceStream::Make(device, plan, this->Workspace);
-  if (this->Stream)
-  {
-    this->StreamedFirst = this->Stream->Cut(plan.schedule);
-    this->StreamedRounds = this->Stream->Cut(plan.roundSchedule);
-  }
-  this->Outside = Buffer<float>(device, 2 * plan.outsideEachWay, "the light that comes in sideways");
-  this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
-  this->Sideways =
-    Buffer<float>(device, plan.units.size() * plan.PatternPlanes() * 4 * channels, "the power that leaves sideways");
-  this->Sums = Buffer<float>(device, 2 * plan.bundles.size() * plan.plane.sizeV * channels, "sums");
+  this->Stream = SliceStream::Make(device, plan, workspace);
+  this->First = this->ScheduleOf(plan.laps == 1 ? plan.schedule : plan.roundSchedule);
+  this->Rounds = this->ScheduleOf(plan.roundSchedule);
+  this->Sums = Buffer<float>(device, 2 * plan.bundles.size() * plan.plane.sizeV * plan.channels, "sums");
   this->Bundles = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
-  this->MapPlaces = Buffer<BundleMaps>(device, MapsOf(plan), "the bundles of rays");
-  this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
-  this->Coefficients = Buffer<float>(
-    device, plan.coefficients.empty() ? std::vector<float>{ 0.0f } : plan.coefficients, "the angular functions");
-  this->FirstSchedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
-  this->RoundSchedule = Buffer<cl_int2>(device, plan.roundSchedule, "the schedule");
   this->FirstCrossings = Buffer<CrossingInfo>(device, plan.Crossings(0, plan.CrossingPlanes()), "the ray pattern");
-  this->FirstOwnLight = Buffer<OwnLightInfo>(device, plan.OwnLight(), "the ray pattern");
-  this->FunctionPlaces = Buffer<cl_int>(device, plan.FunctionPlaces(), "the angular functions");
+  this->Kernel.SetOwnLight(plan.OwnLight());
+}
+
+SliceStream::Schedule AxisSweep::ScheduleOf(const std::vector<cl_int2>& ranges) const
+{
+  return this->Stream ? this->Stream->Cut(ranges)
+                      : SliceStream::Schedule{ {}, Buffer<cl_int2>(this->TheDevice, ranges, "the schedule") };
+}
+
+void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor)
+{
+  this->Tally = {};
+  const bool lit = static_cast<bool>(boundary);
+  if (this->IsPeriodic())
+  {
+    this->Workspace.ReserveLost(this->TheDevice, volume.deposit.path->Size());
+    this->Workspace.lost.Fill(0.0f);
+  }
+  if (lit)
+  {
+    this->Enter(boundary, volume.first);
+  }
+  else
+  {
+    this->Kernel.ClearBorder();
+  }
+  const bool byCells = volume.faceIn && !this->IsPeriodic();
+  if (byCells)
+  {
+    if (!lit)
+    {
+      this->Maps().Fill(0.0f);
+    }
+    this->RunOnMaps("enter_by_cells", &volume, false, this->RowsOfMaps(), *volume.faceIn);
+  }
+  this->Dark = lit && !volume.faceIn && !volume.source && !this->IsPeriodic() &&
+    std::all_of(this->Tally.in.begin(), this->Tally.in.end(), IsBlack);
+  if (this->Dark)
+  {
+    return;
+  }
+  // The maps of a periodic axis hold the rays under way from the previous sweep.
+  const bool mapsEmpty = !lit && !this->IsPeriodic() && !byCells;
+  const double launches = this->Plan.laps == 1 ? this->Plan.launches : static_cast<double>(this->Plan.units.size());
+  this->Cross(volume, { volume.source != nullptr, lit, volume.faceIn != nullptr, mapsEmpty }, this->FirstCrossings,
+    this->First, this->Plan.secondsPerLaunch * launches, monitor);
+  if (this->IsPeriodic())
+  {
+    this->GoRound(volume, mostPlanes, monitor);
+  }
+  else
+  {
+    this->SumMaps();
+    if (volume.deposit.faceOut)
+    {
+      this->RunOnMaps(
+        "leave_by_cells", &volume, true, cl::NDRange(this->Plan.plane.sizeV, 2), this->CellsOf(volume.deposit));
+    }
+  }
+  if (volume.deposit.faceOut)
+  {
+    this->TakeFaceCells(volume.deposit);
+  }
+}
+
+void AxisSweep::Forget()
+{
+  if (this->IsPeriodic())
+  {
+    this->OwnMaps.Fill(0.0f);
+  }
+}
+
+SweepTally AxisSweep::Finish()
+{
+  if (!this->IsPeriodic() && !this->Dark)
+  {
+    CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
+    // Power in the maps behind the last plane of an open axis has escaped.
+    const std::array<Rgb, 2> power = this->PowerInMaps();
+    for (int way = 0; way < 2; ++way)
+    {
+      for (int c = 0; c < this->Plan.channels; ++c)
+      {
+        this->Tally.out[2 * this->Plan.axes.axis + 1 - way][c] += power[way][c];
+      }
+    }
+  }
+  return this->Tally;
 }
 
 /// Writes the incident light to the maps. If it is the same in each sweep, its border is cached.
-void AxisSweep::Implementation::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
+void AxisSweep::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
 {
   std::unique_ptr<SweepBorder>& kept = this->Borders[firstChannel];
   if (!kept)
   {
     kept = std::make_unique<SweepBorder>(this->Plan, boundary);
   }
-  const SweepBorder& border = *kept;
-  this->Maps().Write(border.maps.data(), border.maps.size());
-  this->Outside.Write(border.outside.data());
-  this->Radiance.Write(border.radiance.data());
-  this->Tally.in = border.powerIn;
-  this->SidesDark = false;
+  this->Maps().Write(kept->maps.data(), kept->maps.size());
+  this->Kernel.SetBorder(kept->outside, kept->radiance);
+  this->Tally.in = kept->powerIn;
   if (!this->SameBoundary)
   {
     kept.reset();
   }
 }
 
-/// Clears the light that is incident sideways.
-void AxisSweep::Implementation::DarkenSides()
-{
-  if (!this->SidesDark)
-  {
-    this->Outside.Fill(0.0f);
-    this->Radiance.Fill(0.0f);
-    this->SidesDark = true;
-  }
-}
-
-/// Clears the incident light beside the rows in the maps of a periodic axis: it has entered, and must not enter again
-/// when rays wrap around.
-void AxisSweep::Implementation::DarkenBeside()
-{
-  const SweepPlan& plan = this->Plan;
-  cl::Kernel kernel = this->MapsKernel("darken_beside");
-  With(kernel, this->OwnMaps, cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.channels), cl_int(plan.row),
-    cl_int(plan.vector), plan.plane.sizeU, plan.plane.width);
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
-}
-
-/// Carries rays from where they start to the end of the axis or, on a periodic axis, of the last lap in which rays
-/// start.
-void AxisSweep::Implementation::CrossOnce(const SweepVolume& volume, const Entry& entry, const Monitor& monitor)
-{
-  const Schedule schedule =
-    this->Plan.laps == 1 ? Schedule{ this->FirstSchedule, this->Plan.launches, this->StreamedFirst } : this->Rounds();
-  this->Launch(volume, entry, this->FirstCrossings, schedule, monitor);
-}
-
 /// Carries rays on round a periodic axis until almost no power is under way.
-void AxisSweep::Implementation::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor)
+void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor)
 {
   const int planes = this->Plan.PatternPlanes();
-  this->CountSideways();
-  if (!this->SidesDark || volume.faceIn)
+  CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
+  if (!this->Kernel.IsBorderClear() || volume.faceIn)
   {
-    this->DarkenBeside();
+    // Light beside the rows in the maps has entered, and must not enter again when rays wrap around.
+    this->RunOnMaps("darken_beside", nullptr, false, this->RowsOfMaps());
   }
-  this->DarkenSides();
+  this->Kernel.ClearBorder();
   Rgb& onTheWay = this->Tally.onTheWay;
   onTheWay = this->PowerOnTheWay();
   const double atFirst = Sum(onTheWay);
   for (int gone = planes; gone < mostPlanes && Sum(onTheWay) > NothingLeft * atFirst; gone += planes)
   {
     const Buffer<CrossingInfo> crossings(this->TheDevice, this->Plan.Crossings(gone, planes), "the ray pattern");
-    this->Launch(volume, {}, crossings, this->Rounds(), monitor);
-    this->CountSideways();
+    this->Cross(volume, {}, crossings, this->Rounds,
+      this->Plan.secondsPerLaunch * static_cast<double>(this->Plan.units.size()), monitor);
+    CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
     onTheWay = this->PowerOnTheWay();
   }
 }
 
-void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& entry,
-  const Buffer<CrossingInfo>& crossings, const Schedule& schedule, const Monitor& monitor)
+/// @param seconds  upper estimate for all launches together
+void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffer<CrossingInfo>& crossings,
+  const SliceStream::Schedule& schedule, double seconds, const Monitor& monitor)
 {
-  cl::Kernel kernel = this->SweepKernel(volume.deposit, entry.byCells);
   const SweepPlan& plan = this->Plan;
-  const Buffer<float>& flux = volume.deposit.flux ? *volume.deposit.flux : *volume.deposit.path;
-  const Buffer<float>& partialCurrents =
-    volume.deposit.partialCurrents ? *volume.deposit.partialCurrents : *volume.deposit.path;
-  // never read if there is no source
-  const Buffer<float>& source = volume.source ? *volume.source : *volume.deposit.path;
-  const Buffer<float>& lost = this->IsPeriodic() ? this->Workspace.lost : *volume.deposit.path;
-  SweepInfo info = {};
-  info.sigmaFirst = volume.sigma_t_first;
-  info.first = volume.first;
-  info.stride = volume.stride;
-  info.mapsEachWay = plan.mapsEachWay;
-  info.outsideEachWay = static_cast<uint>(plan.outsideEachWay);
-  info.radianceEachWay = static_cast<uint>(plan.radianceEachWay);
-  info.coefficientsEachWay = static_cast<uint>(plan.coefficientsEachWay);
+  const Deposit& to = volume.deposit;
+  // If planes are not chained anyway, one program serves periodic boxes as well.
+  const bool faces = to.faceOut || entry.byCells, alone = plan.angular || faces;
+  cl::Kernel kernel =
+    this->Kernel.Make(faces, alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v], false);
+  SweepInfo info = this->Kernel.InfoOf(volume, this->IsPeriodic());
   info.empty = entry.mapsEmpty;
   info.shines = entry.source;
   info.border = entry.border;
-  info.roundAxis = this->IsPeriodic();
-  info.periodicU = plan.periodic[plan.axes.u];
-  info.periodicV = plan.periodic[plan.axes.v];
-  info.bundles = static_cast<int>(plan.bundles.size());
-  info.patternPlanes = plan.PatternPlanes();
-  info.axis = plan.axes.axis;
-  info.planes = plan.plane;
-  info.faces = this->Faces(volume.faceFirst, volume.deposit);
+  info.faces = this->Faces(volume.faceFirst, to);
   info.faces.in = entry.byCells;
-  const cl::Buffer& faceOut = this->CellsOf(volume.deposit);
-  const Buffer<float>& faceIn = volume.faceIn ? *volume.faceIn : *volume.deposit.path;
-  const Buffer<float>& octantSource = volume.octantSource ? *volume.octantSource : *volume.deposit.path;
-  plan.DescribeMoments(info);
-  info.sizeY = plan.grid.size[1];
-  info.firstChannel = volume.firstChannel;
   if (this->Stream)
   {
     this->Stream->Describe(info);
   }
-  const auto in = [this](SlotArray array, const Buffer<float>& whole) -> const Buffer<float>& {
-    return this->Stream ? this->Stream->Slots(array) : whole;
-  };
-  const int launches = this->Stream ? static_cast<int>(schedule.streamed.pieces.size()) : schedule.launches;
+  const auto launches =
+    static_cast<int>(this->Stream ? schedule.pieces.size() : schedule.rows.Size() / plan.units.size());
+  SweepKernel::Crossing crossing = { info,
+    this->Stream ? this->Stream->Arrays() : ArraysOf(volume, this->IsPeriodic() ? &this->Workspace.lost : nullptr),
+    this->Maps(), this->Workspace.scratch, crossings, schedule.rows,
+    (volume.faceIn ? *volume.faceIn : *to.path).Handle(), this->CellsOf(to), seconds / launches };
   const SliceStream::Launch start = [&](int launch, const std::vector<cl::Event>* after, cl::Event* done) {
-    info.launch = launch;
-    With(kernel, info, in(SlotArray::SigmaT, *volume.sigma_t), in(SlotArray::Source, source),
-      in(SlotArray::Path, *volume.deposit.path), in(SlotArray::Lost, lost), in(SlotArray::Flux, flux),
-      in(SlotArray::PartialCurrents, partialCurrents), this->Maps(), this->Outside, this->Radiance,
-      this->Workspace.scratch, this->Units, this->Bundles, this->Coefficients, crossings, this->FirstOwnLight,
-      this->Stream ? schedule.streamed.rows : schedule.planes, this->Sideways, faceOut, faceIn,
-      in(SlotArray::OctantSource, octantSource), this->FunctionPlaces);
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1), after, done);
-    this->TheDevice.Queued(plan.secondsPerLaunch * schedule.launches / launches);
+    this->Kernel.Launch(kernel, crossing, launch, after, done);
     Report(monitor, (launch + 1.0) / launches);
   };
   if (this->Stream)
   {
-    this->Stream->Cross(schedule.streamed, volume, start);
+    this->Stream->Cross(schedule, volume, start);
     return;
   }
   for (int launch = 0; launch < launches; ++launch)
@@ -299,7 +206,7 @@ void AxisSweep::Implementation::Launch(const SweepVolume& volume, const Entry& e
 }
 
 /// Memory layout of the cells of the faces that rays of this axis pass sideways.
-FaceInfo AxisSweep::Implementation::Faces(std::size_t firstChannel, const Deposit& to) const
+FaceInfo AxisSweep::Faces(std::size_t firstChannel, const Deposit& to) const
 {
   const PlaneAxes& axes = this->Plan.axes;
   FaceInfo faces = {};
@@ -319,126 +226,71 @@ FaceInfo AxisSweep::Implementation::Faces(std::size_t firstChannel, const Deposi
   return faces;
 }
 
-/// On an open axis, adds light given by cells of the faces where rays start to the maps.
-void AxisSweep::Implementation::EnterByCells(const SweepVolume& volume)
+/// Runs a kernel of SweepMaps.cl.
+/// @param volume  tells the cells of the faces across the axis; null: the kernel needs none
+/// @param ofFarFaces  the cells are those where rays end; false: those where they start
+template <class... Arguments>
+void AxisSweep::RunOnMaps(
+  const char* name, const SweepVolume* volume, bool ofFarFaces, const cl::NDRange& range, const Arguments&... arguments)
 {
   const SweepPlan& plan = this->Plan;
-  std::vector<float> power;
-  for (const BundleInfo& bundle : plan.bundleRows)
+  MapsInfo info = { plan.eachWay.maps, static_cast<int>(plan.bundles.size()), plan.channels, plan.row, plan.vector,
+    plan.plane.sizeU, plan.plane.width, {}, BoxFaceCellCount(plan.grid) };
+  for (int way = 0; volume && way < 2; ++way)
   {
-    power.push_back(bundle.power);
+    const int face = 2 * plan.axes.axis + (ofFarFaces ? 1 - way : way);
+    info.face[way] = volume->faceFirst + LayoutOfFace(plan.grid, face).first;
   }
-  const Buffer<float> powers(this->TheDevice, power, "the bundles of rays");
-  const int low = 2 * plan.axes.axis;
-  cl::Kernel kernel = this->MapsKernel("enter_by_cells");
-  With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, powers, cl_int(plan.channels),
-    cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, *volume.faceIn,
-    cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first),
-    cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first), cl_ulong(BoxFaceCellCount(plan.grid)));
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
-  this->TheDevice.Finish(); // before the buffer of powers is destroyed
+  cl::Kernel kernel = this->TheDevice.Kernel(name, kernel_source::SweepMaps, ExactOption(this->TheDevice));
+  With(kernel, info, this->Maps(), this->Bundles, arguments...);
+  this->TheDevice.Queue().enqueueNDRangeKernel(
+    kernel, cl::NullRange, range, GroupOfLargeItems(this->TheDevice, static_cast<int>(range.dimensions())));
+}
+
+cl::NDRange AxisSweep::RowsOfMaps() const
+{
+  return cl::NDRange(this->Plan.plane.sizeV, this->Plan.bundles.size(), 2);
 }
 
 /// The buffer in which escaped power is summed by cell. Tens of thousands of rays end in a cell, too many for a sum in
 /// floats; and units that run concurrently need their own copies, as rays may share cells.
-const cl::Buffer& AxisSweep::Implementation::CellsOf(const Deposit& to)
+const cl::Buffer& AxisSweep::CellsOf(const Deposit& to)
 {
   if (!to.faceOut)
   {
     return to.path->Handle();
   }
-  if (!this->HasFaceCells)
+  if (!this->FaceCells)
   {
     const std::size_t units = to.spreadsAside ? this->Plan.units.size() : 1;
-    this->FaceCells = ExactValues(this->TheDevice, units * to.faceOut->Size(), "the power that leaves by cells");
-    this->HasFaceCells = true;
+    this->FaceCells.emplace(this->TheDevice, units * to.faceOut->Size(), "the power that leaves by cells");
   }
-  return this->FaceCells.Handle();
+  return this->FaceCells->Handle();
 }
 
 /// Adds the sweep's own sums by cell to faceOut.
-void AxisSweep::Implementation::TakeFaceCells(const Deposit& to)
+void AxisSweep::TakeFaceCells(const Deposit& to)
 {
-  cl::Kernel kernel = this->MapsKernel("take_face_cells");
+  cl::Kernel kernel = this->TheDevice.Kernel("take_face_cells", kernel_source::SweepMaps, ExactOption(this->TheDevice));
   const std::size_t units = to.spreadsAside ? this->Plan.units.size() : 1;
-  With(kernel, this->FaceCells.Handle(), cl_int(units), cl_ulong(to.faceOut->Size()), *to.faceOut);
+  With(kernel, this->FaceCells->Handle(), cl_int(units), cl_ulong(to.faceOut->Size()), *to.faceOut);
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(to.faceOut->Size()));
 }
 
-/// On an open axis, counts the power in the maps that leaves through the cells of the far faces.
-void AxisSweep::Implementation::LeaveByCells(const SweepVolume& volume)
-{
-  const SweepPlan& plan = this->Plan;
-  const int low = 2 * plan.axes.axis;
-  cl::Kernel kernel = this->MapsKernel("leave_by_cells");
-  With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, cl_int(plan.bundles.size()),
-    cl_int(plan.channels), cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->CellsOf(volume.deposit),
-    cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low + 1).first),
-    cl_ulong(volume.faceFirst + LayoutOfFace(plan.grid, low).first), cl_ulong(BoxFaceCellCount(plan.grid)));
-  this->TheDevice.Queue().enqueueNDRangeKernel(
-    kernel, cl::NullRange, cl::NDRange(plan.plane.sizeV, 2), GroupOfLargeItems(this->TheDevice, 2));
-}
-
-cl::Kernel AxisSweep::Implementation::MapsKernel(const char* name)
-{
-  return this->TheDevice.Kernel(name, kernel_source::SweepMaps, ExactOption(this->TheDevice));
-}
-
-cl::Kernel AxisSweep::Implementation::SweepKernel(const Deposit& to, bool byCells)
-{
-  const SweepPlan& plan = this->Plan;
-  // If planes are not chained anyway, one program serves periodic boxes as well.
-  const bool alone = plan.angular || to.faceOut || byCells;
-  const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("NET_FLUX", to.flux != nullptr) +
-    Define("FACES", to.faceOut || byCells) +
-    Define("PERIODIC", alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v]);
-  return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
-}
-
-void AxisSweep::Implementation::CountSideways()
-{
-  const std::vector<float> left = this->Sideways.Read();
-  const PlaneAxes& axes = this->Plan.axes;
-  const std::array<int, 4> faces = { 2 * axes.u, 2 * axes.u + 1, 2 * axes.v, 2 * axes.v + 1 };
-  for (std::size_t i = 0; i < left.size(); ++i)
-  {
-    this->Tally.out[faces[i / this->Plan.channels % 4]][i % this->Plan.channels] += left[i];
-  }
-}
-
-/// Counts the power in the maps behind the last plane of an open axis as escaped.
-void AxisSweep::Implementation::CountEnds()
-{
-  const std::array<Rgb, 2> power = this->PowerInMaps();
-  for (int way = 0; way < 2; ++way)
-  {
-    for (int c = 0; c < this->Plan.channels; ++c)
-    {
-      this->Tally.out[2 * this->Plan.axes.axis + 1 - way][c] += power[way][c];
-    }
-  }
-}
-
-Rgb AxisSweep::Implementation::PowerOnTheWay()
+Rgb AxisSweep::PowerOnTheWay()
 {
   this->SumMaps();
   const auto [up, down] = this->PowerInMaps();
   return { up[0] + down[0], up[1] + down[1], up[2] + down[2] };
 }
 
-void AxisSweep::Implementation::SumMaps()
+void AxisSweep::SumMaps()
 {
-  const SweepPlan& plan = this->Plan;
-  cl::Kernel kernel = this->MapsKernel("map_power");
-  With(kernel, this->Maps(), cl_ulong(plan.mapsEachWay), this->MapPlaces, plan.plane.sizeV, cl_int(plan.channels),
-    cl_int(plan.row), cl_int(plan.vector), plan.plane.sizeU, this->Sums);
-  this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
-    cl::NDRange(plan.plane.sizeV, plan.bundles.size(), 2), GroupOfLargeItems(this->TheDevice, 3));
+  this->RunOnMaps("map_power", nullptr, false, this->RowsOfMaps(), this->Sums);
 }
 
 /// Power by way, from the sums of SumMaps.
-std::array<Rgb, 2> AxisSweep::Implementation::PowerInMaps() const
+std::array<Rgb, 2> AxisSweep::PowerInMaps() const
 {
   std::array<Rgb, 2> power = {};
   const std::vector<float> sums = this->Sums.Read();
@@ -447,86 +299,5 @@ std::array<Rgb, 2> AxisSweep::Implementation::PowerInMaps() const
     power[2 * i / sums.size()][i % this->Plan.channels] += sums[i];
   }
   return power;
-}
-
-AxisSweep::AxisSweep(Device& device, const SweepVolume& volume, int axis, const std::vector<Bundle>& bundles,
-  const std::array<bool, 3>& periodic, SweepWorkspace& workspace, bool sameBoundary)
-  : Inner(std::make_unique<Implementation>(device, volume, axis, bundles, periodic, workspace, sameBoundary))
-{
-}
-
-AxisSweep::~AxisSweep() = default;
-
-void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor)
-{
-  Implementation& self = *this->Inner;
-  self.Tally = {};
-  if (self.IsPeriodic())
-  {
-    self.Workspace.ReserveLost(self.TheDevice, volume.deposit.path->Size());
-    self.Workspace.lost.Fill(0.0f);
-  }
-  if (boundary)
-  {
-    self.Enter(boundary, volume.first);
-  }
-  else
-  {
-    self.DarkenSides();
-  }
-  const bool lit = static_cast<bool>(boundary);
-  const bool byCells = volume.faceIn && !self.IsPeriodic();
-  if (byCells)
-  {
-    if (!lit)
-    {
-      self.Maps().Fill(0.0f);
-    }
-    self.EnterByCells(volume);
-  }
-  self.Dark = lit && !volume.faceIn && !volume.source && !self.IsPeriodic() &&
-    std::all_of(self.Tally.in.begin(), self.Tally.in.end(), IsBlack);
-  if (self.Dark)
-  {
-    return;
-  }
-  // The maps of a periodic axis hold the rays under way from the previous sweep.
-  const bool mapsEmpty = !lit && !self.IsPeriodic() && !byCells;
-  self.CrossOnce(volume, { volume.source != nullptr, lit, volume.faceIn != nullptr, mapsEmpty }, monitor);
-  if (self.IsPeriodic())
-  {
-    self.GoRound(volume, mostPlanes, monitor);
-  }
-  else
-  {
-    self.SumMaps();
-    if (volume.deposit.faceOut)
-    {
-      self.LeaveByCells(volume);
-    }
-  }
-  if (volume.deposit.faceOut)
-  {
-    self.TakeFaceCells(volume.deposit);
-  }
-}
-
-void AxisSweep::Forget()
-{
-  if (this->Inner->IsPeriodic())
-  {
-    this->Inner->OwnMaps.Fill(0.0f);
-  }
-}
-
-SweepTally AxisSweep::Finish()
-{
-  Implementation& self = *this->Inner;
-  if (!self.IsPeriodic() && !self.Dark)
-  {
-    self.CountSideways();
-    self.CountEnds();
-  }
-  return self.Tally;
 }
 }

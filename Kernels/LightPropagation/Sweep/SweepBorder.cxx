@@ -7,16 +7,40 @@
 
 namespace tyndall
 {
+std::array<double, 2> SidewaysMoves(const Bundle& bundle, int firstPlane, int planes)
+{
+  std::array<double, 2> moves = {};
+  for (int k = firstPlane; k < firstPlane + planes; ++k)
+  {
+    const PlaneCrossing crossing = bundle.Crossing(k);
+    for (int s = 1; s < crossing.count; ++s)
+    {
+      moves[0] += crossing.segments[s].part * crossing.segments[s].moveU;
+      moves[1] += crossing.segments[s].part * crossing.segments[s].moveV;
+    }
+  }
+  return moves;
+}
+
+void CountSideways(const SweepPlan& plan, const std::vector<float>& left, SweepTally& tally)
+{
+  const std::array<int, 4> faces = { 2 * plan.axes.u, 2 * plan.axes.u + 1, 2 * plan.axes.v, 2 * plan.axes.v + 1 };
+  for (std::size_t i = 0; i < left.size(); ++i)
+  {
+    tally.out[faces[i / plan.channels % 4]][i % plan.channels] += left[i];
+  }
+}
+
 SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds)
-  : rays(holds == Holds::Maps ? 0 : 2 * plan.radianceEachWay, cl_float4{})
-  , maps(Zeros(holds == Holds::Maps ? 2 * plan.mapsEachWay : 0))
-  , outside(holds == Holds::Maps ? 2 * plan.outsideEachWay : 0, 0.0f)
-  , radiance(holds == Holds::Maps ? 2 * plan.radianceEachWay : 0, 0.0f)
+  : rays(holds == Holds::Maps ? 0 : 2 * plan.eachWay.radiance, cl_float4{})
+  , maps(Zeros(holds == Holds::Maps ? 2 * plan.eachWay.maps : 0))
+  , outside(holds == Holds::Maps ? 2 * plan.eachWay.outside : 0, 0.0f)
+  , radiance(holds == Holds::Maps ? 2 * plan.eachWay.radiance : 0, 0.0f)
   , Plan(plan)
 {
   for (std::size_t b = 0; b < plan.bundles.size(); ++b)
   {
-    const Moves moves = this->MovesOf(plan.bundles[b]);
+    const std::array<double, 2> moves = SidewaysMoves(plan.bundles[b], 0, plan.PatternPlanes());
     for (int way = 0; way < 2; ++way)
     {
       for (int m = 0; m < plan.bundleRows[b].members; ++m)
@@ -27,25 +51,11 @@ SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, H
   }
 }
 
-SweepBorder::Moves SweepBorder::MovesOf(const Bundle& bundle) const
-{
-  Moves moves;
-  for (int k = 0; k < this->Plan.PatternPlanes(); ++k)
-  {
-    const PlaneCrossing crossing = bundle.Crossing(k);
-    for (int s = 1; s < crossing.count; ++s)
-    {
-      moves.u += crossing.segments[s].part * crossing.segments[s].moveU;
-      moves.v += crossing.segments[s].part * crossing.segments[s].moveV;
-    }
-  }
-  return moves;
-}
-
 /// Rays enter where they start, and in place of rays that left sideways: one per row for each move along u, one per
 /// column for each move along v. Of the rays that move along u and v at once and enter at the plane's corner, half
 /// enter through u's face and half through v's.
-void SweepBorder::EnterMember(const SweepBoundary& boundary, std::size_t b, int way, int m, const Moves& moves)
+void SweepBorder::EnterMember(
+  const SweepBoundary& boundary, std::size_t b, int way, int m, const std::array<double, 2>& moves)
 {
   const Bundle& bundle = this->Plan.bundles[b];
   const Member& member = bundle.members[m];
@@ -71,8 +81,8 @@ void SweepBorder::EnterMember(const SweepBoundary& boundary, std::size_t b, int 
     const float p = static_cast<float>(fromP[c]);
     this->Write(b, way, m * this->Plan.channels + c, u, v, p);
     this->powerIn[faceP][c] += p * sizeU * sizeV;
-    this->powerIn[faceU][c] += (swapped ? moves.v : moves.u) * sizeV * u;
-    this->powerIn[faceV][c] += (swapped ? moves.u : moves.v) * sizeU * v;
+    this->powerIn[faceU][c] += moves[swapped ? 1 : 0] * sizeV * u;
+    this->powerIn[faceV][c] += moves[swapped ? 0 : 1] * sizeU * v;
   }
 }
 
@@ -93,7 +103,7 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
   const BundleInfo& bundle = this->Plan.bundleRows[b];
   if (!this->rays.empty())
   {
-    this->rays[way * this->Plan.radianceEachWay + bundle.border + slot] = { { fromU, fromV, fromP, 0.0f } };
+    this->rays[way * this->Plan.eachWay.radiance + bundle.border + slot] = { { fromU, fromV, fromP, 0.0f } };
     return;
   }
   const int width = this->Plan.plane.width;
@@ -101,7 +111,7 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
   const std::size_t block = static_cast<std::size_t>(bundle.members) * this->Plan.channels * this->Plan.row;
   for (int v = 0; v < this->Plan.plane.sizeV + 2; ++v)
   {
-    float* map = this->maps.data() + way * this->Plan.mapsEachWay + bundle.map + v * block + inBlock;
+    float* map = this->maps.data() + way * this->Plan.eachWay.maps + bundle.map + v * block + inBlock;
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
@@ -109,13 +119,13 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
   // once come from these columns.
   const bool periodicU = this->Plan.periodic[this->Plan.axes.u];
   const float beside = periodicU ? fromV : fromU;
-  float* beyond = this->outside.data() + way * this->Plan.outsideEachWay + bundle.outside + inBlock;
+  float* beyond = this->outside.data() + way * this->Plan.eachWay.outside + bundle.outside + inBlock;
   std::fill(beyond - 1, beyond + width + 1, beside);
   std::fill(beyond, beyond + this->Plan.plane.sizeU, fromV);
   if (!periodicU && this->Plan.bundles[b].MovesBothWaysAtOnce())
   {
     beyond[-1] = beyond[this->Plan.plane.sizeU] = 0.5f * (fromU + fromV);
   }
-  this->radiance[way * this->Plan.radianceEachWay + bundle.border + slot] = fromU;
+  this->radiance[way * this->Plan.eachWay.radiance + bundle.border + slot] = fromU;
 }
 }

@@ -1,12 +1,18 @@
 #pragma once
 
 #include "LightPropagation/Sweep/SweepPlan.h"
-#include "LightPropagation/Sweep/SweepTally.h"
 
 #include <vector>
 
 namespace tyndall
 {
+/// Sideways moves of a bundle's rays over several planes, voxels, in the bundle's own frame: along u, along v.
+std::array<double, 2> SidewaysMoves(const Bundle& bundle, int firstPlane, int planes);
+
+/// Adds power that left sideways to a tally.
+/// @param left  W, [any][-u, +u, -v, +v][channel]
+void CountSideways(const SweepPlan& plan, const std::vector<float>& left, SweepTally& tally);
+
 /// Incident light of a sweep, in the layout of the sweep's buffers. Each buffer holds both ways, forward first.
 class SweepBorder
 {
@@ -33,13 +39,8 @@ public:
   std::array<Rgb, 6> powerIn = {}; ///< incident power by face, W
 
 private:
-  /// Sideways moves of a bundle's rays over all planes, voxels, in the bundle's own frame.
-  struct Moves
-  {
-    double u = 0.0, v = 0.0;
-  };
-  Moves MovesOf(const Bundle& bundle) const;
-  void EnterMember(const SweepBoundary& boundary, std::size_t bundle, int way, int member, const Moves& moves);
+  void EnterMember(
+    const SweepBoundary& boundary, std::size_t bundle, int way, int member, const std::array<double, 2>& moves);
   Rgb PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle, int direction, int face) const;
   void Write(std::size_t bundle, int way, int slot, float fromU, float fromV, float fromP);
 

@@ -1,9 +1,7 @@
 #pragma once
 
-#include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Sweep/AxisSweep.h"
-#include "LightPropagation/Sweep/SweepOperator.h"
-#include "LightPropagation/Sweep/VolumeLayout.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
 
 #include <array>
 #include <memory>
@@ -11,29 +9,25 @@
 
 namespace tyndall
 {
-/// Sweep of a volume in the memory of one device.
-class SweepInMemory : public SweepOperator
+/// Creates the sweep of a volume in the memory of one device that suits the device: SweepOnGpu on a GPU, else
+/// SweepInMemory.
+/// @param sigma_t, workspace  must outlive the sweep; the workspace may be shared by sweeps that never run concurrently
+std::unique_ptr<SweepOperator> SweepOfDevice(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
+  const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace);
+
+/// Sweep of a volume in the memory of one device, organised for CPUs. Parameters as for SweepOfDevice.
+class SweepInMemory : public SweepByGroups
 {
 public:
-  /// @param sigma_t  must outlive the sweep
-  /// @param workspace  must outlive the sweep; may be shared by sweeps that never run concurrently
   SweepInMemory(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
     const std::array<bool, 3>& periodic, const SweepRequest& request, SweepWorkspace& workspace);
 
-  SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
   void Forget() override;
 
 private:
-  SweepVolume VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const;
+  SweepTally ApplyGroup(
+    std::size_t group, const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor) override;
 
-  VolumeLayout Layout;
-  const Buffer<float>& SigmaT;
-  Deposit To;
-  VoxelBox Box;
-  int MostPlanes;
-  const AngularValues* Angular;
-  const Buffer<float>* FaceIn;
-  const Buffer<float>* OctantSource;
   /// Sweeps along one axis. An open axis has one AxisSweep, used for all groups of channels in turn; a periodic axis
   /// has one per group, because it keeps the rays under way from one sweep to the next.
   struct Axis

@@ -90,24 +90,20 @@ double LongestWay(const std::vector<Bundle>& bundles)
 }
 }
 
-SweepPlan::SweepPlan(const Device& device, const Grid& ofGrid, const VoxelBox& ofBox, int axis,
-  const std::vector<Bundle>& ofBundles, int channelCount, const std::array<bool, 3>& periodicAxes, bool wantsNetFlux,
-  bool wantsCurrents, const AngularValues* angularValues, const MomentPlaces& momentPlaces, bool entersByCells,
-  bool shinesByOctant)
-  : grid(ofGrid)
-  , box(ofBox.VoxelCount() > 0 ? ofBox : VoxelBox{ { 0, 0, 0 }, ofGrid.size })
-  , axes(AcrossAxis(axis))
-  , bundles(InPowersOfTwo(ofBundles))
-  , channels(channelCount)
-  , periodic(periodicAxes)
-  , netFlux(wantsNetFlux)
-  , partialCurrents(wantsCurrents)
-  , angular(angularValues)
-  , faceIn(entersByCells)
-  , octantSource(shinesByOctant)
-  , moments(momentPlaces)
-  , order(angularValues ? angularValues->degree : 0, AcrossAxis(axis).u, AcrossAxis(axis).v)
+SweepDescription Describe(const SweepVolume& volume, const std::array<bool, 3>& periodic)
 {
+  return { volume.grid, volume.box, periodic, volume.channels, volume.deposit.flux != nullptr,
+    volume.deposit.partialCurrents != nullptr, volume.angular, volume.moments, volume.faceIn != nullptr,
+    volume.octantSource != nullptr };
+}
+
+SweepPlan::SweepPlan(const Device& device, const SweepDescription& sweep, const AxisBundles& rays)
+  : SweepDescription(sweep)
+  , axes(AcrossAxis(rays.axis))
+  , bundles(InPowersOfTwo(rays.bundles))
+  , order(sweep.angular ? sweep.angular->degree : 0, AcrossAxis(rays.axis).u, AcrossAxis(rays.axis).v)
+{
+  this->box = sweep.box.VoxelCount() > 0 ? sweep.box : VoxelBox{ { 0, 0, 0 }, sweep.grid.size };
   if (this->angular)
   {
     SortIntoFrames(this->bundles);
@@ -215,12 +211,12 @@ void SweepPlan::LayBundles()
   {
     const std::size_t rays = bundle.members.size() * this->channels;
     this->bundleRows.push_back(this->Describe(bundle));
-    this->mapsEachWay += rays * this->row * (this->plane.sizeV + 2);
-    this->outsideEachWay += rays * this->row;
-    this->radianceEachWay += rays;
+    this->eachWay.maps += rays * this->row * (this->plane.sizeV + 2);
+    this->eachWay.outside += rays * this->row;
+    this->eachWay.radiance += rays;
   }
-  this->mapsEachWay += this->vector; // the last row's border
-  this->outsideEachWay += this->vector;
+  this->eachWay.maps += this->vector; // the last row's border
+  this->eachWay.outside += this->vector;
 }
 
 /// Description of a bundle that is placed after those laid out so far.
@@ -235,8 +231,8 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
     const double all = this->plane.sizeP;
     return static_cast<float>(tangent * all > 1.0 ? 1.0 / tangent : all);
   };
-  BundleInfo description = { Int(bundle.members.size()), Int(this->mapsEachWay), Int(this->radianceEachWay),
-    Int(this->outsideEachWay), static_cast<float>(bundle.power), static_cast<float>(cosine),
+  BundleInfo description = { Int(bundle.members.size()), Int(this->eachWay.maps), Int(this->eachWay.radiance),
+    Int(this->eachWay.outside), static_cast<float>(bundle.power), static_cast<float>(cosine),
     sine(bundle.tangentU, this->axes.u), sine(bundle.tangentV, this->axes.v), planes(bundle.tangentU),
     planes(bundle.tangentV), {}, 0, {}, 0, 0 };
   for (std::size_t m = 0; m < bundle.members.size(); ++m)
@@ -263,9 +259,9 @@ void SweepPlan::LayFrames()
       }
     }
     info.firstOfFrame[info.frames] = Int(members.size());
-    info.coefficients = Int(this->coefficientsEachWay);
+    info.coefficients = Int(this->eachWay.coefficients);
     info.parities = this->ParitiesOf(this->bundles[b]);
-    this->coefficientsEachWay += info.frames * this->angular->Functions() + members.size() * this->angular->Beams();
+    this->eachWay.coefficients += info.frames * this->angular->Functions() + members.size() * this->angular->Beams();
   }
   for (int way = 0; way < 2; ++way)
   {
@@ -502,12 +498,21 @@ void SweepPlan::LetRaysGoOn()
   this->plane.thin = static_cast<float>(Thin / LongestWay(this->bundles));
 }
 
-void SweepPlan::DescribeMoments(SweepInfo& info) const
+SweepInfo SweepPlan::Info() const
 {
+  SweepInfo info = {};
+  info.eachWay = this->eachWay;
+  info.periodicU = this->periodic[this->axes.u];
+  info.periodicV = this->periodic[this->axes.v];
+  info.bundles = Int(this->bundles.size());
+  info.patternPlanes = this->PatternPlanes();
+  info.axis = this->axes.axis;
+  info.planes = this->plane;
   info.moments = this->moments;
   info.momentsInPlace = this->momentsInPlace;
   info.packedMoments = this->momentRow;
   std::partial_sum(this->order.counts.begin(), this->order.counts.end(), info.parityEnds);
+  return info;
 }
 
 std::vector<cl_int> SweepPlan::FunctionPlaces() const

@@ -12,35 +12,34 @@
 
 namespace tyndall
 {
+/// What a sweep along one axis carries and computes, as far as its plan depends on it.
+struct SweepDescription
+{
+  Grid grid;
+  VoxelBox box = {}; ///< the part of the grid that is swept; empty, and if any axis is periodic: the whole grid
+  std::array<bool, 3> periodic = {};
+  int channels = 1;
+  bool netFlux = false;
+  bool partialCurrents = false; ///< power that enters each voxel through each of its faces
+  /// Angular functions in the bundles' directions, must outlive the plan; null: no angular moments, fluence only
+  const AngularValues* angular = nullptr;
+  MomentPlaces moments = {}; ///< memory layout of the angular moments
+  bool faceIn = false;       ///< incident radiance is given for each cell of the box's faces
+  bool octantSource = false; ///< the source of a voxel differs between octants of directions
+};
+
+/// The sweep of a volume in which these axes are periodic.
+SweepDescription Describe(const SweepVolume& volume, const std::array<bool, 3>& periodic);
+
 /// Plan of a sweep along one axis: memory layout of the bundles, the units of work that run concurrently, and the
 /// planes that each unit crosses in each launch. Computed once, on the host.
-struct SweepPlan
+struct SweepPlan : SweepDescription
 {
-  /// @param box  the part of the grid that is swept; must be the whole grid if any axis is periodic
-  /// @param netFlux  the sweep also computes the net flux
-  /// @param partialCurrents  the sweep also computes the power that enters each voxel through each of its faces
-  /// @param angular  angular functions in the bundles' directions, must outlive the plan; null: no angular moments,
-  /// fluence only
-  /// @param moments  memory layout of the angular moments
-  /// @param faceIn  incident radiance is given for each cell of the box's faces
-  /// @param octantSource  the source of a voxel differs between octants of directions
-  SweepPlan(const Device& device, const Grid& grid, const VoxelBox& box, int axis, const std::vector<Bundle>& bundles,
-    int channels, const std::array<bool, 3>& periodic, bool netFlux, bool partialCurrents, const AngularValues* angular,
-    const MomentPlaces& moments, bool faceIn, bool octantSource);
+  SweepPlan(const Device& device, const SweepDescription& sweep, const AxisBundles& rays);
 
-  Grid grid;
-  VoxelBox box;
   PlaneAxes axes;
   std::vector<Bundle> bundles; ///< of 1, 2, 4 or 8 members: what the kernels are compiled for
-  int channels;
-  std::array<bool, 3> periodic;
-  bool netFlux;
-  bool partialCurrents;
-  const AngularValues* angular;
-  bool faceIn;
-  bool octantSource;
-  MomentPlaces moments;
-  bool forward = false; ///< whether any rays march forward
+  bool forward = false;        ///< whether any rays march forward
   bool backward = false;
 
   int vector = 8;   ///< floats of a work-item's vector
@@ -48,15 +47,11 @@ struct SweepPlan
   int rowsKept = 0; ///< rows of a plane held in scratch, if rows are packed just before they are crossed; 0: all rows
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
-  /// Floats for one way (forward or backward): of the maps; of the rows outside; of the radiances at the faces
-  std::size_t mapsEachWay = 0;
-  std::size_t outsideEachWay = 0;
-  std::size_t radianceEachWay = 0;
+  EachWay eachWay = {};            ///< floats for one way, forward or backward
   std::vector<float> coefficients; ///< see BundleInfo::coefficients; forward first
-  std::size_t coefficientsEachWay = 0;
-  FunctionOrder order;         ///< order of the angular functions for this axis
-  bool momentsInPlace = false; ///< rows of a plane are rows of the moments' array, so no packing is needed
-  int momentRow = 0;           ///< floats of a packed row: all channels and all functions from the second on
+  FunctionOrder order;             ///< order of the angular functions for this axis
+  bool momentsInPlace = false;     ///< rows of a plane are rows of the moments' array, so no packing is needed
+  int momentRow = 0;               ///< floats of a packed row: all channels and all functions from the second on
 
   std::vector<UnitInfo> units;
   std::vector<cl_int2> schedule; ///< [launch][unit], planes from, to
@@ -81,7 +76,8 @@ struct SweepPlan
   /// Position of each angular function in a group of moments (MomentPlacesShared.h), in this axis's order. 0 for the
   /// first function, which is stored elsewhere, and if there are no angular moments.
   std::vector<cl_int> FunctionPlaces() const;
-  void DescribeMoments(SweepInfo& info) const;
+  /// What a launch of the kernel `sweep` takes from the plan.
+  SweepInfo Info() const;
   /// Lowers the limit for thin voxels (PlaneInfo::thin) so that it also holds on the longer segments of rays that
   /// continue beyond the planes of their pattern. Call before OwnLight().
   void LetRaysGoOn();

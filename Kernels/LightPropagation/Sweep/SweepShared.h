@@ -141,6 +141,15 @@ typedef struct
   int in;
 } FaceInfo;
 
+/// Floats of each array of a sweep for one way (forward or backward) along its axis.
+typedef struct
+{
+  ulong maps;
+  ulong outside;      ///< rows of rays that enter through the faces across v
+  ulong radiance;     ///< rays that enter through the faces across u: one for each member and channel
+  ulong coefficients; ///< values of angular functions
+} EachWay;
+
 /// A launch of the kernel `sweep`.
 typedef struct
 {
@@ -148,8 +157,7 @@ typedef struct
   /// Index of its first value in the other volumes (in the flux three times, in the currents six times this index), and
   /// floats from one channel to the next.
   ulong first, stride;
-  ulong mapsEachWay; ///< floats of the maps for one way along the axis
-  uint outsideEachWay, radianceEachWay, coefficientsEachWay;
+  EachWay eachWay;
   int empty;     ///< 1: the maps are uninitialised and are cleared where rays start
   int shines;    ///< 1: the medium has a source (emission or scattered light)
   int border;    ///< 1: light is incident on the faces that rays pass sideways
@@ -169,5 +177,29 @@ typedef struct
   int firstChannel;
   int streamed;               ///< 1: the volumes are streamed in slices through slots (SliceStream.h)
   ulong sourceSlot, pathSlot; ///< floats of a slot of source and of path, if streamed
+  int outerSides;             ///< for a block of a larger domain: bit i: light that crosses side i leaves the domain
 } SweepInfo;
+
+/// A launch of the kernels that work on the maps of rays (SweepMaps.cl). Maps are [way][bundle][row][member][channel]
+/// with `row` floats for each row of a ray; rays are in its first sizeU floats after `border`.
+typedef struct
+{
+  ulong eachWay; ///< floats for one way
+  int bundles, channels;
+  int row, border;
+  int sizeU, width; ///< voxels of a row; the same rounded up to whole vectors
+  ulong face[2];    ///< by way: index of the first channel's first cell of the face where rays start, or end
+  ulong faceStride; ///< cells from one channel to the next
+} MapsInfo;
 SHARED_END
+
+#ifdef __OPENCL_C_VERSION__
+// Move of a bundle's member before a stage of a crossing, voxels along u and v.
+static inline int2 move_of(
+  const __global BundleInfo* bundle, int member, const __global CrossingInfo* crossing, int stage)
+{
+  const __global int* move = bundle->move[member];
+  const int u = crossing->moveU[stage], v = crossing->moveV[stage];
+  return (int2)(move[0] * u + move[1] * v, move[2] * u + move[3] * v);
+}
+#endif

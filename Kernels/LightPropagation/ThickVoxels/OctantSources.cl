@@ -1,7 +1,7 @@
 // Emission of optically thick voxels into each octant, in addition to the uniform source, see OctantSources.h. Faces d
 // of a voxel are -x, +x, -y, +y, -z, +z.
 
-#include "LightPropagation/Sweep/BeyondFaces.cl"
+#include "LightPropagation/Sweep/BeyondFacesShared.h"
 #include "LightPropagation/Sweep/FallOfLight.cl"
 #include "LightPropagation/ThickVoxels/OctantSourcesShared.h"
 
@@ -166,7 +166,7 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
 }
 
 // Adds the sources by face of light first scattered from one lamp (numerics.md, Eq. (46h)).
-// path, first_moments  of the lamp, as in Sweep/Deposit.h; cleared
+// path, first_moments  of the lamp, as in Sweep/SweepOperator.h; cleared
 // of_lamps  W / (length^3 sr), laid out as first_moments, added to
 // all_path  W length, added to
 __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,

@@ -3,7 +3,7 @@
 #include "LightPropagation/Angular/SweptDirections.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
-#include "LightPropagation/Sweep/BeyondFaces.h"
+#include "LightPropagation/Sweep/Pipelined/AcrossFaces.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/ThickVoxels/OctantSourcesShared.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "LightPropagation/Angular/SweptDirections.h"
-#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 #include "Lights/Lights.h"
 

@@ -1,6 +1,6 @@
 #include "LightPropagation/Uncollided/NarrowLight.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "TyndallKernelSources.h"
 
 namespace tyndall

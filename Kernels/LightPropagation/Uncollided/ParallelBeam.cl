@@ -1,6 +1,6 @@
 // After the sweep of a parallel beam: adds its path to a deposit, and computes its first moments.
 
-#include "LightPropagation/Sweep/BeyondFaces.cl"
+#include "LightPropagation/Sweep/BeyondFacesShared.h"
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"
 
 // Mean distance, in voxels, from a voxel's centre towards the entry face at which light that enters through one face is
@@ -13,7 +13,7 @@ static float distance_to_face(float tau)
 // Adds the beam's path, and first moments computed from the powers through the faces (numerics.md, Eq. (39)). These are
 // exact if as much power enters as leaves through the lateral faces, and never exceed those of light that all enters
 // through one face.
-// path, currents           of the beam, as in Sweep/Deposit.h
+// path, currents           of the beam, as in Sweep/SweepOperator.h
 // beyond                   power that enters voxels beyond a block's faces, from this channel on
 // all_path, first_moments  of the deposit, added to
 __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,

@@ -1,6 +1,6 @@
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "LightPropagation/Angular/RayBundles.h"
 #include "LightPropagation/Uncollided/Lamps/LampBeams.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"

@@ -4,7 +4,7 @@
 #include "Device/Monitor.h"
 #include "Distribution/Domain.h"
 #include "LightPropagation/Angular/AngularBasis.h"
-#include "LightPropagation/Sweep/BeyondFaces.h"
+#include "LightPropagation/Sweep/Pipelined/AcrossFaces.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"

@@ -1,6 +1,6 @@
 #include "Photons/Marching/MarchMedium.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Errors.h"
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"

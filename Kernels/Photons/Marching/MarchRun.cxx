@@ -1,7 +1,6 @@
 #include "Photons/Marching/MarchRun.h"
 
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 
 #include <algorithm>

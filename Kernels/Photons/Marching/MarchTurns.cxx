@@ -1,6 +1,6 @@
 #include "Photons/Marching/MarchTurns.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "Photons/Marching/MarchedLight.h"
 
 #include "Device/Clock.h"
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/HostMappedBuffer.h"
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"

@@ -1,7 +1,6 @@
 #include "Photons/Marching/MarchRun.h"
 
-#include "Device/Defines.h"
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Distribution/Rounds.h"
 #include "Photons/Marching/PhotonPacking.h"
 

@@ -1,7 +1,7 @@
 #include "Photons/Published/PublishedPhotons.h"
 
 #include "Device/Clock.h"
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Errors.h"
 #include "Device/Sizes.h"
 #include "Distribution/BoxExchange.h"

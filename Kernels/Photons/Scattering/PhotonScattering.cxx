@@ -1,6 +1,6 @@
 #include "Photons/Scattering/PhotonScattering.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/HostMappedBuffer.h"
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"

@@ -1,6 +1,6 @@
 #include "Refraction/Index/RefractiveMedium.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"
 #include "Distribution/BlockPartition.h"

@@ -1,6 +1,6 @@
 #include "Refraction/Voxelization/Voxelization.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "Medium/VoxelBox.h"
 #include "Refraction/Voxelization/SampleLattice.h"

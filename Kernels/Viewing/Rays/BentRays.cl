@@ -240,9 +240,7 @@ __attribute__((always_inline)) inline int go_straight(const surroundings* s, con
 {
   const int4 size = s->v->size;
   const int steps = max(min(ahead.steps, (int)ceil(most_lanes(packet->length / step))), 1);
-#if SKIP_BRICKS
-  if (!ahead.empty)
-#endif
+  if (!SKIP_BRICKS || !ahead.empty)
   {
     const real soon = step_length(packet->direction, 5.0f);
     const real3 towards = stretched(packet->direction, s->o->spacing);

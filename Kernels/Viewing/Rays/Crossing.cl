@@ -182,7 +182,12 @@ inline void add_surface_light(rgb missing, light* l)
 // tau, where the fraction is 1 in vacuum (tau = 0); `remains` receives exp(-tau).
 inline real cross_length(real sigma, real length, real* remains)
 {
-#if THIN_STEPS
+  if (!THIN_STEPS)
+  {
+    const real tau = greater(sigma * length, (real)1e-30f);
+    const real fraction = extinguished(tau, remains) / tau;
+    return length * fraction;
+  }
   // (1 - exp(-tau)) / tau on [0, 2], to 1e-7.
   const real tau = sigma * length;
   real p = fma(tau, (real)-1.17129066e-05f, (real)0.000167222737f);
@@ -193,10 +198,6 @@ inline real cross_length(real sigma, real length, real* remains)
   p = fma(p, tau, (real)-0.49999997f);
   const real fraction = fma(p, tau, (real)1.0f);
   *remains = fma(-tau, fraction, (real)1.0f);
-#else
-  const real tau = greater(sigma * length, (real)1e-30f);
-  const real fraction = extinguished(tau, remains) / tau;
-#endif
   return length * fraction;
 }
 

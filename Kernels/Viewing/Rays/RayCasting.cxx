@@ -1,6 +1,6 @@
 #include "Viewing/Rays/RayCasting.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Errors.h"
 #include "Device/Sizes.h"
 #include "Numerics/Constants.h"

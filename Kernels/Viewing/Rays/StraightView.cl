@@ -45,9 +45,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const real soon = step_length(direction, 5.0f);
 #endif
   const int steps = (int)ceil(most_lanes(packet.length / step));
-#if SKIP_BRICKS
   const real3 strides = strides_per_voxel(direction, step);
-#endif
   light l = unlit((real)1.0f);
 #if BLOCK
   l.before = starts_of(&v, limits, column, row);
@@ -55,25 +53,25 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
   for (int n = 0; n < steps;)
   {
-    int stop = steps;
     const real so_far = step * (real)(float)n;
     const integer done = (so_far >= packet.length) | (most_left(l) <= (real)v.marching.y);
     if (all_lanes(done))
     {
       break;
     }
-#if SKIP_BRICKS
-    const stretch ahead = stretch_ahead(bricks, v.bricks, along(packet, fma(step, (real)0.5f, so_far)), strides, done);
-    stop = n + ahead.steps;
-    if (ahead.empty)
+    int ahead_steps = BrickEdge;
+    if (SKIP_BRICKS)
     {
-      n = stop;
-      continue;
+      const stretch ahead =
+        stretch_ahead(bricks, v.bricks, along(packet, fma(step, (real)0.5f, so_far)), strides, done);
+      ahead_steps = ahead.steps;
+      if (ahead.empty)
+      {
+        n += ahead_steps;
+        continue;
+      }
     }
-    stop = min(stop, steps);
-#else
-    stop = min(n + BrickEdge, steps);
-#endif
+    const int stop = min(n + ahead_steps, steps);
     for (; n < stop; ++n)
     {
       // Sampling does not depend on the transmittance so far, so that it overlaps the previous step.

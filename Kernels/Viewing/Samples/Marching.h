@@ -1,7 +1,7 @@
 #pragma once
 
 #include "Device/Batches.h"
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Medium/Grid.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "Viewing/Samples/PackedSamples.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/OpenCL.h"
 #include "Device/Sizes.h"
 #include "Numerics/Vectors.h"

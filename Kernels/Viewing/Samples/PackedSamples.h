@@ -1,8 +1,8 @@
 #pragma once
 
 #include "Device/Buffer.h"
+#include "Device/HostMappedBuffer.h"
 #include "Device/OpenCL.h"
-#include "Device/ZeroedBuffer.h"
 #include "Medium/FilledBricks.h"
 #include "Viewing/Scene/SceneOnDevice.h"
 #include "Viewing/Scene/ViewShared.h"

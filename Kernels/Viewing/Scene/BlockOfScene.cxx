@@ -3,6 +3,7 @@
 #include "Distribution/BlockPartition.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/Halo.h"
+#include "Medium/BoxFaces.h"
 #include "Medium/Traits.h"
 #include "Numerics/Vectors.h"
 

@@ -1,6 +1,6 @@
 #include "Viewing/Scene/ViewTraits.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
 #include "Numerics/Vectors.h"

@@ -1,6 +1,6 @@
 #include "Viewing/Sources/SeenSources.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"

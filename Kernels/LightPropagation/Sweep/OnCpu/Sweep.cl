@@ -3,12 +3,10 @@
 // races and the order of summation is fixed. The host defines what SweepLayout.cl requires.
 
 #include "LightPropagation/Sweep/OnCpu/SweepCrossing.cl"
-#include "LightPropagation/Sweep/OnCpu/SweepFaces.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
-#include "LightPropagation/Sweep/OnCpu/SweepPackingOfMoments.cl"
+#include "LightPropagation/Sweep/OnCpu/SweepPacking.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepPartialCurrents.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepSides.cl"
-#include "LightPropagation/Sweep/Slices/SliceSlot.cl"
 
 // Selects plane k of a chain.
 static void go_to_plane(sweep_state* state, int k)
@@ -24,6 +22,20 @@ static void go_to_plane(sweep_state* state, int k)
 #endif
 }
 
+#if OCTANT_SOURCE
+// The two combinations of ways along u and v (WaysAside) of a member's direction; they differ if it has no component
+// along u or v.
+static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
+{
+  const float2 signs = signs_of(bundle, m);
+  const int way = (signs.x > 0.0f ? 1 : 0) + (signs.y > 0.0f ? 2 : 0);
+  const bool exchanged = bundle->move[m][0] == 0;
+  const int between = (fabs(exchanged ? bundle->sineV : bundle->sineU) < 1e-5f ? 1 : 0) +
+    (fabs(exchanged ? bundle->sineU : bundle->sineV) < 1e-5f ? 2 : 0);
+  return (int2)(way, way ^ between);
+}
+#endif
+
 // Functions for one bundle, compiled once for each number of members.
 #define MEMBERS 1
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
@@ -38,16 +50,41 @@ static void go_to_plane(sweep_state* state, int k)
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 
-// The volume that a unit sweeps, see `sweep`.
+// The volume that a unit sweeps, see `sweep`; from the group's first channel on.
 typedef struct
 {
   const SweepInfo* info;
   const __global float *sigma, *source, *beams, *octants;
   __global float *path, *lost, *flux, *currents;
+#if ANGULAR
+  const __global float* moments; // of the source, from the second function on
+  __global float* momentPath;    // likewise of the path
+#endif
   int backward;
 } swept_volume;
 
-// Its planes [first, first + count), packed in scratch.
+// The rays of a unit's way, see `sweep`.
+typedef struct
+{
+  __global float* maps;
+  const __global float *outside, *radiance, *coefficients;
+  const __global BundleInfo* bundles;
+  const __global CrossingInfo* crossings;
+  const __global float* entering;
+  __global leaving_float* leaving;
+} swept_rays;
+
+// Scratch of a unit, besides what sweep_state holds.
+typedef struct
+{
+  __global float* planes;
+  __global int* thin; // [plane][row]
+#if ANGULAR
+  __global float *momentSource, *momentPath; // packed moments, [plane][row]
+#endif
+} unit_scratch;
+
+// Planes [first, first + count) of the volume, packed in scratch.
 typedef struct
 {
   __global float* planes;
@@ -187,16 +224,18 @@ static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* pac
   }
 }
 
-static void cross_planes(sweep_state* state, int planes, __global float* maps, const __global float* outside,
-  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
-  int all_bundles, const __global float* all_coefficients, int first_row, int end_row)
+// Carries the rays of bundle `b` through a chain of planes.
+// @param crossings  of all bundles
+static void cross_planes(sweep_state* state, int planes, const swept_rays* rays, int b,
+  const __global CrossingInfo* crossings, int first_row, int end_row)
 {
-  __global float* map = maps + bundle->map;
-  const __global float* rows = outside + bundle->outside;
-  const __global float* values = radiance + bundle->border;
-  const __global float* coefficients = all_coefficients + bundle->coefficients;
+  const __global BundleInfo* bundle = rays->bundles + b;
+  __global float* map = rays->maps + bundle->map;
+  const __global float* rows = rays->outside + bundle->outside;
+  const __global float* values = rays->radiance + bundle->border;
+  const __global float* coefficients = rays->coefficients + bundle->coefficients;
 #define CROSS(n) \
-  cross_planes_##n(state, planes, map, rows, values, bundle, crossings, all_bundles, coefficients, first_row, end_row)
+  cross_planes_##n(state, planes, map, rows, values, bundle, crossings + b, coefficients, first_row, end_row)
   switch (bundle->members)
   {
     case 1: CROSS(1); break;
@@ -207,16 +246,12 @@ static void cross_planes(sweep_state* state, int planes, __global float* maps, c
 #undef CROSS
 }
 
-// Carries rays of several bundles through a chain of planes. If the planes hold much data (moments, or large chained
-// planes), works tile by tile of rows, so that a tile stays in the cache for all bundles.
+// Carries rays of `count` bundles from `first` on through a chain of planes. If the planes hold much data (moments, or
+// large chained planes), works tile by tile of rows, so that a tile stays in the cache for all bundles.
 // @param planes  number of planes; 1 if CHAINED is 0
-// @param crossings, coefficients  those of the first bundle
-// @param packed  the planes, whose rows are packed tile by tile if ROWS_KEPT; the bundles are then all
-//                there are
+// @param packed  the planes, whose rows are packed tile by tile if KEPT_ROWS; the bundles are then all there are
 static void cross_bundles(sweep_state* state, const swept_volume* volume, const packed_planes* packed, int planes,
-  __global float* maps, const __global float* outside, const __global float* radiance,
-  const __global BundleInfo* bundles, int count, const __global CrossingInfo* crossings, int all_bundles,
-  const __global float* coefficients)
+  const swept_rays* rays, int first, int count, const __global CrossingInfo* crossings)
 {
   __global float* const kept = state->ring;
 #if ANGULAR
@@ -226,22 +261,20 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
 #endif
   if (tile == 0)
   {
-    for (int b = 0; b < count; ++b)
+    for (int b = first; b < first + count; ++b)
     {
-      cross_planes(state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients,
-        FirstRow, INT_MAX);
+      cross_planes(state, planes, rays, b, crossings, FirstRow, INT_MAX);
     }
     return;
   }
   const int behind = ROWS_BEHIND(state->chained_before + planes);
-#if ROWS_KEPT
   int ended = 0; // rows
-#endif
   for (int row = FirstRow; row < state->sizeV + behind; row += tile)
   {
-#if ROWS_KEPT
-    begin_rows(volume, packed, (int2)(max(row, 0), min(row + tile, state->sizeV)));
-#endif
+    if (KEPT_ROWS)
+    {
+      begin_rows(volume, packed, (int2)(max(row, 0), min(row + tile, state->sizeV)));
+    }
     for (int b = 0; b < count; ++b)
     {
       state->ring = kept + b * floats_of_bundle;
@@ -250,22 +283,195 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
       state->paths = state->sources + MomentRows * RAYS_OF_ROW;
       state->ownPath = state->paths + MomentRows * RAYS_OF_ROW;
 #endif
-      cross_planes(
-        state, planes, maps, outside, radiance, bundles + b, crossings + b, all_bundles, coefficients, row, row + tile);
+      cross_planes(state, planes, rays, first + b, crossings, row, row + tile);
     }
-#if ROWS_KEPT
-    const int end = clamp(row + tile - behind, ended, state->sizeV);
-    end_rows(volume, packed, (int2)(ended, end));
-    ended = end;
-#endif
+    if (KEPT_ROWS)
+    {
+      const int end = clamp(row + tile - behind, ended, state->sizeV);
+      end_rows(volume, packed, (int2)(ended, end));
+      ended = end;
+    }
   }
   state->ring = kept;
 }
 
-static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CHANNELS])
+// For streamed volumes, slots hold slices (SliceStream.h): the steps in PlaneInfo are those of a slot, slot.x is the
+// slot's number, and slot.y is the index in the box of the slot's first plane.
+static void go_to_slot(SweepInfo* info, int2 slot, swept_volume* volume)
 {
-  for (int i = 0; i < PLANES_TOGETHER; ++i)
+  info->planes.firstP = -slot.y;
+  const ulong voxels = slot.x * info->stride * CHANNELS;
+  volume->sigma += slot.x * info->stride;
+  volume->source += slot.x * info->sourceSlot;
+  volume->path += slot.x * info->pathSlot;
+  volume->lost += slot.x * info->pathSlot;
+  volume->flux += 3 * voxels;
+  volume->currents += 6 * voxels;
+  volume->octants += 8 * voxels;
+}
+
+// Moves the pointers of a volume to the first channel that is swept.
+static void go_to_channel(swept_volume* volume)
+{
+  const SweepInfo* info = volume->info;
+  volume->beams = volume->source;
+#if ANGULAR
+  const ulong higher = info->moments.second + info->firstChannel * MOMENTS_OF_CHANNEL(info);
+  volume->moments = volume->source + higher;
+  volume->momentPath = volume->path + higher;
+  volume->beams += info->moments.beams + info->first;
+#endif
+  volume->sigma += info->sigmaFirst;
+  volume->source += info->first;
+  volume->path += info->first;
+  volume->lost += info->first;
+  volume->flux += 3 * info->first;
+  volume->currents += 6 * info->first;
+  volume->octants += 8 * info->first;
+}
+
+// Sets the state that is the same for all planes, except its pointers.
+static void begin_state(sweep_state* state, const SweepInfo* info)
+{
+  const PlaneInfo* layout = &info->planes;
+  state->sizeU = layout->sizeU;
+  state->sizeV = layout->sizeV;
+  state->width = layout->width;
+  state->shines = info->shines;
+  state->border = info->border;
+  state->roundAxis = info->roundAxis;
+  state->periodicU = info->periodicU;
+  state->periodicV = info->periodicV;
+  state->allBundles = info->bundles;
+  state->tile = CHAINED ? layout->tile : 0;
+  for (int i = 0; i < MeanLengthTerms; ++i)
   {
+    state->meanLength[i] = layout->meanLength[i];
+  }
+#if FACES
+  state->faces = &info->faces;
+  state->firstPlane = layout->firstP;
+  state->facePlanes = layout->sizeP;
+#endif
+#if SIDES
+  state->outerSides = info->outerSides;
+#endif
+#if ANGULAR
+  state->functions = info->moments.functions;
+  for (int p = 0; p < 4; ++p)
+  {
+    state->parityEnds[p] = info->parityEnds[p];
+  }
+#endif
+}
+
+// Number of bundles that cross the same planes in turn.
+static int bundles_together(const sweep_state* state, int bundles)
+{
+  return ANGULAR || state->tile > 0 ? min(bundles, (int)BundlesTogether) : bundles;
+}
+
+// Divides a unit's scratch, and clears the rows of rays in it.
+static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __global float* scratch, int together)
+{
+  const PlaneInfo* layout = &info->planes;
+  state->ring = scratch;
+  state->rings = RINGS_OF(layout->chained);
+  const int rings = ANGULAR ? together * BUNDLE_FLOATS(CHANNELS, ROW)
+                            : (state->tile > 0 ? together : 1) * state->rings * RingRows * RAYS_OF_ROW;
+  state->moving = state->ring + rings;
+  clear(state->ring, rings + RAYS_OF_ROW + PAD);
+  unit_scratch parts;
+  parts.planes = state->moving + RAYS_OF_ROW + PAD; // past the last row's border
+#if FACES || SIDES
+  state->outside = parts.planes;
+#endif
+  parts.planes += SIDES || info->faces.in ? RAYS_OF_ROW + PAD : 0;
+  parts.thin = (__global int*)(parts.planes + layout->together * plane_floats(layout));
+#if ANGULAR
+  parts.momentSource = (__global float*)parts.thin + layout->together * layout->sizeV + REAL_WIDTH;
+  parts.momentPath = parts.momentSource + layout->together * (layout->sizeV * info->packedMoments);
+#endif
+  return parts;
+}
+
+// Packs planes, except rows that are packed tile by tile.
+static void begin_planes(const swept_volume* volume, const packed_planes* packed, const unit_scratch* scratch)
+{
+  const SweepInfo* info = volume->info;
+  if (!KEPT_ROWS)
+  {
+    begin_rows(volume, packed, (int2)(0, info->planes.sizeV));
+  }
+#if ANGULAR
+  if (!info->momentsInPlace)
+  {
+    if (info->shines)
+    {
+      pack_moments(info, scratch->momentSource, packed->first, packed->count, volume->moments);
+    }
+    clear(scratch->momentPath, packed->count * info->planes.sizeV * info->packedMoments);
+  }
+#endif
+}
+
+// Adds what the planes have received to the volume.
+static void end_planes(const swept_volume* volume, const packed_planes* packed, const unit_scratch* scratch)
+{
+  if (!KEPT_ROWS)
+  {
+    end_rows(volume, packed, (int2)(0, volume->info->planes.sizeV));
+  }
+#if ANGULAR
+  if (!volume->info->momentsInPlace)
+  {
+    unpack_moments(volume->info, scratch->momentPath, packed->first, packed->count, volume->momentPath);
+  }
+#endif
+}
+
+#if ANGULAR
+// Finds the moments of a plane of the box: in the volume, or packed.
+static void go_to_moments(
+  sweep_state* state, const swept_volume* volume, const unit_scratch* scratch, int plane, int first_packed)
+{
+  const SweepInfo* info = volume->info;
+  const PlaneInfo* layout = &info->planes;
+  const ulong channel = MOMENTS_OF_CHANNEL(info);
+  if (info->momentsInPlace)
+  {
+    const ulong line = info->moments.channels * channel;
+    const ulong across = info->axis == 2 ? 1 : info->sizeY; // lines from one row of the plane to the next
+    const ulong along = info->axis == 2 ? info->sizeY : 1;
+    const ulong here = line * ((layout->firstP + plane) * along + layout->firstV * across);
+    state->momentSource = volume->moments + here;
+    state->momentPath = volume->momentPath + here;
+    state->momentStep = line * across;
+    state->momentChannel = channel;
+    return;
+  }
+  const int moment_plane = layout->sizeV * info->packedMoments;
+  state->momentSource = scratch->momentSource + (plane - first_packed) * moment_plane;
+  state->momentPath = scratch->momentPath + (plane - first_packed) * moment_plane;
+  state->momentStep = info->packedMoments;
+  state->momentChannel = info->packedMoments / CHANNELS;
+}
+#endif
+
+// Sets the places of packed planes in the order in which rays cross them, and clears their tallies.
+// @param escaped, rounding  [plane]
+static void place_planes(struct plane_place* places, const swept_volume* volume, const packed_planes* packed,
+  float (*escaped)[4][CHANNELS], float (*rounding)[4][CHANNELS])
+{
+  const PlaneInfo* layout = &volume->info->planes;
+  for (int i = 0; i < packed->count; ++i)
+  {
+    const int j = volume->backward ? packed->count - 1 - i : i;
+    places[i].planes = packed->planes + j * plane_floats(layout);
+    places[i].thin = packed->thin + j * layout->sizeV;
+    places[i].escaped = escaped[i];
+    places[i].rounding = rounding[i];
+    places[i].plane = packed->first + j;
     for (int side = 0; side < 4; ++side)
     {
       for (int c = 0; c < CHANNELS; ++c)
@@ -277,236 +483,134 @@ static void clear_tallies(float (*escaped)[4][CHANNELS], float (*rounding)[4][CH
   }
 }
 
+// Planes [i, i + count) of `packed`, in the order in which rays cross them.
+static packed_planes part_of(const packed_planes* packed, const swept_volume* volume, int i, int count)
+{
+  const PlaneInfo* layout = &volume->info->planes;
+  const int j = volume->backward ? packed->count - i - count : i;
+  const packed_planes part = { packed->planes + j * plane_floats(layout), packed->thin + j * layout->sizeV,
+    packed->first + j, count, packed->own + i };
+  return part;
+}
+
+// Number of planes that are packed together next, from the one that `begin` counts, which belongs to the lap that began
+// at `lap`, to `end` at most.
+static int planes_to_pack(const SweepInfo* info, int begin, int end, int lap, int backward)
+{
+  const PlaneInfo* layout = &info->planes;
+  const int count = min(min(layout->together, end - begin), lap + layout->sizeP - begin);
+#if ANGULAR
+  return info->momentsInPlace ? count : min(count, of_one_group(layout, begin - lap, backward));
+#else
+  return count;
+#endif
+}
+
+// Carries the rays of a unit through packed planes, chain by chain.
+// @param places  of the planes; `begin` counts the first one from where rays start
+static void cross_chains(sweep_state* state, const swept_volume* volume, const swept_rays* rays, const UnitInfo* unit,
+  const packed_planes* packed, const unit_scratch* scratch, const struct plane_place* places, int begin)
+{
+  const SweepInfo* info = volume->info;
+  const int end_bundle = unit->firstBundle + unit->bundles, together = bundles_together(state, unit->bundles);
+  for (int i = 0, chained; i < packed->count; i += chained)
+  {
+    const int k = begin + i;
+    // Chains begin at the same planes wherever a range begins, so that rows and sums are processed in the same order.
+    state->chained_before = CHAINED ? (unit->planesBefore + k) % info->planes.chained : 0;
+    chained = CHAINED ? min(info->planes.chained - state->chained_before, packed->count - i) : 1;
+    state->places = places + i;
+#if SIDES
+    const ulong sides_of_plane = k * info->eachWay.radiance * SIDE_FLOATS(state);
+    state->sidesIn = rays->entering + sides_of_plane;
+    state->sidesOut = rays->leaving + sides_of_plane;
+#endif
+#if ANGULAR
+    go_to_moments(state, volume, scratch, places[i].plane, packed->first);
+#endif
+    const packed_planes chain = part_of(packed, volume, i, chained);
+    const __global CrossingInfo* of_plane = rays->crossings + (unit->planesBefore + k) * info->bundles;
+    for (int b = unit->firstBundle; b < end_bundle; b += together)
+    {
+      cross_bundles(state, volume, &chain, chained, rays, b, min(together, end_bundle - b), of_plane);
+    }
+  }
+}
+
 // sigma     1/length, [voxel]
 // source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
+// octants   see SweepRequest::octantSource
 // path      W length, with its angular moments, added to
 // lost      rounding errors of path in this sweep (compensated summation), if rays wrap around the axis
 // flux      W length, [channel][x, y, z][stride], added to
 // currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters the voxel through that face
-// maps      rays of both ways
-// outside, radiance   incident rays, both ways, as maps
-// coefficients  see BundleInfo, both ways as maps
+// maps      rays of both ways, or of the only one
+// border    incident rays: the rows outside of both ways, then the radiances of both ways
+// coefficients  see BundleInfo, both ways
 // crossings [plane of the ray pattern][bundle]
 // own       [unit][plane from where rays start], see add_own_light
 // schedule  [launch][unit] first plane and end, counted from where rays start; planes beyond the last
 //           wrap around; if streamed [launch][planes, slots][unit], see go_to_slot
 // tally     escaped power, W, [plane, counted from where rays start][unit][-u, +u, -v, +v][channel]
-// octants   see SweepRequest::octantSource
-// face_out, face_in  see Deposit.h, SweepOperator.h; used if FaceInfo has out, in; face_out is the sweep's own array,
-//           [unit][channel][cell] if rays spread
+// entering  if SIDES: rays that enter through the sides (SweepSides.cl); else light by cells of the box's faces
+//           (SweepRequest::faceIn), if FaceInfo::in
+// leaving   if SIDES: rays that leave; else the sweep's own Deposit::faceOut, if FaceInfo::out, [unit][channel][cell]
+//           if rays spread
 // function_places  see SweepPlan::FunctionPlaces
-// sides_in, sides_out  [plane, counted from the box's first][ray], see SweepSides.cl; if SIDES
-// outer_sides  bit i: light that crosses side i leaves the domain; if SIDES
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
-  const __global float* source, __global float* path, __global float* lost, __global float* flux,
-  __global float* currents, __global float* maps, const __global float* outside, const __global float* radiance,
+  const __global float* source, const __global float* octants, __global float* path, __global float* lost,
+  __global float* flux, __global float* currents, __global float* maps, const __global float* border,
   __global float* scratch, const __global UnitInfo* units, const __global BundleInfo* bundles,
   const __global float* coefficients, const __global CrossingInfo* crossings, const __global OwnLightInfo* own,
-  const __global int2* schedule, __global float* tally, __global exact* face_out, const __global float* face_in,
-  const __global float* octants, const __global int* function_places SIDES_ARGUMENTS)
+  const __global int2* schedule, __global float* tally, const __global float* entering, __global leaving_float* leaving,
+  const __global int* function_places)
 {
   const int u = get_global_id(0);
   const int unit_count = get_global_size(0);
   const UnitInfo unit = units[u];
+  const int way = unit.backward;
   const int2 range = schedule[(info.streamed ? 2 : 1) * info.launch * unit_count + u];
-  const int first_plane = info.planes.firstP; // index in the grid of the box's first plane
+  const EachWay* each = &info.eachWay;
+  const swept_rays rays = { maps + way * each->maps, border + way * each->outside,
+    border + 2 * each->outside + way * each->radiance, coefficients + way * each->coefficients, bundles, crossings,
+    entering, leaving };
+  sweep_state state;
+  begin_state(&state, &info);
+#if FACES
+  state.faceOut = leaving + u * info.faces.unit;
+  state.faceIn = entering;
+#endif
+#if ANGULAR
+  state.functionPlaces = function_places;
+#endif
+  swept_volume volume = { &info, sigma, source, 0, octants, path, lost, flux, currents };
+  volume.backward = way;
   if (info.streamed)
   {
-    const int2 slot = schedule[(2 * info.launch + 1) * unit_count + u];
-    go_to_slot(&info, slot, &sigma, &source, &path, &lost, &flux, &currents, &octants);
+    go_to_slot(&info, schedule[(2 * info.launch + 1) * unit_count + u], &volume);
   }
-  const PlaneInfo layout = info.planes;
-
-  sweep_state state;
-  state.sizeU = layout.sizeU;
-  state.sizeV = layout.sizeV;
-  state.width = layout.width;
-  state.shines = info.shines;
-  state.border = info.border;
-  state.roundAxis = info.roundAxis;
-  state.periodicU = info.periodicU;
-  state.periodicV = info.periodicV;
-  state.ring = scratch + unit.scratch;
-  state.rings = RINGS_OF(layout.chained);
-#if ANGULAR
-  const int together = min(unit.bundles, (int)BundlesTogether);
-  const int rings = together * BUNDLE_FLOATS(CHANNELS, ROW);
-#else
-  state.tile = CHAINED ? layout.tile : 0;
-  const int together = state.tile > 0 ? min(unit.bundles, (int)BundlesTogether) : unit.bundles;
-  const int rings = (state.tile > 0 ? together : 1) * state.rings * RingRows * RAYS_OF_ROW;
-#endif
-  state.moving = state.ring + rings;
-  __global float* planes = state.moving + RAYS_OF_ROW + PAD; // past the last row's border
-  const FaceInfo faces = info.faces;
-#if FACES
-  state.faces = &faces;
-  state.firstPlane = first_plane;
-  state.faceOut = face_out + u * faces.unit;
-  state.facePlanes = layout.sizeP;
-  state.faceIn = face_in;
-#endif
-#if FACES || SIDES
-  state.outside = planes;
-#endif
-  planes += SIDES || faces.in ? RAYS_OF_ROW + PAD : 0;
-#if SIDES
-  state.outerSides = outer_sides;
-#endif
-  __global int* thin = (__global int*)(planes + layout.together * plane_floats(&layout));
+  go_to_channel(&volume);
+  const unit_scratch parts = lay_scratch(&state, &info, scratch + unit.scratch, bundles_together(&state, unit.bundles));
+  for (int b = unit.firstBundle; info.empty && range.x == 0 && range.y > 0 && b < unit.firstBundle + unit.bundles; ++b)
+  {
+    clear(rays.maps + bundles[b].map, bundles[b].members * CHANNELS * ROW * (info.planes.sizeV + 2) + PAD);
+  }
   float escaped[PLANES_TOGETHER][4][CHANNELS], rounding[PLANES_TOGETHER][4][CHANNELS];
-#if ANGULAR
-  const int higher_functions = info.moments.functions - 1;
-  const ulong channel = (ulong)info.moments.groups * higher_functions * MomentGroup;
-  const ulong higher = info.moments.second + info.firstChannel * channel;
-  const __global float* higher_source = source + higher;
-  __global float* higher_path = path + higher;
-  const __global float* beams = source + info.moments.beams + info.first;
-  const int moment_plane = layout.sizeV * info.packedMoments;
-  __global float* packed_source = (__global float*)thin + layout.together * layout.sizeV + REAL_WIDTH;
-  __global float* packed_path = packed_source + layout.together * moment_plane;
-#else
-  const __global float* beams = source;
-#endif
-#if ANGULAR
-  state.functions = info.moments.functions;
-  state.functionPlaces = function_places;
-  for (int p = 0; p < 4; ++p)
-  {
-    state.parityEnds[p] = info.parityEnds[p];
-  }
-#endif
-  for (int i = 0; i < MeanLengthTerms; ++i)
-  {
-    state.meanLength[i] = layout.meanLength[i];
-  }
-  sigma += info.sigmaFirst;
-  source += info.first;
-  path += info.first;
-  lost += info.first;
-  flux += 3 * info.first;
-  currents += 6 * info.first;
-  octants += 8 * info.first;
-  maps += unit.backward * info.mapsEachWay;
-  outside += unit.backward * info.outsideEachWay;
-  radiance += unit.backward * info.radianceEachWay;
-  coefficients += unit.backward * info.coefficientsEachWay;
-
-  clear(state.ring, rings + RAYS_OF_ROW + PAD);
-  if (info.empty && range.x == 0 && range.y > 0)
-  {
-    for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; ++b)
-    {
-      clear(maps + bundles[b].map, bundles[b].members * CHANNELS * ROW * (layout.sizeV + 2) + PAD);
-    }
-  }
-
-  const swept_volume volume = { &info, sigma, source, beams, octants, path, lost, flux, currents, unit.backward };
-  const int2 all_rows = (int2)(0, layout.sizeV);
+  struct plane_place places[PLANES_TOGETHER];
   for (int begin = range.x, count; begin < range.y; begin += count)
   {
-    const int lap = begin / layout.sizeP * layout.sizeP; // planes marched in earlier laps
-    count = min(min(layout.together, range.y - begin), lap + layout.sizeP - begin);
-#if ANGULAR
-    count = info.momentsInPlace ? count : min(count, of_one_group(&layout, begin - lap, unit.backward));
-#endif
-    const int first = unit.backward ? layout.sizeP - (begin - lap) - count : begin - lap;
-    packed_planes packed = { planes, thin, first, count, own + u * info.patternPlanes + begin };
-#if !ROWS_KEPT
-    begin_rows(&volume, &packed, all_rows);
-#endif
-#if ANGULAR
-    if (!info.momentsInPlace)
+    const int lap = begin / info.planes.sizeP * info.planes.sizeP; // planes marched in earlier laps
+    count = planes_to_pack(&info, begin, range.y, lap, way);
+    const packed_planes packed = { parts.planes, parts.thin,
+      way ? info.planes.sizeP - (begin - lap) - count : begin - lap, count, own + u * info.patternPlanes + begin };
+    begin_planes(&volume, &packed, &parts);
+    place_planes(places, &volume, &packed, escaped, rounding);
+    cross_chains(&state, &volume, &rays, &unit, &packed, &parts, places, begin);
+    for (int i = 0; i < count * 4 * CHANNELS; ++i)
     {
-      if (info.shines)
-      {
-        pack_moments(&info, packed_source, first, count, higher_source);
-      }
-      clear(packed_path, count * moment_plane);
+      const int k = i / (4 * CHANNELS), slot = i % (4 * CHANNELS);
+      tally[((begin + k) * unit_count + u) * 4 * CHANNELS + slot] = escaped[k][slot / CHANNELS][slot % CHANNELS];
     }
-#endif
-    clear_tallies(escaped, rounding);
-    struct plane_place places[PLANES_TOGETHER];
-    for (int k = begin; k < begin + count; ++k)
-    {
-      const int plane = unit.backward ? layout.sizeP - 1 - (k - lap) : k - lap;
-      struct plane_place* place = places + (k - begin);
-      place->planes = planes + (plane - first) * plane_floats(&layout);
-      place->thin = thin + (plane - first) * layout.sizeV;
-      place->escaped = escaped[k - begin];
-      place->rounding = rounding[k - begin];
-      place->plane = plane;
-    }
-    for (int k = begin, chained; k < begin + count; k += chained)
-    {
-#if CHAINED
-      // Chains begin at the same planes wherever a range begins, so that rows and sums are processed in the same order.
-      state.chained_before = (unit.planesBefore + k) % layout.chained;
-      chained = min(layout.chained - state.chained_before, begin + count - k);
-#else
-      state.chained_before = 0;
-      chained = 1;
-#endif
-      state.places = places + (k - begin);
-#if SIDES
-      const ulong sides_of_plane = (ulong)k * info.radianceEachWay * SIDE_FLOATS(&state);
-      state.sidesIn = sides_in + sides_of_plane;
-      state.sidesOut = sides_out + sides_of_plane;
-#endif
-#if ANGULAR
-      const int plane = state.places->plane;
-      if (info.momentsInPlace)
-      {
-        const ulong line = info.moments.channels * channel;
-        const ulong across = info.axis == 2 ? 1 : info.sizeY; // lines from one row of the plane to the next
-        const ulong along = info.axis == 2 ? info.sizeY : 1;
-        const ulong here = line * ((layout.firstP + plane) * along + layout.firstV * across);
-        state.momentSource = higher_source + here;
-        state.momentPath = higher_path + here;
-        state.momentStep = line * across;
-        state.momentChannel = channel;
-      }
-      else
-      {
-        state.momentSource = packed_source + (plane - first) * moment_plane;
-        state.momentPath = packed_path + (plane - first) * moment_plane;
-        state.momentStep = info.packedMoments;
-        state.momentChannel = info.packedMoments / CHANNELS;
-      }
-#endif
-#if ROWS_KEPT
-      packed.first = min(state.places[0].plane, state.places[chained - 1].plane);
-      packed.count = chained;
-      packed.planes = planes + (packed.first - first) * plane_floats(&layout);
-      packed.thin = thin + (packed.first - first) * layout.sizeV;
-      packed.own = own + u * info.patternPlanes + k;
-#endif
-      const __global CrossingInfo* of_plane = crossings + (unit.planesBefore + k) * info.bundles;
-      for (int b = unit.firstBundle; b < unit.firstBundle + unit.bundles; b += together)
-      {
-        const int some = min(together, unit.firstBundle + unit.bundles - b);
-        cross_bundles(&state, &volume, &packed, chained, maps, outside, radiance, bundles + b, some, of_plane + b,
-          info.bundles, coefficients);
-      }
-    }
-    for (int k = 0; k < count; ++k)
-    {
-      for (int side = 0; side < 4; ++side)
-      {
-        for (int c = 0; c < CHANNELS; ++c)
-        {
-          tally[(((begin + k) * unit_count + u) * 4 + side) * CHANNELS + c] = escaped[k][side][c];
-        }
-      }
-    }
-#if !ROWS_KEPT
-    end_rows(&volume, &packed, all_rows);
-#endif
-#if ANGULAR
-    if (!info.momentsInPlace)
-    {
-      unpack_moments(&info, packed_path, first, count, higher_path);
-    }
-#endif
+    end_planes(&volume, &packed, &parts);
   }
 }

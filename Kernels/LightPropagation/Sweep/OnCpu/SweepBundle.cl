@@ -7,6 +7,11 @@
 
 #define NAME_OF(a, b) TYNDALL_JOIN(a, b)
 #define CROSS_VOXELS NAME_OF(cross_voxels_, MEMBERS)
+#define CROSS_CHANNEL NAME_OF(cross_channel_, MEMBERS)
+#define SEGMENT_ROWS NAME_OF(segment_rows_, MEMBERS)
+#define MEMBER_WAYS NAME_OF(member_ways_, MEMBERS)
+#define BEGIN_CHAIN NAME_OF(begin_chain_, MEMBERS)
+#define CROSS_STAGE NAME_OF(cross_stage_, MEMBERS)
 #define STAGE_ROW NAME_OF(stage_row_, MEMBERS)
 #define COUNT_ESCAPED NAME_OF(count_escaped_, MEMBERS)
 #define FILL_BORDER NAME_OF(fill_border_, MEMBERS)
@@ -37,6 +42,78 @@
   }
 #else
 
+// The rows of the plane that a segment works on.
+typedef struct
+{
+  const __global float *inverse, *source, *octants;
+  __global float *path, *flux;
+  __global float* entered; // power that enters the plane's voxels, [channel][CurrentFaces]; null: not needed
+  bool deposit, thin;
+  float power, cosine; // of the bundle
+} SEGMENT_ROWS;
+
+// Directions of the bundle's members.
+typedef struct
+{
+  float alongU[MEMBERS], alongV[MEMBERS]; // components, for the net flux
+  int2 aside[MEMBERS];                    // see ways_aside
+} MEMBER_WAYS;
+
+// Carries all rays of a channel through one segment in a vector of voxels.
+// own_path  path, within the voxel, of the light of a unit source in it, times the cosine between rays and axis
+static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_ROWS* rows, const MEMBER_WAYS* ways,
+  int x, int c, const real_crossing* crossing, real own_path, const __global float** in, __global float* out)
+{
+  const real mean_length = crossing->meanLength, shine = mean_length * rows->power;
+  const real source = load_real(x, rows->source + c * ROW), gain = shine * source;
+  real sum = (real)0.0f, all_more = (real)0.0f, sum_u = (real)0.0f, sum_v = (real)0.0f;
+#pragma unroll
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    const real ray = load_real(x, in[m] + c * ROW);
+    sum += ray;
+#if NET_FLUX
+    sum_u = multiply_add(ray, (real)ways->alongU[m], sum_u);
+    sum_v = multiply_add(ray, (real)ways->alongV[m], sum_v);
+#endif
+#if OCTANT_SOURCE
+    const __global float* octants = rows->octants + WaysAside * c * ROW;
+    const real more =
+      0.5f * (load_real(x, octants + ways->aside[m].x * ROW) + load_real(x, octants + ways->aside[m].y * ROW));
+    all_more += more;
+    const real shines = multiply_add(shine, more, gain);
+#else
+    const real shines = gain;
+#endif
+    const real kept = rows->thin ? ray + shines : multiply_add(ray, crossing->keep, shines);
+    store_real(multiply_add(ray, crossing->change, kept), x, out + FIRST(m, c));
+  }
+#if CURRENTS
+  if (rows->entered)
+  {
+    __global float* here = rows->entered + CurrentFaces * c * ROW;
+    store_real(load_real(x, here) + sum, x, here);
+  }
+#endif
+  if (!rows->deposit)
+  {
+    return;
+  }
+#if OCTANT_SOURCE
+  // the additional octant source is not lost in its own voxel
+  sum -= all_more * load_real(x, rows->inverse) * rows->power;
+#endif
+  __global float* path = rows->path + c * ROW;
+  store_real(multiply_add(mean_length, sum, load_real(x, path)), x, path);
+#if NET_FLUX
+  __global float* flux = rows->flux + 3 * c * ROW;
+  store_real(multiply_add(mean_length, sum_u, load_real(x, flux)), x, flux);
+  store_real(multiply_add(mean_length, sum_v, load_real(x, flux + ROW)), x, flux + ROW);
+  const real sum_w = multiply_add(mean_length * rows->cosine, sum, load_real(x, flux + 2 * ROW));
+  store_real(multiply_add(own_path, source, sum_w), x, flux + 2 * ROW);
+#endif
+}
+
 // Carries all rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, in
 // conservative form):
 //   path += p1 P,  P' = P - sigma p1 P + power q p1
@@ -49,105 +126,40 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
   const __global float* sigma_row = ROW_OF(state->planes, PlaneSigma, y);
   const __global float* inverse_row = ROW_OF(state->planes, PlaneInverse, y);
   __global float* taken_row = ROW_OF(state->planes, PlaneTaken, y);
-  const __global float* source_row = ROW_OF(state->planes, PlaneSource, y);
-  __global float* path_row = ROW_OF(state->planes, PLANE_PATH, y);
-  const float power = bundle->power;
+  const SEGMENT_ROWS rows = { inverse_row, ROW_OF(state->planes, PlaneSource, y),
+    ROW_OF(state->planes, PLANE_OCTANTS, y), ROW_OF(state->planes, PLANE_PATH, y), ROW_OF(state->planes, PLANE_FLUX, y),
+    entered, deposit, thin, bundle->power, bundle->cosine };
+  MEMBER_WAYS ways;
+#pragma unroll
+  for (int m = 0; m < MEMBERS; ++m)
+  {
+    ways.alongU[m] = bundle->move[m][0] * bundle->sineU + bundle->move[m][1] * bundle->sineV;
+    ways.alongV[m] = bundle->move[m][2] * bundle->sineU + bundle->move[m][3] * bundle->sineV;
 #if OCTANT_SOURCE
-  int way[MEMBERS], other[MEMBERS]; // as WaysAside; they differ if the direction has no component along u or v
-#pragma unroll
-  for (int m = 0; m < MEMBERS; ++m)
-  {
-    const float2 signs = signs_of(bundle, m);
-    way[m] = (signs.x > 0.0f ? 1 : 0) + (signs.y > 0.0f ? 2 : 0);
-    const bool exchanged = bundle->move[m][0] == 0;
-    const int between = (fabs(exchanged ? bundle->sineV : bundle->sineU) < 1e-5f ? 1 : 0) +
-      (fabs(exchanged ? bundle->sineU : bundle->sineV) < 1e-5f ? 2 : 0);
-    other[m] = way[m] ^ between;
-  }
+    ways.aside[m] = ways_aside(bundle, m);
 #endif
-#if NET_FLUX
-  __global float* flux_row = ROW_OF(state->planes, PLANE_FLUX, y);
-  float along_u[MEMBERS], along_v[MEMBERS];
-#pragma unroll
-  for (int m = 0; m < MEMBERS; ++m)
-  {
-    along_u[m] = bundle->move[m][0] * bundle->sineU + bundle->move[m][1] * bundle->sineV;
-    along_v[m] = bundle->move[m][2] * bundle->sineU + bundle->move[m][3] * bundle->sineV;
   }
-#endif
   for (int x = 0; x < state->width; x += REAL_WIDTH)
   {
-#if CHAINED
-    ask_for_lines(state);
-#endif
+    if (CHAINED)
+    {
+      ask_for_lines(state);
+    }
     const real_crossing crossing = cross_length(state, x, sigma_row, inverse_row, length, thin);
-    const real mean_length = crossing.meanLength, keep = crossing.keep, change = crossing.change;
     if (deposit && !thin)
     {
-      store_real(multiply_add(mean_length, (real)(power * MEMBERS), load_real(x, taken_row)), x, taken_row);
+      const real taken = multiply_add(crossing.meanLength, (real)(rows.power * MEMBERS), load_real(x, taken_row));
+      store_real(taken, x, taken_row);
     }
-    const real shine = mean_length * power;
-#if NET_FLUX
-    // Path, within the voxel, of the light of its own source, (length - mean_length) / sigma, for the net flux. Across
-    // the axis the contributions of mirror images cancel; along it they do not, as a ray and its opposite may cross the
-    // voxel in different segments.
-    const real own_path = own_path_of(x, &crossing, inverse_row, length) * (power * MEMBERS * bundle->cosine);
-#endif
+    // Path, within the voxel, of the light of its own source, (length - mean_length) / sigma. Across the axis the
+    // contributions of mirror images to the net flux cancel; along it they do not, as a ray and its opposite may cross
+    // the voxel in different segments.
+    const real own_path =
+      NET_FLUX ? own_path_of(x, &crossing, inverse_row, length) * (rows.power * MEMBERS * rows.cosine) : (real)0.0f;
 #pragma unroll
     for (int c = 0; c < CHANNELS; ++c)
     {
-      const real gain = shine * load_real(x, source_row + c * ROW);
-      real sum = (real)0.0f;
-#if OCTANT_SOURCE
-      const __global float* octants = ROW_OF(state->planes, PLANE_OCTANTS + WaysAside * c, y);
-      real all_more = (real)0.0f;
-#endif
-#if NET_FLUX
-      real sum_u = (real)0.0f, sum_v = (real)0.0f;
-#endif
-#pragma unroll
-      for (int m = 0; m < MEMBERS; ++m)
-      {
-        const real ray = load_real(x, in[m] + c * ROW);
-        sum += ray;
-#if NET_FLUX
-        sum_u = multiply_add(ray, (real)along_u[m], sum_u);
-        sum_v = multiply_add(ray, (real)along_v[m], sum_v);
-#endif
-#if OCTANT_SOURCE
-        const real more = 0.5f * (load_real(x, octants + way[m] * ROW) + load_real(x, octants + other[m] * ROW));
-        all_more += more;
-        const real shines = multiply_add(shine, more, gain);
-        const real kept = thin ? ray + shines : multiply_add(ray, keep, shines);
-#else
-        const real kept = thin ? ray + gain : multiply_add(ray, keep, gain);
-#endif
-        const real after = multiply_add(ray, change, kept);
-        store_real(after, x, out + FIRST(m, c));
-      }
-#if CURRENTS
-      if (entered)
-      {
-        __global float* here = entered + CurrentFaces * c * ROW;
-        store_real(load_real(x, here) + sum, x, here);
-      }
-#endif
-      if (deposit)
-      {
-#if OCTANT_SOURCE
-        // the additional octant source is not lost in its own voxel
-        sum -= all_more * load_real(x, inverse_row) * power;
-#endif
-        store_real(multiply_add(mean_length, sum, load_real(x, path_row + c * ROW)), x, path_row + c * ROW);
-#if NET_FLUX
-        __global float* flux = flux_row + 3 * c * ROW;
-        store_real(multiply_add(mean_length, sum_u, load_real(x, flux)), x, flux);
-        store_real(multiply_add(mean_length, sum_v, load_real(x, flux + ROW)), x, flux + ROW);
-        real sum_w = multiply_add(mean_length * bundle->cosine, sum, load_real(x, flux + 2 * ROW));
-        sum_w = multiply_add(own_path, load_real(x, source_row + c * ROW), sum_w);
-        store_real(sum_w, x, flux + 2 * ROW);
-#endif
-      }
+      CROSS_CHANNEL(&rows, &ways, x, c, &crossing, own_path, in, out);
     }
   }
 }
@@ -285,12 +297,12 @@ static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radianc
 #if FACES
 // Adds light given by cells of the faces across u to the columns beside row y.
 static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance,
-  const __global BundleInfo* bundle, int moveU, int moveV, __global float* out)
+  const __global BundleInfo* bundle, const __global CrossingInfo* crossing, int s, __global float* out)
 {
   for (int m = 0; m < MEMBERS; ++m)
   {
-    const int du = bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
-    const int dv = bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
+    const int2 move = move_of(bundle, m, crossing, s);
+    const int du = move.x, dv = move.y;
     for (int c = 0; c < CHANNELS && du != 0; ++c)
     {
       const float light = light_of_cells(state, du > 0 ? 0 : 1, y, dv, c);
@@ -308,8 +320,8 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
   {
     for (int m = 0; m < MEMBERS; ++m)
     {
-      const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
-      const int dv = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
+      const int2 move = move_of(bundle, m, crossing, s);
+      const int du = move.x, dv = move.y;
       const int side = dv > 0 ? 2 : 3;
       for (int c = 0; c < CHANNELS && dv != 0; ++c)
       {
@@ -345,15 +357,17 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
 #if CURRENTS
 // Counts the power that enters row y by face, see SweepPartialCurrents.cl; the rays of one face are added together.
 // `own` is the row itself, before the move.
-static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, bool first, const __global float** in,
-  const __global float* own, const __global BundleInfo* bundle, int moveU, int moveV, float part)
+static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, int s, const __global float** in,
+  const __global float* own, const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
+  const bool first = s == 0;
+  const float part = crossing->part[s];
   const __global float* through[CurrentFaces][MEMBERS];
   int counts[CurrentFaces] = { 0, 0, 0, 0, 0 };
   for (int m = 0; m < MEMBERS; ++m)
   {
-    const int du = first ? 0 : bundle->move[m][0] * moveU + bundle->move[m][1] * moveV;
-    const int dv = first ? 0 : bundle->move[m][2] * moveU + bundle->move[m][3] * moveV;
+    const int2 move = move_of(bundle, m, crossing, s);
+    const int du = first ? 0 : move.x, dv = first ? 0 : move.y;
     if (du != 0 && dv != 0)
     {
       add_through_edge(state, y, du, dv, in[m], own + FIRST(m, 0), part);
@@ -372,13 +386,11 @@ static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, bool first, const _
       add_currents(state, y, face, through[face], MEMBERS, part);
       done = MEMBERS;
     }
-#if MEMBERS > 1
-    else if (counts[face] == MEMBERS / 2)
+    else if (MEMBERS > 1 && counts[face] == MEMBERS / 2)
     {
       add_currents(state, y, face, through[face], MEMBERS / 2, part);
       done = MEMBERS / 2;
     }
-#endif
     for (; done < counts[face]; ++done)
     {
       add_current(state, y, face, through[face][done], part);
@@ -398,8 +410,8 @@ static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __glob
 #pragma unroll
   for (int m = 0; m < MEMBERS; ++m)
   {
-    const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
-    const int dv = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
+    const int2 move = move_of(bundle, m, crossing, s);
+    const int du = move.x, dv = move.y;
     const int from = y - dv;
     const __global float* row;
     if (!own)
@@ -432,16 +444,114 @@ static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* ra
 #if FACES
   if (state->faces->in && !PERIODIC_U)
   {
-    ENTER_ASIDE(state, y, radiance, bundle, crossing->moveU[s], crossing->moveV[s], out);
+    ENTER_ASIDE(state, y, radiance, bundle, crossing, s, out);
   }
 #elif SIDES
   for (int m = 0; m < MEMBERS; ++m)
   {
-    const int du = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
+    const int du = move_of(bundle, m, crossing, s).x;
     if (du != 0)
     {
       take_across_u(state, bundle, m, y, du, out);
     }
+  }
+#endif
+}
+
+// Begins to carry a bundle through a chain of planes: lists the chain's stages, and fills the rows and columns of rays
+// that enter sideways. Parameters as for CROSS_PLANES. Returns the row of rays that enter through the faces across v.
+static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __global float* map,
+  const __global float* outside, const __global float* radiance, const __global BundleInfo* bundle,
+  const __global CrossingInfo* crossings, bool begins, chain_of_stages* chain)
+{
+  if (begins && state->border)
+  {
+    FILL_BORDER(state, radiance);
+  }
+  const int bundles = state->allBundles;
+  chain->stages = chain->before = 0;
+  for (int k = 1; k <= state->chained_before; ++k)
+  {
+    chain->before += crossings[-k * bundles].stages;
+  }
+  for (int k = 0; k < planes; ++k)
+  {
+    for (int s = 0; s < crossings[k * bundles].stages; ++s)
+    {
+      chain->of[chain->stages].plane = k;
+      chain->of[chain->stages++].stage = s;
+    }
+  }
+  go_to_plane(state, 0);
+  // With periodicity, rows beyond the plane are rows of the other side and are recomputed there. The first rows are
+  // needed after they have been overwritten.
+  for (int i = 0; PERIODIC_V && begins && i < (chain->stages - 1) * BLOCK; ++i)
+  {
+    map[state->sizeV * BLOCK + i] = map[(i / BLOCK % state->sizeV) * BLOCK + i % BLOCK];
+  }
+#if FACES
+  if (state->faces->in)
+  {
+    FILL_OUTSIDE(state, outside, radiance, bundle, crossings);
+    return state->outside;
+  }
+#elif SIDES
+  if (chain->stages > 1)
+  {
+    take_across_v(state, bundle, MEMBERS * CHANNELS);
+  }
+  return state->outside;
+#endif
+  return outside;
+}
+
+// Carries row y of a bundle through stage g of a chain. Parameters as for CROSS_PLANES.
+// @param beside  the row of rays that enter through the faces across v
+static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state, const chain_of_stages* chain, int g,
+  int y, __global float* map, const __global float* beside, const __global float* outside,
+  const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
+  const __global float* coefficients)
+{
+  const int height = state->sizeV, stages = chain->stages, s = chain->of[g].stage;
+  const bool inside = y >= 0 && y < height;
+  const int wrapped = inside ? y : (y % height + height) % height;
+  const __global CrossingInfo* crossing = crossings + chain->of[g].plane * state->allBundles;
+  const __global float* ring = state->ring + (g - 1) * (RingRows * RAYS_OF_ROW); // of the previous stage
+  const __global float* own = g > 0 ? ring + (y & (RingRows - 1)) * RAYS_OF_ROW : 0;
+  const __global float* in[MEMBERS];
+  TAKE_ROW(state, y, inside, s, map, ring, own, beside, outside, radiance, bundle, crossing, in);
+  __global float* out =
+    g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
+#if CURRENTS
+  if (inside && (ANGULAR || s > 0)) // otherwise done where voxels are crossed
+  {
+    COUNT_CURRENTS(state, y, s, in, own, bundle, crossing);
+  }
+#endif
+  if (crossing->part[s] < 1.0f)
+  {
+    MOVE_PART(state, crossing->part[s], own, in);
+  }
+  const int slot = y & (MomentRows - 1);
+#if ANGULAR
+  if (s == 0 && state->shines)
+  {
+    FOR_FRAMES(FIND_SOURCES, wrapped, slot)
+  }
+  else if (s == 0)
+  {
+    clear(state->sources + slot * RAYS_OF_ROW + PAD, MEMBERS * CHANNELS * ROW);
+  }
+#endif
+  STAGE_ROW(state, wrapped, slot, s == 0, inside, in, out, crossing->length[s], bundle);
+  if (s < crossing->stages - 1)
+  {
+    ENTER_ROW(state, wrapped, s + 1, radiance, bundle, crossing, out);
+  }
+#if ANGULAR
+  if (inside && s == stages - 1)
+  {
+    FOR_FRAMES(GATHER_MOMENTS, y, slot)
   }
 #endif
 }
@@ -453,118 +563,35 @@ static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* ra
 // @param map      rays of the bundle, [row][member][channel][ROW], with two rows more than the plane
 // @param outside  a row of rays that enter through the faces across v, [member][channel][ROW]
 // @param radiance power of rays that enter through the faces across u, [member][channel]
-// @param crossings  crossing of the first plane; those of the following planes are `bundles` apart
+// @param crossings  crossing of the first plane; those of the following planes are state->allBundles apart
 // @param coefficients  values of the bundle's angular functions
 // @param first_row, end_row  rows of the first stage that are crossed in this call; successive calls start at FirstRow
 static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
-  int bundles, const __global float* coefficients, int first_row, int end_row)
+  const __global float* coefficients, int first_row, int end_row)
 {
-  const bool begins = first_row <= FirstRow;
-  if (begins && state->border)
-  {
-    FILL_BORDER(state, radiance);
-  }
-  stage_of_chain chain[STAGES];
-  int stages = 0, before = 0; // stages of the chain's earlier planes, as if it had been crossed from its first one on
-  for (int k = 1; k <= state->chained_before; ++k)
-  {
-    before += crossings[-k * bundles].stages;
-  }
-  for (int k = 0; k < planes; ++k)
-  {
-    for (int s = 0; s < crossings[k * bundles].stages; ++s)
-    {
-      chain[stages].plane = k;
-      chain[stages++].stage = s;
-    }
-  }
-  go_to_plane(state, 0);
-  const int height = state->sizeV;
-#if FACES
-  if (state->faces->in)
-  {
-    FILL_OUTSIDE(state, outside, radiance, bundle, crossings);
-  }
-  const __global float* const beside = state->faces->in ? state->outside : outside;
-#elif SIDES
-  if (stages > 1)
-  {
-    take_across_v(state, bundle, MEMBERS * CHANNELS);
-  }
-  const __global float* const beside = state->outside;
-#else
-  const __global float* const beside = outside;
-#endif
-  // With periodicity, rows beyond the plane are rows of the other side and are recomputed there. The first rows are
-  // needed after they have been overwritten.
+  chain_of_stages chain;
+  const __global float* const beside =
+    BEGIN_CHAIN(state, planes, map, outside, radiance, bundle, crossings, first_row <= FirstRow, &chain);
+  const int height = state->sizeV, stages = chain.stages;
   const int beyond = PERIODIC_V ? stages - 1 : 0;
-  for (int i = 0; begins && i < beyond * BLOCK; ++i)
-  {
-    map[height * BLOCK + i] = map[(i / BLOCK % height) * BLOCK + i % BLOCK];
-  }
-  const int end = min(height + beyond + LAG * (before + stages - 1), end_row);
+  const int end = min(height + beyond + LAG * (chain.before + stages - 1), end_row);
   for (int r = max(-beyond, first_row); r < end; ++r)
   {
     for (int g = 0; g < stages; ++g)
     {
-      const int y = r - LAG * (before + g);
+      const int y = r - LAG * (chain.before + g);
       const int reach = PERIODIC_V ? stages - 1 - g : 0;
       if (y < -reach || y >= height + reach)
       {
         continue;
       }
-      const bool inside = y >= 0 && y < height;
-      const int wrapped = inside ? y : (y % height + height) % height;
-      const int s = chain[g].stage;
-      const __global CrossingInfo* crossing = crossings + chain[g].plane * bundles;
-#if CHAINED
-      go_to_plane(state, chain[g].plane);
-#endif
-      const __global float* ring = state->ring + (g - 1) * (RingRows * RAYS_OF_ROW); // of the previous stage
-      const __global float* own = g > 0 ? ring + (y & (RingRows - 1)) * RAYS_OF_ROW : 0;
-      const __global float* in[MEMBERS];
-      TAKE_ROW(state, y, inside, s, map, ring, own, beside, outside, radiance, bundle, crossing, in);
-      __global float* out =
-        g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
-#if CURRENTS
-      if (inside && (ANGULAR || s > 0)) // otherwise done where voxels are crossed
+      if (CHAINED)
       {
-        COUNT_CURRENTS(state, y, s == 0, in, own, bundle, crossing->moveU[s], crossing->moveV[s], crossing->part[s]);
+        go_to_plane(state, chain.of[g].plane);
+        ask_ahead(state, map, r + RowsAhead < min(end_row, height) ? r + RowsAhead : -1, BLOCK, g, stages);
       }
-#endif
-      if (crossing->part[s] < 1.0f)
-      {
-        MOVE_PART(state, crossing->part[s], own, in);
-      }
-      const int slot = y & (MomentRows - 1);
-#if ANGULAR
-      if (s == 0)
-      {
-        if (state->shines)
-        {
-          FOR_FRAMES(FIND_SOURCES, wrapped, slot)
-        }
-        else
-        {
-          clear(state->sources + slot * RAYS_OF_ROW + PAD, MEMBERS * CHANNELS * ROW);
-        }
-      }
-#endif
-#if CHAINED
-      ask_ahead(state, map, r + RowsAhead < min(end_row, height) ? r + RowsAhead : -1, BLOCK, g, stages);
-#endif
-      STAGE_ROW(state, wrapped, slot, s == 0, inside, in, out, crossing->length[s], bundle);
-      if (s < crossing->stages - 1)
-      {
-        ENTER_ROW(state, wrapped, s + 1, radiance, bundle, crossing, out);
-      }
-#if ANGULAR
-      if (inside && s == stages - 1)
-      {
-        FOR_FRAMES(GATHER_MOMENTS, y, slot)
-      }
-#endif
+      CROSS_STAGE(state, &chain, g, y, map, beside, outside, radiance, bundle, crossings, coefficients);
     }
   }
 }
@@ -586,4 +613,9 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
 #undef COUNT_ESCAPED
 #undef STAGE_ROW
 #undef CROSS_VOXELS
+#undef CROSS_CHANNEL
+#undef SEGMENT_ROWS
+#undef MEMBER_WAYS
+#undef BEGIN_CHAIN
+#undef CROSS_STAGE
 #undef NAME_OF

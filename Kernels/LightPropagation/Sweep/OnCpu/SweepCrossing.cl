@@ -63,7 +63,6 @@ static inline float2 signs_of(const __global BundleInfo* bundle, int m)
   return (float2)(bundle->move[m][0] + bundle->move[m][1], bundle->move[m][2] + bundle->move[m][3]);
 }
 
-#if CHAINED
 // Maps of chained planes come from memory. Their rows are prefetched into the second-level cache, a few cache lines at
 // each vector of voxels; prefetching a whole row at once would stall.
 static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* state)
@@ -87,4 +86,3 @@ static inline void ask_ahead(sweep_state* state, const __global float* map, int 
     state->asked = map + y * floats + g * state->asks * vectors * FloatsOfLine;
   }
 }
-#endif

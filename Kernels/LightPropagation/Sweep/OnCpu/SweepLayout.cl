@@ -8,9 +8,9 @@
 //   CURRENTS  1 if the power that enters each voxel through each face is computed
 //   OCTANT_SOURCE  1 if voxels may have an additional source by octant; only if ANGULAR is 0
 //   PERIODIC  1 if the box may be periodic along u or v; SweepInfo says along which
-//   FACES     1 if light may be counted or given by cells of the box's faces (SweepFaces.cl); FaceInfo says which
-//   CHAIN_KEEPS  rows of planes that fit in scratch, a power of two; 0 (default): all
-//   SIDES     1 if the box is a block of a larger domain (SweepSides.cl); default 0
+//   FACES     1 if light may be counted or given by cells of the box's faces (SweepSides.cl); FaceInfo says which
+//   ROWS_KEPT  rows of chained planes that fit in scratch, a power of two; 0: all
+//   SIDES     1 if the box is a block of a larger domain (SweepSides.cl)
 // Options whose run-time test is nearly free are in SweepInfo instead: sweeps of incident light and of scattered light
 // thus share one program, which takes seconds to compile.
 //
@@ -22,12 +22,6 @@
 #include "Numerics/Exact.cl"
 #include "Numerics/Numerics.cl"
 
-#ifndef SIDES
-#define SIDES 0
-#endif
-#ifndef CHAIN_KEEPS
-#define CHAIN_KEEPS 0
-#endif
 #define PAD REAL_WIDTH
 #define LAG 2 // rows by which a stage lags behind the previous one
 #define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained) // at most
@@ -54,20 +48,18 @@
 #endif
 #define PERIODIC_U (PERIODIC && state->periodicU)
 #define PERIODIC_V (PERIODIC && state->periodicV)
-#define ROWS_KEPT (CHAINED ? CHAIN_KEEPS : 0)
+#define KEPT_ROWS (CHAINED ? ROWS_KEPT : 0)
 
-// A plane is [row][quantity][ROW]: data used together is contiguous, and no stride is a power of two. If ROWS_KEPT,
+// A plane is [row][quantity][ROW]: data used together is contiguous, and no stride is a power of two. If KEPT_ROWS,
 // only the rows that bundles are working on are stored, in a ring of that many rows.
-#if ROWS_KEPT
-#define PLACE_OF_ROW(row) ((row) & (ROWS_KEPT - 1))
-#else
-#define PLACE_OF_ROW(row) (row)
-#endif
+#define PLACE_OF_ROW(row) (KEPT_ROWS ? (row) & (KEPT_ROWS - 1) : (row))
 #define ROW_OF(planes, quantity, row) ((planes) + (PLACE_OF_ROW(row) * PLANES + (quantity)) * ROW)
 
 #if ANGULAR
 // Offset of voxel x in a row of moments with `higher` functions from the second on, see MomentPlacesShared.h.
 #define IN_ROW(x, higher) ((x) / MomentGroup * ((higher)*MomentGroup) + (x) % MomentGroup)
+// Floats of the moments from the second on of a channel's row in the volume.
+#define MOMENTS_OF_CHANNEL(info) ((ulong)(info)->moments.groups * ((info)->moments.functions - 1) * MomentGroup)
 #endif
 
 // Planes of a chain, their stages, and the lag of the last stage.
@@ -76,12 +68,16 @@
 #define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2) // most rows by which the last stage lags behind the first
 typedef struct
 {
-  int plane, stage; // of the plane
-} stage_of_chain;
+  int stages; // number of stages
+  int before; // stages of the chain's earlier planes, as if it had been crossed from its first one on
+  struct
+  {
+    int plane, stage; // of the plane
+  } of[STAGES];
+} chain_of_stages;
 
-#if ROWS_KEPT // are those of a turn, and those that its last stage is behind
-typedef char kept_rows_suffice[ROWS_KEPT >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
-#endif
+// The rows kept are those of a tile, and those by which its last stage lags behind.
+typedef char kept_rows_suffice[!KEPT_ROWS || KEPT_ROWS >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 
 // A plane that is being crossed.
 struct plane_place
@@ -100,15 +96,14 @@ typedef struct
   int width;                        // sizeU rounded up to whole vectors
   int shines, border, roundAxis;    // see SweepInfo
   int periodicU, periodicV;         // likewise
+  int allBundles;                   // number of bundles, of all units
   const struct plane_place* places; // the planes of a chain
   __global float* planes;           // of the plane that is being crossed
   __global int* thin;               // [row] of it: 1 if all voxels are thin
   float meanLength[MeanLengthTerms];
-  int chained_before; // planes of the chain that were crossed before those of `places`
-#if CHAINED
-  const __global float* asked; // prefetch: next address, and number of cache lines per vector of voxels
+  int chained_before;          // planes of the chain that were crossed before those of `places`
+  const __global float* asked; // prefetch, if CHAINED: next address, and number of cache lines per vector of voxels
   int asks;
-#endif
   int tile;             // rows in a tile, which bundles cross in turn; 0: each bundle crosses all rows
   int rings;            // number of rings: one after each stage except the last
   __global float* ring; // [rings][RingRows][RAYS_OF_ROW]
@@ -146,6 +141,12 @@ typedef struct
   int outerSides;
 #endif
 } sweep_state;
+
+#if SIDES
+typedef float leaving_float;
+#else
+typedef exact leaving_float;
+#endif
 
 #if REAL_WIDTH == 16
 #define LANES (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)

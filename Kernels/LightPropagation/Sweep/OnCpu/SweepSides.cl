@@ -1,12 +1,12 @@
-// Rays that enter through the sides of a block from its neighbours, and leave to them, if the box is a block of a
-// larger domain. The host defines
-//   SIDES  1: the box is such a block; default 0. Requires that PERIODIC, FACES and
-//          SweepInfo's border are 0
+// Rays that enter and leave through the sides of the box. Sides 0 to 3 are the faces -u, +u, -v, +v. The host defines
+//   SIDES  1: the box is a block of a larger domain: rays enter from its neighbours and leave to them. Requires that
+//          PERIODIC, FACES and SweepInfo's border are 0
+//   FACES  1: escaped power may be counted, and incident light given, by cells of the box's faces; FaceInfo tells which
 //
-// Layout: [plane][ray][SIDE_FLOATS], with rays by the voxel they come from, or are in, before they move. First the rays
-// that move across v, one for each column; then those that move across u, one for each row; then the one that moves
-// across both at once. Incoming rays come from beyond the box, outgoing ones from its last columns and rows. Rays are
-// numbered as the bundles' radiances are, [bundle][member][channel].
+// Layout of rays from and to neighbours: [plane][ray][SIDE_FLOATS], with rays by the voxel they come from, or are in,
+// before they move. First the rays that move across v, one for each column; then those that move across u, one for each
+// row; then the one that moves across both at once. Incoming rays come from beyond the box, outgoing ones from its last
+// columns and rows. Rays are numbered as the bundles' radiances are, [bundle][member][channel].
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -62,10 +62,97 @@ static BY_ROW void give_sides(
   }
 }
 
-#define SIDES_ARGUMENTS , const __global float *sides_in, __global float *sides_out, int outer_sides
-// Sides 0 to 3 are the faces -u, +u, -v, +v. True if light that crosses the side leaves the domain.
+// True if light that crosses the side leaves the domain.
 #define LEAVES_GRID(state, side) (((state)->outerSides >> (side)) & 1)
 #else
-#define SIDES_ARGUMENTS
 #define LEAVES_GRID(state, side) true
+#endif
+
+// Cell i of a side is at row i or column i of the plane that is crossed.
+#if FACES
+#define FACE_CELL(state, side, i, c) \
+  ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)
+
+// Selects the cells of plane `plane` of the grid.
+static BY_ROW void go_to_faces(sweep_state* state, int plane)
+{
+  for (int side = 0; side < 4; ++side)
+  {
+    state->faceFirst[side] =
+      state->faces->firstChannel + state->faces->first[side] + (ulong)plane * state->faces->plane[side];
+  }
+}
+
+// Range of planes through whose cells a ray leaves. Rays nearly parallel to a face meet it only every few planes; if
+// `spread`, a ray leaves through all cells between it and the next ray.
+typedef struct
+{
+  float begin, end;
+} face_planes;
+
+// @param planes  number of planes from one ray to the next
+static face_planes planes_of_ray(const sweep_state* state, float planes)
+{
+  const float middle = state->facePlane + 0.5f, reach = state->faces->spread ? 0.5f * planes : 0.5f;
+  face_planes found = { middle - reach, middle + reach };
+  if (!state->roundAxis)
+  {
+    found.begin = fmax(found.begin, 0.0f);
+    found.end = fmin(found.end, (float)state->facePlanes);
+  }
+  return found;
+}
+
+// First cell of plane p of a side.
+static __global exact* cells_of_plane(const sweep_state* state, int side, int p, int c)
+{
+  p = (p + state->facePlanes) % state->facePlanes; // wraps around a periodic axis
+  const long planes = p - state->facePlane;
+  return state->faceOut + FACE_CELL(state, side, 0, c) + planes * state->faces->plane[side];
+}
+
+// Part of a ray's power that leaves through plane p.
+static float part_of_plane(face_planes of, int p)
+{
+  return (fmin(of.end, p + 1.0f) - fmax(of.begin, (float)p)) / (of.end - of.begin);
+}
+
+static BY_ROW void leave_through(const sweep_state* state, int side, int i, int c, face_planes of, float power)
+{
+  for (int p = (int)floor(of.begin); p < of.end; ++p)
+  {
+    cells_of_plane(state, side, p, c)[i * state->faces->along[side]] += part_of_plane(of, p) * power;
+  }
+}
+
+// Counts the power of a row of rays that leaves through the cells of one side.
+static BY_ROW void leave_all_through(
+  const sweep_state* state, int side, int c, face_planes of, const __global float* rays, float part)
+{
+  const int along = state->faces->along[side];
+  for (int p = (int)floor(of.begin); p < of.end; ++p)
+  {
+    __global exact* out = cells_of_plane(state, side, p, c);
+    const float of_rays = part * part_of_plane(of, p);
+    for (int x = 0; x < state->sizeU; ++x)
+    {
+      out[x * along] += of_rays * rays[x];
+    }
+  }
+}
+
+static float light_of_cell(const sweep_state* state, int side, int i, int c)
+{
+  return state->faceIn[FACE_CELL(state, side, i, c)];
+}
+
+// Mean incident radiance of cell i and, if it is on the face, cell i + move: half of the rays that move along u and v
+// at once pass each.
+static BY_ROW float light_of_cells(const sweep_state* state, int side, int i, int move, int c)
+{
+  const int size = side < 2 ? state->sizeV : state->sizeU;
+  const float here = light_of_cell(state, side, i, c);
+  const int beside = PERIODIC_V && side < 2 ? (i + move + size) % size : i + move;
+  return move == 0 || beside < 0 || beside >= size ? here : 0.5f * (here + light_of_cell(state, side, beside, c));
+}
 #endif

@@ -1,6 +1,5 @@
 #include "LightPropagation/Sweep/OnGpu/GpuLanes.h"
 
-#include "Device/Defines.h"
 #include "Device/Device.h"
 #include "Device/Sizes.h"
 
@@ -15,10 +14,11 @@ SweepLane LaneOf(const SweepPlan& plan, int way)
   lane.axis = plan.axes.axis;
   lane.backward = way;
   lane.patternPlanes = plan.PatternPlanes();
+  lane.around = plan.periodic[plan.axes.axis];
   lane.periodicU = plan.periodic[plan.axes.u];
   lane.periodicV = plan.periodic[plan.axes.v];
   lane.bundles = static_cast<int>(plan.bundles.size());
-  lane.rays = static_cast<int>(plan.radianceEachWay) / plan.channels;
+  lane.rays = static_cast<int>(plan.eachWay.radiance) / plan.channels;
   lane.positions = std::max(plan.plane.sizeU, plan.plane.sizeV);
   return lane;
 }
@@ -48,33 +48,31 @@ std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularV
   return functions;
 }
 
-GpuLanes::GpuLanes(const Device& device, const VolumeLayout& layout, const SweepRequest& request,
+GpuLanes::GpuLanes(const Device& device, const SweepVolume& volume, std::vector<AxisBundles> rays,
   const std::array<bool, 3>& periodic, bool atOnce)
-  : channels(layout.Groups().front().count)
-  , functionCount(request.angular ? request.angular->Functions() : 1)
-  , floatsOfDeposit(
-      functionCount + (request.deposit.flux && !request.angular ? 3 : 0) + (request.deposit.partialCurrents ? 6 : 0))
+  : channels(volume.channels)
+  , functionCount(volume.angular ? volume.angular->Functions() : 1)
+  , floatsOfDeposit(functionCount + (volume.deposit.flux ? 3 : 0) + (volume.deposit.partialCurrents ? 6 : 0))
 {
-  std::vector<AxisBundles> rays = request.rays;
+  SweepDescription sweep = Describe(volume, periodic);
+  sweep.faceIn = false; // LaneFaces has its own memory
   std::stable_partition(rays.begin(), rays.end(), [&](const AxisBundles& along) { return !periodic[along.axis]; });
   for (const AxisBundles& along : rays)
   {
     if (!along.bundles.empty())
     {
-      this->plans.emplace_back(device, layout.grid, request.box, along.axis, along.bundles, this->channels, periodic,
-        request.deposit.flux && !request.angular, request.deposit.partialCurrents != nullptr, request.angular,
-        layout.Places(this->functionCount), false, request.octantSource != nullptr);
+      this->plans.emplace_back(device, sweep, along);
     }
   }
   for (const SweepPlan& plan : this->plans)
   {
-    this->LayPlan(plan, request.angular);
+    this->LayPlan(plan, volume.angular);
   }
   this->LayBatches(atOnce);
   for (LaneBatch& batch : this->batches)
   {
     batch.hasArrays = !device.Streams() && (batch.around || batch.count > 1);
-    this->Place(batch, layout.Stride());
+    this->Place(batch, volume.stride);
   }
 }
 
@@ -121,13 +119,9 @@ void GpuLanes::LayLane(const SweepPlan& plan, int way, int firstBundle, int firs
 
 void GpuLanes::LayBatches(bool atOnce)
 {
-  const auto isAround = [this](std::size_t lane) {
-    const SweepPlan& plan = this->plans[this->PlanOfLane[lane]];
-    return plan.periodic[plan.axes.axis];
-  };
   for (std::size_t i = 0; i < this->lanes.size(); ++i)
   {
-    const bool around = isAround(i);
+    const bool around = this->lanes[i].around != 0;
     const bool joins = atOnce && !this->batches.empty() && this->batches.back().around == around &&
       (!around || this->batches.back().plan == this->PlanOfLane[i]);
     if (!joins)

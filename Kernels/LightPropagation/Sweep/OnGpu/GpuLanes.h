@@ -1,9 +1,8 @@
 #pragma once
 
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
-#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
-#include "LightPropagation/Sweep/VolumeLayout.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
 
 #include <array>
 #include <cstddef>
@@ -16,7 +15,7 @@ namespace tyndall
 /// @param way  0 forward along the axis, 1 backward
 SweepLane LaneOf(const SweepPlan& plan, int way);
 
-/// Floats of the sides for one ray and plane (VoxelSides.cl).
+/// Floats of the sides for one ray and plane (LanePlane.cl).
 std::size_t SideFloats(const SweepLane& lane);
 
 /// Angular functions in the directions of these rays, followed by beams, [ray][function].
@@ -36,10 +35,11 @@ struct LaneBatch
 /// Lanes and batches of a sweep on GPUs, with their positions in the buffers. Computed once, on the host.
 struct GpuLanes
 {
+  /// @param volume  the channels that are swept together
   /// @param atOnce  run the lanes of all open axes in the same launches, and likewise both ways along a periodic axis;
   /// false: one lane after the other. Ignored on a device that streams volumes, where lanes follow one another and all
   /// add to the deposit
-  GpuLanes(const Device& device, const VolumeLayout& layout, const SweepRequest& request,
+  GpuLanes(const Device& device, const SweepVolume& volume, std::vector<AxisBundles> rays,
     const std::array<bool, 3>& periodic, bool atOnce);
 
   std::vector<SweepPlan> plans; ///< one for each entry of the request's rays that is not empty; open axes first

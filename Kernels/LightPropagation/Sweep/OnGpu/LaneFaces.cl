@@ -1,16 +1,11 @@
 // Light by cells of the box's faces, in a sweep on GPUs. Incident light of each cell is written to the sides
-// (VoxelSides.cl) before planes are crossed; what leaves through each cell is summed afterwards, one work-item per
-// cell, so the order is fixed and no atomics are needed. Physics and numerics are those of SweepFaces.cl and
+// (LanePlane.cl) before planes are crossed; what leaves through each cell is summed afterwards, one work-item per
+// cell, so the order is fixed and no atomics are needed. Physics and numerics are those of SweepSides.cl and
 // SweepMaps.cl. The host defines
 //   CHANNELS  channels swept together
-//   AROUND    see SweepOnGpu.cl
-//   FACE_IN   1: incident light is given by cells, in addition to that which is uniform over each face
-//   SPREAD    1: Deposit::spreadsAside
 
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
 #include "Numerics/Numerics.cl"
-
-#define SIDE_FLOATS(lane) ((lane)->planes.sizeU + (lane)->planes.sizeV + 1)
 
 // The cells of one channel beside a lane's plane.
 typedef struct
@@ -38,25 +33,19 @@ static ray_in_plane ray_of(const __global SweepLane* lane, const __global int2* 
   return found;
 }
 
-static int2 move_of(const ray_in_plane* ray, int s)
-{
-  const __global int* move = ray->bundle->move[ray->member];
-  const int u = ray->crossing->moveU[s], v = ray->crossing->moveV[s];
-  return (int2)(move[0] * u + move[1] * v, move[2] * u + move[3] * v);
-}
-
-#if FACE_IN
 static float light_of_cell(const cells_beside* cells, int side, int i)
 {
   const __global LaneFaceInfo* faces = cells->faces;
   return cells->light[faces->first[side] + cells->plane * faces->plane[side] + i * faces->along[side]];
 }
-#endif
 
 // Incident power of a ray: the mean over cell i and, if it is on the face, cell i + move, times `power`.
 static float light_of_cells(const cells_beside* cells, float power, int side, int i, int move)
 {
-#if FACE_IN
+  if (!cells->faces->in)
+  {
+    return 0.0f;
+  }
   const __global SweepLane* lane = cells->lane;
   const int size = side < 2 ? lane->planes.sizeV : lane->planes.sizeU;
   const bool wraps = side < 2 ? lane->periodicV : lane->periodicU;
@@ -64,12 +53,9 @@ static float light_of_cells(const cells_beside* cells, float power, int side, in
   const int beside = wraps ? (i + move + size) % size : i + move;
   return power *
     (move == 0 || beside < 0 || beside >= size ? here : 0.5f * (here + light_of_cell(cells, side, beside)));
-#else
-  return 0.0f;
-#endif
 }
 
-// Writes the rays that enter through the sides of a lane's planes. One work-item per position of VoxelSides.cl.
+// Writes the rays that enter through the sides of a lane's planes. One work-item per position of LanePlane.cl.
 // crossings  of the lane's planes
 __kernel void enter_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
@@ -85,7 +71,7 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
   float light = 0.0f;
   for (int s = 1; s < ray.crossing->stages; ++s)
   {
-    const int2 move = move_of(&ray, s);
+    const int2 move = move_of(ray.bundle, ray.member, ray.crossing, s);
     const int faceU = move.x > 0 ? 0 : 1, faceV = move.y > 0 ? 2 : 3;
     if (place < sizeU && move.y != 0)
     {
@@ -102,32 +88,32 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
           light_of_cells(&cells, power, faceU, move.y > 0 ? 0 : sizeV - 1, 0));
     }
   }
-  sides_in[lane->sides + ((ulong)k * lane->rays * CHANNELS + slot) * SIDE_FLOATS(lane) + place] = light;
+  sides_in[lane->sides + ((ulong)k * lane->rays * CHANNELS + slot) * SIDE_FLOATS(&lane->planes) + place] = light;
 }
 
 // Part of a ray, which moves sideways in `plane`, that leaves through the cells of plane p.
 // @param planes  number of planes from one of its moves to the next
-static float part_through(const __global SweepLane* lane, int plane, int p, float planes)
+static float part_through(const __global SweepLane* lane, int spread, int plane, int p, float planes)
 {
-#if SPREAD
+  if (!spread)
+  {
+    return plane == p ? 1.0f : 0.0f;
+  }
   const int size = lane->planes.sizeP;
   float begin = plane + 0.5f - 0.5f * planes, end = plane + 0.5f + 0.5f * planes, part = 0.0f;
-  begin = AROUND ? begin : fmax(begin, 0.0f);
-  end = AROUND ? end : fmin(end, (float)size);
-  for (int round = AROUND ? -1 : 0; round <= (AROUND ? 1 : 0); ++round)
+  begin = lane->around ? begin : fmax(begin, 0.0f);
+  end = lane->around ? end : fmin(end, (float)size);
+  for (int round = lane->around ? -1 : 0; round <= (lane->around ? 1 : 0); ++round)
   {
     const int there = p + round * size;
     part += fmax(fmin(end, there + 1.0f) - fmax(begin, (float)there), 0.0f);
   }
   return part / (end - begin);
-#else
-  return plane == p ? 1.0f : 0.0f;
-#endif
 }
 
 // Power of a ray that leaves through cell `i` of a side in a plane; half of it for rays that move along u and v at an
 // edge.
-// @param in, out  sides of the ray and plane (VoxelSides.cl)
+// @param in, out  sides of the ray and plane (LanePlane.cl)
 static float power_through(const __global SweepLane* lane, const ray_in_plane* ray, int side, int i,
   const __global float* in, const __global float* out)
 {
@@ -138,7 +124,7 @@ static float power_through(const __global SweepLane* lane, const ray_in_plane* r
   float power = 0.0f;
   for (int s = 1; s < ray->crossing->stages; ++s)
   {
-    const int2 move = move_of(ray, s);
+    const int2 move = move_of(ray->bundle, ray->member, ray->crossing, s);
     const int through = of_u ? move.x : move.y, along = of_u ? move.y : move.x;
     if (through != (side % 2 ? 1 : -1))
     {
@@ -170,6 +156,7 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   {
     return;
   }
+  const __global LaneFaceInfo* of_lane = faces + number;
   const int at = lane->backward ? lane->planes.sizeP - 1 - p : p;
   float left = 0.0f;
   for (int r = 0; r < lane->rays; ++r)
@@ -180,20 +167,19 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
     const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0;
     const float planes = ofU ? bundle->planesU : bundle->planesV;
     // Planes in which a move may make it pass these cells.
-    const int reach = AROUND ? lane->patternPlanes : SPREAD ? (int)ceil(0.5f * planes) : 0;
+    const int reach = lane->around ? lane->patternPlanes : of_lane->spread ? (int)ceil(0.5f * planes) : 0;
     for (int k = max(at - reach, 0); k < min(at + reach + 1, lane->patternPlanes); ++k)
     {
-      const float part = part_through(lane, plane_of(lane, k), p, planes);
+      const float part = part_through(lane, of_lane->spread, plane_of(lane, k), p, planes);
       if (part > 0.0f)
       {
         const ray_in_plane ray = ray_of(lane, rays, bundles, crossings + (of_round ? 0 : lane->crossings), r, k);
-        const ulong before = lane->sides + (((ulong)k * lane->rays + r) * CHANNELS + c) * SIDE_FLOATS(lane);
+        const ulong before = lane->sides + (((ulong)k * lane->rays + r) * CHANNELS + c) * SIDE_FLOATS(&lane->planes);
         left = multiply_add(part, power_through(lane, &ray, side, i, sides_in + before, sides_out + before), left);
       }
     }
   }
-  const __global LaneFaceInfo* of = faces + number;
-  face_out[first + c * stride + of->first[side] + p * of->plane[side] + i * of->along[side]] += left;
+  face_out[first + c * stride + of_lane->first[side] + p * of_lane->plane[side] + i * of_lane->along[side]] += left;
 }
 
 // Adds incident light by cells to a lane's rays where they start. One work-item per float of its maps.

@@ -1,6 +1,6 @@
 #include "LightPropagation/Sweep/OnGpu/LaneFaces.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
@@ -9,16 +9,11 @@
 
 namespace tyndall
 {
-namespace
-{
-constexpr int AllSides = 15; ///< all sides of the box are faces of the domain
-}
-
 LaneFaces::LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request)
   : TheDevice(device)
   , The(lanes)
-  , In(request.faceIn)
-  , Out(request.deposit.faceOut)
+  , FaceIn(request.faceIn)
+  , FaceOut(request.deposit.faceOut)
   , Spreads(request.deposit.spreadsAside)
   , Cells(BoxFaceCellCount(grid))
 {
@@ -61,16 +56,16 @@ LaneFaceInfo LaneFaces::FacesOf(const SweepLane& lane, const Grid& grid) const
     info.plane[side] = static_cast<cl_int>(layout.step[lane.axis]);
     info.along[side] = static_cast<cl_int>(layout.step[side < 2 ? axes.v : axes.u]);
   }
+  info.in = this->FaceIn != nullptr;
+  info.spread = this->Spreads;
   info.start = static_cast<cl_int>(LayoutOfFace(grid, 2 * lane.axis + lane.backward).first);
   info.end = static_cast<cl_int>(LayoutOfFace(grid, 2 * lane.axis + 1 - lane.backward).first);
   return info;
 }
 
-cl::Kernel LaneFaces::Kernel(const char* name, bool around) const
+cl::Kernel LaneFaces::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(name, kernel_source::LaneFaces,
-    Define("CHANNELS", this->The.channels) + Define("AROUND", around) + Define("FACE_IN", this->In != nullptr) +
-      Define("SPREAD", this->Spreads));
+  return this->TheDevice.Kernel(name, kernel_source::LaneFaces, Define("CHANNELS", this->The.channels));
 }
 
 std::size_t LaneFaces::CellsOfPlane(const SweepLane& lane) const
@@ -78,18 +73,13 @@ std::size_t LaneFaces::CellsOfPlane(const SweepLane& lane) const
   return Count(lane.planes.sizeU) * lane.planes.sizeV;
 }
 
-void LaneFaces::SetSides(PlaneKernels& planes) const
-{
-  planes.SetSides(this->SidesIn, this->SidesOut, AllSides);
-}
-
 void LaneFaces::EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const
 {
-  cl::Kernel kernel = this->Kernel("enter_start", batch.around);
+  cl::Kernel kernel = this->Kernel("enter_start");
   for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
     const SweepLane& lane = this->The.lanes[i];
-    With(kernel, cl_int(i), rays.lanes, this->Faces, this->RayPlaces, rays.bundles, *this->In, cl_ulong(first),
+    With(kernel, cl_int(i), rays.lanes, this->Faces, this->RayPlaces, rays.bundles, *this->FaceIn, cl_ulong(first),
       cl_ulong(this->Cells), maps);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       kernel, cl::NullRange, cl::NDRange(Count(lane.rays) * this->The.channels * this->CellsOfPlane(lane)));
@@ -103,12 +93,12 @@ void LaneFaces::EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t
     this->SidesIn.Fill(0.0f);
     return;
   }
-  cl::Kernel kernel = this->Kernel("enter_sides", batch.around);
+  cl::Kernel kernel = this->Kernel("enter_sides");
   for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
     const SweepLane& lane = this->The.lanes[i];
     With(kernel, cl_int(i), rays.lanes, this->Faces, this->RayPlaces, rays.bundles, rays.crossings, rays.entering,
-      this->In ? *this->In : this->SidesOut, cl_ulong(first), cl_ulong(this->Cells), this->SidesIn);
+      this->FaceIn ? *this->FaceIn : this->SidesOut, cl_ulong(first), cl_ulong(this->Cells), this->SidesIn);
     this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
       cl::NDRange(
         SideFloats(lane), Count(lane.rays) * this->The.channels, static_cast<std::size_t>(lane.patternPlanes)));
@@ -118,11 +108,11 @@ void LaneFaces::EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t
 void LaneFaces::Leave(
   const LaneBatch& batch, const Rays& rays, std::size_t first, const std::array<const Buffer<float>*, 2>& maps) const
 {
-  if (!this->Out)
+  if (!this->FaceOut)
   {
     return;
   }
-  cl::Kernel sides = this->Kernel("leave_sides", batch.around), end = this->Kernel("leave_end", batch.around);
+  cl::Kernel sides = this->Kernel("leave_sides"), end = this->Kernel("leave_end");
   for (int i = batch.first; i < batch.first + batch.count; ++i)
   {
     this->LeaveSides(sides, i, rays, first);
@@ -137,7 +127,7 @@ void LaneFaces::LeaveSides(cl::Kernel& kernel, int number, const Rays& rays, std
 {
   const SweepLane& lane = this->The.lanes[number];
   With(kernel, cl_int(number), rays.lanes, this->Faces, this->RayPlaces, rays.bundles, rays.crossings,
-    cl_int(rays.ofRound), this->SidesIn, this->SidesOut, *this->Out, cl_ulong(first), cl_ulong(this->Cells));
+    cl_int(rays.ofRound), this->SidesIn, this->SidesOut, *this->FaceOut, cl_ulong(first), cl_ulong(this->Cells));
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange,
     cl::NDRange(Count(std::max(lane.planes.sizeU, lane.planes.sizeV)), Count(lane.planes.sizeP),
       std::size_t{ 4 } * this->The.channels));
@@ -146,7 +136,7 @@ void LaneFaces::LeaveSides(cl::Kernel& kernel, int number, const Rays& rays, std
 void LaneFaces::LeaveEnd(
   cl::Kernel& kernel, int number, const Rays& rays, std::size_t first, const Buffer<float>& maps) const
 {
-  With(kernel, cl_int(number), rays.lanes, this->Faces, maps, *this->Out, cl_ulong(first), cl_ulong(this->Cells));
+  With(kernel, cl_int(number), rays.lanes, this->Faces, maps, *this->FaceOut, cl_ulong(first), cl_ulong(this->Cells));
   this->TheDevice.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(this->CellsOfPlane(this->The.lanes[number]), Count(this->The.channels)));
 }

@@ -27,8 +27,9 @@ public:
   /// @param request  has faceIn or faceOut
   LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request);
 
-  bool Shine() const { return this->In != nullptr; } ///< incident light is given by cells
-  void SetSides(PlaneKernels& planes) const;         ///< passes the buffers of the sides to the plane kernels
+  bool Shine() const { return this->FaceIn != nullptr; }      ///< incident light is given by cells
+  const Buffer<float>& In() const { return this->SidesIn; }   ///< sides of the planes: rays that enter
+  const Buffer<float>& Out() const { return this->SidesOut; } ///< rays that leave
 
   /// Adds incident light to the maps where rays of an open axis start.
   /// @param first  index of the first channel's first value in faceIn and faceOut
@@ -45,12 +46,12 @@ private:
   LaneFaceInfo FacesOf(const SweepLane& lane, const Grid& grid) const;
   void LeaveSides(cl::Kernel& kernel, int lane, const Rays& rays, std::size_t first) const;
   void LeaveEnd(cl::Kernel& kernel, int lane, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
-  cl::Kernel Kernel(const char* name, bool around) const;
+  cl::Kernel Kernel(const char* name) const;
   std::size_t CellsOfPlane(const SweepLane& lane) const;
 
   Device& TheDevice;
   const GpuLanes& The;
-  const Buffer<float>*In, *Out;
+  const Buffer<float>*FaceIn, *FaceOut;
   bool Spreads;
   std::size_t Cells; ///< cells of all faces, per channel
   Buffer<LaneFaceInfo> Faces;

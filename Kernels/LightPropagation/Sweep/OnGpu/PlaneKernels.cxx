@@ -1,5 +1,6 @@
 #include "LightPropagation/Sweep/OnGpu/PlaneKernels.h"
 
+#include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "TyndallKernelSources.h"
 
@@ -12,43 +13,104 @@ constexpr std::size_t GroupU = 32, GroupV = 4;
 constexpr double GpuSecondsPerRay = 1e-10; ///< per ray and voxel; only determines how often to wait
 }
 
-PlaneKernels::PlaneKernels(Device& device, const std::string& options, bool directs, const Size& size)
+LaneSlices::LaneSlices(const SweepPlan& plan, const SweepLane& lane)
+  : Plan(plan)
+{
+  UnitInfo unit = {};
+  unit.backward = lane.backward;
+  unit.bundles = lane.bundles;
+  this->Plan.units = { unit };
+  this->Plan.schedule = { cl_int2{ { 0, lane.patternPlanes } } };
+}
+
+std::unique_ptr<LaneSlices> LaneSlices::Make(
+  Device& device, const SweepPlan& plan, SweepLane& lane, SweepWorkspace& workspace)
+{
+  std::unique_ptr<LaneSlices> slices(new LaneSlices(plan, lane));
+  slices->Stream = SliceStream::Make(device, slices->Plan, workspace);
+  if (!slices->Stream)
+  {
+    return nullptr;
+  }
+  slices->Schedule = slices->Stream->Cut(slices->Plan.schedule);
+  SweepInfo slots = {};
+  slots.planes = lane.planes;
+  slices->Stream->Describe(slots);
+  lane.planes = slots.planes;
+  lane.planes.firstP = 0;
+  return slices;
+}
+
+void LaneSlices::Cross(const SweepVolume& volume, const PlaneLaunch& launch, const Planes& cross)
+{
+  SweepInfo slots = {};
+  this->Stream->Describe(slots);
+  PlaneLaunch inSlot = launch;
+  inSlot.sourceFirst = inSlot.putFirst = slots.first;
+  inSlot.stride = slots.stride;
+  inSlot.moments = slots.moments;
+  inSlot.firstChannel = slots.firstChannel;
+  this->Stream->Cross(this->Schedule, volume, [&](int number, const std::vector<cl::Event>* after, cl::Event* done) {
+    const SlicePiece& piece = this->Schedule.pieces[number].front();
+    const SliceStream::SlotPlace place = this->Stream->PlaceOf(piece, number, 0);
+    inSlot.sigmaFirst = place.slot * slots.stride;
+    inSlot.slotSource = place.slot * slots.sourceSlot;
+    inSlot.slotPath = place.slot * slots.pathSlot;
+    inSlot.slotValues = place.slot * slots.stride * static_cast<std::size_t>(this->Plan.channels);
+    inSlot.slotPlane = place.firstPlane;
+    cross(inSlot, piece.range.s[0], piece.range.s[1], after, done);
+  });
+}
+
+PlaneKernels::PlaneKernels(Device& device, const SweepDescription& sweep, int sides, const Size& size)
   : TheDevice(device)
-  , Cross(device.Kernel("cross_plane", kernel_source::SweepOnGpu, options))
   , All(RoundUp(Count(size.u), GroupU), RoundUp(Count(size.v), GroupV), Count(size.lanes))
   , Seconds(GpuSecondsPerRay * size.u * size.v * static_cast<double>(size.rays))
 {
-  if (directs)
+  const bool angular = sweep.angular != nullptr;
+  const std::string options = Define("CHANNELS", sweep.channels) + Define("NET_FLUX", sweep.netFlux) +
+    Define("CURRENTS", sweep.partialCurrents) + Define("OCTANT_SOURCE", sweep.octantSource) +
+    Define("ANGULAR", angular) + Define("FUNCTIONS", angular ? sweep.angular->Functions() : 1) +
+    Define("BEAMS", angular ? sweep.angular->Beams() : 0) + Define("SIDES", sides);
+  this->CrossPlane = device.Kernel("cross_plane", kernel_source::SweepOnGpu, options);
+  if (angular)
   {
-    this->Find = device.Kernel("find_directed", kernel_source::SweepOnGpu, options);
+    this->FindDirected = device.Kernel("find_directed", kernel_source::SweepOnGpu, options);
   }
 }
 
-void PlaneKernels::SetSides(const Buffer<float>& in, const Buffer<float>& out, int outerSides)
+void PlaneKernels::Cross(const SweepVolume& volume, const PlaneLaunch& launch, const VolumeArrays& arrays,
+  LaneSlices* slices, const PlaneRays& rays, int planes, const Monitor& monitor)
 {
-  constexpr cl_uint BehindTheOthers = 17; // index of the first argument after those that Launch sets
-  SetFrom(this->Cross, BehindTheOthers, in, out, cl_int(outerSides));
-}
-
-void PlaneKernels::Launch(PlaneLaunch launch, const PlaneArrays& in, const PlaneRays& rays, int from, int to,
-  const std::vector<cl::Event>* after, cl::Event* done, const std::function<void(int)>& crossed)
-{
+  const VolumeArrays in = slices ? slices->Arrays() : arrays;
   const cl::NDRange group(GroupU, GroupV, 1);
-  for (launch.plane = from; launch.plane < to; ++launch.plane)
-  {
-    if (this->Find())
+  const LaneSlices::Planes cross = [&](PlaneLaunch at, int from, int to, const std::vector<cl::Event>* after,
+                                     cl::Event* done) {
+    for (at.plane = from; at.plane < to; ++at.plane)
     {
-      With(this->Find, launch, rays.lanes, in.source, rays.functions, rays.directed);
-      this->TheDevice.Queue().enqueueNDRangeKernel(this->Find, cl::NullRange, this->All, group, after);
+      if (this->FindDirected() && at.shines)
+      {
+        With(this->FindDirected, at, rays.lanes, in.source, rays.functions, rays.directed);
+        this->TheDevice.Queue().enqueueNDRangeKernel(this->FindDirected, cl::NullRange, this->All, group, after);
+      }
+      With(this->CrossPlane, at, rays.lanes, in.sigma_t, in.source, in.octants, in.path, in.lost, in.flux, in.currents,
+        *rays.maps[at.plane % 2], *rays.maps[1 - at.plane % 2], rays.entering, rays.bundles, rays.crossings,
+        rays.directed, rays.functions, rays.escaped, rays.sidesIn, rays.sidesOut);
+      this->TheDevice.Queue().enqueueNDRangeKernel(
+        this->CrossPlane, cl::NullRange, this->All, group, after, at.plane + 1 == to ? done : nullptr);
+      after = nullptr; // later launches are ordered by the queue
+      this->TheDevice.Queued(this->Seconds);
+      Report(monitor, (at.plane + 1.0) / planes);
     }
-    With(this->Cross, launch, rays.lanes, in.sigma_t, in.source, in.octants, in.path, in.lost, in.flux, in.currents,
-      *rays.maps[launch.plane % 2], *rays.maps[1 - launch.plane % 2], rays.entering, rays.bundles, rays.crossings,
-      rays.directed, rays.functions, rays.escaped);
-    this->TheDevice.Queue().enqueueNDRangeKernel(
-      this->Cross, cl::NullRange, this->All, group, after, launch.plane + 1 == to ? done : nullptr);
-    after = nullptr; // later launches are ordered by the queue
-    this->TheDevice.Queued(this->Seconds);
-    crossed(launch.plane + 1);
+  };
+  if (!slices)
+  {
+    cross(launch, 0, planes, nullptr, nullptr);
+    return;
   }
+  SweepVolume shining = volume;
+  shining.source = launch.shines ? volume.source : nullptr;
+  shining.octantSource = launch.shines ? volume.octantSource : nullptr;
+  slices->Cross(shining, launch, cross);
 }
 }

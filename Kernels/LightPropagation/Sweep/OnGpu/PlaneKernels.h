@@ -1,20 +1,44 @@
 #pragma once
 
-#include "Device/Buffer.h"
+#include "Device/Monitor.h"
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
+#include "LightPropagation/Sweep/Slices/SliceStream.h"
+#include "LightPropagation/Sweep/SweepPlan.h"
+#include "LightPropagation/Sweep/SweepVolume.h"
 
 #include <array>
 #include <functional>
-#include <string>
+#include <memory>
 #include <vector>
 
 namespace tyndall
 {
-/// Arrays over voxels that the plane kernels read and write (SweepOnGpu.cl). Any buffer may be given for an array that
-/// the options do not use.
-struct PlaneArrays
+/// Streams a volume in host memory for one lane of a sweep on GPUs: the lane crosses slices one after the other,
+/// through two slots on the device (numerics.md, section 4.10).
+class LaneSlices
 {
-  const Buffer<float>&sigma_t, &source, &octants, &path, &lost, &flux, &currents;
+public:
+  /// Returns null if the volume is swept in place, see SliceStream::Make. Otherwise changes the layout in `lane` to
+  /// that of the slots.
+  /// @param plan  the plan of the lane's axis
+  static std::unique_ptr<LaneSlices> Make(
+    Device& device, const SweepPlan& plan, SweepLane& lane, SweepWorkspace& workspace);
+
+  VolumeArrays Arrays() const { return this->Stream->Arrays(); } ///< the slots
+
+  /// Queues the lane's planes [from, to), whose slice lies in the slot given by `launch`. They wait for the events
+  /// `after`; the last one signals `done`.
+  using Planes =
+    std::function<void(PlaneLaunch launch, int from, int to, const std::vector<cl::Event>* after, cl::Event* done)>;
+  /// Crosses all planes. @param launch  values of the launch other than plane and slot
+  void Cross(const SweepVolume& volume, const PlaneLaunch& launch, const Planes& cross);
+
+private:
+  LaneSlices(const SweepPlan& plan, const SweepLane& lane);
+
+  SweepPlan Plan; ///< has one unit, the lane
+  std::unique_ptr<SliceStream> Stream;
+  SliceStream::Schedule Schedule;
 };
 
 /// Arrays over rays that the plane kernels read and write (SweepOnGpu.cl).
@@ -27,6 +51,16 @@ struct PlaneRays
   std::array<const Buffer<float>*, 2> maps; ///< rays before planes with even index, and before planes with odd index
   const Buffer<float>&directed, &functions; ///< used only with angular moments
   const Buffer<float>& escaped;
+  const Buffer<float>&sidesIn, &sidesOut; ///< used only with SIDES
+};
+
+/// Values of the option SIDES of these kernels: rays that enter and leave through the sides of the box are not stored;
+/// the box is a block of a larger domain; or it is the domain, with light given and counted by cells of its faces.
+enum
+{
+  SidesNotStored = 0,
+  SidesOfBlock = 1,
+  SidesOfDomain = 2
 };
 
 /// Kernels that carry the rays of lanes through planes on a GPU, one launch per plane.
@@ -40,24 +74,18 @@ public:
     std::size_t rays = 0; ///< rays of all these lanes, times channels
   };
 
-  /// @param options  see SweepOnGpu.cl
-  /// @param directs  the source in each ray's direction is computed from angular moments before each plane
-  PlaneKernels(Device& device, const std::string& options, bool directs, const Size& size);
+  /// @param sides  the option SIDES, see SweepOnGpu.cl
+  PlaneKernels(Device& device, const SweepDescription& sweep, int sides, const Size& size);
 
-  /// Sets the buffers of rays that enter and leave through the sides of the planes; for options with SIDES.
-  /// @param outerSides  see VoxelSides.cl and `cross_plane`
-  void SetSides(const Buffer<float>& in, const Buffer<float>& out, int outerSides);
-
-  /// Queues the planes [from, to), counted from where rays start.
-  /// @param after  events that the launches wait for; null: none
-  /// @param done   event signalled when they have finished; null: not needed
-  /// @param crossed  called with the number of planes that have been crossed
-  void Launch(PlaneLaunch launch, const PlaneArrays& in, const PlaneRays& rays, int from, int to,
-    const std::vector<cl::Event>* after, cl::Event* done, const std::function<void(int)>& crossed);
+  /// Queues the planes [0, planes), counted from where rays start.
+  /// @param arrays  the volume's arrays, or the lanes' own
+  /// @param slices  null: the volume is not streamed
+  void Cross(const SweepVolume& volume, const PlaneLaunch& launch, const VolumeArrays& arrays, LaneSlices* slices,
+    const PlaneRays& rays, int planes, const Monitor& monitor);
 
 private:
   Device& TheDevice;
-  cl::Kernel Cross, Find;
+  cl::Kernel CrossPlane, FindDirected; ///< the second one only with angular moments
   cl::NDRange All;
   double Seconds; ///< upper estimate for one plane
 };

@@ -14,6 +14,7 @@ typedef struct
   int backward; ///< 0 marches from the lower end of the axis, 1 from the upper
   /// Planes in which the rays of a sweep start: those of the axis, or of several laps round a periodic axis
   int patternPlanes;
+  int around;               ///< whether the marching axis is periodic, so rays cross a voxel repeatedly
   int periodicU, periodicV; ///< whether the axes across the marching axis are periodic
   int firstBundle, bundles;
   int crossings; ///< index of the first crossing of its first plane, [plane][bundle]
@@ -27,7 +28,7 @@ typedef struct
   ulong escaped;
   int positions; ///< number of positions along a face in `escaped`
   int rays;
-  /// Index of the first float of its sides, [plane][ray][channel] (VoxelSides.cl), if light is given or counted by
+  /// Index of the first float of its sides, [plane][ray][channel] (LanePlane.cl), if light is given or counted by
   /// cells
   ulong sides;
 } SweepLane;
@@ -38,6 +39,8 @@ typedef struct
 {
   int first[4], plane[4], along[4];
   int start, end;
+  int in;     ///< 1: incident light is given by cells, in addition to that which is uniform over each face
+  int spread; ///< 1: Deposit::spreadsAside
 } LaneFaceInfo;
 
 /// A launch of the kernel `cross_plane`.
@@ -55,6 +58,11 @@ typedef struct
   /// SweepLane::crossings
   int ofRound;
   int firstChannel;
+  int shines; ///< 1: the medium has a source (emission or scattered light)
+  /// 1: lanes add to the arrays, one after the other or repeatedly round a periodic axis; 0: each lane writes its own
+  int adds;
+  int inPlaces;         ///< 1: moments lie as in the volume; 0: [function][channel][stride] in the lane's own arrays
+  int outerSides;       ///< bit i: light that crosses side i leaves the domain; if SIDES
   MomentPlaces moments; ///< layout of the moments of source and path
 } PlaneLaunch;
 SHARED_END

@@ -2,9 +2,15 @@
 // voxel's work-item recomputes what the neighbours do to the rays that enter from them (numerics.md, Eq. (30a)).
 
 #pragma once
-#include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
-#include "LightPropagation/Sweep/OnGpu/VoxelSides.cl"
+#include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
 #include "Numerics/Numerics.cl"
+
+// Sides 0 to 3 are the faces -u, +u, -v, +v. True if light that crosses the side leaves the domain.
+#if SIDES
+#define LEAVES_GRID(state, side) (((state)->outerSides >> (side)) & 1)
+#else
+#define LEAVES_GRID(state, side) true
+#endif
 
 // Effect of a segment on rays, see SweepCrossing.cl. own: path, within the voxel, of the light that a unit source in it
 // emits.
@@ -27,6 +33,7 @@ typedef struct
   const __global float* octants; // the same, if OCTANT_SOURCE
   ulong stride;
   int sizeU, sizeV;
+  int shines, adds; // see PlaneLaunch
   float meanLength[MeanLengthTerms];
   float thin, vacuum;
 #if SIDES
@@ -41,7 +48,7 @@ typedef struct
 {
   const __global float* rays;      // power of the member's rays, [channel][v][u]
   const __global float4* entering; // [channel] incident power through u's, v's face
-  const __global float* directed;  // source in its direction, W / (length^3 sr), laid out as rays; if DEGREE
+  const __global float* directed;  // source in its direction, W / (length^3 sr), laid out as rays; if ANGULAR
 #if SIDES
   const __global float* sidesIn; // of the member, [channel][SIDE_FLOATS]
   __global float* sidesOut;
@@ -114,15 +121,16 @@ static colours behind(
   for (int c = 0; c < CHANNELS; ++c)
   {
     float kept = before.power[c] * effect.keep;
-#if SOURCE
-#if DEGREE
-    const float shines = member->directed[((ulong)c * state->sizeV + v) * state->sizeU + u];
+    if (state->shines)
+    {
+#if ANGULAR
+      const float shines = member->directed[((ulong)c * state->sizeV + v) * state->sizeU + u];
 #else
-    const long voxel = voxel_of(state, u, v);
-    const float shines = state->source[voxel + c * state->stride] + shines_more(state, member, c, voxel);
+      const long voxel = voxel_of(state, u, v);
+      const float shines = state->source[voxel + c * state->stride] + shines_more(state, member, c, voxel);
 #endif
-    kept += effect.meanLength * member->power * shines;
-#endif
+      kept += effect.meanLength * member->power * shines;
+    }
     after.power[c] = multiply_add(before.power[c], effect.change, kept);
   }
   return after;
@@ -230,10 +238,10 @@ static colours behind_second(const plane_state* state, const member_state* membe
 // Sums that a voxel's work-item accumulates over all bundles.
 typedef struct
 {
-  float path[CHANNELS]; // if DEGREE, of one ray
-  float own;            // path of a unit source within its own voxel; if DEGREE, of one ray
-#if DEGREE
-  float moments[CHANNELS][MOMENTS];
+  float path[CHANNELS]; // if ANGULAR, of one ray
+  float own;            // path of a unit source within its own voxel; if ANGULAR, of one ray
+#if ANGULAR
+  float moments[CHANNELS][FUNCTIONS];
 #endif
   float flux[CHANNELS][3]; // along u, v and the axis
   float ownFlux;           // along the axis
@@ -329,7 +337,7 @@ static colours not_lost_of(const plane_state* state, const member_state* member,
 {
   colours more = { { 0.0f } };
 #if OCTANT_SOURCE
-  for (int c = 0; c < CHANNELS; ++c)
+  for (int c = 0; c < CHANNELS && state->shines; ++c)
   {
     more.power[c] = shines_more(state, member, c, voxel) * member->power / fmax(state->sigma[voxel], state->vacuum);
   }
@@ -395,8 +403,9 @@ static member_state member_of(
   {
     member.length[s] = crossing->length[s];
     member.part[s] = crossing->part[s];
-    member.du[s] = bundle->move[m][0] * crossing->moveU[s] + bundle->move[m][1] * crossing->moveV[s];
-    member.dv[s] = bundle->move[m][2] * crossing->moveU[s] + bundle->move[m][3] * crossing->moveV[s];
+    const int2 move = move_of(bundle, m, crossing, s);
+    member.du[s] = move.x;
+    member.dv[s] = move.y;
     member.bothAtOnce = member.bothAtOnce || (crossing->moveU[s] != 0 && crossing->moveV[s] != 0);
   }
   return member;

@@ -3,14 +3,27 @@
 #include "Device/Device.h"
 #include "Distribution/BlockPartition.h"
 #include "Distribution/Communicator.h"
-#include "LightPropagation/Sweep/BeyondFaces.h"
+#include "LightPropagation/Sweep/BeyondFacesShared.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace tyndall
 {
+/// Values of the neighbouring voxels just outside a block, at their faces that touch the block; taken from an array by
+/// voxel face such as Deposit::partialCurrents.
+struct BeyondFaces
+{
+  /// [channel][face][cell, x before y before z]; null: the block is the whole domain
+  const Buffer<float>* values = nullptr;
+  BeyondFacesInfo info = { { -1, -1, -1, -1, -1, -1 }, 0 };
+};
+
+/// Fetches these values from the ranks that own them. Collective. The result is valid until the next call.
+using FetchBeyondFaces = std::function<BeyondFaces(const Buffer<float>& byFaces)>;
+
 /// Halo exchange of face values: gives each rank, for every voxel that touches a face of its block from outside and
 /// every channel, a value from the rank that owns the voxel (around a periodic axis possibly the rank itself).
 class AcrossFaces

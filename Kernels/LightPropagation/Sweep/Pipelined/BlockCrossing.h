@@ -2,7 +2,6 @@
 
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
-#include "LightPropagation/Sweep/SweepWorkspace.h"
 
 #include "Device/Monitor.h"
 
@@ -34,12 +33,12 @@ struct RaysOfBlock
   int way = 0;           ///< 0 forward along the axis, 1 backward
   bool around = false;   ///< the domain's axis is periodic: rays enter the block repeatedly
 
-  std::size_t SideFloats() const; ///< floats of the sides per ray and plane
-  std::size_t Sides() const;      ///< floats
+  /// Floats of the sides per ray and plane.
+  std::size_t SideFloats() const { return std::size_t(this->plan.plane.sizeU) + this->plan.plane.sizeV + 1; }
+  std::size_t Sides() const { return this->plan.eachWay.radiance * this->plan.Planes() * this->SideFloats(); }
 };
 
-/// Carries rays through a block. Implemented with kernels for CPUs or for GPUs, each with its own layout of ray maps
-/// (BlockCrossingOnCpu.h, BlockCrossingOnGpu.h).
+/// Carries rays through a block. Implemented with kernels for CPUs or for GPUs, each with its own layout of ray maps.
 class BlockCrossing
 {
 public:
@@ -62,17 +61,9 @@ public:
     RaysAtFaces& rays, const Monitor& monitor) = 0;
 };
 
-/// Creates the implementation that suits the device.
-/// @param workspace  must outlive the result
-std::unique_ptr<BlockCrossing> MakeBlockCrossing(
-  Device& device, const RaysOfBlock& rays, const SweepVolume& volume, BlockWorkspace& workspace);
-
-/// The array arguments of the sweep's kernels. An array that does not exist is replaced by another one, which the
-/// kernels do not access.
-struct BlockArrays
-{
-  BlockArrays(const RaysOfBlock& rays, const SweepVolume& volume, const BlockWorkspace& workspace);
-
-  const Buffer<float>&path, &lost, &flux, &currents, &source, &octants;
-};
+/// Create the implementations. @param workspace  must outlive the result; its sides are large enough
+std::unique_ptr<BlockCrossing> MakeBlockCrossingOnCpu(
+  Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace);
+std::unique_ptr<BlockCrossing> MakeBlockCrossingOnGpu(
+  Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace);
 }

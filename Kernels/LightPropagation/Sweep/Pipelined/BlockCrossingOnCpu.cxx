@@ -1,129 +1,110 @@
-#include "LightPropagation/Sweep/Pipelined/BlockCrossingOnCpu.h"
+#include "LightPropagation/Sweep/Pipelined/BlockCrossing.h"
 
-#include "Device/Defines.h"
-#include "Device/ExactValues.h"
-#include "LightPropagation/Sweep/SweepDefines.h"
-#include "TyndallKernelSources.h"
+#include "Device/Device.h"
+#include "LightPropagation/Sweep/OnCpu/SweepKernel.h"
 
 #include <algorithm>
 
 namespace tyndall
 {
-BlockCrossingOnCpu::BlockCrossingOnCpu(Device& device, const RaysOfBlock& rays, int sizeY, BlockWorkspace& workspace)
-  : TheDevice(device)
-  , Rays(rays)
-  , Plan(rays.plan)
-  , SizeY(sizeY)
-  , Workspace(workspace)
+namespace
 {
-  const SweepPlan& plan = this->Plan;
-  workspace.sweep.Reserve(device, plan.mapsEachWay, plan.units.size() * plan.ScratchFloats());
-  this->Outside = Buffer<float>(device, plan.outsideEachWay, "the light that comes in sideways");
-  this->Radiance = Buffer<float>(device, 2 * plan.radianceEachWay, "the light that comes in sideways");
-  this->Sideways =
-    Buffer<float>(device, plan.units.size() * plan.Planes() * 4 * plan.channels, "the power that leaves sideways");
-  this->Coefficients = Buffer<float>(
-    device, plan.coefficients.empty() ? std::vector<float>{ 0.0f } : plan.coefficients, "the angular functions");
-  this->Bundles = Buffer<BundleInfo>(device, plan.bundleRows, "the bundles of rays");
-  this->Units = Buffer<UnitInfo>(device, plan.units, "the units of work");
-  this->Schedule = Buffer<cl_int2>(device, plan.schedule, "the schedule");
-  this->FunctionPlaces = Buffer<cl_int>(device, plan.FunctionPlaces(), "the angular functions");
-}
-
-std::size_t BlockCrossingOnCpu::MapFloats() const
+/// Carries rays through a block with the kernel `sweep` (Sweep.cl). The layout of the maps is that of SweepBorder.
+class BlockCrossingOnCpu final : public BlockCrossing
 {
-  return this->Plan.mapsEachWay;
-}
-
-std::size_t BlockCrossingOnCpu::RowOfMap(const BundleInfo& bundle, std::size_t slot, int v) const
-{
-  const std::size_t slots = static_cast<std::size_t>(bundle.members) * this->Plan.channels;
-  return bundle.map + (v * slots + slot) * this->Plan.row + this->Plan.vector;
-}
-
-void BlockCrossingOnCpu::LayPattern(int planes)
-{
-  const SweepPlan& plan = this->Plan;
-  this->Crossings =
-    Buffer<CrossingInfo>(this->TheDevice, plan.Crossings(planes, plan.CrossingPlanes()), "the ray pattern");
-  this->OwnLight = Buffer<OwnLightInfo>(this->TheDevice, plan.OwnLight(planes), "the ray pattern");
-}
-
-std::vector<float> BlockCrossingOnCpu::Cross(const SweepVolume& volume, const std::vector<cl_float4>& beyond,
-  int outerSides, RaysAtFaces& rays, const Monitor& monitor)
-{
-  this->WriteBeyond(beyond);
-  this->Workspace.sweep.maps.Write(rays.maps.data(), rays.maps.size());
-  this->Workspace.sidesIn.Write(rays.sides.data(), rays.sides.size());
-  this->Launch(volume, outerSides, monitor);
-  this->Workspace.sweep.maps.Read(rays.maps.data(), rays.maps.size());
-  this->Workspace.sidesOut.Read(rays.sides.data(), rays.sides.size());
-  return this->Sideways.Read();
-}
-
-void BlockCrossingOnCpu::WriteBeyond(const std::vector<cl_float4>& beyond)
-{
-  const SweepPlan& plan = this->Plan;
-  std::vector<float> outside(plan.outsideEachWay, 0.0f), radiance(2 * plan.radianceEachWay, 0.0f);
-  for (const BundleInfo& bundle : plan.bundleRows)
+public:
+  BlockCrossingOnCpu(Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace)
+    : TheDevice(device)
+    , Rays(rays)
+    , Workspace(workspace)
+    , Kernel(device, rays.plan)
+    , Schedule(device, rays.plan.schedule, "the schedule")
   {
-    for (int slot = 0; slot < bundle.members * plan.channels; ++slot)
+    workspace.sweep.Reserve(device, rays.plan.eachWay.maps, rays.plan.units.size() * rays.plan.ScratchFloats());
+  }
+
+  std::size_t MapFloats() const override { return this->Rays.plan.eachWay.maps; }
+
+  std::size_t RowOfMap(const BundleInfo& bundle, std::size_t slot, int v) const override
+  {
+    const SweepPlan& plan = this->Rays.plan;
+    const std::size_t slots = static_cast<std::size_t>(bundle.members) * plan.channels;
+    return bundle.map + (v * slots + slot) * plan.row + plan.vector;
+  }
+
+  void LayPattern(int planes) override
+  {
+    const SweepPlan& plan = this->Rays.plan;
+    this->Crossings =
+      Buffer<CrossingInfo>(this->TheDevice, plan.Crossings(planes, plan.CrossingPlanes()), "the ray pattern");
+    this->Kernel.SetOwnLight(plan.OwnLight(planes));
+  }
+
+  std::vector<float> Cross(const SweepVolume& volume, const std::vector<cl_float4>& beyond, int outerSides,
+    RaysAtFaces& rays, const Monitor& monitor) override
+  {
+    this->SetBorder(beyond);
+    this->Workspace.sweep.maps.Write(rays.maps.data(), rays.maps.size());
+    this->Workspace.sidesIn.Write(rays.sides.data(), rays.sides.size());
+    this->Launch(volume, outerSides, monitor);
+    this->Workspace.sweep.maps.Read(rays.maps.data(), rays.maps.size());
+    this->Workspace.sidesOut.Read(rays.sides.data(), rays.sides.size());
+    return this->Kernel.Sideways();
+  }
+
+private:
+  /// The same light for both ways, of which the rays march only one.
+  void SetBorder(const std::vector<cl_float4>& beyond)
+  {
+    const SweepPlan& plan = this->Rays.plan;
+    std::vector<float> outside(2 * plan.eachWay.outside, 0.0f), radiance(2 * plan.eachWay.radiance, 0.0f);
+    for (const BundleInfo& bundle : plan.bundleRows)
     {
-      const int ray = bundle.border + slot;
-      float* row = outside.data() + bundle.outside + static_cast<std::size_t>(slot) * plan.row + plan.vector;
-      std::fill(row, row + plan.plane.sizeU, beyond[ray].s[1]);
-      radiance[ray] = radiance[plan.radianceEachWay + ray] = beyond[ray].s[0];
+      for (int slot = 0; slot < bundle.members * plan.channels; ++slot)
+      {
+        const int ray = bundle.border + slot;
+        const std::size_t row = bundle.outside + static_cast<std::size_t>(slot) * plan.row + plan.vector;
+        for (int way = 0; way < 2; ++way)
+        {
+          std::fill_n(outside.data() + way * plan.eachWay.outside + row, plan.plane.sizeU, beyond[ray].s[1]);
+          radiance[way * plan.eachWay.radiance + ray] = beyond[ray].s[0];
+        }
+      }
+    }
+    this->Kernel.SetBorder(outside, radiance);
+  }
+
+  void Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor)
+  {
+    const SweepPlan& plan = this->Rays.plan;
+    SweepInfo info = this->Kernel.InfoOf(volume, this->Rays.around);
+    info.eachWay.maps = 0; // they hold one way only
+    info.shines = volume.source != nullptr;
+    info.outerSides = outerSides;
+    SweepKernel::Crossing crossing = { info,
+      ArraysOf(volume, this->Rays.around ? &this->Workspace.sweep.lost : nullptr), this->Workspace.sweep.maps,
+      this->Workspace.sweep.scratch, this->Crossings, this->Schedule, this->Workspace.sidesIn.Handle(),
+      this->Workspace.sidesOut.Handle(), plan.secondsPerLaunch };
+    cl::Kernel kernel = this->Kernel.Make(false, false, true);
+    for (int launch = 0; launch < plan.launches; ++launch)
+    {
+      this->Kernel.Launch(kernel, crossing, launch);
+      Report(monitor, (launch + 1.0) / plan.launches);
     }
   }
-  this->Outside.Write(outside.data());
-  this->Radiance.Write(radiance.data());
+
+  Device& TheDevice;
+  RaysOfBlock Rays;
+  BlockWorkspace& Workspace;
+  SweepKernel Kernel;
+  Buffer<cl_int2> Schedule;
+  Buffer<CrossingInfo> Crossings;
+};
 }
 
-cl::Kernel BlockCrossingOnCpu::Kernel()
+std::unique_ptr<BlockCrossing> MakeBlockCrossingOnCpu(
+  Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace)
 {
-  const SweepPlan& plan = this->Plan;
-  const std::string options = DefinesOf(plan) + ExactOption(this->TheDevice) + Define("SIDES", 1) +
-    Define("NET_FLUX", plan.netFlux) + Define("FACES", 0) + Define("PERIODIC", 0);
-  return this->TheDevice.Kernel("sweep", kernel_source::Sweep, options);
-}
-
-SweepInfo BlockCrossingOnCpu::InfoOf(const SweepVolume& volume) const
-{
-  const SweepPlan& plan = this->Plan;
-  SweepInfo info = {};
-  info.sigmaFirst = volume.sigma_t_first;
-  info.first = volume.first;
-  info.stride = volume.stride;
-  info.radianceEachWay = static_cast<uint>(plan.radianceEachWay); // the other buffers hold one way only
-  info.coefficientsEachWay = static_cast<uint>(plan.coefficientsEachWay);
-  info.bundles = static_cast<int>(plan.bundles.size());
-  info.patternPlanes = plan.PatternPlanes();
-  info.axis = plan.axes.axis;
-  info.shines = volume.source != nullptr;
-  info.roundAxis = this->Rays.around;
-  info.planes = plan.plane;
-  plan.DescribeMoments(info);
-  info.sizeY = this->SizeY;
-  info.firstChannel = volume.firstChannel;
-  return info;
-}
-
-void BlockCrossingOnCpu::Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor)
-{
-  const SweepPlan& plan = this->Plan;
-  const BlockArrays of(this->Rays, volume, this->Workspace);
-  SweepInfo info = this->InfoOf(volume);
-  cl::Kernel kernel = this->Kernel();
-  for (int launch = 0; launch < plan.launches; ++launch)
-  {
-    info.launch = launch;
-    With(kernel, info, *volume.sigma_t, of.source, of.path, of.lost, of.flux, of.currents, this->Workspace.sweep.maps,
-      this->Outside, this->Radiance, this->Workspace.sweep.scratch, this->Units, this->Bundles, this->Coefficients,
-      this->Crossings, this->OwnLight, this->Schedule, this->Sideways, of.path, of.path, of.octants,
-      this->FunctionPlaces, this->Workspace.sidesIn, this->Workspace.sidesOut, cl_int(outerSides));
-    this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(plan.units.size()), cl::NDRange(1));
-    this->TheDevice.Queued(plan.secondsPerLaunch);
-    Report(monitor, (launch + 1.0) / plan.launches);
-  }
+  return std::make_unique<BlockCrossingOnCpu>(device, rays, workspace);
 }
 }

@@ -1,7 +1,6 @@
 #include "LightPropagation/Sweep/Pipelined/BlockSweep.h"
 
-#include "LightPropagation/Sweep/Pipelined/BlockSweepByCells.h"
-#include "Medium/BoxFaces.h"
+#include "LightPropagation/Sweep/SweepBorder.h"
 
 #include <algorithm>
 
@@ -13,9 +12,11 @@ namespace
 SweepPlan PlanOf(
   Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
 {
-  SweepPlan plan(device, partition.whole, partition.blocks[rank], rays.axis, rays.bundles, volume.channels,
-    { false, false, false }, volume.deposit.flux != nullptr, volume.deposit.partialCurrents != nullptr, volume.angular,
-    volume.moments, true, volume.octantSource != nullptr);
+  SweepDescription sweep = Describe(volume, {});
+  sweep.grid = partition.whole;
+  sweep.box = partition.blocks[rank];
+  sweep.faceIn = true; // rays enter through the sides
+  SweepPlan plan(device, sweep, { rays.axis, rays.bundles });
   const std::array<int, 3>& n = partition.blocks[rank].size;
   const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
   PlaneInfo& plane = plan.plane;
@@ -36,13 +37,16 @@ BlockSweep::BlockSweep(Device& device, const BlockPartition& partition, int rank
   , Plan(PlanOf(device, partition, rank, rays, volume))
   , Rays{ this->Plan, rays.way, periodic[rays.axis] }
   , SideFloats(this->Rays.SideFloats())
-  , RayCount(this->Plan.radianceEachWay)
+  , RayCount(this->Plan.eachWay.radiance)
 {
   if (this->Rays.around)
   {
     this->Plan.LetRaysGoOn();
   }
-  this->Carrier = MakeBlockCrossing(device, this->Rays, volume, workspace);
+  ReserveOnDevice(device, workspace.sidesIn, this->Rays.Sides(), "the rays that come in from other blocks");
+  ReserveOnDevice(device, workspace.sidesOut, this->Rays.Sides(), "the rays that go out to other blocks");
+  this->Carrier = device.IsCpu() ? MakeBlockCrossingOnCpu(device, this->Rays, workspace)
+                                 : MakeBlockCrossingOnGpu(device, this->Rays, workspace);
   this->LayPattern();
 }
 
@@ -63,17 +67,7 @@ void BlockSweep::LayPattern()
   this->Moves.clear();
   for (const Bundle& bundle : plan.bundles)
   {
-    std::array<double, 2> moves = {};
-    for (int k = 0; k < this->Whole.size[plan.axes.axis]; ++k)
-    {
-      const PlaneCrossing crossing = bundle.Crossing(this->LapPlanes + k);
-      for (int s = 1; s < crossing.count; ++s)
-      {
-        moves[0] += crossing.segments[s].part * crossing.segments[s].moveU;
-        moves[1] += crossing.segments[s].part * crossing.segments[s].moveV;
-      }
-    }
-    this->Moves.push_back(moves);
+    this->Moves.push_back(SidewaysMoves(bundle, this->LapPlanes, this->Whole.size[plan.axes.axis]));
   }
   this->Carrier->LayPattern(this->LapPlanes);
 }
@@ -229,11 +223,7 @@ void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& o
 {
   const SweepPlan& plan = this->Plan;
   const PlaneAxes& axes = plan.axes;
-  const std::array<int, 4> faces = { 2 * axes.u, 2 * axes.u + 1, 2 * axes.v, 2 * axes.v + 1 };
-  for (std::size_t i = 0; i < aside.size(); ++i)
-  {
-    tally.out[faces[i / plan.channels % 4]][i % plan.channels] += aside[i];
-  }
+  CountSideways(plan, aside, tally);
   if (!this->IsAtEnd(axes.axis, false))
   {
     return;
@@ -260,68 +250,87 @@ void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& o
 template <class Visit>
 void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const
 {
+  if (contact.kind == BlockContact::Along)
+  {
+    this->ForEachPlaceAlong(contact, visit);
+    return;
+  }
   const SweepPlan& plan = this->Plan;
   const PlaneAxes& axes = plan.axes;
   const VoxelBox& cells = contact.cells;
   const int firstU = cells.first[axes.u] - this->Block.first[axes.u], endU = firstU + cells.size[axes.u];
   const int firstV = cells.first[axes.v] - this->Block.first[axes.v], endV = firstV + cells.size[axes.v];
-  if (contact.kind == BlockContact::Along)
-  {
-    for (const BundleInfo& bundle : plan.bundleRows)
-    {
-      const int slots = bundle.members * plan.channels;
-      for (int v = firstV; v < endV; ++v)
-      {
-        for (int slot = 0; slot < slots; ++slot)
-        {
-          const std::size_t row = this->Carrier->RowOfMap(bundle, slot, v);
-          for (int u = firstU; u < endU; ++u)
-          {
-            visit(false, row + u);
-          }
-        }
-      }
-    }
-    return;
-  }
   const int edgeU = this->Bundles.signs[axes.u] > 0 ? plan.plane.sizeU - 1 : 0; // where rays leave across u
   for (int plane = 0; plane < cells.size[axes.axis]; ++plane)
   {
     const int inBlock = cells.first[axes.axis] - this->Block.first[axes.axis] + plane;
     const int k = this->Bundles.way == 0 ? inBlock : plan.Planes() - 1 - inBlock;
-    for (std::size_t b = 0; b < plan.bundles.size(); ++b)
-    {
-      const BundleInfo& bundle = plan.bundleRows[b];
-      const CrossingInfo& crossing = this->Crossings[k * plan.bundles.size() + b];
-      for (int slot = 0; slot < bundle.members * plan.channels; ++slot)
+    this->ForRaysThatMove(k, contact.kind, [&](std::size_t ray) {
+      const std::size_t acrossV = (k * this->RayCount + ray) * this->SideFloats;
+      const std::size_t acrossU = acrossV + plan.plane.sizeU;
+      for (int v = firstV; contact.kind == BlockContact::AsideU && v < endV; ++v)
       {
-        bool goes = false;
-        for (int s = 1; s < crossing.stages; ++s)
+        visit(true, acrossU + v);
+      }
+      for (int u = firstU; contact.kind == BlockContact::AsideV && u < endU; ++u)
+      {
+        visit(true, acrossV + u);
+      }
+      if (contact.kind == BlockContact::Edge)
+      {
+        visit(true, !out ? acrossU + plan.plane.sizeV : firstU == edgeU ? acrossU + firstV : acrossV + firstU);
+      }
+    });
+  }
+}
+
+/// The same for a contact at the end of the marching axis.
+template <class Visit>
+void BlockSweep::ForEachPlaceAlong(const BlockContact& contact, const Visit& visit) const
+{
+  const PlaneAxes& axes = this->Plan.axes;
+  const VoxelBox& cells = contact.cells;
+  const int firstU = cells.first[axes.u] - this->Block.first[axes.u], endU = firstU + cells.size[axes.u];
+  const int firstV = cells.first[axes.v] - this->Block.first[axes.v], endV = firstV + cells.size[axes.v];
+  for (const BundleInfo& bundle : this->Plan.bundleRows)
+  {
+    const int slots = bundle.members * this->Plan.channels;
+    for (int v = firstV; v < endV; ++v)
+    {
+      for (int slot = 0; slot < slots; ++slot)
+      {
+        const std::size_t row = this->Carrier->RowOfMap(bundle, slot, v);
+        for (int u = firstU; u < endU; ++u)
         {
-          const auto [du, dv] = MoveOf(bundle, slot / plan.channels, crossing, s);
-          goes = goes ||
-            (contact.kind == BlockContact::AsideU      ? du != 0
-                : contact.kind == BlockContact::AsideV ? dv != 0
-                                                       : du != 0 && dv != 0);
+          visit(false, row + u);
         }
-        if (!goes)
-        {
-          continue;
-        }
-        const std::size_t acrossV = (k * this->RayCount + bundle.border + slot) * this->SideFloats;
-        const std::size_t acrossU = acrossV + plan.plane.sizeU;
-        for (int v = firstV; contact.kind == BlockContact::AsideU && v < endV; ++v)
-        {
-          visit(true, acrossU + v);
-        }
-        for (int u = firstU; contact.kind == BlockContact::AsideV && u < endU; ++u)
-        {
-          visit(true, acrossV + u);
-        }
-        if (contact.kind == BlockContact::Edge)
-        {
-          visit(true, !out ? acrossU + plan.plane.sizeV : firstU == edgeU ? acrossU + firstV : acrossV + firstU);
-        }
+      }
+    }
+  }
+}
+
+/// Calls act(ray) for the rays of all bundles and channels that make a move of this kind in plane k of the block.
+template <class Act>
+void BlockSweep::ForRaysThatMove(int k, BlockContact::Kind kind, const Act& act) const
+{
+  const SweepPlan& plan = this->Plan;
+  const auto isOfKind = [kind](const std::array<int, 2>& move) {
+    return (kind == BlockContact::AsideV || move[0] != 0) && (kind == BlockContact::AsideU || move[1] != 0);
+  };
+  for (std::size_t b = 0; b < plan.bundles.size(); ++b)
+  {
+    const BundleInfo& bundle = plan.bundleRows[b];
+    const CrossingInfo& crossing = this->Crossings[k * plan.bundles.size() + b];
+    for (int slot = 0; slot < bundle.members * plan.channels; ++slot)
+    {
+      bool moves = false;
+      for (int s = 1; s < crossing.stages; ++s)
+      {
+        moves = moves || isOfKind(MoveOf(bundle, slot / plan.channels, crossing, s));
+      }
+      if (moves)
+      {
+        act(bundle.border + slot);
       }
     }
   }

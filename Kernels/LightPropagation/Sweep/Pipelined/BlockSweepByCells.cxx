@@ -1,6 +1,4 @@
-#include "LightPropagation/Sweep/Pipelined/BlockSweepByCells.h"
-
-#include "LightPropagation/Sweep/SpreadAside.h"
+#include "LightPropagation/Sweep/Pipelined/BlockSweep.h"
 
 namespace tyndall
 {

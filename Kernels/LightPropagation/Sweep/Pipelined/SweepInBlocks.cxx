@@ -13,7 +13,6 @@ namespace tyndall
 {
 namespace
 {
-
 /// Replaces each rank's power by the sum over all ranks. Collective.
 void AddUp(Communicator& communicator, std::array<Rgb, 6>& power)
 {
@@ -28,34 +27,23 @@ void AddUp(Communicator& communicator, std::array<Rgb, 6>& power)
     power[i / 3][i % 3] = values[i];
   }
 }
-
-void AddTo(std::array<Rgb, 6>& sum, const std::array<Rgb, 6>& power)
-{
-  for (int face = 0; face < 6; ++face)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      sum[face][c] += power[face][c];
-    }
-  }
 }
+
+SweepRequest SweepInBlocks::OfWholeDomain(SweepRequest request)
+{
+  request.box = {};
+  return request;
 }
 
 SweepInBlocks::SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition,
   const VolumeLayout& layout, const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic,
   const SweepRequest& request, BlockWorkspace& workspace, int mostRays)
-  : TheDevice(device)
+  : SweepByGroups(layout, sigma_t, OfWholeDomain(request))
+  , TheDevice(device)
   , Comm(communicator)
   , Partition(partition)
-  , Layout(layout)
-  , SigmaT(sigma_t)
   , Periodic(periodic)
   , Workspace(workspace)
-  , MostPlanes(request.mostPlanes)
-  , To(request.deposit)
-  , Angular(request.angular)
-  , OctantSource(request.octantSource)
-  , FaceIn(request.faceIn)
   , Parts(mostRays > 0 ? SortByOctant(request.rays, mostRays) : FastestParts(partition, request.rays))
   , TheSchedule(partition, this->Parts, {})
 {
@@ -70,7 +58,7 @@ SweepInBlocks::SweepInBlocks(Device& device, Communicator& communicator, const B
   {
     if (this->IsAnyPeriodic())
     {
-      workspace.sweep.ReserveLost(device, this->To.path->Size());
+      workspace.sweep.ReserveLost(device, request.deposit.path->Size());
     }
     for (const ParallelBundles& part : this->Parts)
     {
@@ -89,7 +77,7 @@ SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWo
 {
   const int own = this->Comm.Rank();
   Task task;
-  const SweepVolume volume = this->VolumeOf(this->Layout.Groups()[0], nullptr);
+  const SweepVolume volume = this->VolumeOf(0);
   task.sweep =
     std::make_unique<BlockSweep>(this->TheDevice, this->Partition, own, rays, this->Periodic, volume, workspace);
   /// Contacts that do not wrap around, and those that wrap around sideways and along the marching axis.
@@ -140,56 +128,41 @@ void SweepInBlocks::Forget()
   }
 }
 
-SweepVolume SweepInBlocks::VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const
-{
-  SweepVolume volume = GroupVolume(this->Layout, group, this->SigmaT, this->To);
-  volume.source = source;
-  volume.octantSource = this->OctantSource;
-  volume.angular = this->Angular;
-  volume.moments = this->Layout.Places(this->Angular ? this->Angular->Functions() : 1);
-  volume.deposit.flux = this->Angular ? nullptr : volume.deposit.flux; // the flux is among the moments
-  return volume;
-}
-
 /// Collective. After an error, ranks continue to exchange messages, marked as failed, so that no rank waits forever.
 SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
 {
-  SweepTally tally;
-  std::exception_ptr error;
-  const std::vector<ChannelGroup> groups = this->Layout.Groups();
-  const std::vector<float> faceIn = this->FaceIn ? this->FaceIn->Read() : std::vector<float>();
-  const bool faceLit = std::any_of(faceIn.begin(), faceIn.end(), [](float value) { return value != 0.0f; });
-  std::vector<double> left(this->To.faceOut ? this->To.faceOut->Size() : 0, 0.0);
-  for (std::size_t g = 0; g < groups.size(); ++g)
+  const Deposit& to = this->Request.deposit;
+  this->Error = nullptr;
+  this->FaceIn = this->Request.faceIn ? this->Request.faceIn->Read() : std::vector<float>();
+  if (std::all_of(this->FaceIn.begin(), this->FaceIn.end(), [](float value) { return value == 0.0f; }))
   {
-    const int first = groups[g].first;
-    Sweeping sweeping;
-    sweeping.volume = this->VolumeOf(groups[g], source);
-    sweeping.boundary = OfGroup(boundary, first);
-    sweeping.group = g;
-    const std::size_t ofFaces = first * BoxFaceCellCount(this->Partition.whole);
-    sweeping.cells = { faceLit ? faceIn.data() + ofFaces : nullptr, left.empty() ? nullptr : left.data() + ofFaces,
-      this->To.spreadsAside };
-    const double all = static_cast<double>(groups.size());
-    this->SweepGroup(sweeping, error, OfPart(monitor, g / all, (g + 1) / all));
-    Add(tally, sweeping.tally, first);
+    this->FaceIn.clear();
   }
+  this->Left.assign(to.faceOut ? to.faceOut->Size() : 0, 0.0);
+  SweepTally tally = SweepByGroups::Apply(source, boundary, monitor);
   this->Comm.Collective([&] {
-    if (error)
+    if (this->Error)
     {
-      std::rethrow_exception(error);
+      std::rethrow_exception(this->Error);
     }
   });
   AddUp(this->Comm, tally.in);
   AddUp(this->Comm, tally.out);
-  this->AddToFaces(left);
+  if (to.faceOut)
+  {
+    AddOverRanks(this->TheDevice, this->Comm, this->Left, *to.faceOut);
+  }
   return tally;
 }
 
-/// Sweeps one group of channels: open axes in one lap, periodic axes until almost no power is under way, as in
-/// AxisSweep.
-void SweepInBlocks::SweepGroup(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+/// Sweeps open axes in one lap, periodic axes until almost no power is under way, as in AxisSweep.
+SweepTally SweepInBlocks::ApplyGroup(
+  std::size_t group, const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor)
 {
+  Sweeping sweeping = { volume, boundary };
+  sweeping.group = group;
+  sweeping.cells = { this->FaceIn.empty() ? nullptr : this->FaceIn.data() + this->FirstCell(volume),
+    this->Left.empty() ? nullptr : this->Left.data() + this->FirstCell(volume), volume.deposit.spreadsAside };
   if (this->IsAnyPeriodic() && !this->Tasks.empty())
   {
     this->Workspace.sweep.lost.Fill(0.0f);
@@ -198,9 +171,9 @@ void SweepInBlocks::SweepGroup(Sweeping& sweeping, std::exception_ptr& error, co
   sweeping.goesOn = { true, true, true };
   for (bool any = true; any; ++sweeping.lap)
   {
-    if (!this->SweepLap(sweeping, error, sweeping.lap == 0 ? monitor : OfPart(monitor, 1.0, 1.0)))
+    if (!this->SweepLap(sweeping, sweeping.lap == 0 ? monitor : OfPart(monitor, 1.0, 1.0)))
     {
-      return;
+      break;
     }
     any = false;
     for (int axis = 0; axis < 3; ++axis)
@@ -209,7 +182,8 @@ void SweepInBlocks::SweepGroup(Sweeping& sweeping, std::exception_ptr& error, co
       const double onTheWay = Sum(sweeping.ahead[axis]);
       atFirst[axis] = gone == laps ? onTheWay : atFirst[axis];
       const bool far = gone % laps == 0 &&
-        (gone * this->Partition.whole.size[axis] >= this->MostPlanes || onTheWay <= NothingLeft * atFirst[axis]);
+        (gone * this->Partition.whole.size[axis] >= this->Request.mostPlanes ||
+          onTheWay <= NothingLeft * atFirst[axis]);
       const bool goesOn = this->Periodic[axis] && sweeping.goesOn[axis] && !far;
       for (int c = 0; c < 3 && sweeping.goesOn[axis] && !goesOn; ++c)
       {
@@ -219,19 +193,26 @@ void SweepInBlocks::SweepGroup(Sweeping& sweeping, std::exception_ptr& error, co
       any = any || goesOn;
     }
   }
+  return sweeping.tally;
+}
+
+/// Index of the group's first cell in FaceIn and Left, which are those of the whole domain.
+std::size_t SweepInBlocks::FirstCell(const SweepVolume& volume) const
+{
+  return volume.firstChannel * BoxFaceCellCount(this->Partition.whole);
 }
 
 /// Sweeps one lap: first with sources and incident light if rays still start, then repeatedly with only the rays that
 /// wrap around sideways, until there are none.
 /// @return false if an error occurred on any rank
-bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+bool SweepInBlocks::SweepLap(Sweeping& sweeping, const Monitor& monitor)
 {
   sweeping.ahead = {};
   sweeping.again = false;
-  bool more = this->SweepPass(sweeping, error, monitor);
+  bool more = this->SweepPass(sweeping, monitor);
   while (this->IsAnyPeriodic())
   {
-    std::vector<double> flags = { more ? 1.0 : 0.0, error ? 1.0 : 0.0 };
+    std::vector<double> flags = { more ? 1.0 : 0.0, this->Error ? 1.0 : 0.0 };
     flags = this->Comm.Largest(flags);
     if (flags[1] > 0.0)
     {
@@ -242,7 +223,7 @@ bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, cons
       break;
     }
     sweeping.again = true;
-    more = this->SweepPass(sweeping, error, OfPart(monitor, 1.0, 1.0));
+    more = this->SweepPass(sweeping, OfPart(monitor, 1.0, 1.0));
   }
   std::vector<double> ahead;
   for (const Rgb& power : sweeping.ahead)
@@ -259,7 +240,7 @@ bool SweepInBlocks::SweepLap(Sweeping& sweeping, std::exception_ptr& error, cons
 
 /// Sweeps all blocks along all rays of the lap.
 /// @return whether any rays have wrapped around sideways to this rank
-bool SweepInBlocks::SweepPass(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+bool SweepInBlocks::SweepPass(Sweeping& sweeping, const Monitor& monitor)
 {
   const std::vector<int>& order = this->TheSchedule.OrderOf(this->Comm.Rank());
   const double all = static_cast<double>(order.size());
@@ -267,10 +248,10 @@ bool SweepInBlocks::SweepPass(Sweeping& sweeping, std::exception_ptr& error, con
   {
     if (sweeping.goesOn[this->Parts[order[t]].axis])
     {
-      this->SweepTask(order[t], sweeping, error, OfPart(monitor, t / all, (t + 1) / all));
+      this->SweepTask(order[t], sweeping, OfPart(monitor, t / all, (t + 1) / all));
     }
   }
-  return this->IsAnyPeriodic() && this->TakeFromAround(sweeping, error);
+  return this->IsAnyPeriodic() && this->TakeFromAround(sweeping);
 }
 
 void AddOverRanks(Device& device, Communicator& communicator, const std::vector<double>& left, const Buffer<float>& to)
@@ -283,23 +264,13 @@ void AddOverRanks(Device& device, Communicator& communicator, const std::vector<
   device.Finish(); // before the buffer is destroyed
 }
 
-/// Adds the power that left by cells on any rank to faceOut. Collective.
-void SweepInBlocks::AddToFaces(const std::vector<double>& left) const
-{
-  if (!this->To.faceOut)
-  {
-    return;
-  }
-  AddOverRanks(this->TheDevice, this->Comm, left, *this->To.faceOut);
-}
-
 /// Whether this rank reports the incident power, which all ranks with voxels know.
 bool SweepInBlocks::CountsPowerIn() const
 {
   return IsFirstThatHas(this->Comm, this->Partition);
 }
 
-void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor)
+void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, const Monitor& monitor)
 {
   Task& task = this->Tasks[number];
   const int axis = this->Parts[number].axis;
@@ -313,7 +284,7 @@ void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr
   RaysAtFaces rays;
   try
   {
-    if (!error)
+    if (!this->Error)
     {
       task.sweep->BeginLap(sweeping.lap * this->Partition.whole.size[axis]);
       state = this->Enter(task, messages, sweeping, rays);
@@ -340,7 +311,7 @@ void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, std::exception_ptr
   }
   catch (...)
   {
-    error = std::current_exception();
+    this->Error = std::current_exception();
     state = State::Failed;
   }
   this->SendOn(number, state, rays);
@@ -376,7 +347,7 @@ void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
 
 /// Receives the rays that wrapped around in this pass, from all ranks, after this rank has finished it.
 /// @return whether any of them continue in another pass
-bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping, std::exception_ptr& error)
+bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping)
 {
   const auto isLit = [](float value) { return value != 0.0f; };
   bool any = false;
@@ -392,7 +363,7 @@ bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping, std::exception_ptr&
       const std::vector<float> message = this->Comm.Receive<float>(from, static_cast<int>(number));
       const State state = static_cast<State>(static_cast<int>(message.at(0)));
       around.rays.clear();
-      if (state != State::Lit || error)
+      if (state != State::Lit || this->Error)
       {
         continue;
       }

@@ -29,7 +29,7 @@ void AddOverRanks(Device& device, Communicator& communicator, const std::vector<
 ///
 /// Construction and Apply() are collective, with the same rays on all ranks. Light by cells of faces
 /// (SweepRequest::faceIn, Deposit::faceOut) refers to the whole domain and is identical on all ranks.
-class SweepInBlocks : public SweepOperator
+class SweepInBlocks : public SweepByGroups
 {
 public:
   /// @param communicator, partition, sigma_t  must outlive this object
@@ -75,48 +75,47 @@ private:
     Failed ///< the sending rank has thrown
   };
   Task MakeTask(const ParallelBundles& rays, BlockWorkspace& workspace) const;
-  SweepVolume VolumeOf(const ChannelGroup& group, const Buffer<float>* source) const;
+  static SweepRequest OfWholeDomain(SweepRequest request);
+  std::size_t FirstCell(const SweepVolume& volume) const;
   bool CountsPowerIn() const;
   /// Inputs and counters of the sweep of one group of channels.
   struct Sweeping
   {
-    SweepVolume volume;
-    SweepBoundary boundary;
-    LightByCells cells;
+    const SweepVolume& volume;
+    const SweepBoundary& boundary;
+    LightByCells cells = {};
     std::size_t group = 0;
     int lap = 0;
     std::array<bool, 3> goesOn = {}; ///< axes whose rays take part in this lap
     bool again = false;              ///< a pass of rays that have wrapped around sideways
-    SweepTally tally;
+    SweepTally tally = {};
     std::array<Rgb, 3> ahead = {}; ///< W, power that left through the ends of periodic axes in this lap
   };
-  void SweepGroup(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
-  bool SweepLap(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
-  bool SweepPass(Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
-  void SweepTask(int number, Sweeping& sweeping, std::exception_ptr& error, const Monitor& monitor);
+  SweepTally ApplyGroup(
+    std::size_t group, const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor) override;
+  bool SweepLap(Sweeping& sweeping, const Monitor& monitor);
+  bool SweepPass(Sweeping& sweeping, const Monitor& monitor);
+  void SweepTask(int number, Sweeping& sweeping, const Monitor& monitor);
   State Enter(
     Task& task, const std::vector<std::vector<float>>& messages, const Sweeping& sweeping, RaysAtFaces& rays) const;
   State EnterFromAround(Task& task, const Sweeping& sweeping, RaysAtFaces& rays) const;
   void SendOn(int number, State state, const RaysAtFaces& rays);
-  bool TakeFromAround(const Sweeping& sweeping, std::exception_ptr& error);
+  bool TakeFromAround(const Sweeping& sweeping);
   bool IsAnyPeriodic() const { return this->Periodic[0] || this->Periodic[1] || this->Periodic[2]; }
   int Laps(int axis) const; ///< laps in which rays start
-  void AddToFaces(const std::vector<double>& left) const;
 
   Device& TheDevice;
   Communicator& Comm;
   const BlockPartition& Partition;
-  VolumeLayout Layout;
-  const Buffer<float>& SigmaT;
   std::array<bool, 3> Periodic;
   BlockWorkspace& Workspace;
-  int MostPlanes;
-  Deposit To;
-  const AngularValues* Angular;
-  const Buffer<float>* OctantSource;
-  const Buffer<float>* FaceIn;
   std::vector<ParallelBundles> Parts;
   SweepSchedule TheSchedule;
   std::vector<Task> Tasks; ///< of this rank, in the order of Parts
+
+  // Of the sweep in progress.
+  std::exception_ptr Error;  ///< what went wrong on this rank
+  std::vector<float> FaceIn; ///< SweepRequest::faceIn; empty: none, or zero
+  std::vector<double> Left; ///< power that left this rank's block by cells of the domain's faces, W; empty: not counted
 };
 }

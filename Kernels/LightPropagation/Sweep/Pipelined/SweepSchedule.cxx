@@ -1,10 +1,10 @@
 #include "LightPropagation/Sweep/Pipelined/SweepSchedule.h"
 
 #include "Device/Errors.h"
-#include "LightPropagation/Sweep/Pipelined/BlockContact.h"
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <queue>
 #include <set>
@@ -13,6 +13,134 @@
 
 namespace tyndall
 {
+namespace
+{
+/// The members of a bundle that march one way along its axis with these signs of direction across it.
+Bundle MembersThatGo(const Bundle& bundle, int way, int signU, int signV)
+{
+  Bundle part = bundle;
+  part.members.clear();
+  for (Member member : bundle.members)
+  {
+    int& other = way == 0 ? member.opposite : member.direction;
+    const int direction = way == 0 ? member.direction : member.opposite;
+    other = -1;
+    if (direction >= 0 && member.uFromU + member.uFromV == signU && member.vFromU + member.vFromV == signV)
+    {
+      part.members.push_back(member);
+    }
+  }
+  return part;
+}
+
+/// Divides a set of bundles into parts of at most mostRays rays, or of one bundle if that has more.
+void AddParts(const ParallelBundles& whole, int mostRays, std::vector<ParallelBundles>& parts)
+{
+  ParallelBundles part = whole;
+  part.bundles.clear();
+  for (const Bundle& bundle : whole.bundles)
+  {
+    const int rays = part.Rays() + static_cast<int>(bundle.members.size());
+    if (mostRays > 0 && rays > mostRays && !part.bundles.empty())
+    {
+      parts.push_back(part);
+      part.bundles.clear();
+      part.goThroughEdges = false;
+    }
+    part.bundles.push_back(bundle);
+    part.goThroughEdges = part.goThroughEdges || bundle.MovesBothWaysAtOnce();
+  }
+  if (!part.bundles.empty())
+  {
+    parts.push_back(part);
+  }
+}
+}
+
+int ParallelBundles::Rays() const
+{
+  std::size_t rays = 0;
+  for (const Bundle& bundle : this->bundles)
+  {
+    rays += bundle.members.size();
+  }
+  return static_cast<int>(rays);
+}
+
+std::vector<ParallelBundles> SortByOctant(const std::vector<AxisBundles>& rays, int mostRays)
+{
+  std::vector<ParallelBundles> parts;
+  for (const AxisBundles& along : rays)
+  {
+    const PlaneAxes axes = AcrossAxis(along.axis);
+    for (int octant = 0; octant < 8; ++octant)
+    {
+      const auto sign = [octant](int bit) { return octant >> bit & 1 ? -1 : 1; };
+      ParallelBundles part;
+      part.axis = along.axis;
+      part.way = octant >> 2;
+      part.signs[axes.u] = sign(0);
+      part.signs[axes.v] = sign(1);
+      part.signs[axes.axis] = sign(2);
+      for (const Bundle& bundle : along.bundles)
+      {
+        const Bundle going = MembersThatGo(bundle, part.way, sign(0), sign(1));
+        if (!going.members.empty())
+        {
+          part.bundles.push_back(going);
+        }
+      }
+      AddParts(part, mostRays, parts);
+    }
+  }
+  return parts;
+}
+
+std::vector<BlockContact> ContactsBetween(
+  const BlockPartition& partition, const ParallelBundles& rays, int from, int to, const std::array<bool, 3>& periodic)
+{
+  const VoxelBox& source = partition.blocks[from];
+  const VoxelBox& target = partition.blocks[to];
+  if (source.VoxelCount() == 0 || target.VoxelCount() == 0)
+  {
+    return {};
+  }
+  const PlaneAxes axes = AcrossAxis(rays.axis);
+  // Layers of cells upwind of the target block, along each of the axes.
+  const auto contact = [&](BlockContact::Kind kind, std::initializer_list<int> along) {
+    BlockContact found = { from, to, kind, target, false };
+    for (const int axis : along)
+    {
+      const int size = partition.whole.size[axis];
+      int& first = found.cells.first[axis];
+      first = rays.signs[axis] > 0 ? target.first[axis] - 1 : EndOf(target, axis);
+      found.cells.size[axis] = 1;
+      if (periodic[axis] && (first < 0 || first >= size))
+      {
+        first = first < 0 ? size - 1 : 0;
+        found.around = true;
+      }
+    }
+    found.cells = Common(found.cells, source);
+    return found;
+  };
+  std::vector<BlockContact> contacts = { contact(BlockContact::Along, { axes.axis }),
+    contact(BlockContact::AsideU, { axes.u }), contact(BlockContact::AsideV, { axes.v }) };
+  if (rays.goThroughEdges)
+  {
+    contacts.push_back(contact(BlockContact::Edge, { axes.u, axes.v }));
+  }
+  std::vector<BlockContact> there;
+  for (const BlockContact& one : contacts)
+  {
+    if (one.cells.VoxelCount() > 0)
+    {
+      there.push_back(one);
+    }
+  }
+  return there;
+}
+
 namespace
 {
 /// Rank that a block sends rays to after it is swept along a set of bundles.

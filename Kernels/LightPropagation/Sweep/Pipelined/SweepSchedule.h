@@ -1,13 +1,52 @@
 #pragma once
 
 #include "Distribution/BlockPartition.h"
-#include "LightPropagation/Sweep/Pipelined/ParallelBundles.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 namespace tyndall
 {
+/// Rays that march along one axis and whose directions lie in one octant: they run from one corner of the box towards
+/// the opposite one. Blocks of a grid are swept along such a set one after the other, each after the blocks upwind of
+/// it.
+struct ParallelBundles
+{
+  int axis = 0;
+  int way = 0;                            ///< 0 forward along the axis, 1 backward
+  std::array<int, 3> signs = { 1, 1, 1 }; ///< along x, y, z: 1 upwards, -1 downwards
+  std::vector<Bundle> bundles;            ///< each member has a direction for one way only
+  bool goThroughEdges = false;            ///< some rays move along u and v at once
+
+  int Rays() const; ///< rays per voxel of a plane across the axis
+};
+
+/// Divides rays into sets of parallel bundles by octant. @param mostRays  most rays per set; 0: no limit
+std::vector<ParallelBundles> SortByOctant(const std::vector<AxisBundles>& rays, int mostRays);
+
+/// Set of faces through which rays pass from one block into another.
+struct BlockContact
+{
+  enum Kind
+  {
+    Along,  ///< through faces across the marching axis, at the end of a plane
+    AsideU, ///< through faces across u or v, within a plane
+    AsideV,
+    Edge ///< by a move along u and v at once
+  };
+  int from = 0, to = 0;
+  Kind kind = Along;
+  VoxelBox cells;      ///< voxels that the rays come from, indexed in the whole grid
+  bool around = false; ///< the rays wrap around a periodic axis
+};
+
+/// All contacts from one block to another, or to itself around periodic axes: none or one of most kinds, in the order
+/// of Kind.
+std::vector<BlockContact> ContactsBetween(const BlockPartition& partition, const ParallelBundles& rays, int from,
+  int to, const std::array<bool, 3>& periodic = {});
+
 /// Cost model of a distributed sweep, in any unit of time.
 struct SweepCosts
 {

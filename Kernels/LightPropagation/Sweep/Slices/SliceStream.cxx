@@ -39,6 +39,70 @@ int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspa
   return static_cast<int>(std::clamp<std::size_t>(fit, 1, most));
 }
 
+/// The piece that a unit crosses next, from the remaining range `left`.
+SlicePiece NextPiece(const SweepPlan& plan, bool backward, const cl_int2& left, int thickness, int aligned)
+{
+  const int planes = plan.Planes();
+  const int lap = left.s[0] / planes * planes; // first plane of the current lap
+  const int from = left.s[0] - lap;
+  const int to = std::min(left.s[1] - lap, planes);
+  SlicePiece piece;
+  if (backward)
+  {
+    piece.end = planes - from;
+    const int lowest = std::max(piece.end - thickness, 0);
+    piece.begin = std::max(planes - to, RoundUp(lowest, aligned));
+  }
+  else
+  {
+    piece.begin = from;
+    piece.end = std::min(to, from / aligned * aligned + thickness);
+  }
+  piece.range = { { left.s[0], left.s[0] + piece.end - piece.begin } };
+  return piece;
+}
+
+/// Cuts a sweep's launches into shorter ones, [launch][unit], so that in each launch a unit needs at most one slot of
+/// the volume. Which units run concurrently and the order of additions to each plane do not change: results are
+/// identical bit for bit.
+/// @param schedule  [launch][unit], planes from, to
+/// @param thickness  planes per slot
+/// @param aligned  pieces end at multiples of this number of planes or at the end of a slab; 1: anywhere
+std::vector<std::vector<SlicePiece>> CutIntoPieces(
+  const SweepPlan& plan, const std::vector<cl_int2>& schedule, int thickness, int aligned)
+{
+  const std::size_t units = plan.units.size();
+  std::vector<std::vector<SlicePiece>> launches;
+  for (std::size_t first = 0; first < schedule.size(); first += units)
+  {
+    std::vector<cl_int2> left(schedule.begin() + first, schedule.begin() + first + units);
+    const auto isLeft = [](const cl_int2& range) { return range.s[0] < range.s[1]; };
+    while (std::any_of(left.begin(), left.end(), isLeft))
+    {
+      std::vector<SlicePiece> launch(units);
+      for (std::size_t u = 0; u < units; ++u)
+      {
+        if (isLeft(left[u]))
+        {
+          launch[u] = NextPiece(plan, plan.units[u].backward != 0, left[u], thickness, aligned);
+          left[u].s[0] = launch[u].range.s[1];
+        }
+      }
+      launches.push_back(std::move(launch));
+    }
+  }
+  return launches;
+}
+
+/// Whether `first` and `second` contain planes of the same group of `aligned` planes.
+bool Meet(const SlicePiece& first, const SlicePiece& second, int aligned)
+{
+  const auto begin = [aligned](const SlicePiece& piece) { return piece.begin / aligned; };
+  const auto end = [aligned](const SlicePiece& piece) { return PartsOf(piece.end, aligned); };
+  return first.begin < first.end && second.begin < second.end && begin(first) < end(second) &&
+    begin(second) < end(first);
+}
+
 /// Whether units that run concurrently never access the same planes.
 bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
 {
@@ -147,6 +211,13 @@ const Buffer<float>& SliceStream::Slots(SlotArray array) const
   return slots.Size() > 0 ? slots : this->Workspace.slots[static_cast<std::size_t>(SlotArray::Path)]; // not accessed
 }
 
+VolumeArrays SliceStream::Arrays() const
+{
+  return { this->Slots(SlotArray::SigmaT), this->Slots(SlotArray::Source), this->Slots(SlotArray::OctantSource),
+    this->Slots(SlotArray::Path), this->Slots(SlotArray::Lost), this->Slots(SlotArray::Flux),
+    this->Slots(SlotArray::PartialCurrents) };
+}
+
 /// Number of planes whose angular moments are stored together.
 int SliceStream::Aligned() const
 {
@@ -199,7 +270,7 @@ void SliceStream::Describe(SweepInfo& info) const
   info.pathSlot = this->SlotFloats(SlotArray::Path);
 }
 
-std::vector<SliceStream::Streamed> SliceStream::ArraysOf(const SweepVolume& volume) const
+std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume& volume) const
 {
   const int channels = this->Plan.channels;
   const int beams = this->HasMoments() ? this->Plan.angular->Beams() : -1;
@@ -337,7 +408,7 @@ void SliceStream::CopyArray(const Streamed& array, const SlicePiece& piece, std:
 
 void SliceStream::Cross(const Schedule& schedule, const SweepVolume& volume, const Launch& launch)
 {
-  const std::vector<Streamed> arrays = this->ArraysOf(volume);
+  const std::vector<Streamed> arrays = this->StreamedArrays(volume);
   cl::CommandQueue& kernels = this->TheDevice.Queue();
   cl::Event ready;
   kernels.enqueueMarkerWithWaitList(nullptr, &ready);

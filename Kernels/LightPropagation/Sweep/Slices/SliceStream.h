@@ -1,10 +1,7 @@
 #pragma once
 
-#include "Device/Buffer.h"
-#include "LightPropagation/Sweep/Slices/SlicePieces.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
-#include "LightPropagation/Sweep/SweepWorkspace.h"
 
 #include <array>
 #include <functional>
@@ -13,6 +10,13 @@
 
 namespace tyndall
 {
+/// Planes of the box that one unit crosses in one launch, all of them in one slot.
+struct SlicePiece
+{
+  cl_int2 range = { { 0, 0 } }; ///< as in SweepPlan::schedule
+  int begin = 0, end = 0;       ///< planes of the box, [begin, end); empty: the unit is idle in this launch
+};
+
 /// Streams a volume in host memory through slots on the device during a sweep (Gruson et al., section 4.2; numerics.md,
 /// section 4.10). While the units cross the slices in their slots, a second queue copies the previous slices back to
 /// the host and fetches the next ones. The rays stay on the device.
@@ -32,11 +36,12 @@ public:
 
   int Thickness() const { return this->Extent[this->Plan.axes.axis]; } ///< planes that a slot holds
 
-  /// The sweep's launches cut into pieces. `rows` is the same as the kernel reads it: [launch][ranges, slots][unit].
+  /// The sweep's launches, and the same cut into pieces if the volume is streamed.
   struct Schedule
   {
-    std::vector<std::vector<SlicePiece>> pieces;
-    Buffer<cl_int2> rows;
+    std::vector<std::vector<SlicePiece>> pieces; ///< [launch][unit]; empty: the volume is not streamed
+    Buffer<cl_int2>
+      rows; ///< as the kernel reads it: [launch][unit] planes from, to; of pieces [launch][ranges, slots][unit]
   };
   Schedule Cut(const std::vector<cl_int2>& schedule) const;
 
@@ -50,7 +55,7 @@ public:
 
   /// Replaces the volume's memory layout in `info` by the slots' layout.
   void Describe(SweepInfo& info) const;
-  const Buffer<float>& Slots(SlotArray array) const;
+  VolumeArrays Arrays() const; ///< the slots
 
   /// Queues a launch that waits for the events `after` (null: for none) and signals `done`.
   using Launch = std::function<void(int launch, const std::vector<cl::Event>* after, cl::Event* done)>;
@@ -75,7 +80,8 @@ private:
     bool comesBack;    ///< the sweep adds to it: copied back to the host
     int beams = -1;    ///< number of beams, for arrays with angular moments; -1: an array without moments
   };
-  std::vector<Streamed> ArraysOf(const SweepVolume& volume) const;
+  std::vector<Streamed> StreamedArrays(const SweepVolume& volume) const;
+  const Buffer<float>& Slots(SlotArray array) const;
   void LaySlots();
   bool HasMoments() const { return this->Plan.angular != nullptr; }
   int Aligned() const;

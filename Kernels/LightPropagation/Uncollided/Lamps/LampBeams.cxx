@@ -1,6 +1,6 @@
 #include "LightPropagation/Uncollided/Lamps/LampBeams.h"
 
-#include "Device/GroupSize.h"
+#include "Device/Device.h"
 #include "Distribution/Halo.h"
 #include "Distribution/Rounds.h"
 #include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"

@@ -2,7 +2,7 @@
 
 #include "Device/Monitor.h"
 #include "Distribution/Domain.h"
-#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "Lights/Lights.h"
 

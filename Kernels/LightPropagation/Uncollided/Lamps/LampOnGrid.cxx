@@ -1,6 +1,6 @@
 #include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"
 
-#include "Device/Defines.h"
+#include "Device/Device.h"
 #include "LightPropagation/Uncollided/Lamps/EnteringFraction.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"

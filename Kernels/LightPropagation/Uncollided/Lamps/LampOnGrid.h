@@ -2,8 +2,7 @@
 
 #include "Device/Device.h"
 #include "Distribution/Domain.h"
-#include "LightPropagation/Sweep/Deposit.h"
-#include "LightPropagation/Sweep/SweepTally.h"
+#include "LightPropagation/Sweep/SweepOperator.h"
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "LightPropagation/Uncollided/Lamps/LampPoints.h"
 #include "LightPropagation/Uncollided/Lamps/LampPyramids.h"

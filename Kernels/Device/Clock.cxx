@@ -1,5 +1,3 @@
-#include "Device/CompilationListener.h"
-
 #include "Device/Clock.h"
 
 #include <mutex>
