@@ -263,10 +263,24 @@ Device::Device(Device& whole, const MemoryBudget& budget)
 {
 }
 
-bool Device::IsHidden(const std::string& name)
+namespace
+{
+/// Whether the environment variable TYNDALL_WITHOUT names a property that a device shall be taken not to have.
+bool IsHidden(const std::string& name)
 {
   const char* hidden = std::getenv("TYNDALL_WITHOUT");
   return hidden && (" " + std::string(hidden) + " ").find(" " + name + " ") != std::string::npos;
+}
+}
+
+bool Device::SharesHostMemory() const
+{
+  return this->Cpu && !IsHidden("host_memory");
+}
+
+std::size_t Device::CacheBytes() const
+{
+  return IsHidden("cache") ? 0 : std::size_t{ 2 } << 20;
 }
 
 bool Device::HasExtension(const std::string& name) const
@@ -319,12 +333,13 @@ cl::Buffer InHugePages(const cl::Context& context, cl_mem_flags flags, std::size
     throw;
   }
 }
-}
 
-void Device::Complain(const char* what, std::size_t bytes, const std::string& cause, const char* advice) const
+[[noreturn]] void Complain(
+  const Device& device, const char* what, std::size_t bytes, const std::string& cause, const char* advice)
 {
-  throw DeviceError("Not enough memory on " + this->DeviceName + " for " + what + ": " + std::to_string(bytes) +
+  throw DeviceError("Not enough memory on " + device.Name() + " for " + what + ": " + std::to_string(bytes) +
     " bytes are needed, " + cause + ". Use " + advice + ".");
+}
 }
 
 Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const char* what, Residence residence)
@@ -340,7 +355,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
     {
       if (!streamed && !this->Budget.spills)
       {
-        this->Complain(what, bytes, left() + " are left of the memory budget",
+        Complain(*this, what, bytes, left() + " are left of the memory budget",
           "a larger MemoryBudget, a coarser grid, or fewer directions");
       }
       return this->AllocateOnHost(bytes, flags, what);
@@ -363,11 +378,11 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   }
   if (bytes > this->LargestAllocation)
   {
-    this->Complain(what, bytes, "the largest single allocation is " + std::to_string(this->LargestAllocation), Advice);
+    Complain(*this, what, bytes, "the largest single allocation is " + std::to_string(this->LargestAllocation), Advice);
   }
   if (!this->Memory.Take(bytes)) // before the allocation, so that another thread cannot reserve the same bytes
   {
-    this->Complain(what, bytes, left() + " are left", Advice);
+    Complain(*this, what, bytes, left() + " are left", Advice);
   }
   try
   {
@@ -377,7 +392,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   catch (const cl::Error& error)
   {
     this->Memory.GiveBack(bytes);
-    this->Complain(what, bytes, "the driver refused them (" + std::to_string(error.err()) + ")", Advice);
+    Complain(*this, what, bytes, "the driver refused them (" + std::to_string(error.err()) + ")", Advice);
   }
 }
 
@@ -387,7 +402,7 @@ Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags,
   constexpr const char* Advice = "a coarser grid or fewer directions";
   if (!this->OnHost.Take(bytes))
   {
-    this->Complain(what, bytes, std::to_string(this->OnHost.Left()) + " are left of this machine's memory", Advice);
+    Complain(*this, what, bytes, std::to_string(this->OnHost.Left()) + " are left of this machine's memory", Advice);
   }
   try
   {
@@ -402,7 +417,8 @@ Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags,
   catch (const cl::Error& error)
   {
     this->OnHost.GiveBack(bytes);
-    this->Complain(what, bytes, "the driver refused them in host memory (" + std::to_string(error.err()) + ")", Advice);
+    Complain(
+      *this, what, bytes, "the driver refused them in host memory (" + std::to_string(error.err()) + ")", Advice);
   }
   catch (...)
   {

@@ -43,7 +43,6 @@ public:
   const std::string& Name() const { return this->DeviceName; }
   bool IsCpu() const { return this->Cpu; }
   int ComputeUnits() const { return this->Units; }
-  int FloatVectorWidth() const { return this->VectorWidth; } ///< 1 on GPUs, 4 to 16 on CPUs
   /// Number of floats that a work-item should process at once. On a CPU: as many as a register holds, within the range
   /// from `least` to `most` for which the kernel is written. On a GPU, which vectorises across work-items:
   /// `leastOnGpu`.
@@ -63,10 +62,10 @@ public:
   bool Streams() const { return this->Budget.hostFrom != MemoryBudget::NoLimit; }
   /// Whether kernels use host memory in place, so that copies would gain nothing. False if TYNDALL_WITHOUT names
   /// `host_memory`.
-  bool SharesHostMemory() const { return this->Cpu && !IsHidden("host_memory"); }
+  bool SharesHostMemory() const;
   /// Approximate cache size per core, bytes: its own caches and its share of the common ones. 0 if TYNDALL_WITHOUT
   /// names `cache`.
-  std::size_t CacheBytes() const { return IsHidden("cache") ? 0 : std::size_t{ 2 } << 20; }
+  std::size_t CacheBytes() const;
   std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< arrays in host memory
   std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest HostBytes
   std::size_t BytesInUse() const { return this->Memory.InUse(); }
@@ -116,8 +115,6 @@ public:
   void SetClock(Clock clock) { this->TheClock = std::move(clock); }
 
 private:
-  static bool IsHidden(const std::string& name);
-  [[noreturn]] void Complain(const char* what, std::size_t bytes, const std::string& cause, const char* advice) const;
   Allocation AllocateOnHost(std::size_t bytes, cl_mem_flags flags, const char* what);
 
   cl::Device TheDevice;

@@ -83,7 +83,7 @@ double Shortest(Device& device, const std::function<void()>& enqueue)
 
 MachineLimits MeasureLimits(Device& device, bool largeArrays)
 {
-  const int width = device.FloatVectorWidth();
+  const int width = device.KernelWidth(1);
   const int items = device.ComputeUnits() * (device.IsCpu() ? 4 : 4096);
   const std::size_t group = device.IsCpu() ? 1 : 64;
   const std::string options = "-DWIDTH=" + std::to_string(width) + " -DCHAINS=" + std::to_string(Chains);
