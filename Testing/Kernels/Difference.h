@@ -31,6 +31,15 @@ inline double SumOfDifferences(const std::vector<float>& a, const std::vector<fl
   return difference == 0.0 ? 0.0 : difference / sum;
 }
 
+inline void ExpectFiniteAndNotNegative(const std::vector<float>& values)
+{
+  for (const float value : values)
+  {
+    ASSERT_TRUE(std::isfinite(value));
+    ASSERT_GE(value, 0.0f);
+  }
+}
+
 /// The largest difference over the largest value of `b`.
 inline double RelativeDifference(const std::vector<float>& a, const std::vector<float>& b)
 {
@@ -43,15 +52,15 @@ inline double RelativeDifference(const std::vector<float>& a, const std::vector<
   return difference == 0.0 ? 0.0 : difference / largest;
 }
 
-/// Root of the sum of squared differences over that of the squares of `b`.
-inline double SquareDifference(const std::vector<float>& a, const std::vector<float>& b)
+/// Root of the mean squared difference over that of `b`; where that is 0, of the difference itself.
+inline double RelativeRmse(const std::vector<float>& a, const std::vector<float>& b)
 {
   EXPECT_EQ(a.size(), b.size());
-  double differences = 0.0, all = 0.0;
+  double differences = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
   {
     differences += std::pow(static_cast<double>(a[i]) - b[i], 2);
-    all += std::pow(b[i], 2);
+    squares += std::pow(static_cast<double>(b[i]), 2);
   }
-  return std::sqrt(differences / all);
+  return std::sqrt(squares > 0.0 ? differences / squares : differences);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "GridVoxels.h"
 #include "MediumScene.h"
 
 #include <algorithm>
@@ -16,25 +17,17 @@ inline Scene KobayashiScene(int voxels, double scattering)
   scene.medium.grid.spacing = { h, h, h };
   scene.medium.grid.origin = { -100.0, -100.0, -100.0 };
   scene.emission.assign(scene.sigma_a.size(), 0.0f);
-  std::size_t i = 0;
-  for (int z = 0; z < voxels; ++z)
-  {
-    for (int y = 0; y < voxels; ++y)
+  ForGridVoxels({ voxels, voxels, voxels }, [&](std::size_t i, int x, int y, int z) {
+    double from = 0.0; // the middle, largest distance along an axis
+    for (int at : { x, y, z })
     {
-      for (int x = 0; x < voxels; ++x, ++i)
-      {
-        double from = 0.0; // the middle, largest distance along an axis
-        for (int at : { x, y, z })
-        {
-          from = std::max(from, std::abs((at + 0.5) * h - 100.0));
-        }
-        const double sigma_t = from > 10.0 && from < 50.0 ? 1e-4 : 0.1;
-        scene.sigma_s[i] = static_cast<float>(scattering * sigma_t);
-        scene.sigma_a[i] = static_cast<float>((1.0 - scattering) * sigma_t);
-        scene.emission[i] = from < 10.0 ? static_cast<float>(1.0 / (4.0 * 3.14159265358979323846)) : 0.0f;
-      }
+      from = std::max(from, std::abs((at + 0.5) * h - 100.0));
     }
-  }
+    const double sigma_t = from > 10.0 && from < 50.0 ? 1e-4 : 0.1;
+    scene.sigma_s[i] = static_cast<float>(scattering * sigma_t);
+    scene.sigma_a[i] = static_cast<float>((1.0 - scattering) * sigma_t);
+    scene.emission[i] = from < 10.0 ? static_cast<float>(1.0 / (4.0 * 3.14159265358979323846)) : 0.0f;
+  });
   return scene;
 }
 

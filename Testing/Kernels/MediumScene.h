@@ -6,6 +6,15 @@
 #include <random>
 #include <vector>
 
+inline tyndall::Light PointLamp(const std::array<double, 3>& position, const tyndall::Rgb& power = { 1.0, 1.0, 1.0 })
+{
+  tyndall::Light lamp;
+  lamp.type = tyndall::LightType::Point;
+  lamp.position = position;
+  lamp.power = power;
+  return lamp;
+}
+
 /// A medium that owns its arrays.
 struct Scene
 {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "GridVoxels.h"
+
 #include "Photons/Marching/PhotonMarcher.h"
 #include "Refraction/Index/RefractiveMedium.h"
 
@@ -35,16 +37,9 @@ struct PhotonScene
     this->ior.clear();
     const tyndall::Grid& grid = this->medium.grid;
     const auto middle = [&](int a, int i) { return grid.origin[a] + (i + 0.5) * grid.spacing[a]; };
-    for (int k = 0; k < grid.size[2]; ++k)
-    {
-      for (int j = 0; j < grid.size[1]; ++j)
-      {
-        for (int i = 0; i < grid.size[0]; ++i)
-        {
-          this->ior.push_back(static_cast<float>(n(middle(0, i), middle(1, j), middle(2, k))));
-        }
-      }
-    }
+    ForGridVoxels(grid.size, [&](std::size_t, int i, int j, int k) {
+      this->ior.push_back(static_cast<float>(n(middle(0, i), middle(1, j), middle(2, k))));
+    });
   }
 
   /// A ball of glass, its border smoothed over `width` voxels (standard deviation).

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Difference.h"
+
 #include "Medium/Medium.h"
 
 #include <array>
@@ -79,19 +81,3 @@ struct EvenMedium
   tyndall::Medium medium;
   std::vector<float> absorption, scattering;
 };
-
-/// Root of the mean squared difference over that of the reference.
-inline double RelativeRmse(const std::vector<float>& values, const std::vector<float>& reference)
-{
-  double difference = 0.0;
-  double size = 0.0;
-  for (std::size_t i = 0; i < reference.size(); ++i)
-  {
-    const double d = static_cast<double>(values[i]) - reference[i];
-    difference += d * d;
-    size += static_cast<double>(reference[i]) * reference[i];
-  }
-  return values.size() != reference.size() ? HUGE_VAL
-    : size > 0.0                           ? std::sqrt(difference / size)
-                                           : std::sqrt(difference);
-}

@@ -1,4 +1,4 @@
-// Pictures of a medium that is spread over blocks: cast block by block, they are the picture of the whole.
+// Pictures of one block of a medium, and how they are laid over each other.
 
 #include "BlocksOfView.h"
 
@@ -46,119 +46,12 @@ void ExpectSame(const Picture& whole, const std::vector<BlockPixels>& blocks, do
   EXPECT_GT(lit, 0.02 * pixel) << "there is nothing to compare";
 }
 
-const std::vector<std::array<std::vector<int>, 3>> Cuts = { {}, { { { 13 }, {}, {} } }, { { {}, { 5, 16 }, {} } },
-  { { { 14 }, { 1 }, { 9 } } }, { { { 10, 11, 20 }, { 11 }, { 4, 9 } } } };
+const std::array<std::vector<int>, 3> Planes = { { { 10, 11, 20 }, { 11 }, { 4, 9 } } };
 }
 
 class BlocksInView : public DeviceTest
 {
 };
-
-TEST_F(BlocksInView, MakeUpThePictureOfTheWhole)
-{
-  for (int components : { 1, 3 })
-  {
-    Scene scene = Cloud(components);
-    for (double stepSize : { 0.5, 2.0 })
-    {
-      scene.settings.stepSize = stepSize;
-      Camera inside = scene.Framed();
-      inside.position = { 2.0, 5.5, 6.0 };
-      Camera along = FrameGrid(scene.grid, scene.Aspect(), 30.0, { 0.0, -1.0, 0.0 });
-      along.parallelProjection = true; // middles of steps of two voxels lie on planes between blocks
-      along.parallelScale = 6.0;
-      for (const Camera& camera : { scene.Framed(), inside, along })
-      {
-        const Picture whole = scene.Seen(this->GetDevice(), camera);
-        for (const auto& cuts : Cuts)
-        {
-          SCOPED_TRACE(testing::Message()
-            << components << " channels, steps of " << stepSize << ", from " << testing::PrintToString(camera.position)
-            << ", cut at " << testing::PrintToString(cuts));
-          ExpectSame(whole, SeenOf(this->GetDevice(), scene, Cut(scene.grid, cuts), camera), 1e-5);
-        }
-      }
-    }
-  }
-}
-
-TEST_F(BlocksInView, ShowWhatIsBehindOnce)
-{
-  Scene scene = Cloud(3);
-  scene.settings.showBackground = true;
-  scene.settings.backgroundColor = { 0.3, 0.2, 0.1 };
-  const Picture whole = scene.Seen(this->GetDevice());
-  for (const auto& cuts : Cuts)
-  {
-    const std::vector<BlockPixels> seen = SeenOf(this->GetDevice(), scene, Cut(scene.grid, cuts), scene.Framed());
-    const std::vector<float> radiance =
-      PictureOfAll(seen, { { 0, 0 }, { whole.width, whole.height } }, BlockPixel::FarAway).radiance;
-    EXPECT_LT(LargestDifference(radiance, whole.radiance), 1e-5);
-    for (int pixel : { 0, whole.width * whole.height / 2 })
-    {
-      BlockPixel all;
-      for (const BlockPixels& block : seen)
-      {
-        all.LayBefore(block.At(pixel % whole.width, pixel / whole.width));
-      }
-      EXPECT_EQ(all.Hidden(), 1.0f);
-    }
-  }
-}
-
-namespace
-{
-/// The picture that ranks make together: each looks again where what is before its block changes what it sees.
-Picture Collective(Device& device, const Scene& scene, const std::vector<GridBlock>& blocks, std::size_t& lookedAgain)
-{
-  const Camera camera = scene.Framed();
-  const std::vector<int> order = FrontToBack(blocks, camera);
-  const std::vector<BlockPixels> first = SeenOf(device, scene, blocks, camera);
-  std::vector<BlockPixels> seen = first;
-  Picture own;
-  for (std::size_t i = 0; i < order.size(); ++i)
-  {
-    const GridBlock& block = blocks[order[i]];
-    MediumRayCaster caster = PartOf(scene, block).Caster(device);
-    own = caster.Render(camera, {}, {}, &block);
-    const Starts starts = StartsBehind(first, i, { own.width, own.height }, scene.settings.minimumTransmittance);
-    if (!starts.IsEmpty())
-    {
-      TakeFrom(caster.RenderBehind(camera, block, starts), starts, seen[i]);
-    }
-    lookedAgain += std::count_if(starts.seen.begin(), starts.seen.end(), [](float start) { return start > 0.0f; });
-  }
-  return PictureOfAll(seen, { { 0, 0 }, { own.width, own.height } }, own.farDepth);
-}
-}
-
-TEST_F(BlocksInView, HaveTheAlphaAndDepthOfTheWhole)
-{
-  for (int components : { 1, 3 })
-  {
-    for (double minimum : { 0.0, 0.05 }) // rays end early: so do they in the whole
-    {
-      Scene scene = Cloud(components);
-      scene.settings.showBackground = components == 3;
-      scene.settings.minimumTransmittance = minimum;
-      const Picture whole = scene.Seen(this->GetDevice());
-      std::size_t lookedAgain = 0;
-      for (const auto& cuts : Cuts)
-      {
-        SCOPED_TRACE(testing::Message() << components << ", " << minimum << ", " << testing::PrintToString(cuts));
-        const Picture together = Collective(this->GetDevice(), scene, Cut(scene.grid, cuts), lookedAgain);
-        EXPECT_EQ(together.farDepth, whole.farDepth);
-        EXPECT_LT(LargestDifference(together.radiance, whole.radiance), 1e-5);
-        EXPECT_LT(LargestDifference(together.alpha, whole.alpha), 1e-5);
-        EXPECT_LT(LargestDifference(together.depth, whole.depth), 1e-5 * whole.farDepth);
-      }
-      EXPECT_GT(lookedAgain, 100u);
-      const auto lost =
-        std::count_if(whole.depth.begin(), whole.depth.end(), [&](float depth) { return depth < whole.farDepth; });
-      EXPECT_GT(lost, 100);
-    }
-  }
-}
 
 TEST_F(BlocksInView, HaveToBeOfOneIndex)
 {
@@ -185,7 +78,7 @@ TEST_F(BlocksInView, EndWhereRaysEnd)
   }
   MediumRayCaster caster = scene.Caster(this->GetDevice());
   const Picture whole = caster.Render(camera, {}, ends);
-  ExpectSame(whole, SeenOf(this->GetDevice(), scene, Cut(scene.grid, Cuts.back()), camera, ends), 1e-5);
+  ExpectSame(whole, SeenOf(this->GetDevice(), scene, Cut(scene.grid, Planes), camera, ends), 1e-5);
 }
 
 TEST_F(BlocksInView, DoNotBendRays)

@@ -1,3 +1,4 @@
+#include "ErrorWords.h"
 #include "ViewScene.h"
 
 using namespace tyndall;
@@ -73,15 +74,7 @@ TEST(Camera, SaysThatViewUpIsZeroWhereItIs)
   camera.position = { 1.0, 2.0, 3.0 };
   const auto said = [&](const Vec& viewUp) {
     camera.viewUp = viewUp;
-    try
-    {
-      Axes(camera);
-    }
-    catch (const InvalidInput& error)
-    {
-      return std::string(error.what());
-    }
-    return std::string();
+    return ErrorWords([&] { Axes(camera); });
   };
   EXPECT_NE(std::string::npos, said({ 0.0, 0.0, 0.0 }).find("zero"));
   EXPECT_NE(std::string::npos, said({ 2.0, 4.0, 6.0 }).find("along its view"));

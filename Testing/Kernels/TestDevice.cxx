@@ -4,6 +4,7 @@
 #include "Device/Buffer.h"
 #include "Device/Clock.h"
 #include "Device/HostMemory.h"
+#include "ErrorWords.h"
 #include "TyndallKernelSources.h"
 
 #include <chrono>
@@ -25,21 +26,6 @@ using namespace tyndall;
 
 namespace
 {
-/// What a call complains about; empty if it does not.
-template <class Call>
-std::string ComplaintOf(Call&& call)
-{
-  try
-  {
-    call();
-  }
-  catch (const DeviceError& error)
-  {
-    return error.what();
-  }
-  return {};
-}
-
 bool Contains(const std::string& text, const std::string& part)
 {
   return text.find(part) != std::string::npos;
@@ -59,7 +45,7 @@ TEST_F(DeviceLayer, HandsOutTheSameDeviceAgain)
 
 TEST_F(DeviceLayer, NamesTheDevicesThereAreWhereTheOneAskedForIsNot)
 {
-  const std::string complaint = ComplaintOf([] { Device::Find("no such device"); });
+  const std::string complaint = ErrorWords<DeviceError>([] { Device::Find("no such device"); });
   EXPECT_TRUE(Contains(complaint, "no such device"));
   EXPECT_TRUE(Contains(complaint, this->GetDevice().Name()));
   EXPECT_TRUE(Contains(complaint, "TYNDALL_DEVICE"));
@@ -75,7 +61,7 @@ TEST(DeviceDeathTest, NamesMemoryWhereThatKeepsDriversFromLoading)
     const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (60u << 20);
     const struct rlimit limit = { most, most };
     setrlimit(RLIMIT_AS, &limit);
-    const std::string complaint = ComplaintOf([] { Device::Find(); });
+    const std::string complaint = ErrorWords<DeviceError>([] { Device::Find(); });
     std::cerr << complaint << std::endl;
     std::_Exit(Contains(complaint, "MiB in all (ulimit -v): let it take more") ? 0 : 1);
   };
@@ -85,7 +71,8 @@ TEST(DeviceDeathTest, NamesMemoryWhereThatKeepsDriversFromLoading)
 TEST_F(DeviceLayer, SaysHowManyBytesAreMissing)
 {
   const std::size_t tooMany = this->GetDevice().MemoryLimit() / sizeof(float) + 1;
-  const std::string complaint = ComplaintOf([&] { Buffer<float>(this->GetDevice(), tooMany, "a test of memory"); });
+  const std::string complaint =
+    ErrorWords<DeviceError>([&] { Buffer<float>(this->GetDevice(), tooMany, "a test of memory"); });
   EXPECT_TRUE(Contains(complaint, "a test of memory"));
   EXPECT_TRUE(Contains(complaint, std::to_string(tooMany * sizeof(float))));
   EXPECT_TRUE(Contains(complaint, this->GetDevice().Name()));
@@ -108,8 +95,8 @@ TEST_F(DeviceLayer, CountsTheMemoryItGives)
 
 TEST_F(DeviceLayer, ShowsTheBuildLogOfAKernelThatDoesNotBuild)
 {
-  const std::string complaint =
-    ComplaintOf([&] { this->GetDevice().Kernel("broken", { "__kernel void broken() { undeclared = 1; }" }); });
+  const std::string complaint = ErrorWords<DeviceError>(
+    [&] { this->GetDevice().Kernel("broken", { "__kernel void broken() { undeclared = 1; }" }); });
   EXPECT_TRUE(Contains(complaint, "undeclared"));
   EXPECT_TRUE(Contains(complaint, "broken"));
 }

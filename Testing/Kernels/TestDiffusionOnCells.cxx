@@ -1,4 +1,6 @@
 #include "DeviceTest.h"
+#include "Difference.h"
+#include "GridVoxels.h"
 #include "MediumScene.h"
 
 #include "LightPropagation/Problem/ScatteringOrders.h"
@@ -14,17 +16,6 @@ using namespace tyndall;
 
 namespace
 {
-double Difference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  double difference = 0.0, sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-  {
-    difference += std::pow(static_cast<double>(a[i]) - b[i], 2);
-    sum += static_cast<double>(b[i]) * b[i];
-  }
-  return std::sqrt(difference / sum);
-}
-
 /// A round cloud, off the middle, in a thin haze: edges of voxels differ, rows do not fill cells.
 /// @param divided  into so many along each axis, the same cloud
 Scene Cloud(double tau, double albedo, double haze, int divided = 1)
@@ -32,21 +23,13 @@ Scene Cloud(double tau, double albedo, double haze, int divided = 1)
   const std::array<int, 3> n = { 19 * divided, 26 * divided, 13 * divided };
   Scene scene(n);
   scene.medium.grid.spacing = { 1.0 / divided, 0.75 / divided, 1.5 / divided };
-  std::size_t i = 0;
-  for (int w = 0; w < n[2]; ++w)
-  {
-    for (int v = 0; v < n[1]; ++v)
-    {
-      for (int u = 0; u < n[0]; ++u, ++i)
-      {
-        const int x = u / divided, y = v / divided, z = w / divided;
-        const double r = std::hypot(x - 8.0, 0.75 * (y - 14.0), 1.5 * (z - 6.0));
-        const double sigma_t = tau / 19.0 * (r < 7.0 ? 1.0 + 0.3 * std::sin(x + 2.0 * y) : haze);
-        scene.sigma_s[i] = static_cast<float>(albedo * sigma_t);
-        scene.sigma_a[i] = static_cast<float>((1.0 - albedo) * sigma_t);
-      }
-    }
-  }
+  ForGridVoxels(n, [&](std::size_t i, int u, int v, int w) {
+    const int x = u / divided, y = v / divided, z = w / divided;
+    const double r = std::hypot(x - 8.0, 0.75 * (y - 14.0), 1.5 * (z - 6.0));
+    const double sigma_t = tau / 19.0 * (r < 7.0 ? 1.0 + 0.3 * std::sin(x + 2.0 * y) : haze);
+    scene.sigma_s[i] = static_cast<float>(albedo * sigma_t);
+    scene.sigma_a[i] = static_cast<float>((1.0 - albedo) * sigma_t);
+  });
   scene.ShineAlong({ 0.4, 0.3, -0.8 }, 2.0);
   scene.light.faces[1] = { 0.7, 0.7, 0.7 };
   return scene;
@@ -140,11 +123,11 @@ TEST_F(DiffusionOnCells, EndsAtTheLightOfManyOrders)
       const LightField exact = Plain(scene).Solve(this->GetDevice());
       EXPECT_LE(light.convergence.size(), 16u) << haze;
       EXPECT_GT(exact.convergence.size(), 2 * light.convergence.size()) << haze;
-      EXPECT_LT(Difference(light.fluence, exact.fluence), 1e-5) << haze << periodic;
-      EXPECT_LT(Difference(light.netFlux, exact.netFlux), 1e-5) << haze << periodic;
+      EXPECT_LT(RelativeRmse(light.fluence, exact.fluence), 1e-5) << haze << periodic;
+      EXPECT_LT(RelativeRmse(light.netFlux, exact.netFlux), 1e-5) << haze << periodic;
       if (!periodic) // else rays are on the way when the first order ends
       {
-        EXPECT_LT(Difference(light.fluenceDirect, exact.fluenceDirect), 1e-6) << haze;
+        EXPECT_LT(RelativeRmse(light.fluenceDirect, exact.fluenceDirect), 1e-6) << haze;
       }
       EXPECT_LT(light.balance.RelativeError(1), 1e-5) << haze << periodic;
       for (int face = 0; face < 6; ++face)
@@ -167,7 +150,7 @@ TEST_F(DiffusionOnCells, TellsItsErrorAndCountsItsPower)
       const LightField light = scene.Solve(this->GetDevice());
       scene.settings.tolerance = 1e-7;
       const LightField exact = scene.Solve(this->GetDevice());
-      const double error = Difference(light.fluence, exact.fluence);
+      const double error = RelativeRmse(light.fluence, exact.fluence);
       EXPECT_LT(error, 1e-4) << tau << ' ' << albedo;
       EXPECT_LT(error, 2.0 * light.convergence.back().residual) << tau << ' ' << albedo;
       EXPECT_LE(light.convergence.size(), 12u) << tau << ' ' << albedo;
@@ -191,7 +174,7 @@ TEST_F(DiffusionOnCells, CrossesGapsInFewSweeps)
     const LightField light = scene.Solve(this->GetDevice());
     EXPECT_LE(light.convergence.size(), cases[i].second) << i;
     scene.settings.tolerance = 1e-6;
-    EXPECT_LT(Difference(light.fluence, Plain(scene).Solve(this->GetDevice()).fluence), 1e-4) << i;
+    EXPECT_LT(RelativeRmse(light.fluence, Plain(scene).Solve(this->GetDevice()).fluence), 1e-4) << i;
   }
 }
 
@@ -217,11 +200,11 @@ TEST_F(DiffusionOnCells, IsAsRightAsTheBalanceOfVoxels)
   Scene scene = Cloud(4.5, 0.995, 0.05);
   scene.settings.uncollidedDirections = 0;
   ASSERT_EQ(How(scene), IterationScheme::CoarseMeshDsa);
-  const double byCells = Difference(scene.Solve(this->GetDevice()).fluence, right);
+  const double byCells = RelativeRmse(scene.Solve(this->GetDevice()).fluence, right);
   scene.settings.source = PropagationSource::Linear;
   scene.light.faceAlbedo[0] = { 1e-9, 1e-9, 1e-9 }; // faces that reflect are not for cells
   ASSERT_EQ(How(scene), IterationScheme::Dsa);
-  const double byBalance = Difference(scene.Solve(this->GetDevice()).fluence, right);
+  const double byBalance = RelativeRmse(scene.Solve(this->GetDevice()).fluence, right);
   EXPECT_LT(byCells, 1.1 * byBalance);
 }
 
@@ -264,11 +247,7 @@ Scene ThinBoxWithoutFaces(double thickest, const std::vector<double>& parts, boo
   scene.settings.periodic = { true, true, true };
   if (lamp)
   {
-    Light point;
-    point.type = LightType::Point;
-    point.position = { 0.7, 1.2, 0.9 };
-    point.power = { 1.0, 1.0, 1.0 };
-    scene.light.lights = { point };
+    scene.light.lights = { PointLamp({ 0.7, 1.2, 0.9 }, { 1.0, 1.0, 1.0 }) };
     return scene;
   }
   scene.emission.assign(voxels, 0.0f);
@@ -335,7 +314,7 @@ TEST_F(DiffusionOnCells, BeginsFromTheLastLight)
   const LightField first = scene.Solve(this->GetDevice(), {}, &kept);
   const LightField again = scene.Solve(this->GetDevice(), {}, &kept);
   EXPECT_LT(again.convergence.size(), first.convergence.size());
-  EXPECT_LT(Difference(again.fluence, first.fluence), 1e-4);
+  EXPECT_LT(RelativeRmse(again.fluence, first.fluence), 1e-4);
   for (float& sigma_s : scene.sigma_s)
   {
     sigma_s *= 1.05f;
@@ -343,6 +322,6 @@ TEST_F(DiffusionOnCells, BeginsFromTheLastLight)
   const LightField warm = scene.Solve(this->GetDevice(), {}, &kept);
   const LightField cold = scene.Solve(this->GetDevice());
   EXPECT_LE(warm.convergence.size(), cold.convergence.size());
-  EXPECT_LT(Difference(warm.fluence, cold.fluence), 1e-4);
+  EXPECT_LT(RelativeRmse(warm.fluence, cold.fluence), 1e-4);
   EXPECT_LT(warm.balance.RelativeError(1), 1e-5);
 }

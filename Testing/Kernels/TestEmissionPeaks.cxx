@@ -1,7 +1,8 @@
-#include "BlocksOfLight.h"
 #include "DeviceTest.h"
+#include "GridVoxels.h"
 #include "KobayashiScene.h"
 #include "OrdinatesScene.h"
+#include "RandomMedium.h"
 #include "TransparentBox.h"
 
 #include "Numerics/Constants.h"
@@ -296,22 +297,13 @@ Scene Symmetric(double thickest)
 {
   Scene scene({ Many, Many, Many });
   scene.emission.assign(scene.sigma_a.size(), 0.0f);
-  std::size_t i = 0;
-  for (int z = 0; z < Many; ++z)
-  {
-    for (int y = 0; y < Many; ++y)
-    {
-      for (int x = 0; x < Many; ++x, ++i)
-      {
-        std::array<int, 3> from = { std::abs(2 * x + 1 - Many), std::abs(2 * y + 1 - Many),
-          std::abs(2 * z + 1 - Many) };
-        scene.emission[i] = from[0] == 1 && from[1] == 1 && from[2] == 1 ? 1.0f : 0.0f;
-        std::sort(from.begin(), from.end());
-        const int mixed = (from[0] * 7919 + from[1] * 104729 + from[2] * 1299709) % 1009;
-        scene.sigma_a[i] = static_cast<float>(thickest * mixed / 1009.0);
-      }
-    }
-  }
+  ForGridVoxels({ Many, Many, Many }, [&](std::size_t i, int x, int y, int z) {
+    std::array<int, 3> from = { std::abs(2 * x + 1 - Many), std::abs(2 * y + 1 - Many), std::abs(2 * z + 1 - Many) };
+    scene.emission[i] = from[0] == 1 && from[1] == 1 && from[2] == 1 ? 1.0f : 0.0f;
+    std::sort(from.begin(), from.end());
+    const int mixed = (from[0] * 7919 + from[1] * 104729 + from[2] * 1299709) % 1009;
+    scene.sigma_a[i] = static_cast<float>(thickest * mixed / 1009.0);
+  });
   return scene;
 }
 
@@ -653,21 +645,4 @@ TEST_F(EmissionInVacuum, IsScatteredByWhatItMeets)
   EXPECT_NEAR(ordinates.balance.absorbed[0] / maps.balance.absorbed[0], 1.0, 0.05);
   EXPECT_LT(maps.balance.RelativeError(1), 1e-5);
   EXPECT_LT(ordinates.balance.RelativeError(1), 1e-5);
-}
-
-TEST_F(EmissionInVacuum, GoesOnFromRankToRank)
-{
-  RandomMedium whole(Grid{ { 4, 3, 5 } }, 1, 0.8f, 5);
-  whole.Emit(1.0f); // a tenth of the voxels are empty
-  PropagationSettings settings = blocks_of_light::SettingsOf(2);
-  settings.emissionError = 0.02;
-  const LightField apart = SolveConservative(this->GetDevice(), whole.medium, {}, settings);
-  for (const int ranks : { 1, 3 })
-  {
-    const BlockPartition partition = BlockPartition::Even(whole.medium.grid, ranks);
-    blocks_of_light::ExpectSame(blocks_of_light::LightOfAll(this->GetDevice(), partition, whole, {}, settings), apart);
-  }
-  settings.emissionError = 0.0;
-  const LightField swept = SolveConservative(this->GetDevice(), whole.medium, {}, settings);
-  EXPECT_GT(RelativeRmse(swept.fluence, apart.fluence), 1e-4);
 }

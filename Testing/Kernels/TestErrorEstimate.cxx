@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "GridVoxels.h"
 #include "MediumScene.h"
 
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
@@ -20,18 +21,11 @@ constexpr int Voxels = 24; ///< an axis
 Scene Cube(double albedo, const std::function<double(double, double, double)>& opticalThickness)
 {
   Scene scene({ Voxels, Voxels, Voxels });
-  for (int z = 0, i = 0; z < Voxels; ++z)
-  {
-    for (int y = 0; y < Voxels; ++y)
-    {
-      for (int x = 0; x < Voxels; ++x, ++i)
-      {
-        const double sigma_t = opticalThickness((x + 0.5) / Voxels, (y + 0.5) / Voxels, (z + 0.5) / Voxels) / Voxels;
-        scene.sigma_s[i] = static_cast<float>(albedo * sigma_t);
-        scene.sigma_a[i] = static_cast<float>((1.0 - albedo) * sigma_t);
-      }
-    }
-  }
+  ForGridVoxels({ Voxels, Voxels, Voxels }, [&](std::size_t i, int x, int y, int z) {
+    const double sigma_t = opticalThickness((x + 0.5) / Voxels, (y + 0.5) / Voxels, (z + 0.5) / Voxels) / Voxels;
+    scene.sigma_s[i] = static_cast<float>(albedo * sigma_t);
+    scene.sigma_a[i] = static_cast<float>((1.0 - albedo) * sigma_t);
+  });
   return scene;
 }
 

@@ -1,6 +1,10 @@
 #include "DeviceTest.h"
+#include "Difference.h"
+#include "ErrorWords.h"
+#include "OrdinatesScene.h"
 #include "ReflectingScene.h"
 
+#include "Device/Errors.h"
 #include "Reference/BoxMonteCarlo.h"
 #include "Reference/ReferenceTable.h"
 
@@ -19,9 +23,9 @@ using testing::HasSubstr;
 
 namespace
 {
-Scene Furnace(const std::array<int, 3>& size, double thickest, double albedo, const Rgb& colour)
+LitMedium Furnace(const std::array<int, 3>& size, double thickest, double albedo, const Rgb& colour)
 {
-  Scene scene(size);
+  LitMedium scene(size);
   MakeReflectingFurnace(scene, thickest, albedo, colour);
   return scene;
 }
@@ -45,15 +49,34 @@ class FaceAlbedo : public DeviceTest
 {
 };
 
-TEST_F(FaceAlbedo, KeepsEvenLightEvenWhateverEachFaceGivesBack)
+/// Of light propagation maps, and of discrete ordinates.
+class ReflectingFaces
+  : public DeviceTest
+  , public testing::WithParamInterface<const char*>
+{
+protected:
+  bool OfOrdinates() const { return this->GetParam() == std::string("Ordinates"); }
+  LightField Solve(LitMedium& scene, double tolerance = 1e-4, KeptLight* kept = nullptr)
+  {
+    scene.settings.tolerance = scene.how.tolerance = tolerance;
+    scene.how.directionsPerFace = 9;
+    return this->OfOrdinates() ? scene.SolveOrdinates(this->GetDevice(), {}, kept)
+                               : scene.Solve(this->GetDevice(), {}, kept);
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(
+  Of, ReflectingFaces, testing::Values("Maps", "Ordinates"), [](const auto& info) { return std::string(info.param); });
+
+TEST_P(ReflectingFaces, KeepEvenLightEvenWhateverEachFaceGivesBack)
 {
   const Rgb colour = { 1.0, 0.5, 2.0 };
-  Scene scene = Furnace({ 7, 5, 9 }, 1.0, 0.5, colour);
+  LitMedium scene = Furnace({ 7, 5, 9 }, 1.0, 0.5, colour);
   scene.settings.acceleration = PropagationAcceleration::None;
-  scene.settings.tolerance = 1e-7;
-  const LightField light = scene.Solve(this->GetDevice());
+  const LightField light = this->Solve(scene, 1e-7);
   EXPECT_LE(Deviation(light, colour), 1e-5);
   EXPECT_LE(light.balance.RelativeError(3), 1e-5);
+  EXPECT_TRUE(light.converged);
 }
 
 TEST_F(FaceAlbedo, KeepsEvenLightEvenWhereOrdersAreAccelerated)
@@ -72,17 +95,16 @@ TEST_F(FaceAlbedo, KeepsEvenLightEvenWhereOrdersAreAccelerated)
   }
 }
 
-TEST_F(FaceAlbedo, LetsNothingOutOfAClosedBox)
+TEST_P(ReflectingFaces, LetNothingOutOfAClosedBox)
 {
   for (PropagationSource source : { PropagationSource::Constant, PropagationSource::Linear })
   {
-    Scene scene({ 6, 5, 4 }, 0.3f, 0.2f);
+    LitMedium scene({ 6, 5, 4 }, 0.3f, 0.2f);
     scene.settings.source = source;
-    scene.settings.tolerance = 1e-7;
     scene.emission.assign(scene.sigma_a.size(), 0.0f);
     scene.emission[17] = 1.0f;
     scene.light.faceAlbedo.fill(Grey(1.0));
-    const LightField light = scene.Solve(this->GetDevice());
+    const LightField light = this->Solve(scene, 1e-7);
     const EnergyBalance& balance = light.balance;
     EXPECT_NEAR(balance.absorbed[0], balance.emitted[0], 1e-5 * balance.emitted[0]);
     EXPECT_NEAR(balance.escaped[0], 0.0, 1e-5 * balance.emitted[0]);
@@ -90,29 +112,30 @@ TEST_F(FaceAlbedo, LetsNothingOutOfAClosedBox)
   }
 }
 
-TEST_F(FaceAlbedo, TellsWhatLeavesEveryCell)
+TEST_P(ReflectingFaces, TellWhatLeavesEveryCell)
 {
   for (PropagationSource source : { PropagationSource::Constant, PropagationSource::Linear })
   {
-    Scene scene({ 8, 6, 5 });
+    LitMedium scene({ 8, 6, 5 });
     scene.settings.source = source;
-    scene.settings.tolerance = 1e-6;
+    scene.how.periodic = { false, true, false };
     scene.Randomise(1.0, 2.0, 0.7);
     scene.emission.assign(scene.sigma_a.size(), 0.0f);
     scene.emission[33] = 1.0f;
     scene.light.sky = { 0.3, 0.2, 0.1 };
     scene.ShineAlong({ 0.3, -0.5, -1.0 });
-    Light lamp;
-    lamp.type = LightType::Point;
-    lamp.position = { 3.3, 2.2, 4.4 };
-    scene.light.lights.push_back(lamp);
+    scene.light.lights.push_back(PointLamp({ 3.3, 2.2, 4.4 }));
     scene.light.faceAlbedo[1] = { 0.5, 0.4, 0.3 };
     scene.light.faceAlbedo[4] = Grey(0.8);
-    const LightField light = scene.Solve(this->GetDevice());
+    const LightField light = this->Solve(scene, 1e-6);
     const double entered = light.balance.entered[0];
     ASSERT_EQ(light.facePower.size(), 3 * BoxFaceCellCount(scene.medium.grid));
-    for (int face = 0; face < 6; ++face)
+    for (const int face : { 0, 1, 4, 5, 2, 3 })
     {
+      if (this->OfOrdinates() && face / 2 == 1)
+      {
+        continue;
+      }
       for (int c = 0; c < 3; ++c)
       {
         const double kept = 1.0 - scene.light.faceAlbedo[face][c];
@@ -307,26 +330,39 @@ TEST_F(FaceAlbedo, IsTheSameBesideEveryPeriodicAxis)
   }
 }
 
-TEST_F(FaceAlbedo, IsTheSameAlongEveryAxis)
+TEST_P(ReflectingFaces, AreTheSameOnEachSideOfTheBox)
 {
-  std::vector<double> means;
-  for (int axis = 0; axis < 3; ++axis)
+  std::vector<double> given;
+  for (int face = 0; face < 6; ++face)
   {
-    Scene scene({ 6, 6, 6 }, 0.05f, 0.2f);
-    std::array<double, 3> down = { 0.2, 0.2, 0.2 };
-    down[axis] = -1.0;
-    scene.ShineAlong(down);
-    scene.light.faceAlbedo[2 * axis] = Grey(0.7);
-    const LightField light = scene.Solve(this->GetDevice());
-    double sum = 0.0;
-    for (float fluence : light.fluence)
-    {
-      sum += fluence;
-    }
-    means.push_back(sum);
+    LitMedium scene({ 6, 6, 6 }, 0.05f, 0.2f);
+    std::array<double, 3> towards = { 0.2, 0.2, 0.2 };
+    towards[face / 2] = face % 2 ? 1.0 : -1.0;
+    scene.ShineAlong(towards);
+    scene.light.faceAlbedo[face] = Grey(0.7);
+    const LightField light = this->Solve(scene);
+    given.push_back(Leaving(light, scene.medium.grid, face, 0));
   }
-  EXPECT_NEAR(means[1], means[0], 1e-5 * means[0]);
-  EXPECT_NEAR(means[2], means[0], 1e-5 * means[0]);
+  for (double power : given)
+  {
+    EXPECT_NEAR(power, given[0], 1e-4 * given[0]);
+  }
+}
+
+TEST_P(ReflectingFaces, AreTheSameFromTheLastLight)
+{
+  LitMedium scene({ 7, 5, 6 }, 0.05f, 0.3f);
+  scene.ShineAlong({ 0.3, -0.2, -1.0 });
+  scene.light.faceAlbedo[4] = Grey(0.8);
+  scene.light.faceAlbedo[1] = Grey(0.4);
+  KeptLight kept;
+  this->Solve(scene, 1e-5, &kept);
+  scene.sigma_s[30] *= 1.5f;
+  scene.light.faceAlbedo[4] = Grey(0.6);
+  const LightField warm = this->Solve(scene, 1e-5, &kept), cold = this->Solve(scene, 1e-5);
+  EXPECT_LE(RelativeDifference(warm.fluence, cold.fluence), 3e-5);
+  EXPECT_TRUE(warm.converged);
+  EXPECT_NEAR(warm.facePowerOut[4][0], cold.facePowerOut[4][0], 3e-5 * cold.balance.entered[0]);
 }
 
 /// A cube of optical edge tau that scatters forwards, over ground, one wall less bright, in a low sun.
@@ -370,18 +406,6 @@ TEST_F(FaceAlbedo, IsGroundUnderACubeAsPhotonsSay)
   }
 }
 
-/// Fluence of two solves, the largest difference over the largest.
-double DifferenceOf(const LightField& a, const LightField& b)
-{
-  double most = 0.0, largest = 0.0;
-  for (std::size_t i = 0; i < a.fluence.size(); ++i)
-  {
-    most = std::max(most, std::abs(static_cast<double>(a.fluence[i]) - b.fluence[i]));
-    largest = std::max(largest, static_cast<double>(b.fluence[i]));
-  }
-  return most / largest;
-}
-
 TEST_F(FaceAlbedo, IsTheSameFromTheLastLight)
 {
   for (double tau : { 4.0, 40.0 })
@@ -400,8 +424,8 @@ TEST_F(FaceAlbedo, IsTheSameFromTheLastLight)
       const LightField cold = cube.Solve(this->GetDevice());
       const std::string which = "tau " + std::to_string(tau) + ", degree " + std::to_string(degree);
       std::printf("%s: %zu rows from the last light, %zu from the dark, difference %.2g\n", which.c_str(),
-        warm.convergence.size(), cold.convergence.size(), DifferenceOf(warm, cold));
-      EXPECT_LE(DifferenceOf(warm, cold), 2e-4) << which;
+        warm.convergence.size(), cold.convergence.size(), RelativeDifference(warm.fluence, cold.fluence));
+      EXPECT_LE(RelativeDifference(warm.fluence, cold.fluence), 2e-4) << which;
       EXPECT_TRUE(warm.converged && cold.converged) << which;
       EXPECT_LE(warm.convergence.size(), cold.convergence.size()) << which;
       EXPECT_LE(warm.balance.RelativeError(1), 1e-4) << which;
@@ -438,15 +462,7 @@ TEST_F(FaceAlbedo, IsLookedAt)
     {
       scene.light.faceAlbedo.fill(Grey(1.0));
     }
-    try
-    {
-      scene.Solve(this->GetDevice());
-    }
-    catch (const InvalidInput& error)
-    {
-      return std::string(error.what());
-    }
-    return std::string();
+    return ErrorWords([&] { scene.Solve(this->GetDevice()); });
   };
   EXPECT_THAT(refusal(1.5, false, 0.1), HasSubstr("FaceAlbedo of face 2"));
   EXPECT_THAT(refusal(-0.1, false, 0.1), HasSubstr("FaceAlbedo of face 2"));
@@ -454,4 +470,64 @@ TEST_F(FaceAlbedo, IsLookedAt)
   EXPECT_THAT(refusal(0.5, true, 0.1), HasSubstr("periodic"));
   EXPECT_THAT(refusal(1.0, false, 0.0), HasSubstr("without end"));
   EXPECT_EQ(refusal(0.5, false, 0.1), "");
+}
+
+class OrdinatesFaceAlbedo : public DeviceTest
+{
+};
+
+TEST_F(OrdinatesFaceAlbedo, IsMattGroundUnderASlab)
+{
+  for (double tau : { 0.5, 5.0 })
+  {
+    for (double g : { 0.0, 0.85 })
+    {
+      for (double ground : { 0.3, 0.8, 1.0 })
+      {
+        for (double cosine : { 0.0, 1.0, 0.5 })
+        {
+          SCOPED_TRACE(testing::Message() << tau << ' ' << g << ' ' << ground << ' ' << cosine);
+          const ReferenceRow row = ReferenceRowWhere("slab_over_ground",
+            { { "tau", tau }, { "albedo", 0.9 }, { "g", g }, { "ground", ground }, { "cosine", cosine } });
+          const int layers = tau > 1.0 ? 100 : 40;
+          LitMedium slab(
+            { 1, 1, layers }, static_cast<float>(0.1 * tau / layers), static_cast<float>(0.9 * tau / layers));
+          slab.how.periodic = { true, true, false };
+          slab.how.tolerance = 1e-5;
+          slab.ScatterWith(g);
+          LightOverGround(slab, ground, cosine);
+          const LightField light = slab.SolveOrdinates(this->GetDevice());
+          const double in = light.balance.entered[0];
+          EXPECT_NEAR(light.facePowerOut[5][0] / in, row["reflected"], 0.003);
+          EXPECT_NEAR(light.facePowerOut[4][0] / in, row["taken"], 0.003);
+          EXPECT_LE(light.balance.RelativeError(1), 1e-5);
+          EXPECT_TRUE(light.converged);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(OrdinatesFaceAlbedo, EndsInABoxThatHardlyAbsorbsAndRefusesOneThatDoesNot)
+{
+  LitMedium scene({ 3, 3, 3 }, 1e-6f, 0.5f);
+  scene.how.directionsPerFace = 9;
+  scene.light.faceAlbedo.fill(Grey(1.0));
+  scene.emission.assign(scene.sigma_a.size(), 0.0f);
+  scene.emission[13] = 1.0f;
+  const LightField light = scene.SolveOrdinates(this->GetDevice());
+  EXPECT_FALSE(light.converged);
+  EXPECT_FALSE(light.doubts.empty());
+  EXPECT_LE(light.balance.RelativeError(1), 1e-3);
+  scene.sigma_a.assign(scene.sigma_a.size(), 0.0f);
+  EXPECT_THROW(scene.SolveOrdinates(this->GetDevice()), InvalidInput);
+}
+
+TEST_F(OrdinatesFaceAlbedo, IsRefusedAsPublished)
+{
+  LitMedium scene({ 3, 3, 3 }, 0.1f, 0.1f);
+  scene.how.scheme = OrdinatesScheme::Published;
+  scene.light.faceAlbedo[2] = Grey(0.5);
+  EXPECT_THAT([&] { scene.SolveOrdinates(this->GetDevice()); },
+    testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("set FaceAlbedo to 0")));
 }

@@ -2,6 +2,7 @@
 #include "DeviceTest.h"
 #include "Difference.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "ErrorWords.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
@@ -276,15 +277,7 @@ TEST_F(GivenLightTest, RefusesWhatIsNoLight)
   const auto error = [&] {
     Illumination given;
     given.uncollided = beam.Image();
-    try
-    {
-      SolveConservative(this->GetDevice(), scene.medium, given, scene.settings);
-    }
-    catch (const InvalidInput& refused)
-    {
-      return std::string(refused.what());
-    }
-    return std::string();
+    return ErrorWords([&] { SolveConservative(this->GetDevice(), scene.medium, given, scene.settings); });
   };
   beam.fluence[15] = -1.0f;
   EXPECT_NE(error().find("voxel (1, 1, 0)"), std::string::npos) << error();

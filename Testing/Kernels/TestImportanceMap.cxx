@@ -1,4 +1,5 @@
 #include "Device/Errors.h"
+#include "ErrorWords.h"
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Emission/SampleSequence.h"
 #include "Photons/Importance/ImportanceMap.h"
@@ -393,15 +394,7 @@ TEST(ImportanceMapCheck, NamesWhatIsWrongAndWhere)
   const auto message = [](const ImportanceMap& map) -> std::string {
     EmissionSettings settings = { 10, Sampler::Hammersley, 0 };
     settings.map = &map;
-    try
-    {
-      EmitPhotons(Box(), Sun(), settings);
-    }
-    catch (const InvalidInput& error)
-    {
-      return error.what();
-    }
-    return {};
+    return ErrorWords([&] { EmitPhotons(Box(), Sun(), settings); });
   };
   ImportanceMap map = MapOf(Hills());
   map.density[3 * Size + 5] = std::numeric_limits<float>::quiet_NaN();

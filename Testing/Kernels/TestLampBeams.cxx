@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "GridVoxels.h"
 #include "MediumScene.h"
 #include "RectangleSeen.h"
 
@@ -77,22 +78,14 @@ TEST_F(LampBeams, NetFluxPointsAwayFromTheLamp)
   scene.light.lights = { Lamp(LightType::Point, position) };
   scene.settings.netFlux = true;
   const LightField light = scene.Solve(this->GetDevice());
-  std::size_t i = 0;
-  for (int z = 0; z < 10; ++z)
-  {
-    for (int y = 0; y < 9; ++y)
+  ForGridVoxels({ 11, 9, 10 }, [&](std::size_t i, int x, int y, int z) {
+    const std::array<double, 3> away = { x + 0.5 - position[0], y + 0.5 - position[1], z + 0.5 - position[2] };
+    const double distance = std::sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
+    for (int a = 0; a < 3; ++a)
     {
-      for (int x = 0; x < 11; ++x, ++i)
-      {
-        const std::array<double, 3> away = { x + 0.5 - position[0], y + 0.5 - position[1], z + 0.5 - position[2] };
-        const double distance = std::sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
-        for (int a = 0; a < 3; ++a)
-        {
-          EXPECT_NEAR(light.netFlux[3 * i + a], light.fluence[i] * away[a] / distance, 0.03 * light.fluence[i]);
-        }
-      }
+      EXPECT_NEAR(light.netFlux[3 * i + a], light.fluence[i] * away[a] / distance, 0.03 * light.fluence[i]);
     }
-  }
+  });
 }
 
 TEST_F(LampBeams, ASpotBringsItsPowerHoweverNarrowItIs)

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "GridVoxels.h"
 #include "MediumScene.h"
 
 #include "Numerics/Constants.h"
@@ -88,20 +89,13 @@ std::array<double, 1000> MeanFluence(int n, const LightField& light)
 {
   const std::vector<std::array<double, 10>> parts = TenthsOf(n);
   std::array<double, 1000> means = {};
-  for (int v = 0; v < 1000; ++v)
-  {
-    for (int z = 0; z < n; ++z)
+  ForGridVoxels({ n, n, 1000 }, [&](std::size_t, int y, int z, int v) {
+    const double part = parts[z][v / 100] * parts[y][v / 10 % 10];
+    for (int x = 0; x < n && part != 0.0; ++x)
     {
-      for (int y = 0; y < n; ++y)
-      {
-        const double part = parts[z][v / 100] * parts[y][v / 10 % 10];
-        for (int x = 0; x < n && part != 0.0; ++x)
-        {
-          means[v] += part * parts[x][v % 10] * light.fluence[(z * n + y) * n + x];
-        }
-      }
+      means[v] += part * parts[x][v % 10] * light.fluence[(z * n + y) * n + x];
     }
-  }
+  });
   return means;
 }
 

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "GridVoxels.h"
 #include "MediumScene.h"
 
 #include "LightPropagation/Angular/DirectionSet.h"
@@ -87,16 +88,9 @@ std::vector<double> MeanWave(const Wave& wave, int voxels)
   }
   std::vector<double> values;
   const std::array<int, 3> size = Size(wave, voxels);
-  for (int z = 0; z < size[2]; ++z)
-  {
-    for (int y = 0; y < size[1]; ++y)
-    {
-      for (int x = 0; x < size[0]; ++x)
-      {
-        values.push_back(mean * std::cos(k[0] * (x + 0.5) * h + k[1] * (y + 0.5) * h + k[2] * (z + 0.5) * h));
-      }
-    }
-  }
+  ForGridVoxels(size, [&](std::size_t, int x, int y, int z) {
+    values.push_back(mean * std::cos(k[0] * (x + 0.5) * h + k[1] * (y + 0.5) * h + k[2] * (z + 0.5) * h));
+  });
   return values;
 }
 

@@ -1,3 +1,4 @@
+#include "ErrorWords.h"
 #include "ViewScene.h"
 
 using namespace tyndall;
@@ -518,15 +519,7 @@ TEST_F(MediumRayCasterTest, RefusesWhatHasNoMeaning)
 /// What a refusal says.
 std::string Refusal(Device& device, const Scene& scene, const Camera& camera)
 {
-  try
-  {
-    scene.Seen(device, camera);
-  }
-  catch (const InvalidInput& error)
-  {
-    return error.what();
-  }
-  return "";
+  return ErrorWords([&] { scene.Seen(device, camera); });
 }
 
 TEST_F(MediumRayCasterTest, SaysWhichNumberIsOutOfWhichRange)

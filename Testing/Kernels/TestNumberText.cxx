@@ -60,11 +60,7 @@ TEST_F(DecimalComma, ChangesNoLamp)
   const auto solve = [this] {
     Scene scene({ 6, 7, 8 });
     scene.Randomise(4.0, 4.0, 0.75); // thick voxels beside thin ones: the kernel has a number of its own for them
-    Light lamp;
-    lamp.type = LightType::Point;
-    lamp.position = { 3.1, 2.9, 4.2 };
-    lamp.power = { 10.0, 10.0, 10.0 };
-    scene.light.lights = { lamp };
+    scene.light.lights = { PointLamp({ 3.1, 2.9, 4.2 }, { 10.0, 10.0, 10.0 }) };
     return scene.Solve(this->GetDevice()).fluence;
   };
   std::vector<float> fluence;

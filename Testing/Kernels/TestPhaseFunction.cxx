@@ -1,4 +1,5 @@
 #include "Device/Errors.h"
+#include "ErrorWords.h"
 #include "Medium/Medium.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
@@ -92,22 +93,9 @@ double OverCosines(const std::function<double(double)>& f, double low = -1.0, do
   return sum;
 }
 
-std::string MessageOf(const std::function<void()>& call)
-{
-  try
-  {
-    call();
-  }
-  catch (const InvalidInput& error)
-  {
-    return error.what();
-  }
-  return "";
-}
-
 std::string TableMessage(const std::vector<double>& cosines, const std::vector<double>& values)
 {
-  return MessageOf([&] { PhaseFunction::Tabulated(cosines, values); });
+  return ErrorWords([&] { PhaseFunction::Tabulated(cosines, values); });
 }
 
 constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
@@ -262,7 +250,7 @@ TEST(PhaseFunction, KeepsItsKindWithAnotherMeanCosine)
   EXPECT_TRUE(PhaseFunction::Schlick(0.0).WithMeanCosine(0.7) == PhaseFunction::Schlick(0.7));
   EXPECT_TRUE(PhaseFunction::Schlick(0.5).WithMeanCosine(0.0).WithMeanCosine(0.7) == PhaseFunction::Schlick(0.7));
   EXPECT_TRUE(PhaseFunction::HenyeyGreenstein(0.5).WithMeanCosine(-0.7) == PhaseFunction::HenyeyGreenstein(-0.7));
-  EXPECT_THAT(MessageOf([] { PhaseFunction::Rayleigh().WithMeanCosine(0.1); }), HasSubstr("varies by voxel"));
+  EXPECT_THAT(ErrorWords([] { PhaseFunction::Rayleigh().WithMeanCosine(0.1); }), HasSubstr("varies by voxel"));
 }
 
 TEST(PhaseFunctionTable, IsTheSameRisingFallingAndInAnyUnit)
@@ -305,20 +293,20 @@ TEST(PhaseFunctionBadInput, RefusesMeanCosinesFromOneOn)
 {
   for (const double g : { 1.0, -1.0, 1.5, std::numeric_limits<double>::infinity(), NoNumber })
   {
-    EXPECT_THAT(MessageOf([&] { PhaseFunction::HenyeyGreenstein(g); }), HasSubstr("must lie between -1 and 1")) << g;
-    EXPECT_THAT(MessageOf([&] { PhaseFunction::Schlick(g); }), HasSubstr("must lie between -1 and 1")) << g;
+    EXPECT_THAT(ErrorWords([&] { PhaseFunction::HenyeyGreenstein(g); }), HasSubstr("must lie between -1 and 1")) << g;
+    EXPECT_THAT(ErrorWords([&] { PhaseFunction::Schlick(g); }), HasSubstr("must lie between -1 and 1")) << g;
     EXPECT_THAT(
-      MessageOf([&] { PhaseFunction::DoubleHenyeyGreenstein(0.1, g, 0.5); }), HasSubstr("must lie between -1 and 1"))
+      ErrorWords([&] { PhaseFunction::DoubleHenyeyGreenstein(0.1, g, 0.5); }), HasSubstr("must lie between -1 and 1"))
       << g;
   }
-  EXPECT_THAT(MessageOf([] { PhaseFunction::HenyeyGreenstein(1.5); }), HasSubstr("1.5"));
+  EXPECT_THAT(ErrorWords([] { PhaseFunction::HenyeyGreenstein(1.5); }), HasSubstr("1.5"));
 }
 
 TEST(PhaseFunctionBadInput, RefusesPartsBeyondTheWhole)
 {
   for (const double part : { -0.1, 1.1, NoNumber })
   {
-    EXPECT_THAT(MessageOf([&] { PhaseFunction::DoubleHenyeyGreenstein(0.1, 0.2, part); }), HasSubstr("from 0 to 1"))
+    EXPECT_THAT(ErrorWords([&] { PhaseFunction::DoubleHenyeyGreenstein(0.1, 0.2, part); }), HasSubstr("from 0 to 1"))
       << part;
   }
 }
@@ -410,11 +398,11 @@ TEST(PhaseOfMedium, IsCheckedInEveryVoxel)
   medium.grid.size = { 2, 2, 1 };
   std::vector<float> g = { 0.1f, 0.2f, -0.99f, 0.999f };
   medium.phase = PhaseOfMedium(PhaseFunction::HenyeyGreenstein(0.0), Field{ g.data() });
-  EXPECT_EQ(MessageOf([&] { Check(medium); }), "");
+  EXPECT_EQ(ErrorWords([&] { Check(medium); }), "");
   for (const float bad : { 1.0f, -1.0f, static_cast<float>(NoNumber) })
   {
     g[2] = bad;
-    EXPECT_THAT(MessageOf([&] { Check(medium); }), AllOf(HasSubstr("mean cosine g"), HasSubstr("voxel (0, 1, 0)")));
+    EXPECT_THAT(ErrorWords([&] { Check(medium); }), AllOf(HasSubstr("mean cosine g"), HasSubstr("voxel (0, 1, 0)")));
   }
 }
 
@@ -427,8 +415,8 @@ TEST(PhaseOfMedium, CountsForTheLargestExtinctionInEveryChannel)
   medium.sigma_s = { &sigma_s };
   medium.phase = PhaseOfMedium(
     std::array<PhaseFunction, 3>{ PhaseFunction(), PhaseFunction(), PhaseFunction::HenyeyGreenstein(0.5) });
-  EXPECT_EQ(MessageOf([&] { Check(medium); }), "");
+  EXPECT_EQ(ErrorWords([&] { Check(medium); }), "");
   medium.phase = PhaseOfMedium(
     std::array<PhaseFunction, 3>{ PhaseFunction(), PhaseFunction(), PhaseFunction::HenyeyGreenstein(-0.9) });
-  EXPECT_THAT(MessageOf([&] { Check(medium); }), HasSubstr("sigma_a and sigma_s add up to"));
+  EXPECT_THAT(ErrorWords([&] { Check(medium); }), HasSubstr("sigma_a and sigma_s add up to"));
 }

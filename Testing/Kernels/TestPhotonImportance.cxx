@@ -1,5 +1,6 @@
 #include "DeviceTest.h"
 #include "Difference.h"
+#include "ErrorWords.h"
 #include "PhotonScene.h"
 
 #include "Device/Errors.h"
@@ -79,18 +80,6 @@ double MeanInRing(const ImportanceMap& map, double from, double to)
   return sum / cells;
 }
 
-std::string MessageOf(const std::function<void()>& work)
-{
-  try
-  {
-    work();
-  }
-  catch (const InvalidInput& error)
-  {
-    return error.what();
-  }
-  return {};
-}
 }
 
 TEST_F(PhotonImportance, SendsPhotonsThroughTheGlassAndItsShadow)
@@ -217,14 +206,14 @@ TEST_F(PhotonImportance, RefusesWhatMeansNothing)
 {
   ImportanceSettings settings;
   settings.pilotCount = 0;
-  EXPECT_NE(MessageOf([&] { this->Find(this->Ball, Sun(), settings); }).find("pilot photons is 0"), std::string::npos);
+  EXPECT_NE(ErrorWords([&] { this->Find(this->Ball, Sun(), settings); }).find("pilot photons is 0"), std::string::npos);
   settings = {};
   settings.background = 0.0;
-  EXPECT_NE(MessageOf([&] { this->Find(this->Ball, Sun(), settings); }).find("background"), std::string::npos);
+  EXPECT_NE(ErrorWords([&] { this->Find(this->Ball, Sun(), settings); }).find("background"), std::string::npos);
   settings = {};
   settings.cells = { 16, 0, 16 };
-  EXPECT_NE(MessageOf([&] { this->Find(this->Ball, Sun(), settings); }).find("axis 1"), std::string::npos);
-  EXPECT_NE(MessageOf([&] { this->Find(this->Ball, {}); }).find("No light shines"), std::string::npos);
+  EXPECT_NE(ErrorWords([&] { this->Find(this->Ball, Sun(), settings); }).find("axis 1"), std::string::npos);
+  EXPECT_NE(ErrorWords([&] { this->Find(this->Ball, {}); }).find("No light shines"), std::string::npos);
 }
 
 /// The unfiltered light of adaptive photons is an unbiased estimate: over 64 seeds its mean in every octant is that of

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "PhotonScene.h"
 
 #include "Medium/FilledBricks.h"
@@ -76,15 +77,6 @@ std::vector<float> MeansOfEmpty(const std::vector<float>& values, const FilledBr
   return means;
 }
 
-double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-  {
-    largest = std::max<double>(largest, std::abs(a[i] - b[i]));
-  }
-  return largest;
-}
 }
 
 class PhotonsByBricksTest : public DeviceTest

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "GridVoxels.h"
 #include "PhotonScene.h"
 #include "PhotonWays.h"
 
@@ -29,16 +30,9 @@ std::vector<std::size_t> CellsOf(const Grid& grid, const std::array<int, 3>& cel
 {
   std::vector<std::size_t> of;
   const auto along = [&](int a, int i) { return static_cast<std::size_t>(i * cells[a] / grid.size[a]); };
-  for (int k = 0; k < grid.size[2]; ++k)
-  {
-    for (int j = 0; j < grid.size[1]; ++j)
-    {
-      for (int i = 0; i < grid.size[0]; ++i)
-      {
-        of.push_back((along(2, k) * cells[1] + along(1, j)) * cells[0] + along(0, i));
-      }
-    }
-  }
+  ForGridVoxels(grid.size, [&](std::size_t, int i, int j, int k) {
+    of.push_back((along(2, k) * cells[1] + along(1, j)) * cells[0] + along(0, i));
+  });
   return of;
 }
 

@@ -1,6 +1,7 @@
 // Scenes in which nothing varies along two axes: layers, solved in the cosine alone.
 
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "MediumScene.h"
 
 #include "Device/Errors.h"
@@ -115,17 +116,6 @@ std::vector<float> MeansOf(const std::vector<float>& values, std::size_t parts, 
   return means;
 }
 
-double RelativeRms(const std::vector<float>& values, const std::vector<float>& expected)
-{
-  EXPECT_EQ(values.size(), expected.size());
-  double differences = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < expected.size(); ++i)
-  {
-    differences += std::pow(static_cast<double>(values.at(i)) - expected[i], 2);
-    squares += static_cast<double>(expected[i]) * expected[i];
-  }
-  return std::sqrt(differences / squares);
-}
 }
 
 class PlaneParallel : public DeviceTest
@@ -235,10 +225,10 @@ TEST_F(PlaneParallel, FindsInLayersWhatItFindsInTheirTenths)
   const LightField light = ColumnsAlong(2, 1, phase, 20261124).Solve(this->GetDevice());
   const LightField inTenths = ColumnsAlong(2, 1, phase, 20261124, 10).Solve(this->GetDevice());
   EXPECT_LE(light.balance.RelativeError(3), 1e-6);
-  EXPECT_LT(RelativeRms(MeansOf(inTenths.fluence, 10, 3), light.fluence), 1e-5);
-  EXPECT_LT(RelativeRms(MeansOf(inTenths.fluenceDirect, 10, 3), light.fluenceDirect), 1e-5);
-  EXPECT_LT(RelativeRms(MeansOf(inTenths.netFlux, 10, 9), light.netFlux), 1e-5);
-  EXPECT_LT(RelativeRms(MeansOf(inTenths.scatteredMoments, 10, 300), light.scatteredMoments), 1e-5);
+  EXPECT_LT(RelativeRmse(MeansOf(inTenths.fluence, 10, 3), light.fluence), 1e-5);
+  EXPECT_LT(RelativeRmse(MeansOf(inTenths.fluenceDirect, 10, 3), light.fluenceDirect), 1e-5);
+  EXPECT_LT(RelativeRmse(MeansOf(inTenths.netFlux, 10, 9), light.netFlux), 1e-5);
+  EXPECT_LT(RelativeRmse(MeansOf(inTenths.scatteredMoments, 10, 300), light.scatteredMoments), 1e-5);
 }
 
 /// All that is found along rays through voxels, of many directions. A degree of moments keeps the solve to them.
@@ -259,9 +249,9 @@ TEST_P(PlaneParallelBesideRays, FindsWhatTheyFind)
   scene.settings.directionsPerFace = 900;
   const LightField along = scene.Solve(this->GetDevice());
   ASSERT_EQ(along.polarNodes, 0);
-  EXPECT_LT(RelativeRms(MeansOf(along.fluence, 10, 3), light.fluence), 0.004);
-  EXPECT_LT(RelativeRms(MeansOf(along.fluenceDirect, 10, 3), light.fluenceDirect), 0.004);
-  EXPECT_LT(RelativeRms(MeansOf(along.netFlux, 10, 9), light.netFlux), 0.004);
+  EXPECT_LT(RelativeRmse(MeansOf(along.fluence, 10, 3), light.fluence), 0.004);
+  EXPECT_LT(RelativeRmse(MeansOf(along.fluenceDirect, 10, 3), light.fluenceDirect), 0.004);
+  EXPECT_LT(RelativeRmse(MeansOf(along.netFlux, 10, 9), light.netFlux), 0.004);
   EXPECT_EQ(light.lampsApart.size(), along.lampsApart.size());
   std::vector<float> moments; // rays keep 9 of them
   for (std::size_t layer = 0; layer < 11; ++layer)
@@ -269,7 +259,7 @@ TEST_P(PlaneParallelBesideRays, FindsWhatTheyFind)
     const auto first = light.scatteredMoments.begin() + static_cast<std::ptrdiff_t>(layer * 300);
     moments.insert(moments.end(), first, first + 27);
   }
-  EXPECT_LT(RelativeRms(MeansOf(along.scatteredMoments, 10, 27), moments), 0.004);
+  EXPECT_LT(RelativeRmse(MeansOf(along.scatteredMoments, 10, 27), moments), 0.004);
   for (int face = 0; face < 6; ++face)
   {
     for (int c = 0; c < 3; ++c)
@@ -335,7 +325,7 @@ TEST_F(PlaneParallel, EstimatesItsErrorByFewerCosines)
   const LightField rough =
     SolveWithErrorEstimate({ Domain(scene.medium.grid), scene.medium, scene.light }, scene.settings, {}, solve);
   EXPECT_GT(rough.relativeError, 10.0 * light.relativeError);
-  EXPECT_GT(rough.relativeError, RelativeRms(rough.fluence, light.fluence));
+  EXPECT_GT(rough.relativeError, RelativeRmse(rough.fluence, light.fluence));
   scene.settings.polarNodes = 65;
   EXPECT_THROW(scene.Solve(this->GetDevice()), InvalidInput);
 }

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "GridVoxels.h"
 #include "ReconstructionScene.h"
 
 using namespace tyndall;
@@ -71,16 +72,7 @@ std::vector<Volume> Pyramid(const ReconstructionScene& scene, const std::vector<
   {
     const Volume fine = all.back();
     Volume coarse = { { (fine.size[0] + 1) / 2, (fine.size[1] + 1) / 2, (fine.size[2] + 1) / 2 }, {} };
-    for (int z = 0; z < coarse.size[2]; ++z)
-    {
-      for (int y = 0; y < coarse.size[1]; ++y)
-      {
-        for (int x = 0; x < coarse.size[0]; ++x)
-        {
-          coarse.values.push_back(rule(fine, x, y, z));
-        }
-      }
-    }
+    ForGridVoxels(coarse.size, [&](std::size_t, int x, int y, int z) { coarse.values.push_back(rule(fine, x, y, z)); });
     all.push_back(coarse);
   }
   return all;

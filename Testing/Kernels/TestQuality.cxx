@@ -119,7 +119,7 @@ TEST_F(QualityOfLight, GrowsFromLevelToLevel)
     double last = 1.0;
     for (const Quality quality : Levels)
     {
-      const double error = SquareDifference(
+      const double error = RelativeRmse(
         FluenceOf(this->GetDevice(), scene,
           AtQuality(Domain(scene.medium.grid), quality, PropagationSettings(), scene.medium, scene.light)),
         light);
@@ -155,10 +155,10 @@ TEST_F(LightInDividedVoxels, IsThatOfTheScene)
   ASSERT_EQ(light.fluence.size(), whole.fluence.size());
   ASSERT_EQ(light.netFlux.size(), whole.netFlux.size());
   ASSERT_EQ(light.facePower.size(), whole.facePower.size());
-  EXPECT_LT(SquareDifference(light.fluence, whole.fluence), 0.1);
-  EXPECT_LT(SquareDifference(light.fluenceDirect, whole.fluenceDirect), 0.1);
-  EXPECT_LT(SquareDifference(light.netFlux, whole.netFlux), 0.15);
-  EXPECT_LT(SquareDifference(light.facePower, whole.facePower), 0.15);
+  EXPECT_LT(RelativeRmse(light.fluence, whole.fluence), 0.1);
+  EXPECT_LT(RelativeRmse(light.fluenceDirect, whole.fluenceDirect), 0.1);
+  EXPECT_LT(RelativeRmse(light.netFlux, whole.netFlux), 0.15);
+  EXPECT_LT(RelativeRmse(light.facePower, whole.facePower), 0.15);
   EXPECT_NEAR(light.balance.absorbed[0], whole.balance.absorbed[0], 0.05 * whole.balance.absorbed[0]);
   double absorbed = 0.0;
   for (std::size_t i = 0; i < light.fluence.size(); ++i)

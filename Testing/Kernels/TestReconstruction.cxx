@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "ErrorWords.h"
 #include "OnRanks.h"
 #include "ReconstructionScene.h"
 
@@ -71,15 +72,7 @@ protected:
 
   std::string Complaint(const NoisyLight& light, const ReconstructionSettings& settings)
   {
-    try
-    {
-      this->Of(light, settings);
-    }
-    catch (const InvalidInput& error)
-    {
-      return error.what();
-    }
-    return {};
+    return ErrorWords([&] { this->Of(light, settings); });
   }
 };
 }

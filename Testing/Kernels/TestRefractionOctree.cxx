@@ -1,4 +1,6 @@
 #include "DeviceTest.h"
+#include "ErrorWords.h"
+#include "GridVoxels.h"
 #include "OnRanks.h"
 
 #include "Numerics/NumberText.h"
@@ -38,16 +40,7 @@ Grid GridOf(const Size& size)
 std::vector<float> Fill(const Size& size, const std::function<double(int, int, int)>& value)
 {
   std::vector<float> values;
-  for (int z = 0; z < size[2]; ++z)
-  {
-    for (int y = 0; y < size[1]; ++y)
-    {
-      for (int x = 0; x < size[0]; ++x)
-      {
-        values.push_back(static_cast<float>(value(x, y, z)));
-      }
-    }
-  }
+  ForGridVoxels(size, [&](std::size_t, int x, int y, int z) { values.push_back(static_cast<float>(value(x, y, z))); });
   return values;
 }
 
@@ -157,19 +150,6 @@ std::string Named(const Size& size, double tolerance)
     std::to_string(tolerance);
 }
 
-/// What a call complains about; empty if it does not.
-std::string ComplaintOf(const std::function<void()>& call)
-{
-  try
-  {
-    call();
-  }
-  catch (const std::exception& error)
-  {
-    return error.what();
-  }
-  return {};
-}
 }
 
 class RefractionOctree
@@ -257,7 +237,7 @@ TEST_P(OctreeWithoutDevice, IsOneNodeWhereTheIndexIsConstant)
       EXPECT_THAT(octree.leftOut[0], HasSubstr("refractive index is constant"));
     }
   }
-  EXPECT_THAT(ComplaintOf([&] {
+  EXPECT_THAT(ErrorWords<std::exception>([&] {
     Build(this->GetParam(), { 2, 1, 1 }, { 1.0f, 1.5f }, 0.1, "no such device");
   }),
     HasSubstr("no such device"));
@@ -356,7 +336,7 @@ TEST_P(OctreeWithoutDevice, RefusesWhatHasNoMeaning)
     std::vector<float> index(60, 1.0f);
     index[31] = wrong;
     index[59] = wrong;
-    EXPECT_THAT(ComplaintOf([&] {
+    EXPECT_THAT(ErrorWords<std::exception>([&] {
       Build(this->GetParam(), { 3, 4, 5 }, index, 0.01);
     }),
       testing::AllOf(HasSubstr("refractive index is " + Text("%g", wrong)), HasSubstr("voxel (1, 2, 2)")));
@@ -364,15 +344,24 @@ TEST_P(OctreeWithoutDevice, RefusesWhatHasNoMeaning)
   const std::vector<float> index = { 1.0f, 1.5f };
   for (double wrong : { -0.1, 1.1, static_cast<double>(nan) })
   {
-    EXPECT_THAT(ComplaintOf([&] { Build(this->GetParam(), { 2, 1, 1 }, index, wrong); }), HasSubstr("Tolerance is"));
+    EXPECT_THAT(ErrorWords<std::exception>([&] {
+      Build(this->GetParam(), { 2, 1, 1 }, index, wrong);
+    }),
+      HasSubstr("Tolerance is"));
   }
-  EXPECT_THAT(ComplaintOf([&] { Build(this->GetParam(), { 2, 0, 1 }, index, 0.1); }), HasSubstr("no voxels along y"));
+  EXPECT_THAT(ErrorWords<std::exception>([&] {
+    Build(this->GetParam(), { 2, 0, 1 }, index, 0.1);
+  }),
+    HasSubstr("no voxels along y"));
 
   Medium medium;
   medium.grid = GridOf({ 2, 1, 1 });
   OctreeSettings settings;
-  const auto complaint = [&] { return ComplaintOf([&] { BuildOn(this->GetParam(), medium, index, settings); }); };
-  EXPECT_THAT(ComplaintOf([&] { BuildOn(this->GetParam(), medium, {}, settings); }), HasSubstr("must be given"));
+  const auto complaint = [&] {
+    return ErrorWords<std::exception>([&] { BuildOn(this->GetParam(), medium, index, settings); });
+  };
+  EXPECT_THAT(
+    ErrorWords<std::exception>([&] { BuildOn(this->GetParam(), medium, {}, settings); }), HasSubstr("must be given"));
   settings.extinctionTolerance = nan;
   EXPECT_THAT(complaint(), HasSubstr("ExtinctionTolerance is nan"));
   settings.extinctionTolerance = 0.1;

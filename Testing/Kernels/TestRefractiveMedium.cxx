@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "ErrorWords.h"
 #include "MeshShapes.h"
 
 #include "Refraction/Index/IndexField.h"
@@ -38,15 +39,8 @@ protected:
 
   void ExpectRefused(std::vector<Solid> solids, const RefractiveMediumSettings& settings, const char* part)
   {
-    try
-    {
-      this->Made(std::move(solids), settings);
-      ADD_FAILURE() << "taken, not refused: " << part;
-    }
-    catch (const InvalidInput& error)
-    {
-      EXPECT_THAT(error.what(), HasSubstr(part));
-    }
+    const std::string words = ErrorWords([&] { this->Made(std::move(solids), settings); });
+    EXPECT_THAT(words, HasSubstr(part));
   }
 };
 
@@ -306,15 +300,7 @@ TEST_F(RefractiveMediumTest, WhatDoesNotFitIsRefusedAtOnce)
   const auto complaint = [&](int size) {
     RefractiveMediumSettings settings = FogAround(24);
     settings.grid.size = { size, size, size };
-    try
-    {
-      this->Made({ Ball() }, settings);
-    }
-    catch (const DeviceError& error)
-    {
-      return std::string(error.what());
-    }
-    return std::string();
+    return ErrorWords<DeviceError>([&] { this->Made({ Ball() }, settings); });
   };
   for (int size : { 4000, 100000, 2000000000 })
   {
@@ -389,15 +375,7 @@ TEST(GridAround, HasCubesAndRoomForTheFilter)
 TEST(GridAround, NamesWhatIsWrongWithAMesh)
 {
   const auto complaint = [](const TriangleMesh& mesh) {
-    try
-    {
-      GridAround({ { "Mesh 2", mesh, {} } }, { 8, 8, 8 }, 0.1, 9);
-    }
-    catch (const InvalidInput& error)
-    {
-      return std::string(error.what());
-    }
-    return std::string();
+    return ErrorWords([&] { GridAround({ { "Mesh 2", mesh, {} } }, { 8, 8, 8 }, 0.1, 9); });
   };
   for (double wrong : { HUGE_VAL, -HUGE_VAL, std::nan("") })
   {

@@ -1,3 +1,4 @@
+#include "ErrorWords.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
 #include "LightPropagation/Angular/DirectionSet.h"
@@ -293,17 +294,11 @@ TEST(CapMeans, AreThoseOfTheWholeSphereAndOfAPoint)
 TEST(SeparablePhaseFunction, RefusesWhatHasNoMeaning)
 {
   const auto message = [](std::vector<Direction> directions, int terms) {
-    try
-    {
+    return ErrorWords([&] {
       SeparableSettings settings;
       settings.terms = terms;
       SeparablePhaseFunction(PhaseFunction::HenyeyGreenstein(0.5), std::move(directions), settings);
-    }
-    catch (const InvalidInput& error)
-    {
-      return std::string(error.what());
-    }
-    return std::string();
+    });
   };
   const std::vector<Direction> directions = EquiangularDirections(4).directions;
   EXPECT_EQ(message(directions, 9), "");

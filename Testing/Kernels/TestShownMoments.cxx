@@ -2,6 +2,7 @@
 
 #include "CloudPictures.h"
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "MediumScene.h"
 
 #include "Numerics/Constants.h"
@@ -62,15 +63,6 @@ Picture Look(Device& device, const Scene& scene, const LightField& light, const 
   return caster.Render(FrameGrid(scene.medium.grid, 1.2, 30.0, towards));
 }
 
-double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-  {
-    largest = std::max<double>(largest, std::abs(a[i] - b[i]));
-  }
-  return largest;
-}
 }
 
 using ShownMoments = DeviceTest;

@@ -1,7 +1,5 @@
 // Light is linear: what several lights do together is the sum of what each does alone.
-#include "BlocksOfLight.h"
-#include "DeviceTest.h"
-#include "MediumScene.h"
+#include "SolvedOnRanks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,11 +34,7 @@ const std::vector<Shine> Lights = {
   },
   [](Scene& scene) { scene.ShineFromEverywhere(0.1); },
   [](Scene& scene) {
-    Light lamp;
-    lamp.type = LightType::Point;
-    lamp.position = { 4.2, 7.1, 30.0 };
-    lamp.power = { 90.0, 90.0, 90.0 };
-    scene.light.lights.push_back(lamp);
+    scene.light.lights.push_back(PointLamp({ 4.2, 7.1, 30.0 }, { 90.0, 90.0, 90.0 }));
   },
 };
 
@@ -132,16 +126,16 @@ TEST_F(Superposition, OfThickVoxelsWhateverShines)
     } };
   EXPECT_LT(Nonlinearity(this->GetDevice(), medium, lights), 1e-3);
   const SolveOne inBlocks = [&](Scene& scene) {
-    RandomMedium whole(scene.medium.grid.size);
-    scene.Attach();
-    whole.medium = scene.medium;
-    whole.absorption = scene.sigma_a;
-    whole.scattering = scene.sigma_s;
-    whole.emission = scene.emission;
-    const auto [x, y, z] = scene.medium.grid.size;
-    const BlockPartition three = { scene.medium.grid,
-      { { { 0, 0, 0 }, { x, y, 4 } }, { { 0, 0, 4 }, { x, 3, z - 4 } }, { { 0, 3, 4 }, { x, y - 3, z - 4 } } } };
-    return blocks_of_light::LightOfAll(this->GetDevice(), three, whole, scene.light, scene.settings);
+    MediumToCut whole(scene.medium.grid.size);
+    whole.scene = scene;
+    if (scene.light.uncollided.fluence.values)
+    {
+      whole.given = given;
+      whole.ways.assign(3 * given.size(), 0.0f);
+    }
+    return LightOnRanks(Uneven(scene.medium.grid), whole, [&](const Domain& domain, MediumToCut& part) {
+      return ConservativeSolver::Solve(this->GetDevice(), domain, part, scene.settings);
+    });
   };
   EXPECT_LT(Nonlinearity(medium, lights, inBlocks), 1e-3);
 }

@@ -1,9 +1,9 @@
 // A sweep of a grid that is spread over ranks, against that of the whole in one memory.
 
 #include "DeviceTest.h"
+#include "OnRanks.h"
 #include "RandomMedium.h"
 
-#include "Distribution/RanksInThreads.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
@@ -57,38 +57,6 @@ struct BlockScene
     return [](int d, int face) { return Rgb{ 1.0 + 0.1 * face, 0.5, 0.01 * (d % 7) }; };
   }
 
-  /// A box of the medium by itself.
-  RandomMedium Part(const VoxelBox& box) const
-  {
-    Grid grid = medium.medium.grid;
-    grid.size = box.size;
-    RandomMedium part(grid, Channels(), 0.0f, 1);
-    part.Emit(0.0f);
-    for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
-    {
-      const std::size_t whole = PlaceInWhole(box, i);
-      for (int c = 0; c < Channels(); ++c)
-      {
-        part.absorption[i * Channels() + c] = medium.absorption[whole * Channels() + c];
-        part.scattering[i * Channels() + c] = medium.scattering[whole * Channels() + c];
-        part.emission[i * Channels() + c] = medium.emission[whole * Channels() + c];
-      }
-    }
-    return part;
-  }
-
-  std::size_t PlaceInWhole(const VoxelBox& box, std::size_t i) const
-  {
-    Grid grid = medium.medium.grid;
-    grid.size = box.size;
-    std::array<int, 3> voxel = grid.VoxelAt(i);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      voxel[axis] += box.first[axis];
-    }
-    return medium.medium.grid.IndexOf(voxel);
-  }
-
   using Maker = std::function<std::unique_ptr<SweepOperator>(
     const VolumeLayout&, const Buffer<float>& sigma_t, const SweepRequest&)>;
 
@@ -97,14 +65,21 @@ struct BlockScene
   {
     bool source = true, boundary = true;
   };
-  /// @param part  of the medium, all of it or a block
-  Found Sweep(const RandomMedium& part, const Wants& wants, const Maker& make) const
+  /// Of a rank's block, as `make` sweeps it.
+  Found Sweep(const Domain& domain, const Wants& wants, const Maker& make) const
   {
-    const VolumeLayout layout = { part.medium.grid, Channels(), Channels() == 1 };
-    const TruncatedScattering scattering(part.medium, 0, Channels());
-    const MediumOnDevice onDevice(theDevice, part.medium, scattering, layout, { true, false });
+    const std::vector<float> sigma_a = BlockOf(domain, medium.absorption), sigma_s = BlockOf(domain, medium.scattering),
+                             emission = BlockOf(domain, medium.emission);
+    Medium part = medium.medium;
+    part.grid = domain.OwnGrid();
+    part.sigma_a.values = sigma_a.data();
+    part.sigma_s.values = sigma_s.data();
+    part.emission.values = emission.data();
+    const VolumeLayout layout = { part.grid, Channels(), Channels() == 1 };
+    const TruncatedScattering scattering(part, 0, Channels());
+    const MediumOnDevice onDevice(theDevice, part, scattering, layout, { true, false });
     const std::vector<float> emitted =
-      Planar(layout, layout.channels, [&](std::size_t i, int c) { return part.medium.emission.At(i, c); });
+      Planar(layout, layout.channels, [&](std::size_t i, int c) { return part.emission.At(i, c); });
     Buffer<float> source(theDevice, layout.Floats(), "source");
     source.Fill(0.0f);
     source.Write(emitted.data(), emitted.size());
@@ -136,8 +111,8 @@ struct BlockScene
   Found InMemory(const Wants& wants) const
   {
     SweepWorkspace workspace;
-    return Sweep(
-      medium, wants, [&](const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request) {
+    return Sweep(Domain(medium.medium.grid), wants,
+      [&](const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request) {
         return std::make_unique<SweepInMemory>(theDevice, layout, sigma_t, open, request, workspace);
       });
   }
@@ -145,34 +120,35 @@ struct BlockScene
   Found InBlocks(const BlockPartition& partition, const Wants& wants, int mostRays) const
   {
     partition.Check();
-    const std::size_t voxels = medium.medium.grid.VoxelCount();
-    Found all = { std::vector<float>(Channels() * voxels), std::vector<float>(3 * Channels() * voxels),
-      std::vector<float>(6 * Channels() * voxels), {} };
+    Found all;
     std::mutex guard;
     RunInThreads(static_cast<int>(partition.blocks.size()), [&](Communicator& communicator) {
-      const VoxelBox& box = partition.blocks[communicator.Rank()];
+      const Domain domain(communicator, partition);
       BlockWorkspace workspace;
       const Found found = Sweep(
-        Part(box), wants, [&](const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request) {
+        domain, wants, [&](const VolumeLayout& layout, const Buffer<float>& sigma_t, const SweepRequest& request) {
           return std::make_unique<SweepInBlocks>(
             theDevice, communicator, partition, layout, sigma_t, open, request, workspace, mostRays);
         });
       const std::lock_guard<std::mutex> lock(guard);
-      PutInto(all.path, found.path, box);
-      PutInto(all.flux, found.flux, box);
-      PutInto(all.currents, found.currents, box);
+      PutInto(all.path, found.path, domain, Channels());
+      PutInto(all.flux, found.flux, domain, 3 * Channels());
+      PutInto(all.currents, found.currents, domain, 6 * Channels());
       all.tally = found.tally;
     });
     return all;
   }
 
-  void PutInto(std::vector<float>& whole, const std::vector<float>& part, const VoxelBox& box) const
+  static void PutInto(std::vector<float>& whole, const std::vector<float>& part, const Domain& domain, int arrays)
   {
-    const std::size_t own = box.VoxelCount(), all = medium.medium.grid.VoxelCount();
-    for (std::size_t i = 0; i < part.size(); ++i)
-    {
-      whole[i / own * all + PlaceInWhole(box, i % own)] = part[i];
-    }
+    const std::size_t own = domain.Own().VoxelCount(), all = domain.Whole().VoxelCount();
+    whole.resize(arrays * all);
+    ForVoxels(domain, [&](std::size_t i, std::size_t there) {
+      for (int array = 0; array < arrays; ++array)
+      {
+        whole[array * all + there] = part[array * own + i];
+      }
+    });
   }
 
   Device& theDevice;
@@ -208,64 +184,41 @@ protected:
   }
 };
 
-TEST_F(SweepBlocks, AreTheWholeOnOneToEightRanks)
+/// Blocks whose edges do not meet, of one voxel and of one layer, and a rank that has none.
+TEST_F(SweepBlocks, AreTheWhole)
 {
-  const Grid grid = { { 13, 10, 9 } };
+  const Grid grid = { { 6, 5, 7 } };
+  const BlockPartition uneven = { grid,
+    { { { 0, 0, 0 }, { 6, 5, 2 } }, { { 0, 0, 2 }, { 1, 1, 1 } }, { { 1, 0, 2 }, { 5, 1, 1 } },
+      { { 0, 0, 0 }, { 0, 0, 0 } }, { { 0, 1, 2 }, { 4, 4, 1 } }, { { 4, 1, 2 }, { 2, 4, 1 } },
+      { { 0, 0, 3 }, { 2, 5, 4 } }, { { 2, 0, 3 }, { 4, 2, 4 } }, { { 2, 2, 3 }, { 4, 3, 4 } } } };
   const BlockScene scene(GetDevice(), grid, 1, diagonal);
-  const Found expected = scene.InMemory({});
-  for (const int ranks : { 1, 2, 3, 4, 5, 8 })
-  {
-    SCOPED_TRACE(std::to_string(ranks) + " ranks");
-    ExpectSame(scene.InBlocks(BlockPartition::Even(grid, ranks), {}, 0), expected);
-  }
+  ExpectSameInBlocks(scene, BlockPartition::Even(grid, 1));
+  ExpectSameInBlocks(scene, uneven);
+  ExpectSameInBlocks(scene, uneven, { false, true });
+  ExpectSameInBlocks(scene, uneven, { true, false });
 }
 
 TEST_F(SweepBlocks, AreTheWholeInColourWithVoxelsThatAreNoCubes)
 {
   const Grid grid = { { 7, 12, 5 }, { 1.0, 0.7, 1.9 } };
-  const BlockScene scene(GetDevice(), grid, 3, 9);
-  ExpectSameInBlocks(scene, BlockPartition::Even(grid, 4));
+  ExpectSameInBlocks(BlockScene(GetDevice(), grid, 3, 9), BlockPartition::Even(grid, 4));
 }
 
 TEST_F(SweepBlocks, AreTheWholeOnFinerMapsWithFewerRaysAtOnce)
 {
   const Grid grid = { { 8, 8, 8 } };
-  const BlockScene scene(GetDevice(), grid, 1, 16, 2);
-  ExpectSameInBlocks(scene, BlockPartition::Even(grid, 3), {}, 3);
+  ExpectSameInBlocks(BlockScene(GetDevice(), grid, 1, 16, 2), BlockPartition::Even(grid, 3), {}, 3);
 }
 
-TEST_F(SweepBlocks, AreTheWholeOfLightFromOutsideAloneAndOfASourceAlone)
-{
-  const Grid grid = { { 9, 6, 7 } };
-  const BlockScene scene(GetDevice(), grid, 1, 4);
-  ExpectSameInBlocks(scene, BlockPartition::Even(grid, 4), { false, true });
-  ExpectSameInBlocks(scene, BlockPartition::Even(grid, 4), { true, false });
-}
-
-/// Blocks whose edges do not meet, of one voxel and of one layer, and a rank that has none.
-TEST_F(SweepBlocks, AreTheWholeWhereTheyAreUneven)
-{
-  const Grid grid = { { 6, 5, 7 } };
-  const BlockPartition partition = { grid,
-    { { { 0, 0, 0 }, { 6, 5, 2 } }, { { 0, 0, 2 }, { 1, 1, 1 } }, { { 1, 0, 2 }, { 5, 1, 1 } },
-      { { 0, 0, 0 }, { 0, 0, 0 } }, { { 0, 1, 2 }, { 4, 4, 1 } }, { { 4, 1, 2 }, { 2, 4, 1 } },
-      { { 0, 0, 3 }, { 2, 5, 4 } }, { { 2, 0, 3 }, { 4, 2, 4 } }, { { 2, 2, 3 }, { 4, 3, 4 } } } };
-  ExpectSameInBlocks(BlockScene(GetDevice(), grid, 1, diagonal), partition);
-}
-
-TEST_F(SweepBlocks, AreTheWholeInVoxelsByThemselves)
-{
-  const Grid grid = { { 3, 2, 2 } };
-  ExpectSameInBlocks(BlockScene(GetDevice(), grid, 1, diagonal), BlockPartition::Even(grid, 12));
-}
-
-/// Twice the same, bit for bit, whoever comes first.
+/// Twice the same, bit for bit, whoever comes first; in blocks of one voxel.
 TEST_F(SweepBlocks, DoNotDependOnWhichRankIsFast)
 {
-  const Grid grid = { { 8, 9, 6 } };
-  const BlockScene scene(GetDevice(), grid, 1, 9);
-  const BlockPartition partition = BlockPartition::Even(grid, 4);
+  const Grid grid = { { 3, 2, 2 } };
+  const BlockScene scene(GetDevice(), grid, 1, diagonal);
+  const BlockPartition partition = BlockPartition::Even(grid, 12);
   const Found first = scene.InBlocks(partition, {}, 0), second = scene.InBlocks(partition, {}, 0);
+  ExpectSame(first, scene.InMemory({}));
   EXPECT_EQ(first.path, second.path);
   EXPECT_EQ(first.tally.out, second.tally.out);
 }

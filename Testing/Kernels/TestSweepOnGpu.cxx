@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -215,52 +216,85 @@ protected:
   }
 };
 
-TEST_F(SweepOnGpuTest, FindsTheLightOfASource)
+struct NamedSweeping
+{
+  const char* name;
+  std::function<void(Sweeping&)> change;
+};
+
+class SweptOnGpu
+  : public SweepOnGpuTest
+  , public testing::WithParamInterface<NamedSweeping>
+{
+};
+
+TEST_P(SweptOnGpu, FindsTheLight)
 {
   Sweeping how;
-  how.lit = false;
+  this->GetParam().change(how);
   this->Compare(how);
 }
 
-TEST_F(SweepOnGpuTest, FindsTheLightThatComesIn)
-{
-  Sweeping how;
-  how.shines = false;
-  this->Compare(how);
-}
-
-TEST_F(SweepOnGpuTest, FindsFluxAndCurrents)
-{
-  Sweeping how;
-  how.flux = how.currents = true;
-  this->Compare(how);
-}
-
-TEST_F(SweepOnGpuTest, FindsFluxAndCurrentsOfEqualAnglesThatMoveBothWaysAtOnce)
-{
-  Sweeping how;
-  how.perFace = 1; // and of 121: not fitted, some on the diagonal
-  how.flux = how.currents = true;
-  this->Compare(how);
-  how.perFace = 121;
-  this->Compare(how);
-}
-
-TEST_F(SweepOnGpuTest, FindsThreeColoursOfOneExtinction)
-{
-  Sweeping how;
-  how.channels = 3;
-  how.flux = how.currents = true;
-  this->Compare(how);
-}
-
-TEST_F(SweepOnGpuTest, FindsThreeColoursOfThreeExtinctions)
-{
-  Sweeping how;
-  how.components = how.channels = 3;
-  how.flux = how.currents = true;
-  this->Compare(how);
-}
+INSTANTIATE_TEST_SUITE_P(Of, SweptOnGpu,
+  testing::ValuesIn<NamedSweeping>({
+    { "ASource", [](Sweeping& how) { how.lit = false; } },
+    { "ABoundary", [](Sweeping& how) { how.shines = false; } },
+    { "FluxAndCurrents", [](Sweeping& how) { how.flux = how.currents = true; } },
+    { "ThreeColoursOfOneExtinction",
+      [](Sweeping& how) {
+        how.channels = 3;
+        how.flux = how.currents = true;
+      } },
+    { "ThreeColoursOfThreeExtinctions",
+      [](Sweeping& how) {
+        how.components = how.channels = 3;
+        how.flux = how.currents = true;
+      } },
+    { "ABoundaryByOctant",
+      [](Sweeping& how) {
+        how.byOctant = true;
+        how.shines = false;
+      } },
+    { "ForgottenRays",
+      [](Sweeping& how) {
+        how.periodic = { false, true, true };
+        how.mostPlanes = 256;
+        how.densest = 0.02f;
+        how.sweeps = { Next::Shining, Next::Lit, Next::Forgetting, Next::InTheDark };
+      } },
+    { "UnequalVoxels",
+      [](Sweeping& how) {
+        how.grid.spacing = { 1.0, 0.7, 1.6 };
+        how.flux = how.currents = true;
+      } },
+    { "ASlabOneVoxelWide",
+      [](Sweeping& how) {
+        how.grid.size = { 1, 40, 3 };
+        how.currents = true;
+      } },
+    { "ABeam",
+      [](Sweeping& how) {
+        how.beam = { 0.3, -0.5, std::sqrt(1.0 - 0.34) };
+        how.flux = how.currents = true;
+        how.shines = false;
+      } },
+    { "APartOfTheGrid",
+      [](Sweeping& how) {
+        how.box = { { 2, 1, 3 }, { 4, 5, 3 } };
+        how.flux = true;
+      } },
+    { "OneDirectionAFace",
+      [](Sweeping& how) {
+        how.perFace = 1; // moves both ways at once
+        how.flux = how.currents = true;
+      } },
+    { "DirectionsOnDiagonals",
+      [](Sweeping& how) {
+        how.perFace = 121; // not fitted
+        how.flux = how.currents = true;
+      } },
+  }),
+  [](const auto& info) { return info.param.name; });
 
 TEST_F(SweepOnGpuTest, FindsTheLightOfASourceByOctant)
 {
@@ -281,14 +315,6 @@ TEST_F(SweepOnGpuTest, FindsTheLightOfASourceByOctant)
       this->Compare(how);
     }
   }
-}
-
-TEST_F(SweepOnGpuTest, FindsTheLightThatComesInWhereNothingShinesByOctant)
-{
-  Sweeping how;
-  how.byOctant = true;
-  how.shines = false;
-  this->Compare(how);
 }
 
 /// From one direction a face too, whose rays move both ways at once: through edges of the grid.
@@ -348,24 +374,6 @@ TEST_F(SweepOnGpuTest, FindsTheLightRoundPeriodicAxes)
   }
 }
 
-TEST_F(SweepOnGpuTest, ForgetsRaysOnTheirWay)
-{
-  Sweeping how;
-  how.periodic = { false, true, true };
-  how.mostPlanes = 256;
-  how.densest = 0.02f;
-  how.sweeps = { Next::Shining, Next::Lit, Next::Forgetting, Next::InTheDark };
-  this->Compare(how);
-}
-
-TEST_F(SweepOnGpuTest, FindsTheLightInUnequalVoxels)
-{
-  Sweeping how;
-  how.grid.spacing = { 1.0, 0.7, 1.6 };
-  how.flux = how.currents = true;
-  this->Compare(how);
-}
-
 TEST_F(SweepOnGpuTest, FindsTheLightInThickAndThinVoxels)
 {
   for (const float densest : { 0.0f, 1e-4f, 0.9f, 3.0f, 1e6f })
@@ -375,31 +383,6 @@ TEST_F(SweepOnGpuTest, FindsTheLightInThickAndThinVoxels)
     how.flux = true;
     this->Compare(how);
   }
-}
-
-TEST_F(SweepOnGpuTest, FindsTheLightInASlabOneVoxelWide)
-{
-  Sweeping how;
-  how.grid.size = { 1, 40, 3 };
-  how.currents = true;
-  this->Compare(how);
-}
-
-TEST_F(SweepOnGpuTest, FindsTheLightOfABeam)
-{
-  Sweeping how;
-  how.beam = { 0.3, -0.5, std::sqrt(1.0 - 0.34) };
-  how.flux = how.currents = true;
-  how.shines = false;
-  this->Compare(how);
-}
-
-TEST_F(SweepOnGpuTest, FindsTheLightInAPartOfTheGrid)
-{
-  Sweeping how;
-  how.box = { { 2, 1, 3 }, { 4, 5, 3 } };
-  how.flux = true;
-  this->Compare(how);
 }
 
 TEST_F(SweepOnGpuTest, IsTheSameEachTime)

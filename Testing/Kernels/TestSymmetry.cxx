@@ -2,8 +2,11 @@
 // of light by itself.
 #include "CubeTurns.h"
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "MediumScene.h"
 
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 
@@ -23,6 +26,7 @@ Scene Turned(const Scene& scene, const CubeTurn& turn)
   Scene turned(turn.Moved(scene.medium.grid.size));
   turned.medium.grid.spacing = turn.Moved(scene.medium.grid.spacing);
   turned.settings = scene.settings;
+  turned.medium.phase = scene.medium.phase;
   turned.settings.periodic = turn.Moved(scene.settings.periodic);
   turned.sigma_a = turn.Field(scene.sigma_a, scene.medium.grid.size);
   turned.sigma_s = turn.Field(scene.sigma_s, scene.medium.grid.size);
@@ -34,6 +38,7 @@ Scene Turned(const Scene& scene, const CubeTurn& turn)
   for (int face = 0; face < 6; ++face)
   {
     turned.light.faces[turn.Face(face)] = scene.light.faces[face];
+    turned.light.faceAlbedo[turn.Face(face)] = scene.light.faceAlbedo[face];
   }
   for (Light& light : turned.light.lights)
   {
@@ -42,18 +47,6 @@ Scene Turned(const Scene& scene, const CubeTurn& turn)
       light.position, { scene.medium.grid.Length(0), scene.medium.grid.Length(1), scene.medium.grid.Length(2) });
   }
   return turned;
-}
-
-/// Of the largest value.
-double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  double largest = 0.0, difference = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-  {
-    largest = std::max<double>(largest, std::abs(a[i]));
-    difference = std::max<double>(difference, std::abs(static_cast<double>(a[i]) - b[i]));
-  }
-  return difference / largest;
 }
 
 /// Uneven in every voxel; absorbs some.
@@ -172,7 +165,7 @@ void ExpectSymmetric(const Scene& scene, const Turns& turns, const std::string& 
   {
     Scene turned = Turned(scene, turn);
     const LightField turnedLight = solve(turned);
-    worst = std::max(worst, LargestDifference(turnedLight.fluence, turn.Field(light.fluence, scene.medium.grid.size)));
+    worst = std::max(worst, RelativeDifference(turnedLight.fluence, turn.Field(light.fluence, scene.medium.grid.size)));
     power = std::max(power, std::abs(turnedLight.balance.entered[0] - light.balance.entered[0]));
     for (int face = 0; face < 6; ++face)
     {
@@ -298,7 +291,7 @@ TEST_F(Symmetry, OfAnEnvironmentAboutItsAxis)
       Scene turned = Turned(scene, turn);
       turned.light.environment = skyOf(turn);
       const LightField turnedLight = turned.Solve(this->GetDevice());
-      EXPECT_LT(LargestDifference(turnedLight.fluence, turn.Field(light.fluence, scene.medium.grid.size)), 1e-5);
+      EXPECT_LT(RelativeDifference(turnedLight.fluence, turn.Field(light.fluence, scene.medium.grid.size)), 1e-5);
       EXPECT_NEAR(turnedLight.balance.entered[0], light.balance.entered[0], 1e-6 * light.balance.entered[0]);
       ++turns;
     }
@@ -329,9 +322,35 @@ TEST_F(Symmetry, OfAnEnvironmentHoweverItStands)
     Scene turned = Turned(scene, turns[t]);
     turned.light.environment = Turned(sky, rotation);
     const LightField found = turned.Solve(this->GetDevice());
-    EXPECT_LT(LargestDifference(found.fluence, turns[t].Field(light.fluence, scene.medium.grid.size)), 1e-5);
+    EXPECT_LT(RelativeDifference(found.fluence, turns[t].Field(light.fluence, scene.medium.grid.size)), 1e-5);
     EXPECT_NEAR(found.balance.entered[0], light.balance.entered[0], 1e-6 * light.balance.entered[0]);
   }
+}
+
+TEST_F(Symmetry, OfDiscreteOrdinatesAndOfALattice)
+{
+  ForEachKind(false, [&](const KindOfLight& kind, const Turns& turns) {
+    Scene scene = UnevenMedium({ 7, 5, 6 }, { 1.0, 1.0, 1.0 }, 4.0);
+    scene.light.faceAlbedo[1] = { 0.4, 0.4, 0.4 };
+    kind.shine(scene);
+    ExpectSymmetric(scene, turns, kind.name + ", lattice", 3e-5, [&](Scene& turned) {
+      turned.Attach();
+      LatticeSettings settings;
+      settings.tolerance = 1e-6;
+      return SolveLatticeBoltzmann(
+        this->GetDevice(), Domain(turned.medium.grid), turned.medium, {}, turned.light, settings);
+    });
+    scene.medium.grid.spacing = { 0.3, 0.5, 0.4 };
+    scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+    ExpectSymmetric(scene, turns, kind.name + ", ordinates", 3e-5, [&](Scene& turned) {
+      turned.Attach();
+      OrdinatesSettings settings;
+      settings.directionsPerFace = 9;
+      settings.terms = 16;
+      return SolveDiscreteOrdinates(
+        this->GetDevice(), Domain(turned.medium.grid), turned.medium, turned.light, settings);
+    });
+  });
 }
 
 TEST_F(Symmetry, AsPublished)

@@ -68,7 +68,7 @@ TEST_F(TargetError, IsMetByTheTrueError)
     EXPECT_TRUE(found.met) << target;
     EXPECT_TRUE(found.light.doubts.empty());
     EXPECT_LE(found.light.relativeError, target);
-    EXPECT_LE(SquareDifference(found.light.fluence, exact), target);
+    EXPECT_LE(RelativeRmse(found.light.fluence, exact), target);
     EXPECT_EQ(found.light.fluenceError.size(), found.light.fluence.size());
     EXPECT_GE(found.solves, 3);
     EXPECT_GT(found.seconds, 0.0);
@@ -89,16 +89,13 @@ TEST_F(TargetError, IsRefusedWhereNothingReachesIt)
 TEST_F(TargetError, DividesVoxelsWhereTheseAreTooCoarse)
 {
   Scene scene({ 12, 13, 14 }, 0.06f, 0.24f);
-  Light lamp;
-  lamp.type = LightType::Point;
-  lamp.position = { 4.3, 8.6, 6.1 };
-  scene.light.lights.push_back(lamp);
+  scene.light.lights.push_back(PointLamp({ 4.3, 8.6, 6.1 }));
   scene.Attach();
   const TargetLight found = SolveToTargetError(
     { Domain(scene.medium.grid), scene.medium, scene.light }, {}, 0.02, {}, SolverOn(this->GetDevice()));
   EXPECT_TRUE(found.divided);
   EXPECT_EQ(found.light.fluence.size(), scene.medium.grid.VoxelCount());
-  EXPECT_LT(SquareDifference(found.light.fluence, Exact(this->GetDevice(), scene)), 0.02);
+  EXPECT_LT(RelativeRmse(found.light.fluence, Exact(this->GetDevice(), scene)), 0.02);
 }
 
 TEST_F(TargetError, IsNotClaimedBesideLampsWhereItIsMissed)
@@ -106,10 +103,7 @@ TEST_F(TargetError, IsNotClaimedBesideLampsWhereItIsMissed)
   Scene scene({ 21, 26, 18 }, 0.01f, 0.19f);
   for (const std::array<double, 3>& place : { std::array<double, 3>{ 5.2, 17.7, 8.1 }, { 15.6, 30.0, 3.3 } })
   {
-    Light lamp;
-    lamp.type = LightType::Point;
-    lamp.position = place;
-    scene.light.lights.push_back(lamp);
+    scene.light.lights.push_back(PointLamp(place));
   }
   scene.Attach();
   const std::vector<float> exact = Exact(this->GetDevice(), scene);
@@ -117,8 +111,8 @@ TEST_F(TargetError, IsNotClaimedBesideLampsWhereItIsMissed)
   {
     const TargetLight found = SolveToTargetError(
       { Domain(scene.medium.grid), scene.medium, scene.light }, {}, target, {}, SolverOn(this->GetDevice()));
-    EXPECT_TRUE(!found.met || SquareDifference(found.light.fluence, exact) <= target)
-      << target << ": " << SquareDifference(found.light.fluence, exact) << ", estimated " << found.light.relativeError;
+    EXPECT_TRUE(!found.met || RelativeRmse(found.light.fluence, exact) <= target)
+      << target << ": " << RelativeRmse(found.light.fluence, exact) << ", estimated " << found.light.relativeError;
   }
 }
 

@@ -1,5 +1,6 @@
 #include "DeviceTest.h"
 #include "Difference.h"
+#include "GridVoxels.h"
 #include "MediumScene.h"
 
 #include "Light/LeftOut.h"
@@ -31,20 +32,12 @@ Scene Cloud(std::array<int, 3> grid, std::array<int, 3> first, std::array<int, 3
 {
   Scene scene(grid);
   scene.Randomise(thickest, 1.0, 0.8);
-  for (int z = 0, i = 0; z < grid[2]; ++z)
-  {
-    for (int y = 0; y < grid[1]; ++y)
-    {
-      for (int x = 0; x < grid[0]; ++x, ++i)
-      {
-        const std::array<int, 3> at = { x - first[0], y - first[1], z - first[2] };
-        const bool inside =
-          at[0] >= 0 && at[1] >= 0 && at[2] >= 0 && at[0] < size[0] && at[1] < size[1] && at[2] < size[2];
-        scene.sigma_a[i] *= inside ? 1.0f : 0.0f;
-        scene.sigma_s[i] *= inside ? 1.0f : 0.0f;
-      }
-    }
-  }
+  ForGridVoxels(grid, [&](std::size_t i, int x, int y, int z) {
+    const std::array<int, 3> at = { x - first[0], y - first[1], z - first[2] };
+    const bool inside = at[0] >= 0 && at[1] >= 0 && at[2] >= 0 && at[0] < size[0] && at[1] < size[1] && at[2] < size[2];
+    scene.sigma_a[i] *= inside ? 1.0f : 0.0f;
+    scene.sigma_s[i] *= inside ? 1.0f : 0.0f;
+  });
   return scene;
 }
 

@@ -1,6 +1,8 @@
 // The last light as a first guess: fewer sweeps to the same light (numerics.md, section 6.4).
 
 #include "DeviceTest.h"
+#include "Difference.h"
+#include "GridVoxels.h"
 #include "OrdinatesScene.h"
 
 #include <gmock/gmock.h>
@@ -14,18 +16,6 @@ using namespace tyndall;
 
 namespace
 {
-/// Root mean square over that of b, as the tolerance is meant.
-double RmsDifference(const std::vector<float>& a, const std::vector<float>& b)
-{
-  double difference = 0.0, sum = 0.0;
-  for (std::size_t i = 0; i < b.size(); ++i)
-  {
-    difference += (static_cast<double>(a[i]) - b[i]) * (static_cast<double>(a[i]) - b[i]);
-    sum += static_cast<double>(b[i]) * b[i];
-  }
-  return std::sqrt(difference / sum);
-}
-
 Light SunAt(double elevation, double azimuth)
 {
   const double degree = 3.14159265358979323846 / 180.0;
@@ -43,20 +33,13 @@ Scene Cloud(std::array<int, 3> size, double thickness, double albedo, unsigned s
   const std::array<int, 3>& n = size;
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> even(0.5, 1.5);
-  for (int z = 0, i = 0; z < n[2]; ++z)
-  {
-    for (int y = 0; y < n[1]; ++y)
-    {
-      for (int x = 0; x < n[0]; ++x, ++i)
-      {
-        const double u = (x + 0.5) / n[0] - 0.45, v = (y + 0.5) / n[1] - 0.5, w = (z + 0.5) / n[2] - 0.55;
-        const double inside = std::max(0.0, 0.14 - u * u - v * v - w * w) / 0.14;
-        const double sigma_t = thickness / n[0] * inside * even(random);
-        scene.sigma_s[i] = static_cast<float>(sigma_t * albedo);
-        scene.sigma_a[i] = static_cast<float>(sigma_t * (1.0 - albedo));
-      }
-    }
-  }
+  ForGridVoxels(n, [&](std::size_t i, int x, int y, int z) {
+    const double u = (x + 0.5) / n[0] - 0.45, v = (y + 0.5) / n[1] - 0.5, w = (z + 0.5) / n[2] - 0.55;
+    const double inside = std::max(0.0, 0.14 - u * u - v * v - w * w) / 0.14;
+    const double sigma_t = thickness / n[0] * inside * even(random);
+    scene.sigma_s[i] = static_cast<float>(sigma_t * albedo);
+    scene.sigma_a[i] = static_cast<float>(sigma_t * (1.0 - albedo));
+  });
   scene.light.lights = { SunAt(50.0, 20.0 + 90.0 * seed) };
   scene.ShineFromEverywhere(0.2);
   return scene;
@@ -107,8 +90,8 @@ protected:
     Scene exactly = after;
     exactly.settings.tolerance = 1e-7;
     const LightField exact = exactly.Solve(this->GetDevice());
-    const Outcome found = { cold.convergence.size(), warm.convergence.size(),
-      RmsDifference(warm.fluence, exact.fluence), RmsDifference(cold.fluence, exact.fluence) };
+    const Outcome found = { cold.convergence.size(), warm.convergence.size(), RelativeRmse(warm.fluence, exact.fluence),
+      RelativeRmse(cold.fluence, exact.fluence) };
     std::printf("%-44s %3zu -> %3zu sweeps, error %.2g (cold %.2g), residual %.2g\n", name, found.cold, found.warm,
       found.error, found.coldError, warm.convergence.back().residual);
     EXPECT_TRUE(warm.converged) << name;
@@ -277,34 +260,6 @@ TEST_F(WarmStarts, KnowEachChannelByItself)
   }
 }
 
-TEST_F(WarmStarts, GoRoundPeriodicAxes)
-{
-  for (double thickness : { 2.0, 60.0 })
-  {
-    Scene scene = Cloud({ 14, 9, 12 }, thickness, 0.99, 3);
-    scene.settings.periodic = { true, false, true };
-    Scene after = scene;
-    Scatter(after, 1.05);
-    const Outcome found = this->Follow(scene, after, "periodic, sigma_s 5% more");
-    EXPECT_LE(found.warm, found.cold);
-  }
-}
-
-TEST_F(WarmStarts, AgreeWithFinerDirectionsOfUnscatteredLight)
-{
-  Scene scene = Cloud({ 12, 14, 13 }, 5.0, 0.98);
-  scene.settings.uncollidedDirections = 100;
-  scene.settings.netFlux = true;
-  Scene after = scene;
-  Scatter(after, 1.05);
-  const Outcome found = this->Follow(scene, after, "escape correction");
-  EXPECT_LT(found.warm, found.cold);
-  KeptLight kept;
-  scene.Solve(this->GetDevice(), {}, &kept);
-  const LightField warm = after.Solve(this->GetDevice(), {}, &kept);
-  EXPECT_LT(RmsDifference(warm.netFlux, after.Solve(this->GetDevice()).netFlux), 2e-4);
-}
-
 TEST_F(WarmStarts, DoNotDriftInALongSeries)
 {
   for (double thickness : { 5.0, 100.0 })
@@ -325,7 +280,7 @@ TEST_F(WarmStarts, DoNotDriftInALongSeries)
     EXPECT_LT(sweeps, 12 * cold.convergence.size());
     EXPECT_LT(warm.balance.RelativeError(1), 1e-5);
     scene.settings.tolerance = 1e-7;
-    EXPECT_LT(RmsDifference(warm.fluence, scene.Solve(this->GetDevice()).fluence), 1e-4);
+    EXPECT_LT(RelativeRmse(warm.fluence, scene.Solve(this->GetDevice()).fluence), 1e-4);
   }
 }
 
@@ -382,7 +337,7 @@ TEST_F(WarmStarts, ComeBackToAMediumThatScatteredNothing)
   for (Scene next : { scene, black, scene, scene })
   {
     const LightField found = next.Solve(this->GetDevice(), {}, &kept);
-    EXPECT_LT(RmsDifference(found.fluence, next.Solve(this->GetDevice()).fluence), 1e-4);
+    EXPECT_LT(RelativeRmse(found.fluence, next.Solve(this->GetDevice()).fluence), 1e-4);
     EXPECT_LT(found.balance.RelativeError(1), 1e-5);
   }
 }
@@ -404,36 +359,6 @@ TEST_F(WarmStarts, SayHowManySweepsTheySaved)
   }
   EXPECT_GT(warm.sweepsSaved.back(), 2);
   EXPECT_TRUE(scene.Solve(this->GetDevice()).sweepsSaved.empty());
-}
-
-TEST_F(WarmStarts, TakeFewerOrdersOfDiscreteOrdinates)
-{
-  const Scene cloud = Cloud({ 15, 11, 13 }, 4.0, 0.97, 2);
-  LitMedium scene(cloud.medium.grid.size);
-  scene.sigma_a = cloud.sigma_a;
-  scene.sigma_s = cloud.sigma_s;
-  scene.light = cloud.light;
-  scene.light.lights[0].power = { 2.0, 1.5, 1.0 };
-  scene.how.directionsPerFace = 4;
-  scene.how.terms = 16;
-  LitMedium after = scene;
-  Scatter(after, 1.05);
-  KeptLight kept;
-  EXPECT_EQ(scene.SolveOrdinates(this->GetDevice(), {}, &kept).fluence, scene.SolveOrdinates(this->GetDevice()).fluence)
-    << "nothing was known";
-  EXPECT_LE(scene.SolveOrdinates(this->GetDevice(), {}, &kept).convergence.size(), 3u);
-  const LightField warm = after.SolveOrdinates(this->GetDevice(), {}, &kept);
-  const LightField cold = after.SolveOrdinates(this->GetDevice());
-  after.how.tolerance = 1e-7;
-  const LightField exact = after.SolveOrdinates(this->GetDevice());
-  const double error = RmsDifference(warm.fluence, exact.fluence);
-  std::printf("discrete ordinates: %zu -> %zu, error %.2g (cold %.2g)\n", cold.convergence.size(),
-    warm.convergence.size(), error, RmsDifference(cold.fluence, exact.fluence));
-  EXPECT_LT(error, 1e-4);
-  EXPECT_LT(warm.convergence.size(), cold.convergence.size());
-  EXPECT_EQ(warm.fluenceDirect, cold.fluenceDirect);
-  EXPECT_EQ(warm.sweepsSaved.size(), warm.convergence.size());
-  EXPECT_LT(warm.balance.RelativeError(3), 1e-5);
 }
 
 TEST_F(WarmStarts, AreNotMadeAsPublished)

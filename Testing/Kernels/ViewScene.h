@@ -2,6 +2,7 @@
 
 #include "DeviceTest.h"
 #include "Difference.h"
+#include "GridVoxels.h"
 
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -177,17 +178,10 @@ std::vector<float> AtCentres(const Grid& grid, const Function& value)
 {
   std::vector<float> values;
   values.reserve(grid.VoxelCount());
-  for (int k = 0; k < grid.size[2]; ++k)
-  {
-    for (int j = 0; j < grid.size[1]; ++j)
-    {
-      for (int i = 0; i < grid.size[0]; ++i)
-      {
-        values.push_back(
-          static_cast<float>(value((i + 0.5) / grid.size[0], (j + 0.5) / grid.size[1], (k + 0.5) / grid.size[2])));
-      }
-    }
-  }
+  ForGridVoxels(grid.size, [&](std::size_t, int i, int j, int k) {
+    values.push_back(
+      static_cast<float>(value((i + 0.5) / grid.size[0], (j + 0.5) / grid.size[1], (k + 0.5) / grid.size[2])));
+  });
   return values;
 }
 
