@@ -29,6 +29,18 @@ struct SourceFunction
   std::vector<float> extinction; ///< mean of the channels, 1/length
 };
 
+/// Calls act(voxel) for all voxels, concurrently.
+template <class Act>
+void ForVoxels(std::size_t voxels, const Act& act)
+{
+  InThreads(voxels, VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t voxel = begin; voxel < end; ++voxel)
+    {
+      act(voxel);
+    }
+  });
+}
+
 double ShortestEdge(const Grid& grid)
 {
   return *std::min_element(grid.spacing.begin(), grid.spacing.end());
@@ -62,12 +74,7 @@ SourceFunction SourceFunctionOf(const Medium& medium, const Field& fluence)
   found.radiance.assign(3 * voxels, 0.0f);
   found.extinction.assign(voxels, 0.0f);
   const double edge = ShortestEdge(medium.grid);
-  InThreads(voxels, VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t voxel = begin; voxel < end; ++voxel)
-    {
-      FindSource(medium, fluence, voxel, edge, found);
-    }
-  });
+  ForVoxels(voxels, [&](std::size_t voxel) { FindSource(medium, fluence, voxel, edge, found); });
   return found;
 }
 
@@ -266,18 +273,15 @@ void FillEmptyVoxels(const Domain& domain, SourceFunction& source)
   Grid grid = domain.Whole();
   grid.size = box.size;
   const Grid ofBlock = domain.OwnGrid();
-  InThreads(source.extinction.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t voxel = begin; voxel < end; ++voxel)
+  ForVoxels(source.extinction.size(), [&](std::size_t voxel) {
+    if (source.extinction[voxel] == 0.0f)
     {
-      if (source.extinction[voxel] == 0.0f)
+      std::array<int, 3> place = ofBlock.VoxelAt(voxel);
+      for (int axis = 0; axis < 3; ++axis)
       {
-        std::array<int, 3> place = ofBlock.VoxelAt(voxel);
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          place[axis] += own.first[axis] - box.first[axis];
-        }
-        FillFromNeighbours(grid, place, around, &source.radiance[3 * voxel]);
+        place[axis] += own.first[axis] - box.first[axis];
       }
+      FillFromNeighbours(grid, place, around, &source.radiance[3 * voxel]);
     }
   });
 }
@@ -320,34 +324,20 @@ std::vector<float> LargestOpacities(const Domain& domain, const std::vector<floa
   const Grid grid = domain.OwnGrid();
   const VoxelBox& own = domain.Own();
   std::vector<float> opacities(extinction.size());
-  InThreads(extinction.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t voxel = begin; voxel < end; ++voxel)
+  ForVoxels(extinction.size(), [&](std::size_t voxel) {
+    const std::array<int, 3> place = grid.VoxelAt(voxel);
+    float most = 0.0f;
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const std::array<int, 3> place = grid.VoxelAt(voxel);
-      float most = 0.0f;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const PlaneAxes plane = AcrossAxis(axis);
-        const auto column = static_cast<std::size_t>(own.first[plane.u] + place[plane.u]) +
-          static_cast<std::size_t>(own.first[plane.v] + place[plane.v]) *
-            static_cast<std::size_t>(domain.Whole().size[plane.u]);
-        most = std::max(most, static_cast<float>(depths[axis][column]));
-      }
-      opacities[voxel] = std::min(static_cast<float>(-std::expm1(-most) / AsGoodAsOpaque), 1.0f);
+      const PlaneAxes plane = AcrossAxis(axis);
+      const auto column = static_cast<std::size_t>(own.first[plane.u] + place[plane.u]) +
+        static_cast<std::size_t>(own.first[plane.v] + place[plane.v]) *
+          static_cast<std::size_t>(domain.Whole().size[plane.u]);
+      most = std::max(most, static_cast<float>(depths[axis][column]));
     }
+    opacities[voxel] = std::min(static_cast<float>(-std::expm1(-most) / AsGoodAsOpaque), 1.0f);
   });
   return opacities;
-}
-
-/// Multiplies each voxel's radiance by its largest opacity.
-void Dim(const std::vector<float>& opacities, std::vector<float>& radiance)
-{
-  InThreads(opacities.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = 3 * begin; i < 3 * end; ++i)
-    {
-      radiance[i] *= opacities[i / 3];
-    }
-  });
 }
 
 /// Computes k of Eq. (112d) for each voxel.
@@ -360,16 +350,13 @@ std::vector<float> VeilFactors(const std::vector<float>& radiance, const std::ve
   ofVeil.exposure *= PartOfVeil;
   const std::vector<std::uint8_t> veil = ToneMap(radiance, {}, ofVeil);
   std::vector<float> factors(colour.size() / 4, 1.0f);
-  InThreads(factors.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t voxel = begin; voxel < end; ++voxel)
-    {
-      const std::uint8_t* const whole = &colour[4 * voxel];
-      const std::uint8_t* const dimmed = &veil[4 * voxel];
-      const double shown = whole[0] + whole[1] + whole[2];
-      const double ratio = shown > 0.0 ? (dimmed[0] + dimmed[1] + dimmed[2]) / shown : 0.0;
-      const double factor = std::log1p(-std::min(ratio, 0.99)) / std::log1p(-PartOfVeil * std::max(most[voxel], 1e-6f));
-      factors[voxel] = static_cast<float>(std::max(factor, 1.0));
-    }
+  ForVoxels(factors.size(), [&](std::size_t voxel) {
+    const std::uint8_t* const whole = &colour[4 * voxel];
+    const std::uint8_t* const dimmed = &veil[4 * voxel];
+    const double shown = whole[0] + whole[1] + whole[2];
+    const double ratio = shown > 0.0 ? (dimmed[0] + dimmed[1] + dimmed[2]) / shown : 0.0;
+    const double factor = std::log1p(-std::min(ratio, 0.99)) / std::log1p(-PartOfVeil * std::max(most[voxel], 1e-6f));
+    factors[voxel] = static_cast<float>(std::max(factor, 1.0));
   });
   return factors;
 }
@@ -401,7 +388,12 @@ LitColor ColorLitMedium(const Domain& domain, const Medium& medium, const Field&
   ToneMapping used = tones;
   used.exposure = tones.exposure > 0.0 ? tones.exposure : ExposureAlongAxes(domain, source);
   const std::vector<float> most = LargestOpacities(domain, source.extinction);
-  Dim(most, source.radiance);
+  ForVoxels(most.size(), [&](std::size_t voxel) {
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      source.radiance[3 * voxel + c] *= most[voxel];
+    }
+  });
   FillEmptyVoxels(domain, source);
 
   LitColor lit;
@@ -411,12 +403,9 @@ LitColor ColorLitMedium(const Domain& domain, const Medium& medium, const Field&
   const double densest = domain.Max(LargestProduct(factors, source.extinction));
   const double edge = ShortestEdge(domain.Whole());
   lit.distance = densest > 0.0 ? std::max(edge, ResolvedDepth / densest) : edge;
-  InThreads(factors.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t voxel = begin; voxel < end; ++voxel)
-    {
-      const double opacity = -std::expm1(-lit.distance * factors[voxel] * source.extinction[voxel]);
-      lit.rgba[4 * voxel + 3] = static_cast<std::uint8_t>(255.0 * opacity + 0.5);
-    }
+  ForVoxels(factors.size(), [&](std::size_t voxel) {
+    const double opacity = -std::expm1(-lit.distance * factors[voxel] * source.extinction[voxel]);
+    lit.rgba[4 * voxel + 3] = static_cast<std::uint8_t>(255.0 * opacity + 0.5);
   });
   return lit;
 }

@@ -79,10 +79,8 @@ std::vector<std::string> DoubtsAbout(
 ///   one component
 void CheckViewedIndex(const Field& ior, const Grid& grid)
 {
-  if (ior.values && ior.components != 1)
-  {
-    throw InvalidInput("ior has " + std::to_string(ior.components) + " components a voxel; a refractive index has 1.");
-  }
+  Require(!ior.values || ior.components == 1,
+    "ior has " + std::to_string(ior.components) + " components a voxel; a refractive index has 1.");
   CheckIndex(ior, grid);
   for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
   {
@@ -282,10 +280,8 @@ Picture MediumRayCaster::Cast(const Camera& camera, const GridBlock* block, cons
 Picture MediumRayCaster::Render(
   const Camera& camera, const Monitor& monitor, const std::vector<float>& ends, const GridBlock* block)
 {
-  if (block && !this->CastsBlocks())
-  {
-    throw InvalidInput("Rays that bend or meet a table cannot be cast through blocks of the medium one by one.");
-  }
+  Require(!block || this->CastsBlocks(),
+    "Rays that bend or meet a table cannot be cast through blocks of the medium one by one.");
   this->Rays.PassOf(camera, block, false); // checks the camera
   Report(monitor, 0.0);
   const bool prepares = this->NeedsSources();
@@ -301,22 +297,6 @@ Picture MediumRayCaster::Render(
     picture.sharp.clear();
   }
   return picture;
-}
-
-MediumRayCaster::SharedNumbers MediumRayCaster::SharedByBlocks() const
-{
-  const ViewedPhase& phase = this->Traits.phase;
-  SharedNumbers shared = { this->Traits.index.least, this->Traits.index.largest, 1.0 * phase.formula,
-    1.0 * phase.channels, phase.varies ? 1.0 : 0.0, this->Traits.knowsFlow ? 1.0 : 0.0 };
-  auto next = shared.begin() + 6;
-  for (const cl_float4& parameter : { phase.parameters.first, phase.parameters.second, phase.parameters.part })
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      *next++ = phase.varies ? 0.0 : parameter.s[c];
-    }
-  }
-  return shared;
 }
 
 Picture MediumRayCaster::RenderBehind(

@@ -17,7 +17,6 @@
 #include "Viewing/Scene/ViewTraits.h"
 #include "Viewing/Sources/SeenSources.h"
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -48,7 +47,7 @@ namespace tyndall
 /// shadow rays all other light is taken to scatter isotropically. Shadow rays are straight, also through glass.
 ///
 /// Where the voxels at a face of the box are thicker than a mean free path, rays that enter through this face show the
-/// outgoing radiance that the solver computed there (`surface`), see BackdropTables.h. This applies to straight rays
+/// outgoing radiance that the solver computed there (`surface`), see Backdrop.cxx. This applies to straight rays
 /// that show all light, without shadow rays, mean directions or a table.
 ///
 /// Every term uses the medium's own sigma_s and sigma_t, even if the solver worked with sigma_s (1 - g).
@@ -99,7 +98,7 @@ public:
   ///   have 1 or 3 components (a direction: 3); for an index outside [1e-3, 1e3] or without exactly one component; if
   ///   the settings need an array that is missing; for a setting out of its range
   /// @throws DeviceError if the samples do not fit: 16 bytes per voxel (for a mostly empty medium, only for bricks in
-  ///   and around the filled ones; on a GPU only where SampleBricks.h applies), and as much again for each of coloured
+  ///   and around the filled ones; on a GPU only where PackedSamples.h applies), and as much again for each of coloured
   ///   extinction, the light's direction, separate emission, a coloured g by voxel, and a varying refractive index;
   ///   with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
@@ -132,11 +131,6 @@ public:
   /// Whether the blocks of a grid can be rendered independently and composited: rays are straight and there is no
   /// table. Shadow rays end at the block's faces.
   bool CastsBlocks() const { return this->Traits.OnlyStraight(); }
-
-  /// Numbers that must agree among all blocks of a grid that are rendered one by one: refractive index and phase
-  /// function.
-  using SharedNumbers = std::array<double, 15>;
-  SharedNumbers SharedByBlocks() const;
 
   /// Renders a block again, after Render with the same camera, taking into account the blocks in front of it: rays end
   /// where their total transmittance falls below the minimum, and depth is where it falls to 1/2.

@@ -90,11 +90,9 @@ const ScreenValues& ScreenValuesOf(ToneCurve curve)
 
 void Check(const ToneMapping& settings)
 {
-  if (!(settings.exposure >= 0.0 && settings.exposure <= LargestExposure))
-  {
-    throw InvalidInput("The exposure (Exposure) is " + Text("%g", settings.exposure) +
-      "; it must be from 0 (automatic) to " + Text("%g", LargestExposure) + ".");
-  }
+  Require(settings.exposure >= 0.0 && settings.exposure <= LargestExposure,
+    "The exposure (Exposure) is " + Text("%g", settings.exposure) + "; it must be from 0 (automatic) to " +
+      Text("%g", LargestExposure) + ".");
 }
 
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)

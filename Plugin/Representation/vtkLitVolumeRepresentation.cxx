@@ -134,104 +134,42 @@ void vtkLitVolumeRepresentation::UpdateMapperParameters()
   this->Actor->SetVisibility(this->GetVisibility());
 }
 
-void vtkLitVolumeRepresentation::SetQuality(int quality)
-{
-  this->RayCaster()->SetQuality(quality);
-}
-
-void vtkLitVolumeRepresentation::SetSingleScatteringOnly(bool only)
-{
-  this->RayCaster()->SetSingleScatteringOnly(only);
-}
-
-void vtkLitVolumeRepresentation::SetShadowRays(bool cast)
-{
-  this->RayCaster()->SetShadowRays(cast);
-}
-
-void vtkLitVolumeRepresentation::SetStepSize(double voxels)
-{
-  this->RayCaster()->SetStepSize(voxels);
-}
-
-void vtkLitVolumeRepresentation::SetSurfaceReflection(int reflection)
-{
-  this->RayCaster()->SetSurfaceReflection(reflection);
-}
-
-void vtkLitVolumeRepresentation::SetSurfaceIndex(double index)
-{
-  this->RayCaster()->SetSurfaceIndex(index);
-}
-
-void vtkLitVolumeRepresentation::SetSurfaceReflectance(double reflectance)
-{
-  this->RayCaster()->SetSurfaceReflectance(reflectance);
-}
-
-void vtkLitVolumeRepresentation::SetTableFace(int face)
-{
-  this->RayCaster()->SetTableFace(face);
-}
-
-void vtkLitVolumeRepresentation::SetTableColor(double red, double green, double blue)
-{
-  this->RayCaster()->SetTableColor(red, green, blue);
-}
-
-void vtkLitVolumeRepresentation::SetTableReflectance(double reflectance)
-{
-  this->RayCaster()->SetTableReflectance(reflectance);
-}
-
-void vtkLitVolumeRepresentation::SetShowBackground(bool show)
-{
-  this->RayCaster()->SetShowBackground(show);
-}
-
-void vtkLitVolumeRepresentation::SetBackgroundColor(double red, double green, double blue)
-{
-  this->RayCaster()->SetBackgroundColor(red, green, blue);
-}
-
-void vtkLitVolumeRepresentation::SetBackgroundRadiance(double red, double green, double blue)
-{
-  this->RayCaster()->SetBackgroundRadiance(red, green, blue);
-}
-
-void vtkLitVolumeRepresentation::SetEnvironmentUp(int axis)
-{
-  this->RayCaster()->SetEnvironmentUp(axis);
-}
-
-void vtkLitVolumeRepresentation::SetEnvironmentAzimuth(double degrees)
-{
-  this->RayCaster()->SetEnvironmentAzimuth(degrees);
-}
-
-void vtkLitVolumeRepresentation::SetExposure(double exposure)
-{
-  this->RayCaster()->SetExposure(exposure);
-}
+// Properties of the ray caster.
+#define FORWARD(Name, Type)                              \
+  void vtkLitVolumeRepresentation::Set##Name(Type value) \
+  {                                                      \
+    this->RayCaster()->Set##Name(value);                 \
+  }
+#define FORWARD_TRIPLE(Name)                                                        \
+  void vtkLitVolumeRepresentation::Set##Name(double red, double green, double blue) \
+  {                                                                                 \
+    this->RayCaster()->Set##Name(red, green, blue);                                 \
+  }
+FORWARD(Quality, int)
+FORWARD(SingleScatteringOnly, bool)
+FORWARD(ShadowRays, bool)
+FORWARD(StepSize, double)
+FORWARD(SurfaceReflection, int)
+FORWARD(SurfaceIndex, double)
+FORWARD(SurfaceReflectance, double)
+FORWARD(TableFace, int)
+FORWARD(TableReflectance, double)
+FORWARD(ShowBackground, bool)
+FORWARD(EnvironmentUp, int)
+FORWARD(EnvironmentAzimuth, double)
+FORWARD(Exposure, double)
+FORWARD(ToneCurve, int)
+FORWARD(MemoryBudget, int)
+FORWARD(Device, const char*)
+FORWARD_TRIPLE(TableColor)
+FORWARD_TRIPLE(BackgroundColor)
+FORWARD_TRIPLE(BackgroundRadiance)
+#undef FORWARD
+#undef FORWARD_TRIPLE
 
 double vtkLitVolumeRepresentation::GetUsedExposure()
 {
   return vtkLitVolumeMapper::SafeDownCast(this->VolumeMapper)->GetUsedExposure();
-}
-
-void vtkLitVolumeRepresentation::SetToneCurve(int curve)
-{
-  this->RayCaster()->SetToneCurve(curve);
-}
-
-void vtkLitVolumeRepresentation::SetMemoryBudget(int mebibytes)
-{
-  this->RayCaster()->SetMemoryBudget(mebibytes);
-}
-
-void vtkLitVolumeRepresentation::SetDevice(const char* name)
-{
-  this->RayCaster()->SetDevice(name);
 }
 
 void vtkLitVolumeRepresentation::RemoveLights()

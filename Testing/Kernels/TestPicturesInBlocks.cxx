@@ -378,6 +378,24 @@ TEST_F(PicturesInBlocks, FollowRaysOfSomeRowsAtATime)
   }
 }
 
+TEST_F(PicturesInBlocks, AreOnOneRankThoseOfTheCaster)
+{
+  const Scene scene = Glass(3);
+  const Picture whole = scene.Seen(this->GetDevice());
+  const Domain domain(scene.grid);
+  const std::vector<VoxelBox> held = domain.Partition().blocks;
+  MediumRayCaster caster = scene.Caster(this->GetDevice());
+  PictureInBlocks picture(domain, held, &caster);
+  const std::array<int, 2>& size = scene.settings.imageSize;
+  ExpectEqual(picture.Take(scene.Framed(), size, { { 0, 0 }, size }), whole);
+  const Picture part = picture.Take(scene.Framed(), size, { { 7, 20 }, { 9, 21 } });
+  const std::size_t pixel = 20 * static_cast<std::size_t>(size[0]) + 7;
+  EXPECT_EQ(part.width, 2);
+  EXPECT_EQ(part.height, 1);
+  EXPECT_EQ(part.depth, std::vector<float>({ whole.depth[pixel], whole.depth[pixel + 1] }));
+  EXPECT_EQ(part.radiance[5], whole.radiance[3 * pixel + 5]);
+}
+
 TEST_F(PicturesInBlocks, FailTogether)
 {
   const Scene scene = Glass(1);

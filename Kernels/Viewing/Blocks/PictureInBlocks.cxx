@@ -277,7 +277,7 @@ void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
 /// Marches rays until they have ended or left this rank's block.
 /// @return the rays that are now in other blocks
 std::vector<RayOnItsWay> PictureInBlocks::Follow(
-  const RayCasting::Pass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& monitor)
+  const RayPass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& monitor)
 {
   const VoxelBox& own = this->Over.Own();
   std::vector<RayOnItsWay> gone;
@@ -310,7 +310,7 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(
 /// Renders rows of pixels in groups; only the rays of one group travel between ranks at a time.
 void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor)
 {
-  RayCasting::Pass pass = {};
+  RayPass pass = {};
   auto rays = static_cast<double>(this->AtOnce.rays);
   this->Over.Collective([&] {
     if (this->Own)

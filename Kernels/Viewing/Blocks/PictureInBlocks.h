@@ -71,7 +71,7 @@ private:
   void FindShadows(const Camera& camera, const Monitor& monitor);
   void FindSources(const Camera& camera, const Monitor& monitor);
   std::vector<RayOnItsWay> Follow(
-    const RayCasting::Pass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& monitor);
+    const RayPass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& monitor);
   void CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor);
   Picture CastOwn(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor);
   void LookAgain(const Camera& camera, const std::array<int, 2>& size, BlockPixels& own, const Monitor& monitor);

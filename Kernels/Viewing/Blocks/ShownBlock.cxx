@@ -111,9 +111,10 @@ std::array<std::uint8_t, 4> ShownBlock::Share(Column& blocks, int column, int ro
   return screen.Lay(ShownOf(upToEnd.All(), this->Tones), 1.0f - upToEnd.Hidden());
 }
 
-void ShownBlock::Fill(const PixelRect& rect, const Picture* ended, const std::vector<bool>& isEnded,
-  std::vector<std::uint8_t>& pixels) const
+std::vector<std::uint8_t> ShownBlock::Pixels(const Picture& ended, const std::vector<bool>& isEnded) const
 {
+  std::vector<std::uint8_t> pixels(4 * static_cast<std::size_t>(this->PictureSize[0]) * this->PictureSize[1]);
+  const PixelRect& rect = this->Blocks[this->Own].rect;
   InThreads(static_cast<std::size_t>(rect.end[1] - rect.begin[1]), RowsOfThread, [&](std::size_t from, std::size_t to) {
     Column blocks;
     for (int row = rect.begin[1] + static_cast<int>(from); row < rect.begin[1] + static_cast<int>(to); ++row)
@@ -121,24 +122,13 @@ void ShownBlock::Fill(const PixelRect& rect, const Picture* ended, const std::ve
       for (int column = rect.begin[0]; column < rect.end[0]; ++column)
       {
         const std::size_t pixel = static_cast<std::size_t>(row) * this->PictureSize[0] + column;
-        const bool ends = ended && isEnded[pixel];
-        const BlockPixel upToEnd = ends ? PixelOf(*ended, pixel) : BlockPixel();
+        const bool ends = !isEnded.empty() && isEnded[pixel];
+        const BlockPixel upToEnd = ends ? PixelOf(ended, pixel) : BlockPixel();
         const auto share = this->Share(blocks, column, row, ends ? &upToEnd : nullptr);
         std::copy(share.begin(), share.end(), pixels.begin() + 4 * pixel);
       }
     }
   });
-}
-
-std::vector<std::uint8_t> ShownBlock::Pixels() const
-{
-  return this->Pixels({}, {});
-}
-
-std::vector<std::uint8_t> ShownBlock::Pixels(const Picture& ended, const std::vector<bool>& isEnded) const
-{
-  std::vector<std::uint8_t> pixels(4 * static_cast<std::size_t>(this->PictureSize[0]) * this->PictureSize[1]);
-  this->Fill(this->Blocks[this->Own].rect, isEnded.empty() ? nullptr : &ended, isEnded, pixels);
   return pixels;
 }
 }

@@ -36,19 +36,14 @@ public:
   const std::array<int, 2>& Size() const { return this->PictureSize; }
 
   /// RGBA of each pixel of the picture; colours are multiplied by alpha.
-  std::vector<std::uint8_t> Pixels() const;
-
-  /// Pixels() for a picture in which opaque surfaces end rays in this block.
-  /// @param ended    the block's picture up to these surfaces
-  /// @param isEnded  whether the pixel's ray is ended, one per pixel
-  std::vector<std::uint8_t> Pixels(const Picture& ended, const std::vector<bool>& isEnded) const;
+  /// @param ended    for a picture in which opaque surfaces end rays in this block: the block's picture up to them
+  /// @param isEnded  whether the pixel's ray is ended, one per pixel; empty: none is
+  std::vector<std::uint8_t> Pixels(const Picture& ended = {}, const std::vector<bool>& isEnded = {}) const;
 
 private:
   struct Column; ///< the blocks at one pixel, from front to back
 
   std::array<std::uint8_t, 4> Share(Column& blocks, int column, int row, const BlockPixel* ended) const;
-  void Fill(const PixelRect& rect, const Picture* ended, const std::vector<bool>& isEnded,
-    std::vector<std::uint8_t>& pixels) const;
 
   std::vector<BlockPixels> Blocks;
   std::size_t Own = 0;

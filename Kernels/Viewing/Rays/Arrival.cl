@@ -1,8 +1,5 @@
 // Entry of rays into the box, and what they see when they leave it: part of BentView.cl and RayRounds.cl.
 //
-// The host gives
-//   TABLE  1: a face of the box is a table
-//
 // Along a bent ray L / n^2 changes only by emission, scattering and absorption (numerics.md, Eq. (109)): sources and
 // backgrounds are divided by the local n^2, and the picture is multiplied by n^2 at the ray's entry.
 
@@ -14,7 +11,6 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-#if TABLE
 #define REACH_OF_TABLE 2e-3f // voxels; rounding error of a ray's exit point relative to the face
 
 // Radiance of a white table where rays meet it, interpolated between voxel centres.
@@ -56,7 +52,6 @@ inline void end_on_table(
   add_background(shine, ends ? (real)1.0f : (real)0.0f, l);
   *towards = chosen(ends, stretched(*towards, s->o->flip), *towards);
 }
-#endif
 
 // Result accumulated over all marches of a pixel: light divided by n^2, and transmittance and depth along the primary
 // ray.
@@ -76,10 +71,8 @@ inline ray_packets enter(const surroundings* s, camera_rays seen, real end, real
   real before;
   const rays packet = clip_to_box(seen.from, direction, end / seen.cosine, s->v->size, &before);
   ray_packets t = { packet.entry, direction, packet.length > (real)0.0f };
-#if ENDS
   t.end = end;
   t.stopped = (integer)0;
-#endif
   *entry_square = (real)1.0f;
 #if BENDS
   real3 unused;
@@ -91,7 +84,6 @@ inline ray_packets enter(const surroundings* s, camera_rays seen, real end, real
   return t;
 }
 
-#if TABLE
 inline spectrum mirrored_part(integer mirrors, spectrum now, spectrum before)
 {
 #if COLOURED
@@ -101,7 +93,6 @@ inline spectrum mirrored_part(integer mirrors, spectrum now, spectrum before)
   return mirrors ? now : before;
 #endif
 }
-#endif
 
 // Adds what rays see at the end of their march: background, ground or table. A ray that never left the box sees the
 // background, with the index taken as that at its entry.
@@ -111,10 +102,7 @@ inline spectrum mirrored_part(integer mirrors, spectrum now, spectrum before)
 inline void arrive(const surroundings* s, const ray_packets* t, integer ends_here, integer set_off, integer primary,
   __global const float4* backdrop, crossed* half_way, seeing* to)
 {
-  integer out = ends_here & set_off & (t->inside == 0);
-#if ENDS
-  out &= t->stopped == 0;
-#endif
+  const integer out = ends_here & set_off & (t->inside == 0) & (t->stopped == 0);
   const real3 world = stretched(t->velocity, s->o->spacing);
   real3 towards = divided(world, sqrt(greater(product(world, world), (real)1e-30f)));
   real square = to->entrySquare;
@@ -123,15 +111,9 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer ends_her
   const real there = index_at(s, t->at, &unused);
   square = out ? there : square;
 #endif
-#if ENDS
   real part = t->end < (real)ENDLESS ? (real)0.0f : (real)1.0f;
-#else
-  real part = (real)1.0f;
-#endif
   real left = mean_left(to->l);
-  integer ends = (integer)0;
-#if TABLE
-  ends = meet_table(s, t, out);
+  const integer ends = s->o->face.w ? meet_table(s, t, out) : (integer)0;
   if (any_lane(ends))
   {
     end_on_table(s, backdrop, t->at, ends, &to->l, &towards);
@@ -144,7 +126,6 @@ inline void arrive(const surroundings* s, const ray_packets* t, integer ends_her
     lose_half(mirrors & (left > (real)0.5f), depth_of(t->at, s->v, s->o->spacing), half_way);
     left = mirrors ? (real)0.0f : left;
   }
-#endif
   const integer seen = ends_here & primary;
   to->left = seen ? left : to->left;
   const real where = left > (real)0.5f ? (real)s->v->marching.z : distance_to_half(*half_way);

@@ -5,8 +5,7 @@
 // straight and the gradient is not read.
 //
 // The host gives
-//   SKIP_BRICKS  1: rays skip bricks without extinction, emission or bending
-//   SURFACE      reflectance of the surface where the index rises through a given value, at which primary rays are
+//   SURFACE  reflectance of the surface where the index rises through a given value, at which primary rays are
 //                split: 0 no surface, 1 by Fresnel's equations, 2 constant
 
 #pragma once
@@ -184,11 +183,13 @@ __attribute__((always_inline)) inline void bend(
       last = moves & (until <= time);
       time = lesser(time, until);
     }
-#if ENDS
-    const real to_end = time_to_end(t, t->velocity, s);
-    const integer stops = moves & (to_end <= time);
-    time = lesser(time, to_end);
-#endif
+    integer stops = (integer)0;
+    if (s->v->has.x)
+    {
+      const real to_end = time_to_end(t, t->velocity, s);
+      stops = moves & (to_end <= time);
+      time = lesser(time, to_end);
+    }
     const real half_time = (real)0.5f * time;
     const real3 middle = kept_within(further(t->at, half_time, t->velocity), size);
     corners around;
@@ -221,11 +222,12 @@ __attribute__((always_inline)) inline void bend(
     {
       moves = leave(t, last, size) ? (integer)0 : moves;
     }
-#if ENDS
-    t->inside = stops ? (integer)0 : t->inside;
-    t->stopped |= stops;
-    moves = stops ? (integer)0 : moves;
-#endif
+    if (s->v->has.x)
+    {
+      t->inside = stops ? (integer)0 : t->inside;
+      t->stopped |= stops;
+      moves = stops ? (integer)0 : moves;
+    }
     const real end = depth_of(t->at, s->v, spacing);
     cross_sample(met, time * pace, start, end - start, enough, l, half_way);
     start = end;
@@ -240,7 +242,7 @@ __attribute__((always_inline)) inline int go_straight(const surroundings* s, con
 {
   const int4 size = s->v->size;
   const int steps = max(min(ahead.steps, (int)ceil(most_lanes(packet->length / step))), 1);
-  if (!SKIP_BRICKS || !ahead.empty)
+  if (!ahead.empty || !s->v->has.w)
   {
     const real soon = step_length(packet->direction, 5.0f);
     const real3 towards = stretched(packet->direction, s->o->spacing);
@@ -290,11 +292,13 @@ __attribute__((always_inline)) inline void march(
     packet.entry = t->at;
     packet.direction = divided(t->velocity, sqrt(greater(product(world, world), (real)1e-30f)));
     packet.length = done ? (real)0.0f : time_to_face(t->at, packet.direction, size);
-#if ENDS
-    const real to_end = time_to_end(t, packet.direction, s);
-    const integer stops = (done == 0) & (to_end <= packet.length);
-    packet.length = lesser(packet.length, to_end);
-#endif
+    integer stops = (integer)0;
+    if (v->has.x)
+    {
+      const real to_end = time_to_end(t, packet.direction, s);
+      stops = (done == 0) & (to_end <= packet.length);
+      packet.length = lesser(packet.length, to_end);
+    }
     const real step = step_length(packet.direction, v->marching.x);
     integer leaves = (integer)-1;
 #if ROUNDS
@@ -316,8 +320,6 @@ __attribute__((always_inline)) inline void march(
     w->forgotten = done ? w->forgotten : (integer)-1;
 #endif
     n += go_straight(s, &packet, step, ahead, done, leaves, t, l, half_way);
-#if ENDS
     t->stopped |= stops & (t->inside == 0);
-#endif
   }
 }

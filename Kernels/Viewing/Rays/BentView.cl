@@ -6,8 +6,6 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-#define PASSES (1 + (SURFACE > 0) + TABLE)
-
 // Starts the rays that wait for a later march; returns false if there are none.
 inline int send_off(const waiting* next, ray_packets* t, light* l)
 {
@@ -15,47 +13,43 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
   t->at = next->at;
   t->velocity = next->velocity;
   t->inside = most_left(*l) > (real)0.0f;
-#if ENDS
   t->end = (real)ENDLESS; // opaque surfaces that end the camera's rays are not known along other rays
   t->stopped = (integer)0;
-#endif
   return any_lane(t->inside);
 }
 
 // bending  see surroundings
 // limits, picture  see View.cl
-__kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
+__kernel void cast_bent_rays(RayPass pass, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const float4* restrict bending,
   __global const char* restrict bricks, __global const float4* restrict backdrop, __global const float* restrict limits,
   __global float* restrict picture)
 {
-  const int column = (get_global_id(0) + v.picture.w) * PACKET_WIDTH;
-  const int row = (get_global_id(1) + v.picture.z) * PACKET_HEIGHT;
-  if (column >= v.picture.x || row >= v.picture.y)
+  const ViewInfo* v = &pass.view;
+  const OpticsInfo* o = &pass.optics;
+  const int column = (get_global_id(0) + v->picture.w) * PACKET_WIDTH;
+  const int row = (get_global_id(1) + v->picture.z) * PACKET_HEIGHT;
+  if (column >= v->picture.x || row >= v->picture.y)
   {
     return;
   }
-  const surroundings s = { &v, &o, { samples, extinctions, flow, glow, cosines, phase_rows, v.phase }, bending,
-    bricks };
+  const surroundings s = { v, o, { samples, extinctions, flow, glow, cosines, phase_rows, v->phase }, bending, bricks };
   seeing to;
-#if ENDS
-  const real end = ends_of(&v, limits, column, row);
-#else
-  const real end = (real)ENDLESS;
-#endif
-  ray_packets t = enter(&s, rays_through(&v, column, row), end, &to.entrySquare);
+  const real end = v->has.x ? ends_of(v, limits, column, row) : (real)ENDLESS;
+  const int marches = 1 + (SURFACE > 0) + o->face.w;
+  ray_packets t = enter(&s, rays_through(v, column, row), end, &to.entrySquare);
   to.l = unlit((real)1.0f);
   const waiting nothing = { t.at, t.velocity, unlit((real)0.0f).left };
   to.mirrored = nothing;
   watch w = { (integer)0, (real)0.0f, (real)0.0f, (integer)-1, nothing };
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
-  for (int pass = 0; pass < PASSES; ++pass)
+  for (int turn = 0; turn < marches; ++turn)
   {
-    if (pass > 0)
+    if (turn > 0)
     {
-      const waiting next = SURFACE && pass == 1 ? w.reflected : to.mirrored;
+      const waiting next = SURFACE && turn == 1 ? w.reflected : to.mirrored;
       if (!send_off(&next, &t, &to.l))
       {
         continue;
@@ -64,10 +58,10 @@ __kernel void cast_bent_rays(ViewInfo v, OpticsInfo o, __global const float4* re
     }
     const integer set_off = t.inside;
     march(&s, &t, &to.l, &half_way, &w);
-    arrive(&s, &t, (integer)-1, set_off, (integer)(pass == 0 ? -1 : 0), backdrop, &half_way, &to);
+    arrive(&s, &t, (integer)-1, set_off, (integer)(turn == 0 ? -1 : 0), backdrop, &half_way, &to);
   }
   to.l.radiance.r *= to.entrySquare;
   to.l.radiance.g *= to.entrySquare;
   to.l.radiance.b *= to.entrySquare;
-  paint(&v, picture, column, row, to.l.radiance, (real)1.0f - to.left, to.depth);
+  paint(v, picture, column, row, to.l.radiance, (real)1.0f - to.left, to.depth);
 }

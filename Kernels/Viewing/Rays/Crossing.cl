@@ -162,7 +162,7 @@ inline void add_background(rgb behind, real part, light* l)
 #endif
 }
 
-// Adds the surface light (SurfaceLight.cl), multiplied by 1 - transmittance of the ray.
+// Adds the surface light (Backdrop.cl), multiplied by 1 - transmittance of the ray.
 inline void add_surface_light(rgb missing, light* l)
 {
 #if COLOURED

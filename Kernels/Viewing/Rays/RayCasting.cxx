@@ -85,6 +85,7 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const GridBlock* block) const
     view.size = view.block.whole;
   }
   view.bricks = Int4(this->Samples.BrickCount());
+  view.has.s[3] = traits.SkipsBricks(settings);
   view.phase = traits.phase.parameters;
   return view;
 }
@@ -105,7 +106,7 @@ OpticsInfo RayCasting::OpticsOf() const
   optics.spacing = Float4(Vector(grid.spacing), 0.0);
   optics.surface = Float4({ index * index, settings.surfaceReflectance, VoxelsBesideSurface }, 0.0);
   optics.table = Float4(Vector(settings.tableColor), settings.tableReflectance);
-  optics.face = Int4({ face / 2, face % 2, FaceSize(grid, face)[0] });
+  optics.face = { { face / 2, face % 2, FaceSize(grid, face)[0], traits.hasTable } };
   optics.flip = { { face / 2 == 0 ? -1.0f : 1.0f, face / 2 == 1 ? -1.0f : 1.0f, face / 2 == 2 ? -1.0f : 1.0f, 0.0f } };
   optics.limits = Int4({ static_cast<int>(std::min(1e9, std::ceil(RoundsAtMost * edges / settings.stepSize))),
     static_cast<int>(std::clamp(BentStretch / settings.stepSize, 1.0, 1e3)),
@@ -118,9 +119,9 @@ OpticsInfo RayCasting::OpticsOf() const
   return optics;
 }
 
-RayCasting::Pass RayCasting::PassOf(const Camera& camera, const GridBlock* block, bool sharp) const
+RayPass RayCasting::PassOf(const Camera& camera, const GridBlock* block, bool sharp) const
 {
-  Pass pass = { this->ViewOf(camera, block), this->OpticsOf() };
+  RayPass pass = { this->ViewOf(camera, block), this->OpticsOf() };
   this->Behind.Describe(this->Settings, sharp, pass.view);
   if (this->Traits.ShowsMoments() && sharp == this->Behind.IsSky())
   {
@@ -141,18 +142,15 @@ std::string RayCasting::Options(const std::string& ofKernel) const
   // Largest optical length of a step; up to 2 the kernel uses a faster formula. Bent steps can be slightly longer.
   const double longest = traits.largestSigmaT * settings.stepSize *
     *std::max_element(traits.grid.spacing.begin(), traits.grid.spacing.end());
-  return traits.PacketOptions() + Define("SKIP_BRICKS", traits.SkipsBricks(settings)) +
-    Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) + Define("GLOW", traits.GlowsApart()) +
-    traits.PhaseOptions(traits.knowsFlow) + StepOption(LongestSteps(traits.grid, settings.stepSize)) +
-    this->Samples.ShownOptions() + ofKernel;
+  return traits.PacketOptions() + Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) +
+    Define("GLOW", traits.GlowsApart()) + traits.PhaseOptions(traits.knowsFlow) +
+    StepOption(LongestSteps(traits.grid, settings.stepSize)) + this->Samples.ShownOptions() + ofKernel;
 }
 
 std::string RayCasting::BentOptions(bool rounds) const
 {
   const int surface = this->Traits.Reflects(this->Settings) ? static_cast<int>(this->Settings.surfaceReflection) : 0;
-  return this->Options(Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) +
-    Define("TABLE", this->Traits.hasTable) + Define("ENDS", !rounds && this->Limits.Size() > 0) +
-    Define("ROUNDS", rounds));
+  return this->Options(Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) + Define("ROUNDS", rounds));
 }
 
 cl::Kernel RayCasting::Kernel(bool ofBlock) const
@@ -162,21 +160,12 @@ cl::Kernel RayCasting::Kernel(bool ofBlock) const
     : this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView, this->BentOptions(false));
 }
 
-Picture RayCasting::Cast(const Pass& pass, const std::vector<float>& ends, const std::vector<float>& starts,
-  double from, double to, const Monitor& monitor)
+/// Allocates the picture, and uploads what ends rays or is in front of them; buffers of the same size are reused.
+void RayCasting::Reserve(std::size_t values, const std::vector<float>& ends, const std::vector<float>& starts)
 {
-  ViewInfo view = pass.view;
-  const bool ofBlock = view.block.whole.s[0] > 0, hasMissing = ofBlock && this->Behind.HasSurfaceLight();
-  const std::size_t pixels = Count(view.picture.s[0]) * Count(view.picture.s[1]);
-  if (!ends.empty() && ends.size() != pixels)
+  if (this->Pixels.Size() != values)
   {
-    throw InvalidInput("There are ends of " + std::to_string(ends.size()) + " rays for a picture of " +
-      std::to_string(pixels) + " pixels.");
-  }
-  const std::size_t values = 5 + (ofBlock ? 3 : 0) + (hasMissing ? 3 : 0); // see View.cl
-  if (this->Pixels.Size() != values * pixels)
-  {
-    this->Pixels = Buffer<float>(this->TheDevice, values * pixels, "the picture");
+    this->Pixels = Buffer<float>(this->TheDevice, values, "the picture");
   }
   std::vector<float> limits = ends;
   limits.insert(limits.end(), starts.begin(), starts.end());
@@ -185,8 +174,44 @@ Picture RayCasting::Cast(const Pass& pass, const std::vector<float>& ends, const
     this->Limits = Buffer<float>(this->TheDevice, limits.size(), "where rays end");
   }
   this->Limits.Write(limits.data());
-  view.has = { { !ends.empty(), !starts.empty(), this->Behind.HasSurfaceLight(), 0 } };
+}
 
+/// @param missing  whether the picture has surface light
+Picture RayCasting::Read(const ViewInfo& view, bool missing) const
+{
+  Picture picture;
+  picture.width = view.picture.s[0];
+  picture.height = view.picture.s[1];
+  picture.farDepth = view.marching.s[2];
+  this->Pixels.ReadInPlace([&](const float* next) {
+    const auto take = [&](int each) {
+      const float* const begin = next;
+      next += Count(each) * Count(picture.width) * Count(picture.height);
+      return std::vector<float>(begin, next);
+    };
+    picture.radiance = take(3);
+    picture.alpha = take(1);
+    picture.depth = take(1);
+    picture.transmittance = view.block.whole.s[0] > 0 ? take(3) : std::vector<float>();
+    picture.sceneTransmittance = picture.transmittance;
+    picture.missing = missing ? take(3) : std::vector<float>();
+  });
+  return picture;
+}
+
+Picture RayCasting::Cast(RayPass pass, const std::vector<float>& ends, const std::vector<float>& starts, double from,
+  double to, const Monitor& monitor)
+{
+  ViewInfo& view = pass.view;
+  const bool ofBlock = view.block.whole.s[0] > 0, hasMissing = ofBlock && this->Behind.HasSurfaceLight();
+  const std::size_t pixels = Count(view.picture.s[0]) * Count(view.picture.s[1]);
+  Require(ends.empty() || ends.size() == pixels,
+    "There are ends of " + std::to_string(ends.size()) + " rays for a picture of " + std::to_string(pixels) +
+      " pixels.");
+  this->Reserve((5 + (ofBlock ? 3 : 0) + (hasMissing ? 3 : 0)) * pixels, ends, starts); // see View.cl
+  view.has.s[0] = !ends.empty();
+  view.has.s[1] = !starts.empty();
+  view.has.s[2] = this->Behind.HasSurfaceLight();
   const PackedSamples& s = this->Samples;
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
   cl::Kernel cast = this->Kernel(ofBlock);
@@ -206,33 +231,15 @@ Picture RayCasting::Cast(const Pass& pass, const std::vector<float>& ends, const
     }
     else
     {
-      With(cast, view, pass.optics, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(),
-        this->Scene.phaseRows, s.Bending(), s.Bricks(), this->Behind.Tables(), this->Limits, this->Pixels);
+      With(cast, pass, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows,
+        s.Bending(), s.Bricks(), this->Behind.Tables(), this->Limits, this->Pixels);
     }
     this->TheDevice.Queue().enqueueNDRangeKernel(
       cast, cl::NullRange, cl::NDRange(part.columns * group, part.rows * group), cl::NDRange(group, group));
   };
   InBatches(this->TheDevice, BatchesOfRows(rows, across, samples, from, to), monitor,
     [&](std::size_t first, std::size_t count) { InPatches(first, count, across, launch); });
-
-  Picture picture;
-  picture.width = view.picture.s[0];
-  picture.height = view.picture.s[1];
-  picture.farDepth = view.marching.s[2];
-  this->Pixels.ReadInPlace([&](const float* next) {
-    const auto take = [&](int each) {
-      const float* const begin = next;
-      next += Count(each) * pixels;
-      return std::vector<float>(begin, next);
-    };
-    picture.radiance = take(3);
-    picture.alpha = take(1);
-    picture.depth = take(1);
-    picture.transmittance = ofBlock ? take(3) : std::vector<float>();
-    picture.sceneTransmittance = picture.transmittance;
-    picture.missing = hasMissing ? take(3) : std::vector<float>();
-  });
-  return picture;
+  return this->Read(view, hasMissing);
 }
 
 /// Largest number of rays that are split off one ray while it is in a block.
@@ -248,9 +255,9 @@ std::size_t RayCasting::CountThatFits() const
   return std::max<std::size_t>((limit - std::min(taken, limit)) / (4 * kinds * kinds * sizeof(RayOnItsWay)), 1);
 }
 
-std::vector<RayOnItsWay> RayCasting::Start(const Pass& pass, const PixelRows& asked) const
+std::vector<RayOnItsWay> RayCasting::Start(RayPass pass, const PixelRows& asked) const
 {
-  ViewInfo view = pass.view;
+  ViewInfo& view = pass.view;
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
   cl::Kernel start = this->TheDevice.Kernel("start_rays", kernel_source::RayRounds, this->BentOptions(true));
   const std::size_t width = Count(view.picture.s[0]), end = Count(asked.end);
@@ -262,7 +269,7 @@ std::vector<RayOnItsWay> RayCasting::Start(const Pass& pass, const PixelRows& as
   {
     const std::size_t count = std::min(rows, end - row);
     view.picture.s[2] = static_cast<int>(row);
-    With(start, view, pass.optics, this->Samples.Bending(), started);
+    With(start, pass, this->Samples.Bending(), started);
     this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange,
       cl::NDRange(RoundUp<std::size_t>(width, 4 * Count(packet[0])) / Count(packet[0]),
         RoundUp<std::size_t>(count, Count(packet[1])) / Count(packet[1])),
@@ -274,10 +281,9 @@ std::vector<RayOnItsWay> RayCasting::Start(const Pass& pass, const PixelRows& as
   return all;
 }
 
-std::vector<RayOnItsWay> RayCasting::March(
-  const Pass& pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const
+std::vector<RayOnItsWay> RayCasting::March(RayPass pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const
 {
-  ViewInfo view = pass.view;
+  ViewInfo& view = pass.view;
   const PackedSamples& s = this->Samples;
   cl::Kernel march = this->TheDevice.Kernel("march_rays", kernel_source::RayRounds, this->BentOptions(true));
   const std::size_t width = Count(this->Traits.packetWidth);
@@ -290,8 +296,8 @@ std::vector<RayOnItsWay> RayCasting::March(
   batches.growth = 8.0;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t first, std::size_t count) {
     view.range = Int4({ static_cast<int>(first), static_cast<int>(first + count), 0 });
-    With(march, view, pass.optics, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows,
-      s.Bending(), s.Bricks(), this->Behind.Tables(), onDevice, born);
+    With(march, pass, s.Samples(), s.Extinctions(), s.Flow(), s.Glow(), s.Cosines(), this->Scene.phaseRows, s.Bending(),
+      s.Bricks(), this->Behind.Tables(), onDevice, born);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       march, cl::NullRange, cl::NDRange(RoundUp<std::size_t>(count, 4 * width) / width), cl::NDRange(4));
   });

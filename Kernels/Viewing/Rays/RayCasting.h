@@ -29,13 +29,6 @@ struct PixelRows
 class RayCasting
 {
 public:
-  /// Kernel parameters of a picture, or of one of the two passes of a picture of angular moments.
-  struct Pass
-  {
-    ViewInfo view;
-    OpticsInfo optics;
-  };
-
   /// All arguments must outlive this object.
   /// @param part  the medium's place in a larger grid; null: the medium is the whole domain
   RayCasting(Device& device, const SceneOnDevice& scene, const PackedSamples& samples, const Backdrop& backdrop,
@@ -55,15 +48,15 @@ public:
   /// @param sharp  the pass for unscattered light, which alone shows a sharp background, and which gives the picture's
   ///   alpha and depth (numerics.md, section 14.7)
   /// @throws InvalidInput for a degenerate camera or one too far away
-  Pass PassOf(const Camera& camera, const GridBlock* block, bool sharp) const;
+  RayPass PassOf(const Camera& camera, const GridBlock* block, bool sharp) const;
 
   /// Renders a picture from the current samples.
   /// @param ends    depths at which rays end (MediumRayCaster::Render)
   /// @param starts  transmittance of the blocks in front, 3 per pixel; empty: 1
   /// @param from, to  progress that is reported at the begin and the end, in [0, 1]
   /// @throws InvalidInput if `ends` does not have one value per pixel; DeviceError if memory does not suffice; Aborted
-  Picture Cast(const Pass& pass, const std::vector<float>& ends, const std::vector<float>& starts, double from,
-    double to, const Monitor& monitor);
+  Picture Cast(RayPass pass, const std::vector<float>& ends, const std::vector<float>& starts, double from, double to,
+    const Monitor& monitor);
 
   // For bent rays, and rays that meet a table or a surface, through a block of a larger grid: they travel from block to
   // block.
@@ -73,17 +66,19 @@ public:
   /// @param rows  rows up to the picture's end, or a multiple of four rows
   /// @return the rays through these pixels that enter the domain in this block, or that miss it and show the background
   ///   here
-  std::vector<RayOnItsWay> Start(const Pass& pass, const PixelRows& rows) const;
+  std::vector<RayOnItsWay> Start(RayPass pass, const PixelRows& rows) const;
   /// Marches each ray to the block's boundary or to its end.
   /// @return rays that were split off on the way
   /// @throws Aborted
-  std::vector<RayOnItsWay> March(const Pass& pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
+  std::vector<RayOnItsWay> March(RayPass pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
 
 private:
   ViewInfo ViewOf(const Camera& camera, const GridBlock* block) const;
   OpticsInfo OpticsOf() const;
   std::string Options(const std::string& ofKernel) const;
   std::string BentOptions(bool rounds) const;
+  void Reserve(std::size_t values, const std::vector<float>& ends, const std::vector<float>& starts);
+  Picture Read(const ViewInfo& view, bool missing) const;
   std::size_t MostSplitOff() const;
   cl::Kernel Kernel(bool ofBlock) const;
 

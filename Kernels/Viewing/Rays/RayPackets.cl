@@ -18,10 +18,8 @@ typedef struct
 #if ROUNDS
   integer steps; // number of steps so far
 #endif
-#if ENDS
-  real end;        // depth at which they end
+  real end;        // depth at which they end; ENDLESS: they do not
   integer stopped; // they have ended there
-#endif
 } ray_packets;
 
 // Rays that are marched later; lanes with zero transmittance hold no ray.
@@ -71,7 +69,9 @@ inline real3 kept_within(real3 p, int4 size)
 #define INDEX_FIRST(s) (s)->o->knownFirst
 #else
 #define SAMPLES_SIZE(s) (s)->v->size
+#define SAMPLES_FIRST(s) (int4)(0)
 #define INDEX_SIZE(s) (s)->v->size
+#define INDEX_FIRST(s) (int4)(0)
 #endif
 
 #if ROUNDS
@@ -106,25 +106,16 @@ inline integer is_own(const surroundings* s, real3 p)
 #define in_block(s, p) (p)
 #endif
 
-inline void corners_of_samples(const surroundings* s, real3 p, corners* at)
+// Finds the corners around points in arrays that begin at voxel `first` of the whole grid.
+inline void corners_in(real3 p, int4 first, int4 size, corners* at)
 {
 #if ROUNDS
-  const int4 first = SAMPLES_FIRST(s), size = SAMPLES_SIZE(s);
-  find_corners_from(kept_in_array(p, first, size), first, size, at);
-#else
-  find_corners(p, SAMPLES_SIZE(s), at);
+  p = kept_in_array(p, first, size);
 #endif
+  find_corners_from(p, first, size, at);
 }
-
-inline void corners_of_index(const surroundings* s, real3 p, corners* at)
-{
-#if ROUNDS
-  const int4 first = INDEX_FIRST(s), size = INDEX_SIZE(s);
-  find_corners_from(kept_in_array(p, first, size), first, size, at);
-#else
-  find_corners(p, INDEX_SIZE(s), at);
-#endif
-}
+#define corners_of_samples(s, p, at) corners_in(p, SAMPLES_FIRST(s), SAMPLES_SIZE(s), at)
+#define corners_of_index(s, p, at) corners_in(p, INDEX_FIRST(s), INDEX_SIZE(s), at)
 
 inline real3 stretched(real3 p, float4 by)
 {
@@ -192,7 +183,6 @@ inline real depth_of(real3 p, const ViewInfo* v, float4 spacing)
   return product(from_eye, forward);
 }
 
-#if ENDS
 // Time until each ray, continued in a straight line, reaches its end.
 inline real time_to_end(const ray_packets* t, real3 velocity, const surroundings* s)
 {
@@ -201,7 +191,6 @@ inline real time_to_end(const ray_packets* t, real3 velocity, const surroundings
   const real gap = greater(t->end - depth_of(t->at, s->v, s->o->spacing), (real)0.0f);
   return pace > (real)1e-20f ? gap / pace : (real)ENDLESS;
 }
-#endif
 
 #if BENDS
 inline real index_at(const surroundings* s, real3 p, real3* bend)

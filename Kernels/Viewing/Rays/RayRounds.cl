@@ -11,7 +11,7 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-#define BORN ((SURFACE > 0) + TABLE) // largest number of rays that are split off one ray
+#define BORN(s) ((SURFACE > 0) + (s)->o->face.w) // largest number of rays that are split off one ray
 
 // State of a ray that sets off: the caller sets `pixel`, `where`, `at`, `velocity` and `left`.
 inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, float entry_square, float far_depth)
@@ -30,11 +30,15 @@ inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, flo
   ray->depth = far_depth;
 }
 
-// Three components of each lane of a real3, into an array of a ray.
+// Three components of a lane of a real3, into an array of a ray and back.
 #define STORE_TRIPLE(array, from, n) \
   ray->array[0] = LANE((from).x, n); \
   ray->array[1] = LANE((from).y, n); \
   ray->array[2] = LANE((from).z, n);
+#define LOAD_TRIPLE(to, array, n)  \
+  LANE((to).x, n) = ray->array[0]; \
+  LANE((to).y, n) = ray->array[1]; \
+  LANE((to).z, n) = ray->array[2];
 #define STORE_VOXEL(from, n)              \
   ray->where[0] = (int)LANE((from).x, n); \
   ray->where[1] = (int)LANE((from).y, n); \
@@ -42,33 +46,34 @@ inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, flo
 
 // Starts the rays through pixels that enter the domain in this block, or that miss it while this block shows the
 // background to them; for other pixels there is no ray (pixel -1). A work-item is a packet of pixels in rows from
-// v.picture.z on.
+// pass.view.picture.z on.
 //   rays  one for each pixel of these rows
-__kernel void start_rays(
-  ViewInfo v, OpticsInfo o, __global const float4* restrict bending, __global RayOnItsWay* restrict rays)
+__kernel void start_rays(RayPass pass, __global const float4* restrict bending, __global RayOnItsWay* restrict rays)
 {
+  const ViewInfo* v = &pass.view;
+  const OpticsInfo* o = &pass.optics;
   const int column = get_global_id(0) * PACKET_WIDTH;
-  const int row = get_global_id(1) * PACKET_HEIGHT + v.picture.z;
-  if (column >= v.picture.x || row >= v.picture.y)
+  const int row = get_global_id(1) * PACKET_HEIGHT + v->picture.z;
+  if (column >= v->picture.x || row >= v->picture.y)
   {
     return;
   }
-  const surroundings s = { &v, &o, { 0, 0, 0, 0, 0, 0, v.phase }, bending, 0 };
+  const surroundings s = { v, o, { 0, 0, 0, 0, 0, 0, v->phase }, bending, 0 };
   real entry_square;
-  const ray_packets t = enter(&s, rays_through(&v, column, row), (real)ENDLESS, &entry_square);
+  const ray_packets t = enter(&s, rays_through(v, column, row), (real)ENDLESS, &entry_square);
   const integer enters = t.inside != (integer)0;
-  const integer own = enters ? is_own(&s, t.at) : (integer)(v.block.first.w != 0 ? -1 : 0);
-  const integer pixel = pixels_of(&v, column, row), inside = in_picture(&v, column, row);
-#define START(n)                                                                                                 \
-  if (LANE(inside, n))                                                                                           \
-  {                                                                                                              \
-    __global RayOnItsWay* ray = rays + (LANE(pixel, n) - v.picture.z * v.picture.x);                             \
-    ray->pixel = LANE(own, n) ? LANE(pixel, n) : -1;                                                             \
-    set_off(ray, RayIsPrimary, LANE(enters, n) ? RayGoesOn : RayMisses, 0, LANE(entry_square, n), v.marching.z); \
-    STORE_VOXEL(t.at, n)                                                                                         \
-    STORE_TRIPLE(at, t.at, n)                                                                                    \
-    STORE_TRIPLE(velocity, t.velocity, n)                                                                        \
-    ray->left[0] = ray->left[1] = ray->left[2] = 1.0f;                                                           \
+  const integer own = enters ? is_own(&s, t.at) : (integer)(v->block.first.w != 0 ? -1 : 0);
+  const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);
+#define START(n)                                                                                                  \
+  if (LANE(inside, n))                                                                                            \
+  {                                                                                                               \
+    __global RayOnItsWay* ray = rays + (LANE(pixel, n) - v->picture.z * v->picture.x);                            \
+    ray->pixel = LANE(own, n) ? LANE(pixel, n) : -1;                                                              \
+    set_off(ray, RayIsPrimary, LANE(enters, n) ? RayGoesOn : RayMisses, 0, LANE(entry_square, n), v->marching.z); \
+    STORE_VOXEL(t.at, n)                                                                                          \
+    STORE_TRIPLE(at, t.at, n)                                                                                     \
+    STORE_TRIPLE(velocity, t.velocity, n)                                                                         \
+    ray->left[0] = ray->left[1] = ray->left[2] = 1.0f;                                                            \
   }
   EACH_LANE(START)
 #undef START
@@ -109,12 +114,8 @@ inline arrivals load(__global const RayOnItsWay* rays, int first, int count)
     LANE(a.pixel, n) = ray->pixel;                                          \
     LANE(a.kind, n) = ray->kind;                                            \
     LANE(a.state, n) = first + 0x##n < count ? ray->state : RayHasEnded;    \
-    LANE(a.t.at.x, n) = ray->at[0];                                         \
-    LANE(a.t.at.y, n) = ray->at[1];                                         \
-    LANE(a.t.at.z, n) = ray->at[2];                                         \
-    LANE(a.t.velocity.x, n) = ray->velocity[0];                             \
-    LANE(a.t.velocity.y, n) = ray->velocity[1];                             \
-    LANE(a.t.velocity.z, n) = ray->velocity[2];                             \
+    LOAD_TRIPLE(a.t.at, at, n)                                              \
+    LOAD_TRIPLE(a.t.velocity, velocity, n)                                  \
     LANE(a.t.steps, n) = ray->steps;                                        \
     LOAD_LEFT(n)                                                            \
     LANE(a.to.l.radiance.r, n) = ray->radiance[0];                          \
@@ -134,6 +135,8 @@ inline arrivals load(__global const RayOnItsWay* rays, int first, int count)
   EACH_LANE(LOAD)
 #undef LOAD
   a.t.inside = a.state == (integer)RayGoesOn;
+  a.t.end = (real)ENDLESS;
+  a.t.stopped = (integer)0;
   a.w.forgotten = a.w.since < (real)0.0f;
   const waiting nothing = { a.t.at, a.t.velocity, unlit((real)0.0f).left };
   a.w.reflected = a.to.mirrored = nothing;
@@ -174,7 +177,7 @@ inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, i
 }
 
 // Stores the rays that were split off from a packet; pixel -1 where a split-off ray carries no light.
-//   slot  index among the BORN rays of each ray
+//   slot  index among the rays split off each ray
 inline void store_born(const surroundings* s, const arrivals* a, const waiting* born, int kind, int slot,
   __global RayOnItsWay* rays, int first, int count)
 {
@@ -188,7 +191,7 @@ inline void store_born(const surroundings* s, const arrivals* a, const waiting* 
 #define STORE(n)                                                                     \
   if (first + 0x##n < count)                                                         \
   {                                                                                  \
-    __global RayOnItsWay* ray = rays + BORN * (first + 0x##n) + slot;                \
+    __global RayOnItsWay* ray = rays + BORN(s) * (first + 0x##n) + slot;             \
     ray->pixel = LANE(shines, n) ? LANE(a->pixel, n) : -1;                           \
     set_off(ray, kind, RayGoesOn, -1, LANE(a->to.entrySquare, n), s->v->marching.z); \
     STORE_VOXEL(where, n)                                                            \
@@ -200,40 +203,42 @@ inline void store_born(const surroundings* s, const arrivals* a, const waiting* 
 #undef STORE
 }
 
-// Marches the rays [v.range.x, v.range.y) up to the block's boundary or their end. A work-item is a packet of rays.
+// Marches the rays [range.x, range.y) of the view up to the block's boundary or their end. A work-item is a packet of
+// rays.
 //   born  receives BORN rays per ray, see store_born
-__kernel void march_rays(ViewInfo v, OpticsInfo o, __global const float4* restrict samples,
+__kernel void march_rays(RayPass pass, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
   __global const float* restrict phase_rows, __global const float4* restrict bending,
   __global const char* restrict bricks, __global const float4* restrict backdrop, __global RayOnItsWay* restrict rays,
   __global RayOnItsWay* restrict born)
 {
-  const int own = v.range.x + get_global_id(0) * REAL_WIDTH;
-  if (own >= v.range.y)
+  const ViewInfo* v = &pass.view;
+  const OpticsInfo* o = &pass.optics;
+  const int own = v->range.x + get_global_id(0) * REAL_WIDTH;
+  if (own >= v->range.y)
   {
     return;
   }
-  const surroundings s = { &v, &o, { samples, extinctions, flow, glow, cosines, phase_rows, v.phase }, bending,
-    bricks };
-  arrivals a = load(rays, own, v.range.y);
+  const surroundings s = { v, o, { samples, extinctions, flow, glow, cosines, phase_rows, v->phase }, bending, bricks };
+  arrivals a = load(rays, own, v->range.y);
   const integer was_inside = (a.state == (integer)RayGoesOn) | (a.state == (integer)RayIsOut);
   const integer misses = a.state == (integer)RayMisses;
   march(&s, &a.t, &a.to.l, &a.half_way, &a.w);
 
-  const integer spent = a.t.inside & ((most_left(a.to.l) <= (real)v.marching.y) | (a.t.steps >= (integer)o.limits.x));
+  const integer spent = a.t.inside & ((most_left(a.to.l) <= (real)v->marching.y) | (a.t.steps >= (integer)o->limits.x));
   const integer out = was_inside & (a.t.inside == 0);
   const integer ends = spent | (out & is_own(&s, a.t.at)) | misses;
   arrive(&s, &a.t, ends, was_inside, a.kind == (integer)RayIsPrimary, backdrop, &a.half_way, &a.to);
   const integer ended = ends | (a.state == (integer)RayHasEnded);
   a.state = ended ? (integer)RayHasEnded : out ? (integer)RayIsOut : (integer)RayGoesOn;
-  store(&a, middle_of_next(&s, &a.t), rays, own, v.range.y);
+  store(&a, middle_of_next(&s, &a.t), rays, own, v->range.y);
   if (SURFACE)
   {
-    store_born(&s, &a, &a.w.reflected, RayIsReflected, 0, born, own, v.range.y);
+    store_born(&s, &a, &a.w.reflected, RayIsReflected, 0, born, own, v->range.y);
   }
-  if (TABLE)
+  if (o->face.w)
   {
-    store_born(&s, &a, &a.to.mirrored, RayIsMirrored, BORN - 1, born, own, v.range.y);
+    store_born(&s, &a, &a.to.mirrored, RayIsMirrored, BORN(&s) - 1, born, own, v->range.y);
   }
 }

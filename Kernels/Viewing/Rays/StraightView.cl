@@ -1,8 +1,7 @@
 // Primary rays through a medium of constant index, one work-item per packet of neighbouring pixels.
 //
 // The host gives
-//   SKIP_BRICKS  1: rays skip bricks without extinction or emission
-//   BLOCK        1: the medium is a block of a larger grid
+//   BLOCK  1: the medium is a block of a larger grid
 
 #include "Viewing/Backdrop/Backdrop.cl"
 #include "Viewing/Rays/Crossing.cl"
@@ -59,19 +58,19 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
     {
       break;
     }
-    int ahead_steps = BrickEdge;
-    if (SKIP_BRICKS)
+    int stop = n + BrickEdge;
+    if (v.has.w)
     {
       const stretch ahead =
         stretch_ahead(bricks, v.bricks, along(packet, fma(step, (real)0.5f, so_far)), strides, done);
-      ahead_steps = ahead.steps;
+      stop = n + ahead.steps;
       if (ahead.empty)
       {
-        n += ahead_steps;
+        n = stop;
         continue;
       }
     }
-    const int stop = min(n + ahead_steps, steps);
+    stop = min(stop, steps);
     for (; n < stop; ++n)
     {
       // Sampling does not depend on the transmittance so far, so that it overlaps the previous step.

@@ -14,6 +14,10 @@
 static int is_filled(
   int place, __global const float4* samples, __global const float4* extinctions, __global const float4* glow)
 {
+  if (place < 0)
+  {
+    return 0;
+  }
 #if GREY
   int filled = any(samples[place].xy != (float2)(0.0f));
 #else
@@ -28,44 +32,22 @@ static int is_filled(
   return filled;
 }
 
+// Index of a sample, given its position in the grid with its border; -1 if it belongs to a record without voxels.
+//   records  with BRICKED: index of the first sample of each brick's record
+static int place_of(int x, int y, int z, int4 size, __global const int* records)
+{
+#if BRICKED
+  const int i = min(x, size.x) / BrickEdge, j = min(y, size.y) / BrickEdge, k = min(z, size.z) / BrickEdge;
+  const int first = records[(k * (size.y / BrickEdge + 1) + j) * (size.x / BrickEdge + 1) + i];
+  const int row = (z - k * BrickEdge) * SAMPLE_ROWS + min(y - j * BrickEdge, SAMPLE_ROWS - 1);
+  return first == 0 ? -1 : first + row * SampleEdge + x - i * BrickEdge;
+#else
+  return z * SLICE_LENGTH(size) + y * ROW_LENGTH(size) + x;
+#endif
+}
+
 // Classifies each brick: 1 if it is empty, -1 if it, or a neighbouring sample that is interpolated into it, has
 // extinction or a source, 0 with BENDS if rays bend in it. Bricks that are not `seen` (ViewTraits.h) are empty.
-#if BRICKED
-// find_empty_bricks for samples stored in bricks. The samples around a brick of voxels are those in the record of the
-// same number, and the first two along an axis of the next record.
-__kernel void find_empty_bricks(PackInfo info, __global const float4* restrict samples,
-  __global const float4* restrict extinctions, __global const float4* restrict glow,
-  __global const float4* restrict bending, __global const uchar* restrict seen, __global const int* restrict records,
-  __global char* restrict bricks)
-{
-  const int4 size = info.size, brick_count = info.bricks;
-  const int i = get_global_id(0), j = get_global_id(1), k = get_global_id(2);
-  if (i >= brick_count.x)
-  {
-    return;
-  }
-  const int brick = (k * brick_count.y + j) * brick_count.x + i;
-  const int nx = size.x / BrickEdge + 1, ny = size.y / BrickEdge + 1, nz = size.z / BrickEdge + 1;
-  int filled = 0;
-  for (int corner = 0; corner < 8 && seen[brick] && !filled; ++corner)
-  {
-    const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
-    const bool isThere = i + dx < nx && j + dy < ny && k + dz < nz;
-    const int first = isThere ? records[((k + dz) * ny + j + dy) * nx + i + dx] : 0;
-    for (int z = 0; z < (dz ? 2 : SampleEdge) && first != 0 && !filled; ++z)
-    {
-      for (int y = 0; y < (dy ? 2 : SAMPLE_ROWS) && !filled; ++y)
-      {
-        for (int x = 0; x < (dx ? 2 : SampleEdge); ++x)
-        {
-          filled |= is_filled(first + (z * SAMPLE_ROWS + y) * SampleEdge + x, samples, extinctions, glow);
-        }
-      }
-    }
-  }
-  bricks[brick] = filled ? -1 : 1;
-}
-#else
 __kernel void find_empty_bricks(PackInfo info, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict glow,
   __global const float4* restrict bending, __global const uchar* restrict seen, __global const int* restrict records,
@@ -83,8 +65,6 @@ __kernel void find_empty_bricks(PackInfo info, __global const float4* restrict s
     bricks[brick] = 1;
     return;
   }
-  const int row = size.x + 2;
-  const int slice = row * (size.y + 2);
   const int x0 = i * BrickEdge, x1 = min(x0 + BrickEdge + 1, size.x + 1);
   const int y0 = j * BrickEdge, y1 = min(y0 + BrickEdge + 1, size.y + 1);
   const int z0 = k * BrickEdge, z1 = min(z0 + BrickEdge + 1, size.z + 1);
@@ -101,8 +81,7 @@ __kernel void find_empty_bricks(PackInfo info, __global const float4* restrict s
     {
       for (int x = x0; x <= x1; ++x)
       {
-        const int place = z * slice + y * row + x;
-        filled |= is_filled(place, samples, extinctions, glow);
+        filled |= is_filled(place_of(x, y, z, size, records), samples, extinctions, glow);
 #if BENDS
         const int there =
           ((z + info.before.z) * (info.known.y + 2) + y + info.before.y) * (info.known.x + 2) + x + info.before.x;
@@ -114,4 +93,3 @@ __kernel void find_empty_bricks(PackInfo info, __global const float4* restrict s
 #undef LOOK_ON
   bricks[brick] = bends ? 0 : filled ? -1 : 1;
 }
-#endif

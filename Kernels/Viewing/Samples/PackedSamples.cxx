@@ -260,7 +260,7 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
   components.straightOn = this->For == Packing::Unscattered ? 0 : components.straightOn;
   cl::Kernel pack = this->TheDevice.Kernel("pack_shown", kernel_source::ShownSamples,
     traits.SampleOptions() + Define("GLOW", traits.GlowsApart()) + Define("BENDS", bends) +
-      Define("AUREOLE", traits.aureoleChannels > 0) + this->ShownOptions());
+      Define("AUREOLE", traits.moments.aureoleChannels > 0) + this->ShownOptions());
   With(pack, this->InfoOf(components), scene.arrays[0].Handle(), scene.arrays[1].Handle(), scene.arrays[2].Handle(),
     scene.straightOn, diffuse, direct, scene.ior, this->Samples(), this->Extinctions(), this->Flow(), this->Glow(),
     this->SeenGroups);

@@ -103,7 +103,7 @@ private:
   Buffer<cl_float4> Gradients;
   Buffer<cl_char> Distances;
   Buffer<cl_uchar> Seen;                 ///< SeenBricks::seen
-  Buffer<cl_uchar> SeenGroups;           ///< Border.cl
+  Buffer<cl_uchar> SeenGroups;           ///< SampleLayout.cl
   Buffer<cl_int> First, BricksOfRecords; ///< of InBricks
 };
 }

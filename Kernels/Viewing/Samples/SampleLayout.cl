@@ -1,4 +1,4 @@
-// Memory layout of samples: in the order of voxels with a border of one voxel, or in bricks (SampleBricks.h).
+// Memory layout of samples: in the order of voxels with a border of one voxel, or in bricks (SampleBricks).
 
 #pragma once
 #include "Viewing/Scene/ViewShared.h"

@@ -4,7 +4,7 @@
 //   COLOURED  1: extinction differs between red, green and blue; 0: one extinction for all three
 //   GREY      1: the source is the same in all channels too; `samples` then hold source and extinction of a voxel, and
 //             those of the next voxel along y
-//   BRICKED   1: samples are stored in bricks (SampleBricks.h); 0: in the order of voxels
+//   BRICKED   1: samples are stored in bricks (SampleBricks); 0: in the order of voxels
 //   MANY_STEPS 1: rays take so many steps that rounding errors accumulate noticeably
 //
 // Floating-point contraction is off: the compiler would fuse multiply and add in some places only, and two variants of

@@ -86,24 +86,6 @@ static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
     PREFETCH(from->fluence + next * from->info->components.fluence, 0, 3);
   }
 }
-
-static void put_nothing(int place, __global float4* samples, __global float4* extinctions, __global float4* flow,
-  __global float4* glow, __global float4* cosines)
-{
-  samples[place] = (float4)(0.0f);
-#if COLOURED
-  extinctions[place] = (float4)(0.0f);
-#endif
-#if FLOW
-  flow[place] = (float4)(0.0f);
-#endif
-#if FLOW == 3
-  cosines[place] = (float4)(0.0f);
-#endif
-#if GLOW
-  glow[place] = (float4)(0.0f);
-#endif
-}
 #endif
 
 // Packs samples. Voxels that rays do not see (ViewTraits.h) are skipped.
@@ -127,16 +109,13 @@ __kernel void pack_samples(PackInfo info, __global const float* restrict absorpt
 #if BRICKED
   int3 sample;
   const int place = place_in_records();
-  if (!find_sample_in_brick(bricks, size, &sample))
-  {
-    put_nothing(place, samples, extinctions, flow, glow, cosines);
-    return;
-  }
+  const float there = find_sample_in_brick(bricks, size, &sample) ? 1.0f : 0.0f; // record 0 is zero
 #else
   if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))
   {
     return;
   }
+  const float there = 1.0f;
   const int3 sample = sample_of_item();
   const int place = padded_index(size);
 #endif
@@ -151,12 +130,12 @@ __kernel void pack_samples(PackInfo info, __global const float* restrict absorpt
   const int row = sample.y;
   float4 unused, also_unused;
   const float4 next = source_of(&from, row > 0 && row < size.y ? voxel + size.x : voxel, &unused, &also_unused);
-  samples[place] = (float4)(source.x, source.w, next.x, next.w);
+  samples[place] = there * (float4)(source.x, source.w, next.x, next.w);
 #else
-  samples[place] = source;
+  samples[place] = there * source;
 #endif
 #if COLOURED
-  extinctions[place] = sigma_t;
+  extinctions[place] = there * sigma_t;
 #endif
 #if FLOW
   const float3 mean = (float3)(direction[3 * voxel], direction[3 * voxel + 1], direction[3 * voxel + 2]);
@@ -164,17 +143,19 @@ __kernel void pack_samples(PackInfo info, __global const float* restrict absorpt
   const float3 held = mean / fmax(length(mean), 1.0f);
 #if FLOW == 2
   const float here = info.components.meanCosines ? mean_cosines[voxel] : info.g;
-  flow[place] = (float4)(held * (here * fmin(1.0f, LARGEST_FLOW / fmax(fabs(here) * length(held), 1e-30f))), 0.0f);
+  flow[place] =
+    there * (float4)(held * (here * fmin(1.0f, LARGEST_FLOW / fmax(fabs(here) * length(held), 1e-30f))), 0.0f);
 #else
-  flow[place] = (float4)(held, 0.0f);
+  flow[place] = there * (float4)(held, 0.0f);
 #endif
 #endif
 #if FLOW == 3
-  cosines[place] = (float4)(channel_of(mean_cosines, voxel, info.components.meanCosines, 0),
-    channel_of(mean_cosines, voxel, info.components.meanCosines, 1),
-    channel_of(mean_cosines, voxel, info.components.meanCosines, 2), 0.0f);
+  cosines[place] = there *
+    (float4)(channel_of(mean_cosines, voxel, info.components.meanCosines, 0),
+      channel_of(mean_cosines, voxel, info.components.meanCosines, 1),
+      channel_of(mean_cosines, voxel, info.components.meanCosines, 2), 0.0f);
 #endif
 #if GLOW
-  glow[place] = emitted;
+  glow[place] = there * emitted;
 #endif
 }

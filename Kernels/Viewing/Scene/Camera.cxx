@@ -42,37 +42,21 @@ double TangentOfHalf(double degrees)
 
 std::array<std::array<double, 3>, 3> Axes(const Camera& camera)
 {
-  if (!Finite(camera.position) || !Finite(camera.focalPoint) || !Finite(camera.viewUp))
-  {
-    throw InvalidInput("The camera's position, focal point or view up is not finite.");
-  }
-  if (!camera.parallelProjection && !(camera.viewAngle > 0.0 && camera.viewAngle < 180.0))
-  {
-    throw InvalidInput(
-      "The camera's view angle is " + Text("%g", camera.viewAngle) + " degrees; it must be between 0 and 180.");
-  }
-  if (camera.parallelProjection && !(camera.parallelScale > 0.0 && std::isfinite(camera.parallelScale)))
-  {
-    throw InvalidInput("The camera's parallel scale is " + Text("%g", camera.parallelScale) +
+  Require(Finite(camera.position) && Finite(camera.focalPoint) && Finite(camera.viewUp),
+    "The camera's position, focal point or view up is not finite.");
+  Require(camera.parallelProjection || (camera.viewAngle > 0.0 && camera.viewAngle < 180.0),
+    "The camera's view angle is " + Text("%g", camera.viewAngle) + " degrees; it must be between 0 and 180.");
+  Require(!camera.parallelProjection || (camera.parallelScale > 0.0 && std::isfinite(camera.parallelScale)),
+    "The camera's parallel scale is " + Text("%g", camera.parallelScale) +
       "; it is half the picture's height and must be positive.");
-  }
   const glm::dvec3 view = Scaled(0.5 * Vector(camera.focalPoint) - 0.5 * Vector(camera.position)); // avoids overflow
-  if (view == glm::dvec3(0.0))
-  {
-    throw InvalidInput(
-      "The camera's position and focal point are the same; move one, so that it is clear where it looks.");
-  }
+  Require(view != glm::dvec3(0.0),
+    "The camera's position and focal point are the same; move one, so that it is clear where it looks.");
   const glm::dvec3 forward = glm::normalize(view);
   const glm::dvec3 up = Scaled(Vector(camera.viewUp));
-  if (up == glm::dvec3(0.0))
-  {
-    throw InvalidInput("The camera's view up is zero; say what is upwards in the picture.");
-  }
+  Require(up != glm::dvec3(0.0), "The camera's view up is zero; say what is upwards in the picture.");
   const glm::dvec3 right = glm::cross(forward, up);
-  if (!(glm::length(right) > 1e-9 * glm::length(up)))
-  {
-    throw InvalidInput("The camera's view up is along its view; choose one across it.");
-  }
+  Require(glm::length(right) > 1e-9 * glm::length(up), "The camera's view up is along its view; choose one across it.");
   const glm::dvec3 unitRight = glm::normalize(right);
   const glm::dvec3 upwards = glm::cross(unitRight, forward);
   return { Array(camera.mirrored ? -unitRight : unitRight), Array(upwards), Array(forward) };
@@ -133,18 +117,14 @@ void CheckDistance(const Camera& camera, const Grid& grid)
   for (int axis = 0; axis < 3; ++axis)
   {
     const double away = std::abs(camera.position[axis] - grid.origin[axis]);
-    if (!(away <= FarthestCamera && away / grid.spacing[axis] <= FarthestCamera))
-    {
-      throw InvalidInput("The camera is too far away: " + Text("%g", away) + " from the medium's corner along " +
-        "xyz"[axis] + ", " + Text("%g", away / grid.spacing[axis]) + " voxels; come closer than " +
-        Text("%g", FarthestCamera) + " of both.");
-    }
-    if (camera.parallelProjection && !(camera.parallelScale / grid.spacing[axis] <= FarthestCamera))
-    {
-      throw InvalidInput("The camera's parallel scale is " + Text("%g", camera.parallelScale) + ", " +
+    Require(away <= FarthestCamera && away / grid.spacing[axis] <= FarthestCamera,
+      "The camera is too far away: " + Text("%g", away) + " from the medium's corner along " + "xyz"[axis] + ", " +
+        Text("%g", away / grid.spacing[axis]) + " voxels; come closer than " + Text("%g", FarthestCamera) +
+        " of both.");
+    Require(!camera.parallelProjection || camera.parallelScale / grid.spacing[axis] <= FarthestCamera,
+      "The camera's parallel scale is " + Text("%g", camera.parallelScale) + ", " +
         Text("%g", camera.parallelScale / grid.spacing[axis]) + " voxels along " + "xyz"[axis] +
         "; it may be at most " + Text("%g", FarthestCamera) + " voxels.");
-    }
   }
 }
 }

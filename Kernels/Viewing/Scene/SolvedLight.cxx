@@ -77,11 +77,9 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
   CheckLightField(light.fluenceDirect, "fluence_direct", grid);
   if (light.meanDirection.values)
   {
-    if (light.meanDirection.components != 3)
-    {
-      throw InvalidInput("mean_direction has " + std::to_string(light.meanDirection.components) +
+    Require(light.meanDirection.components == 3,
+      "mean_direction has " + std::to_string(light.meanDirection.components) +
         " components a voxel; a direction has 3.");
-    }
     CheckFinite(light.meanDirection, "mean_direction", grid);
   }
   CheckFaces(light.surface, "surface_radiance", grid);
@@ -92,16 +90,10 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
   {
     CheckFinite(light.scatteredMoments, "scattered_moments", grid);
     CheckLightField(light.straightOn, "straight_on", grid);
-    if (!light.straightOn.values)
-    {
-      throw InvalidInput("straight_on is missing: it belongs to scattered_moments.");
-    }
+    Require(light.straightOn.values, "straight_on is missing: it belongs to scattered_moments.");
   }
-  if (separates && !byMoments && light.fluence.values && !light.fluenceDirect.values)
-  {
-    throw InvalidInput(
-      "fluence_direct is missing: without it, light that scattered once cannot be told from the rest of "
-      "fluence. Let the solver write it, or use neither or both of shadow rays and single scattering only.");
-  }
+  Require(!separates || byMoments || !light.fluence.values || light.fluenceDirect.values,
+    "fluence_direct is missing: without it, light that scattered once cannot be told from the rest of "
+    "fluence. Let the solver write it, or use neither or both of shadow rays and single scattering only.");
 }
 }

@@ -16,45 +16,33 @@ constexpr double MostPixels = 7e8;                     ///< with three values pe
 
 void CheckPart(double part, const char* what)
 {
-  if (!(part >= 0.0 && part <= 1.0))
-  {
-    throw InvalidInput(std::string(what) + " is " + Text("%g", part) + "; it is a part of the light, from 0 to 1.");
-  }
+  Require(part >= 0.0 && part <= 1.0,
+    std::string(what) + " is " + Text("%g", part) + "; it is a part of the light, from 0 to 1.");
 }
 
 void CheckSurface(const ViewSettings& settings)
 {
   const int reflection = static_cast<int>(settings.surfaceReflection);
-  if (reflection < 0 || reflection > 2)
-  {
-    throw InvalidInput(
-      "Surface reflection " + std::to_string(reflection) + " does not exist; use 0 (none), 1 (Fresnel) or 2 (fixed).");
-  }
-  if (settings.surfaceIndex != 0.0 && !(settings.surfaceIndex > 0.0 && std::isfinite(settings.surfaceIndex)))
-  {
-    throw InvalidInput("The refractive index of the surface is " + Text("%g", settings.surfaceIndex) +
+  Require(reflection >= 0 && reflection <= 2,
+    "Surface reflection " + std::to_string(reflection) + " does not exist; use 0 (none), 1 (Fresnel) or 2 (fixed).");
+  Require(settings.surfaceIndex >= 0.0 && std::isfinite(settings.surfaceIndex),
+    "The refractive index of the surface is " + Text("%g", settings.surfaceIndex) +
       "; it must be above 0, or 0 for the middle of the grid's range.");
-  }
   CheckPart(settings.surfaceReflectance, "The surface's reflectance");
 }
 
 void CheckTable(const ViewSettings& settings)
 {
-  if (settings.tableFace < -1 || settings.tableFace > 5)
-  {
-    throw InvalidInput("The table is face " + std::to_string(settings.tableFace) +
+  Require(settings.tableFace >= -1 && settings.tableFace <= 5,
+    "The table is face " + std::to_string(settings.tableFace) +
       " of the box; use 0 to 5 for -x, +x, -y, +y, -z, +z, or -1 for none.");
-  }
   CheckPart(settings.tableReflectance, "The part that the table mirrors");
   for (const double colour : settings.tableColor)
   {
     CheckPart(colour, "A channel of the table's colour");
-    if (colour + settings.tableReflectance > 1.0 + 1e-9)
-    {
-      throw InvalidInput("The table scatters " + Text("%g", colour) + " and mirrors " +
-        Text("%g", settings.tableReflectance) +
+    Require(colour + settings.tableReflectance <= 1.0 + 1e-9,
+      "The table scatters " + Text("%g", colour) + " and mirrors " + Text("%g", settings.tableReflectance) +
         " of the light, together more than all of it; lower its colour or its reflectance.");
-    }
   }
 }
 
@@ -68,46 +56,30 @@ void SetLevel(ViewSettings& settings, double stepSize, int rectangleSamples)
 
 void Check(const ViewSettings& settings)
 {
-  if (settings.imageSize[0] < 1 || settings.imageSize[1] < 1)
-  {
-    throw InvalidInput("The image is " + std::to_string(settings.imageSize[0]) + " by " +
-      std::to_string(settings.imageSize[1]) + " pixels; it needs at least one each way.");
-  }
-  if (static_cast<double>(settings.imageSize[0]) * settings.imageSize[1] > MostPixels)
-  {
-    throw InvalidInput("The image is " + std::to_string(settings.imageSize[0]) + " by " +
-      std::to_string(settings.imageSize[1]) + " pixels; all together they may be at most " + Text("%g", MostPixels) +
-      ".");
-  }
-  if (!(settings.stepSize >= LeastStep && settings.stepSize <= LargestStep))
-  {
-    throw InvalidInput("The step size (StepSize) is " + Text("%g", settings.stepSize) + " voxels; it must be from " +
+  Require(settings.imageSize[0] >= 1 && settings.imageSize[1] >= 1,
+    "The image is " + std::to_string(settings.imageSize[0]) + " by " + std::to_string(settings.imageSize[1]) +
+      " pixels; it needs at least one each way.");
+  Require(static_cast<double>(settings.imageSize[0]) * settings.imageSize[1] <= MostPixels,
+    "The image is " + std::to_string(settings.imageSize[0]) + " by " + std::to_string(settings.imageSize[1]) +
+      " pixels; all together they may be at most " + Text("%g", MostPixels) + ".");
+  Require(settings.stepSize >= LeastStep && settings.stepSize <= LargestStep,
+    "The step size (StepSize) is " + Text("%g", settings.stepSize) + " voxels; it must be from " +
       Text("%g", LeastStep) + " to " + Text("%g", LargestStep) +
       ". Smaller steps than that show nothing more, larger ones miss voxels.");
-  }
   for (const double channel : settings.backgroundColor)
   {
-    if (!(channel >= 0.0 && channel <= LargestRadiance))
-    {
-      throw InvalidInput("A channel of the background (BackgroundRadiance) is " + Text("%g", channel) +
+    Require(channel >= 0.0 && channel <= LargestRadiance,
+      "A channel of the background (BackgroundRadiance) is " + Text("%g", channel) +
         " W/(length^2 sr); it must be from 0 to " + Text("%g", LargestRadiance) + ".");
-    }
   }
   const std::array<int, 5> widths = { 0, 1, 4, 8, 16 };
-  if (std::find(widths.begin(), widths.end(), settings.packetWidth) == widths.end())
-  {
-    throw InvalidInput(
-      "Packets of " + std::to_string(settings.packetWidth) + " rays do not exist; use 0, 1, 4, 8 or 16.");
-  }
-  if (!(settings.minimumTransmittance >= 0.0 && settings.minimumTransmittance < 1.0))
-  {
-    throw InvalidInput("The transmittance at which rays stop is " + Text("%g", settings.minimumTransmittance) +
+  Require(std::find(widths.begin(), widths.end(), settings.packetWidth) != widths.end(),
+    "Packets of " + std::to_string(settings.packetWidth) + " rays do not exist; use 0, 1, 4, 8 or 16.");
+  Require(settings.minimumTransmittance >= 0.0 && settings.minimumTransmittance < 1.0,
+    "The transmittance at which rays stop is " + Text("%g", settings.minimumTransmittance) +
       "; it must be at least 0 and below 1.");
-  }
-  if (settings.shadowRays && settings.rectangleSamples < 1)
-  {
-    throw InvalidInput("A rectangular light needs at least one sample per edge.");
-  }
+  Require(
+    !settings.shadowRays || settings.rectangleSamples >= 1, "A rectangular light needs at least one sample per edge.");
   CheckSurface(settings);
   CheckTable(settings);
 }

@@ -73,7 +73,7 @@ typedef struct
   int4 range;            ///< first ray of a launch and the one after its last, for rays that travel between blocks
   float4 toPicture[3];   ///< rows of the matrix from world axes to the environment's axes
   /// Flags, 1: rays end at a depth given for each pixel; other blocks are in front of this one, whose transmittance is
-  /// given; there is surface light for optically thick voxels.
+  /// given; there is surface light for optically thick voxels; rays skip empty bricks.
   int4 has;
   BlockInfo block;
   PhaseInfo phase;
@@ -85,12 +85,20 @@ typedef struct
   float4 spacing; ///< length per voxel
   float4 surface; ///< n^2 at the surface, reflectance, distance in voxels at which the indices on both sides are taken
   float4 table;   ///< diffuse reflectance of the channels, specular reflectance
-  int4 face;      ///< axis of the table; 1 at its upper and 0 at its lower end; voxels along the rows of this face
-  float4 flip;    ///< factors of a direction's components in a reflection by the table
-  int4 limits;    ///< most steps of a ray, steps of a stretch of the leapfrog, bisections that locate the surface
+  /// axis of the table; 1 at its upper and 0 at its lower end; voxels along the rows of this face; 1: there is a table
+  int4 face;
+  float4 flip; ///< factors of a direction's components in a reflection by the table
+  int4 limits; ///< most steps of a ray, steps of a stretch of the leapfrog, bisections that locate the surface
   // For a block whose rays travel between blocks: the voxels of the whole grid whose gradient of n^2 is stored.
   int4 knownFirst, knownSize;
 } OpticsInfo;
+
+/// Kernel parameters of a picture, or of one of the two passes of a picture of angular moments.
+typedef struct
+{
+  ViewInfo view;
+  OpticsInfo optics;
+} RayPass;
 
 enum
 {

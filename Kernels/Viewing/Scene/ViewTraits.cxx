@@ -212,9 +212,10 @@ void FindMoments(const PhaseOfMedium& phase, const SolvedLight& light, ViewTrait
   {
     return;
   }
-  traits.momentChannels = light.scatteredMoments.components / ((traits.momentDegree + 1) * (traits.momentDegree + 1));
-  traits.straightOnChannels = light.straightOn.components;
-  traits.aureoleChannels = traits.shadowRays && !phase.Varies() ? traits.phase.channels : 0;
+  traits.moments.channels =
+    light.scatteredMoments.components / ((traits.moments.degree + 1) * (traits.moments.degree + 1));
+  traits.moments.straightOnChannels = light.straightOn.components;
+  traits.moments.aureoleChannels = traits.shadowRays && !phase.Varies() ? traits.phase.channels : 0;
 }
 
 /// Removes arrays that the mode does not show.
@@ -260,21 +261,21 @@ ViewTraits ViewTraitsOf(const Medium& medium, const FilledBricks& filled, const 
   traits.index = shared ? shared->index : IndexRangeOf(ior, medium.grid);
   traits.bends = !settings.leaveOut || traits.index.Varies();
   traits.bricks = SeenBricksOf(filled, traits.bends || !traits.SkipsBricks(settings));
-  traits.momentDegree = ShownDegree(light, settings);
+  traits.moments.degree = ShownDegree(light, settings);
   FindMoments(medium.phase, light, traits);
 
   const bool anisotropic = traits.phase.formula != ViewedPhase::Even;
   traits.knowsFlow =
     anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays && !traits.ShowsMoments();
-  traits.coloured = !settings.leaveOut || !traits.medium.greyExtinction || traits.straightOnChannels == 3 ||
+  traits.coloured = !settings.leaveOut || !traits.medium.greyExtinction || traits.moments.straightOnChannels == 3 ||
     (shared && shared->coloured);
   // With directions of the light, single-channel sources do not pay off.
   traits.grey = !traits.coloured && traits.medium.grey && !traits.knowsFlow && !traits.shadowRays &&
     !traits.ShowsMoments() && light.fluence.components == 1 && light.fluenceDirect.components == 1 &&
     (!traits.medium.emits || traits.medium.emission.IsGrey());
-  for (int c = 0; c < traits.aureoleChannels; ++c)
+  for (int c = 0; c < traits.moments.aureoleChannels; ++c)
   {
-    traits.straightOn[c] = shared ? shared->straightOn[c] : LeastStraightOn(medium, light, c);
+    traits.moments.straightOn[c] = shared ? shared->straightOn[c] : LeastStraightOn(medium, light, c);
   }
   traits.sourcesDependOnCamera = (traits.shadowRays && anisotropic) || traits.ShowsMoments();
   traits.components = ComponentsRead(ViewedFields(medium, light), traits);
@@ -304,7 +305,7 @@ ViewedComponents ViewTraits::Components() const
 {
   const std::array<int, 5>& of = this->components;
   return { of[0], of[1], of[2], of[3], of[4], this->ReadsMeanCosines() ? this->phase.channels : 0,
-    this->straightOnChannels, 0 };
+    this->moments.straightOnChannels, 0 };
 }
 
 std::string ViewTraits::PhaseOptions(bool needed) const

@@ -52,6 +52,16 @@ ViewedPhase ViewedPhaseOf(const PhaseOfMedium& phase);
 /// Tables for the formulas Schlick and Rows; empty for others.
 std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase);
 
+/// The light's angular moments, as they are shown.
+struct ShownMoments
+{
+  int degree = -1; ///< -1: moments are not shown
+  int channels = 0, straightOnChannels = 0;
+  int aureoleChannels = 0; ///< channels of the table of repeated forward scattering; 0: none
+  /// smallest fraction of scattering treated as unscattered, per channel
+  std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
+};
+
 /// Features of a scene that pictures depend on: what varies, is coloured or depends on the camera. Determined once;
 /// kernels are compiled for them. Independent of the settings that MediumRayCaster::Adopt changes.
 struct ViewTraits
@@ -71,18 +81,14 @@ struct ViewTraits
   IndexRange index;
   bool bends = false; ///< the refractive index varies
 
-  int momentDegree = -1; ///< degree of the light's angular moments; -1: moments are not shown
-  int momentChannels = 0, straightOnChannels = 0;
-  int aureoleChannels = 0; ///< channels of the table of repeated forward scattering; 0: none
-  bool knowsFlow = false;  ///< the mean direction is known and the phase function is anisotropic
-  bool coloured = false;   ///< extinction differs between the channels
-  /// smallest fraction of scattering treated as unscattered, per channel
-  std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
+  ShownMoments moments;
+  bool knowsFlow = false;             ///< the mean direction is known and the phase function is anisotropic
+  bool coloured = false;              ///< extinction differs between the channels
   bool grey = false;                  ///< neither extinction nor source differ between the channels
   bool sourcesDependOnCamera = false; ///< the light that voxels send depends on the direction to the camera
   std::array<int, 5> components = {}; ///< components of each of ViewedFields on the device; 0: not read
 
-  bool ShowsMoments() const { return this->momentDegree >= 0; }
+  bool ShowsMoments() const { return this->moments.degree >= 0; }
   bool ShowsBeams() const { return this->ShowsMoments() && this->shadowRays; }
   /// Whether emission is packed separately, because it is not multiplied by the phase function.
   bool GlowsApart() const { return (this->knowsFlow || this->ShowsMoments()) && this->components[2] > 0; }

@@ -173,9 +173,10 @@ namespace
 std::vector<float> TablesOfAureole(const Medium& medium, const ViewTraits& traits)
 {
   std::vector<float> tables;
-  for (int c = 0; c < traits.aureoleChannels; ++c)
+  for (int c = 0; c < traits.moments.aureoleChannels; ++c)
   {
-    const std::vector<float> table = AureoleTable(medium.phase.OfChannel(c), traits.straightOn[c], traits.momentDegree);
+    const std::vector<float> table =
+      AureoleTable(medium.phase.OfChannel(c), traits.moments.straightOn[c], traits.moments.degree);
     tables.insert(tables.end(), table.begin(), table.end());
   }
   return tables;
@@ -235,7 +236,8 @@ cl::Kernel SeenSources::Kernel(const char* name) const
   const ViewTraits& traits = this->Traits;
   return this->TheDevice.Kernel(name, kernel_source::ShadowRays,
     traits.PacketOptions() + traits.PhaseOptions(true) +
-      StepOption(LongestSteps(traits.grid, this->Settings.stepSize)) + Define("AUREOLE", traits.aureoleChannels));
+      StepOption(LongestSteps(traits.grid, this->Settings.stepSize)) +
+      Define("AUREOLE", traits.moments.aureoleChannels));
 }
 
 /// Launches a kernel over a box of voxels, a packet of a row each work-item, in batches that can be aborted.
@@ -316,7 +318,7 @@ void SeenSources::SeeMoments(const Camera& camera)
 {
   const ShadowInfo info = this->MakeShadowInfo(camera);
   cl::Kernel see = this->TheDevice.Kernel("see_moments", kernel_source::SeenMoments,
-    Define("DEGREE", this->Traits.momentDegree) + Define("MOMENT_CHANNELS", this->Traits.momentChannels));
+    Define("DEGREE", this->Traits.moments.degree) + Define("MOMENT_CHANNELS", this->Traits.moments.channels));
   With(see, info, this->Scene.moments, this->OfMoments);
   this->TheDevice.Queue().enqueueNDRangeKernel(see, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(info.size.s[0], 8), info.size.s[1], info.size.s[2]), cl::NDRange(8, 1, 1));

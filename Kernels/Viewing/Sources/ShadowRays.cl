@@ -146,7 +146,7 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
 }
 
 #if AUREOLE
-// Value of a table of Aureole.h times the optical length: interpolated over the cosine and the square root of the
+// Value of a table of AureoleTable times the optical length: interpolated over the cosine and the square root of the
 // length.
 inline real aureole_at(real cosine, real depth, __global const float* rows)
 {
