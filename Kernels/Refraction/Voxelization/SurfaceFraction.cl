@@ -67,11 +67,52 @@ inline int side_of(
   return inBefore == inAfter ? turned : inBefore ? 1 : -1;
 }
 
+// A mesh's samples in a slab: `bits` of this mesh, and `claimed` by later ones; `taken`, see refine_counts. claimed and
+// taken are only read with several meshes.
+typedef struct
+{
+  const SampleRows* rows;
+  __global const uint* bits;
+  __global const uint* claimed;
+  __global const ushort2* taken;
+  int samples; // samples in a column
+} mesh_samples;
+
+// The correction, in UNITS per sample, of the voxel (x, index in the slab; -1: none) that a crossing lies in: (x, y).
+//   excess      of the sheet in this column, as in sheet
+//   scale       UNITS of correction per distance; turned: 1, -1 or 0, side of the sheet on which the mesh is
+inline int2 correction_at(
+  const mesh_samples* mesh, const sheet* s, long excess, int across, int up, float scale, int turned)
+{
+  const int number = samples_before(excess, s->step, mesh->samples);
+  // From the sample after the crossing back to the crossing.
+  const long rest = excess - s->tie - number * s->step;
+  const long twice = 2 * rest + s->step; // twice the distance from the border between both samples
+  const int cell = number - (twice < 0 ? 1 : 0);
+  if (rest < -s->step || rest > 0 || cell < 0 || cell >= mesh->samples)
+  {
+    return (int2)(-1, 0);
+  }
+  const int4 voxels = mesh->rows->voxels;
+  const int3 voxel =
+    place(cell / SAMPLES, across / SAMPLES, up / SAMPLES, AXIS) - place(0, 0, mesh->rows->firstVoxel, BIT_AXIS);
+  if (any(voxel < 0) || any(voxel >= voxels.xyz))
+  {
+    return (int2)(-1, 0);
+  }
+  const int index = (voxel.z * voxels.y + voxel.y) * voxels.x + voxel.x;
+  const int3 before = place(number - 1, across, up, AXIS), after = place(number, across, up, AXIS);
+  const int first = number == 0, last = number == mesh->samples;
+  // Hidden crossings still count in voxels that later meshes fill completely.
+  const int counts = !mesh->rows->several || mesh->taken[index].x == SAMPLES_OF_VOXEL ||
+    !is_hidden(mesh->claimed, mesh->rows, before, after, first, last);
+  const int side = counts ? side_of(mesh->bits, mesh->rows, before, after, first, last, turned) : 0;
+  return (int2)(index, side * convert_int_rte(scale * (float)twice));
+}
+
 // Sums the corrections of a slab's voxels.
 //   tiles          as in mark_crossings
-//   samples        samples in a column
-//   bits, claimed  samples inside this mesh, and inside later ones; claimed and taken are only read with several meshes
-//   taken          see refine_counts: hidden crossings still count in voxels that later meshes fill completely
+//   samples, bits, claimed, taken  as in mesh_samples
 //   orientation    1, -1 or 0, see OrientedMesh
 //   corrections    output, one per voxel of the slab, x fastest, in UNITS per sample
 __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
@@ -85,23 +126,16 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
   }
   const uint4 tile = tiles[id];
   sheet s;
-  if (!start_sheet(&s, tile, points, triangles, AXIS, pitch))
-  {
-    return;
-  }
-  const float weight = weight_along(s.normal);
+  const int crosses = start_sheet(&s, tile, points, triangles, AXIS, pitch);
+  const float weight = crosses ? weight_along(s.normal) : 0.0f;
   if (weight < LEAST_WEIGHT)
   {
     return;
   }
+  const mesh_samples mesh = { &rows, bits, claimed, taken, samples };
   const float scale = weight * (0.5f * UNITS) / (float)s.step;
-  const int turned = s.leaving * orientation;
-  const int4 voxels = rows.voxels;
-  const int3 begin = place(0, 0, rows.firstVoxel, BIT_AXIS); // first voxel of the slab
-  const int tileColumns = tile.w >> 16;
-  const int tileRows = tile.w & 0xffff;
-  int target = -1; // voxel of the last crossing; `sum` is its pending correction
-  int sum = 0;
+  const int tileColumns = tile.w >> 16, tileRows = tile.w & 0xffff;
+  int2 sum = (int2)(-1, 0); // voxel of the last crossing, and its pending correction
   for (int j = 0; j < tileRows; ++j)
   {
     long v0 = s.e0.value, v1 = s.e1.value, v2 = s.e2.value, excess = s.excess;
@@ -109,40 +143,16 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
     {
       if ((v0 | v1 | v2) >= 0)
       {
-        const int number = samples_before(excess, s.step, samples);
-        // From the sample after the crossing back to the crossing.
-        const long rest = excess - s.tie - number * s.step;
-        const long twice = 2 * rest + s.step; // twice the distance from the border between both samples
-        const int cell = number - (twice < 0 ? 1 : 0);
-        if (rest >= -s.step && rest <= 0 && cell >= 0 && cell < samples)
+        const int2 here = correction_at(&mesh, &s, excess, tile.y + i, tile.z + j, scale, s.leaving * orientation);
+        if (here.x >= 0 && here.x != sum.x)
         {
-          const int across = (int)tile.y + i;
-          const int up = (int)tile.z + j;
-          const int3 voxel = place(cell / SAMPLES, across / SAMPLES, up / SAMPLES, AXIS) - begin;
-          if (all(voxel >= 0) && all(voxel < voxels.xyz))
+          if (sum.y != 0)
           {
-            const int index = (voxel.z * voxels.y + voxel.y) * voxels.x + voxel.x;
-            const int3 before = place(number - 1, across, up, AXIS);
-            const int3 after = place(number, across, up, AXIS);
-            const int first = number == 0;
-            const int last = number == samples;
-            const int counts = !rows.several || taken[index].x == SAMPLES_OF_VOXEL ||
-              !is_hidden(claimed, &rows, before, after, first, last);
-            if (index != target)
-            {
-              if (sum != 0)
-              {
-                atomic_add(corrections + target, sum);
-              }
-              target = index;
-              sum = 0;
-            }
-            if (counts)
-            {
-              sum += side_of(bits, &rows, before, after, first, last, turned) * convert_int_rte(scale * (float)twice);
-            }
+            atomic_add(corrections + sum.x, sum.y);
           }
+          sum = (int2)(here.x, 0);
         }
+        sum.y += here.y;
       }
       v0 += s.e0.across;
       v1 += s.e1.across;
@@ -151,9 +161,9 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
     }
     next_row(&s);
   }
-  if (sum != 0)
+  if (sum.y != 0)
   {
-    atomic_add(corrections + target, sum);
+    atomic_add(corrections + sum.x, sum.y);
   }
 }
 
