@@ -53,19 +53,6 @@ class BlocksInView : public DeviceTest
 {
 };
 
-TEST_F(BlocksInView, HaveToBeOfOneIndex)
-{
-  const Scene scene = Cloud(1);
-  Scene lit = scene;
-  lit.illumination.lights.emplace_back();
-  lit.settings.shadowRays = true;
-  lit.fluenceDirect = scene.Everywhere(0.1);
-  EXPECT_EQ(scene.Caster(this->GetDevice()).SharedByBlocks(), lit.Caster(this->GetDevice()).SharedByBlocks());
-  Scene other = scene;
-  other.ior = scene.Everywhere(1.5);
-  EXPECT_NE(scene.Caster(this->GetDevice()).SharedByBlocks(), other.Caster(this->GetDevice()).SharedByBlocks());
-}
-
 TEST_F(BlocksInView, EndWhereRaysEnd)
 {
   const Scene scene = Cloud(1);

@@ -8,7 +8,6 @@
 #include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "LightPropagation/Problem/SceneChecks.h"
-#include "PhaseFunction/UsedCosines.h"
 
 #include <gmock/gmock.h>
 

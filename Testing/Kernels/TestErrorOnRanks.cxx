@@ -4,7 +4,7 @@
 
 #include "Distribution/BoxExchange.h"
 #include "Distribution/CoarseBlocks.h"
-#include "LightPropagation/Accuracy/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 
 using namespace tyndall;
@@ -51,15 +51,15 @@ protected:
   LightField Estimated(const BlockPartition& partition, const MediumToCut& medium, const PropagationSettings& settings)
   {
     return LightOnRanks(partition, medium, [&](const Domain& domain, MediumToCut& part) {
-      return SolveInBlocksWithErrorEstimate(
-        this->GetDevice(), { domain.Comm(), partition, part.scene.medium, part.scene.light }, settings);
+      return SolveWithErrorEstimate({ domain, part.scene.medium, part.scene.light }, settings, {}, this->Solver());
     });
   }
 
-  PropagationSolver SerialSolver()
+  PropagationSolver Solver()
   {
-    return [this](const Medium& medium, const Illumination& light, const PropagationSettings& settings,
-             const Monitor& monitor) { return SolveConservative(this->GetDevice(), medium, light, settings, monitor); };
+    return [this](const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor) {
+      return SolveConservative(this->GetDevice(), scene.domain, scene.medium, scene.illumination, settings, monitor);
+    };
   }
 
   /// Errors are differences of light: they are compared as parts of that.
@@ -74,8 +74,8 @@ protected:
   void ExpectSerialErrors(MediumToCut& medium, const PropagationSettings& settings, const BlockPartition& partition)
   {
     medium.Attach();
-    const LightField expected =
-      SolveWithErrorEstimate(medium.scene.medium, medium.scene.light, settings, {}, this->SerialSolver());
+    const LightField expected = SolveWithErrorEstimate(
+      { Domain(medium.Grid()), medium.scene.medium, medium.scene.light }, settings, {}, this->Solver());
     EXPECT_GT(expected.relativeError, 1e-3);
     ExpectSameErrors(this->Estimated(partition, medium, settings), expected, 2e-6);
   }
@@ -139,12 +139,12 @@ TEST_F(ErrorOnRanks, IsBroughtToATargetAsThatOfASerialSolve)
   settings.facePower = true;
   for (const double target : { 0.2, 0.008 })
   {
-    const TargetLight expected =
-      SolveToTargetError(medium.scene.medium, medium.scene.light, settings, target, {}, this->SerialSolver());
+    const TargetLight expected = SolveToTargetError(
+      { Domain(medium.Grid()), medium.scene.medium, medium.scene.light }, settings, target, {}, this->Solver());
     const BlockPartition partition = Uneven(medium.Grid());
     const LightField found = LightOnRanks(partition, medium, [&](const Domain& domain, MediumToCut& part) {
-      TargetLight own = SolveInBlocksToTargetError(
-        this->GetDevice(), { domain.Comm(), partition, part.scene.medium, part.scene.light }, settings, target);
+      TargetLight own =
+        SolveToTargetError({ domain, part.scene.medium, part.scene.light }, settings, target, {}, this->Solver());
       EXPECT_EQ(own.divided, expected.divided);
       EXPECT_EQ(own.solves, expected.solves);
       EXPECT_EQ(Words(own.settings), Words(expected.settings));

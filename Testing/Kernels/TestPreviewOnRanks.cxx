@@ -27,7 +27,7 @@ MediumToCut ByVoxel(std::array<int, 3> size, int components)
 }
 
 /// Light that is made of all that a solver is given, by voxel.
-LightField Told(const PreviewScene& scene)
+LightField Told(const SceneBlock& scene)
 {
   LightField light;
   light.channels = 3;
@@ -60,7 +60,7 @@ void AddFigures(LightField& light, const Illumination& illumination)
   light.leftOut = { "one thing", "another" };
 }
 
-LightField ToldOfWhole(const PreviewScene& scene)
+LightField ToldOfWhole(const SceneBlock& scene)
 {
   LightField light = Told(scene);
   AddFigures(light, scene.illumination);
@@ -100,15 +100,15 @@ Grid Quarters(const Grid& grid)
 
 LightField OnFirst(const Domain& domain, const MediumToCut& part)
 {
-  return SolvePreviewOnFirst({ domain.Comm(), domain.Partition(), part.scene.medium, part.scene.light }, part.Index(),
-    {}, Quarters(domain.Whole()), ToldOfWhole);
+  return SolvePreview(
+    { domain, part.scene.medium, part.scene.light, part.Index() }, {}, Quarters(domain.Whole()), ToldOfWhole);
 }
 
 /// On ranks that each solve a block of the coarse grid.
 LightField ByBlocks(const Domain& domain, const MediumToCut& part)
 {
-  const auto solve = [&](const PreviewScene& scene, const BlockPartition& blocks) {
-    const std::size_t voxels = blocks.blocks[domain.Rank()].VoxelCount();
+  const auto solve = [&](const SceneBlock& scene) {
+    const std::size_t voxels = scene.domain.Own().VoxelCount();
     EXPECT_TRUE(voxels == 0 || voxels == scene.medium.grid.VoxelCount());
     LightField light = voxels > 0 ? Told(scene) : LightField();
     light.channels = 3;
@@ -116,8 +116,8 @@ LightField ByBlocks(const Domain& domain, const MediumToCut& part)
     AddFigures(light, scene.illumination);
     return light;
   };
-  return SolvePreviewInBlocks({ domain.Comm(), domain.Partition(), part.scene.medium, part.scene.light }, part.Index(),
-    {}, Coarsening(domain.Whole()).Coarse(), solve);
+  return SolvePreview(
+    { domain, part.scene.medium, part.scene.light, part.Index() }, {}, Coarsening(domain.Whole()).Coarse(), solve, 0);
 }
 }
 
@@ -128,9 +128,9 @@ TEST(PreviewOnRanks, IsThatOfASerialSolve)
     MediumToCut medium = ByVoxel({ 13, 9, 6 }, components);
     medium.Attach();
     const Grid& grid = medium.Grid();
-    const PreviewScene scene = { medium.scene.medium, medium.scene.light, medium.Index() };
-    const LightField onFirst = SolvePreview(scene, Quarters(grid), ToldOfWhole);
-    const LightField byBlocks = SolvePreview(scene, Coarsening(grid).Coarse(), ToldOfWhole);
+    const SceneBlock scene = { Domain(grid), medium.scene.medium, medium.scene.light, medium.Index() };
+    const LightField onFirst = SolvePreview(scene, {}, Quarters(grid), ToldOfWhole);
+    const LightField byBlocks = SolvePreview(scene, {}, Coarsening(grid).Coarse(), ToldOfWhole);
     EXPECT_EQ(onFirst.leftOut.front(), "detail: a preview, of 3 x 2 x 1 of 13 x 9 x 6 voxels, few directions");
     for (const BlockPartition& partition : Partitions(grid))
     {
@@ -155,9 +155,8 @@ TEST(PreviewOnRanks, FailsTogetherWithWords)
   EXPECT_THAT(ErrorsOnRanks(partition,
                 [&](const Domain& domain) {
                   const MediumToCut part = medium.Part(domain);
-                  SolvePreviewOnFirst({ domain.Comm(), partition, part.scene.medium, part.scene.light }, part.Index(),
-                    {}, Quarters(partition.whole),
-                    [](const PreviewScene&) -> LightField { throw DeviceError("no memory"); });
+                  SolvePreview({ domain, part.scene.medium, part.scene.light, part.Index() }, {},
+                    Quarters(partition.whole), [](const SceneBlock&) -> LightField { throw DeviceError("no memory"); });
                 }),
     testing::Each(testing::HasSubstr("no memory")));
 }

@@ -3,8 +3,7 @@
 #include "MemoryOfOneRank.h"
 #include "SolvedOnRanks.h"
 
-#include "DiscreteOrdinates/OrdinatesParts.h"
-#include "DiscreteOrdinates/OrdinatesQuality.h"
+#include "DiscreteOrdinates/OrdinatesScene.h"
 #include "LatticeBoltzmann/LatticeLight.h"
 
 #include <glm/geometric.hpp>
@@ -483,8 +482,7 @@ TEST_F(LatticeOnRanks, RefusesLightThatDoesNotBalance)
       const auto errors = ErrorsOnRanks(BlockPartition::Even(medium.Grid(), ranks), [&](const Domain& domain) {
         MediumToCut part = medium.Part(domain);
         const LatticeSettings settings = LatticeSolver::Plain();
-        const LatticeProblem problem(
-          this->GetDevice(), domain, part.scene.medium, part.Index(), part.scene.light, settings);
+        const LatticeProblem problem(domain, part.scene.medium, part.Index(), part.scene.light, settings);
         LightField light = BeginLight(problem, settings);
         light.balance.entered[0] = light.balance.escaped[0] = 2.0;
         const Rgb lostHere = { domain.Rank() == ranks - 1 ? lost * ranks : 0.0, 0.0, 0.0 };

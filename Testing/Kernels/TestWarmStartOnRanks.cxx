@@ -199,8 +199,13 @@ TEST_F(ConservativeWarmStart, IsOfTheGridItselfWhereErrorsAreEstimatedOnACoarser
   Kept kept(2);
   const auto estimated = [&] {
     return LightOnRanks(halves, medium, [&](const Domain& domain, MediumToCut& part) {
-      return SolveInBlocksWithErrorEstimate(this->GetDevice(),
-        { domain.Comm(), halves, part.scene.medium, part.scene.light }, settings, {}, &kept[domain.Rank()]);
+      KeptLight* const last = &kept[domain.Rank()];
+      const Medium* const own = &part.scene.medium;
+      return SolveWithErrorEstimate({ domain, *own, part.scene.light }, settings, {},
+        [this, last, own](const SceneBlock& scene, const PropagationSettings& of, const Monitor& monitor) {
+          return SolveConservative(this->GetDevice(), scene.domain, scene.medium, scene.illumination, of, monitor,
+            &scene.medium == own ? last : nullptr);
+        });
     });
   };
   const LightField first = estimated(), second = estimated();
