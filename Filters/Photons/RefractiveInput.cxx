@@ -109,7 +109,8 @@ KeptMarcher::Found KeptMarcher::Find(vtkAlgorithm* filter, const std::shared_ptr
     found.marcher.reset(); // free its memory before the next one is prepared
     this->Made.Modified();
     const RefractiveInput read = ReadRefractiveMedium(filter, medium, octree);
-    found.marcher = std::make_unique<PhotonMarcher>(*device, read.input.medium, read.ior, settings, read.Levels());
+    found.marcher = std::make_unique<PhotonMarcher>(
+      *device, Domain(read.input.medium.grid), read.input.medium, read.ior, settings, read.Levels());
   }
   return found;
 }

@@ -267,7 +267,8 @@ Run MarchOf(Device& device, const Scene& scene, bool byBricks, int orders, std::
     [&] {
       light = {};
       marcher.reset();
-      marcher = std::make_unique<PhotonMarcher>(device, scene.SeenMedium(), Field{}, settings);
+      marcher =
+        std::make_unique<PhotonMarcher>(device, Domain(scene.SeenMedium().grid), scene.SeenMedium(), Field{}, settings);
       light = marcher->March(photons);
     },
     [&] {

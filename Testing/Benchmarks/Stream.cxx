@@ -171,7 +171,8 @@ void MarchWithin(Device& device, const Scene& scene, Table& table)
   const auto marched = [&](Device& on, MarchTimes& times) {
     const std::size_t before = on.BytesInUse();
     on.ResetPeak();
-    auto marcher = std::make_unique<PhotonMarcher>(on, scene.medium, Field{}, MarchSettings{});
+    auto marcher =
+      std::make_unique<PhotonMarcher>(on, Domain(scene.medium.grid), scene.medium, Field{}, MarchSettings{});
     marcher->March(photons);
     times.onDevice = on.PeakBytes() - before;
     return marcher;
