@@ -1,7 +1,5 @@
 #pragma once
 
-#include "Difference.h"
-
 #include "Medium/Medium.h"
 
 #include <array>

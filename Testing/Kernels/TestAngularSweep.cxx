@@ -1,6 +1,7 @@
 // A sweep in angular moments against one sweep for each direction.
 
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "RandomMedium.h"
 
 #include "LightPropagation/Angular/AngularBasis.h"

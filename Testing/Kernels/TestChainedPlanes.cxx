@@ -3,6 +3,7 @@
 // the order of sums; and bit for bit wherever ranges of planes begin.
 
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "MediumScene.h"
 #include "RandomMedium.h"
 

@@ -396,10 +396,12 @@ std::vector<NamedScene> Scenes()
       } },
     { "DsaAroundAllAxes",
       [] {
-        return Dsa(Thick({ 3, 2, 4 }, 12.0, 0.9, 1.0), [](MediumToCut& medium, PropagationSettings& settings) {
-          medium.scene.light = {};
-          settings.periodic.fill(true);
-        });
+        ScenesCase made = Dsa(Thick({ 3, 2, 4 }, 12.0, 0.9, 1.0));
+        made.medium.scene.light = {};
+        made.settings.periodic.fill(true);
+        made.settings.directionsPerFace = 4;
+        made.settings.tolerance = made.tolerance = 1e-4;
+        return made;
       } },
     { "DsaInMoments",
       [] {
@@ -455,8 +457,8 @@ TEST_F(ConservativeOnRanks, HasTheUncollidedLightOfLampsBitForBit)
 {
   MediumToCut medium = Everything({ 4, 3, 2 });
   medium.scene.light = {};
-  AddNearLamps(medium.scene);
-  medium.scene.light.lights = { medium.scene.light.lights[1] }; // beside the box
+  medium.scene.light.lights = { PointLamp({ -1.0, 4.4, -2.5 }, { 10.0, 4.0, 1.0 }) };
+  medium.scene.emission.clear(); // which is swept
   const LightField expected = this->Serial(medium, Plain(2));
   for (const int ranks : { 3, 26 }) // of which two have no voxels
   {
@@ -521,6 +523,25 @@ TEST_F(ConservativeOnRanks, HasTheLightOfAnEmittingVacuumAlongAPeriodicAxis)
     EXPECT_NEAR(mean / rod, 1.0, 0.08);
     EXPECT_LT(light.balance.leftOver[0], 1e-6 * light.balance.emitted[0]);
   });
+}
+
+/// An emitting medium and a beam: each by itself, and both.
+TEST_F(ConservativeOnRanks, AddsUpSourcesInMoments)
+{
+  ScenesCase both = Moments({ 8, 7, 6 }, 0.85, 2);
+  Illumination beam;
+  beam.lights = both.medium.scene.light.lights;
+  both.medium.scene.light = beam;
+  MediumToCut dark = both.medium, cold = both.medium;
+  dark.scene.light = {};
+  cold.scene.emission.clear();
+  for (const BlockPartition& partition : { BlockPartition::Even(dark.Grid(), 1), BlockPartition::Even(dark.Grid(), 3) })
+  {
+    std::vector<float> sum = this->OnRanks(partition, dark, both.settings).fluence;
+    const std::vector<float> ofBeam = this->OnRanks(partition, cold, both.settings).fluence;
+    std::transform(sum.begin(), sum.end(), ofBeam.begin(), sum.begin(), std::plus<>());
+    EXPECT_LT(RelativeRmse(this->OnRanks(partition, both.medium, both.settings).fluence, sum), 1e-6);
+  }
 }
 
 /// Traced from voxel to voxel, as far as it goes through vacuum.

@@ -181,6 +181,7 @@ TEST(Balance, BlamesNoLampWhereTheMediumAloneShines)
   {
     light.balance.entered[0] = enters ? 3.0 : 0.0;
     const std::string words = ErrorWords([&] { JudgeBalance(light, Domain(Grid()), Medium()); });
+    EXPECT_NE(words, "");
     EXPECT_EQ(words.find("lamps") != std::string::npos, enters) << words;
   }
 }

@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "GridVoxels.h"
 #include "KobayashiScene.h"
 #include "OrdinatesScene.h"

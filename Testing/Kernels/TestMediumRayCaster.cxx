@@ -254,15 +254,7 @@ TEST_F(MediumRayCasterTest, PacketsOfEveryWidthGiveTheSamePicture)
 {
   Scene scene = Blobs();
   scene.illumination.environment = SmoothEnvironment();
-  const Picture best = scene.Seen(this->GetDevice());
-  for (int width : { 1, 4, 8, 16 })
-  {
-    scene.settings.packetWidth = width;
-    const Picture picture = scene.Seen(this->GetDevice());
-    EXPECT_LT(LargestDifference(best.radiance, picture.radiance), 1e-6) << width;
-    EXPECT_LT(LargestDifference(best.alpha, picture.alpha), 1e-6) << width;
-    EXPECT_LT(LargestDifference(best.depth, picture.depth), 1e-3) << width;
-  }
+  ExpectSameInPackets(this->GetDevice(), scene, scene.Framed(), 1e-6, 1e-6);
 }
 
 TEST_F(MediumRayCasterTest, TheSameAgainToTheLastBit)

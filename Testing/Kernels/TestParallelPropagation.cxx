@@ -1,4 +1,5 @@
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "ErrorWords.h"
 #include "RandomMedium.h"
 

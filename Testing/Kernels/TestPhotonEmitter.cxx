@@ -310,8 +310,7 @@ TEST(PhotonEmitter, TooManyPhotonsAreRefusedAtOnce)
 {
   for (std::size_t count : { std::size_t(1000000000000), std::size_t(1) << 62 })
   {
-    const std::string words = ErrorWords<DeviceError>([&] { Emit(Lamp(LightType::Point, { 0.0, 2.5, 5.0 }), count); });
-    const std::string text = words;
+    const std::string text = ErrorWords<DeviceError>([&] { Emit(Lamp(LightType::Point, { 0.0, 2.5, 5.0 }), count); });
     EXPECT_NE(text.find(std::to_string(count) + " photons"), std::string::npos) << text;
     EXPECT_NE(text.find("bytes each"), std::string::npos) << text;
     EXPECT_NE(text.find("Ask for fewer photons"), std::string::npos) << text;

@@ -270,17 +270,8 @@ TEST_F(RefractiveView, ExtinctionAndDepthFollowTheWayNotTheTime)
 
 TEST_F(RefractiveView, HalvingTheStepQuartersTheError)
 {
-  Scene scene = GlassInFog();
-  const auto seenWith = [&](double step) {
-    scene.settings.stepSize = step;
-    return scene.Seen(this->GetDevice()).radiance;
-  };
-  const std::vector<float> exact = seenWith(0.0625);
-  const double coarse = MeanDistance(exact, seenWith(4.0));
-  const double fine = MeanDistance(exact, seenWith(1.0));
-  const double order = 0.5 * std::log2(coarse / fine);
-  std::printf("order of convergence %.2f, mean error at one voxel a step %.2g\n", order, fine);
-  EXPECT_GT(order, 1.8);
+  const Scene scene = GlassInFog();
+  EXPECT_GT(StepConvergence(this->GetDevice(), scene, scene.Framed(), 4.0).order, 1.8);
 }
 
 TEST_F(RefractiveView, SkippingEmptyBricksChangesNothing)
@@ -308,17 +299,8 @@ TEST_F(RefractiveView, PacketsOfEveryWidthGiveTheSamePicture)
   }
   scene.settings.surfaceReflection = SurfaceReflection::Fresnel;
   scene.settings.tableFace = 4;
-  const Picture best = scene.Seen(this->GetDevice());
-  EXPECT_EQ(best.radiance, scene.Seen(this->GetDevice()).radiance);
-  for (const int width : { 1, 4, 8, 16 })
-  {
-    // Packets change from straight to bent steps together, which rounds their samples' places another way.
-    scene.settings.packetWidth = width;
-    const Picture picture = scene.Seen(this->GetDevice());
-    EXPECT_LT(LargestDifference(best.radiance, picture.radiance), 5e-5) << width;
-    EXPECT_LT(LargestDifference(best.alpha, picture.alpha), 1e-5) << width;
-    EXPECT_LT(LargestDifference(best.depth, picture.depth), 1e-3) << width;
-  }
+  // Packets change from straight to bent steps together, which rounds their samples' places another way.
+  ExpectSameInPackets(this->GetDevice(), scene, scene.Framed(), 5e-5, 1e-5);
 }
 
 TEST_F(RefractiveView, AdoptsWhatNeedsNothingNewOnTheDevice)

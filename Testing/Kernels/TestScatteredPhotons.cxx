@@ -1,6 +1,7 @@
 // Photons that are scattered many times, against references that share no code with them.
 
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "MediumScene.h"
 #include "RandomMedium.h"
 

@@ -1,3 +1,4 @@
+#include "Difference.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 #include "RandomMedium.h"
 

@@ -1,6 +1,7 @@
 // Volumes that are larger than what may be taken of the device: streamed through slots, the light is the same.
 
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "ErrorWords.h"
 #include "MediumScene.h"
 #include "RandomMedium.h"
@@ -229,8 +230,7 @@ TEST_F(Streaming, SaysWhatABudgetIsShortOf)
 {
   Device part(this->GetDevice(), MemoryBudget{ 1000 });
   const Buffer<char> first(part, 600, "the first");
-  const std::string words = ErrorWords<DeviceError>([&] { const Buffer<char> second(part, 500, "the second"); });
-  const std::string text = words;
+  const std::string text = ErrorWords<DeviceError>([&] { const Buffer<char> second(part, 500, "the second"); });
   EXPECT_NE(text.find("the second: 500 bytes are needed, 400 of 1000 are left of the memory budget"), std::string::npos)
     << text;
 }

@@ -144,16 +144,7 @@ TEST_F(SurfaceReflects, HalvingTheStepQuartersTheError)
     AtCentres(scene.grid, [](double x, double, double z) { return 0.05 + 0.02 * std::cos(7.0 * x - 6.0 * z); });
   Camera camera = Down(scene, 30.0);
   camera.parallelScale = 2.0;
-  const auto seenWith = [&](double step) {
-    scene.settings.stepSize = step;
-    return scene.Seen(this->GetDevice(), camera).radiance;
-  };
-  const std::vector<float> exact = seenWith(0.0625);
-  const double coarse = MeanDistance(exact, seenWith(3.0));
-  const double fine = MeanDistance(exact, seenWith(0.75));
-  const double order = 0.5 * std::log2(coarse / fine);
-  std::printf("order of convergence with a surface %.2f, mean error at 0.75 voxels a step %.2g\n", order, fine);
-  EXPECT_GT(order, 1.7);
+  EXPECT_GT(StepConvergence(this->GetDevice(), scene, camera, 3.0).order, 1.7);
 }
 
 // A mirror ball: parallel rays turn by pi - 2 asin(b).

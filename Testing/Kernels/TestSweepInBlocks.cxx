@@ -1,6 +1,7 @@
 // A sweep of a grid that is spread over ranks, against that of the whole in one memory.
 
 #include "DeviceTest.h"
+#include "Difference.h"
 #include "OnRanks.h"
 #include "RandomMedium.h"
 

@@ -260,6 +260,19 @@ TEST_F(WarmStarts, KnowEachChannelByItself)
   }
 }
 
+TEST_F(WarmStarts, GoRoundPeriodicAxes)
+{
+  for (double thickness : { 2.0, 60.0 })
+  {
+    Scene scene = Cloud({ 14, 9, 12 }, thickness, 0.99, 3);
+    scene.settings.periodic = { true, false, true };
+    Scene after = scene;
+    Scatter(after, 1.05);
+    const Outcome found = this->Follow(scene, after, "periodic, sigma_s 5% more");
+    EXPECT_LE(found.warm, found.cold);
+  }
+}
+
 TEST_F(WarmStarts, DoNotDriftInALongSeries)
 {
   for (double thickness : { 5.0, 100.0 })

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <random>
 #include <string>
@@ -312,4 +313,38 @@ inline std::vector<float> Ball(const Grid& grid, double radius, double n)
     return 1.0 + (n - 1.0) * 0.5 * std::erfc((std::hypot(x - 0.5, y - 0.5, z - 0.5) - radius) / width);
   });
 }
+
+/// That packets of every width give one picture, to these differences of radiance and alpha.
+inline void ExpectSameInPackets(Device& device, Scene scene, const Camera& camera, double radiance, double alpha)
+{
+  const Picture best = scene.Seen(device, camera);
+  EXPECT_EQ(best.radiance, scene.Seen(device, camera).radiance);
+  for (const int width : { 1, 4, 8, 16 })
+  {
+    scene.settings.packetWidth = width;
+    const Picture picture = scene.Seen(device, camera);
+    EXPECT_LT(LargestDifference(best.radiance, picture.radiance), radiance) << width;
+    EXPECT_LT(LargestDifference(best.alpha, picture.alpha), alpha) << width;
+    EXPECT_LT(LargestDifference(best.depth, picture.depth), 1e-3) << width;
+  }
+}
+
+/// Mean errors of pictures by steps of this length and of a quarter of it, and the order of convergence from them.
+struct StepConvergence
+{
+  StepConvergence(Device& device, Scene scene, const Camera& camera, double step)
+  {
+    const auto seenWith = [&](double length) {
+      scene.settings.stepSize = length;
+      return scene.Seen(device, camera).radiance;
+    };
+    const std::vector<float> exact = seenWith(0.0625);
+    this->coarse = MeanDistance(exact, seenWith(step));
+    this->fine = MeanDistance(exact, seenWith(0.25 * step));
+    this->order = 0.5 * std::log2(this->coarse / this->fine);
+    std::printf(
+      "order of convergence %.2f, mean error at %g voxels a step %.2g\n", this->order, 0.25 * step, this->fine);
+  }
+  double coarse, fine, order;
+};
 }
