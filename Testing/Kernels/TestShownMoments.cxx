@@ -65,9 +65,9 @@ Picture Look(Device& device, const Scene& scene, const LightField& light, const 
 
 }
 
-using ShownMoments = DeviceTest;
+using MomentsInPictures = DeviceTest;
 
-TEST_F(ShownMoments, AreLeftOutWhereScatteringIsIsotropicOrTheyAreNotAskedFor)
+TEST_F(MomentsInPictures, AreLeftOutWhereScatteringIsIsotropicOrTheyAreNotAskedFor)
 {
   Scene scene = Cloudlet({ 7, 5, 6 }, 0.85);
   scene.ShineFromEverywhere(1.0);
@@ -81,7 +81,7 @@ TEST_F(ShownMoments, AreLeftOutWhereScatteringIsIsotropicOrTheyAreNotAskedFor)
 }
 
 /// The first moment is the fluence that was scattered and did not go straight on, those of degree 1 the net flux.
-TEST_F(ShownMoments, AreThoseOfFluenceAndNetFlux)
+TEST_F(MomentsInPictures, AreThoseOfFluenceAndNetFlux)
 {
   for (const double albedo : { 0.7, 1.0 }) // one order after the other, and accelerated
   {
@@ -122,7 +122,7 @@ TEST_F(ShownMoments, AreThoseOfFluenceAndNetFlux)
 
 /// Lamps' first scattering is left out, whatever adds up the orders: what remains of a lamp's light that is scattered
 /// once only is nothing.
-TEST_F(ShownMoments, LeaveOutLampsFirstScattering)
+TEST_F(MomentsInPictures, LeaveOutLampsFirstScattering)
 {
   Scene scene = Cloudlet({ 8, 7, 6 }, 0.85, 0.9);
   scene.ShineAlong({ 0.3, -0.5, -1.0 });
@@ -140,7 +140,7 @@ TEST_F(ShownMoments, LeaveOutLampsFirstScattering)
 }
 
 /// A white medium under an even sky cannot be seen, however it scatters, from anywhere.
-TEST_F(ShownMoments, ShowTheFurnaceRadiance)
+TEST_F(MomentsInPictures, ShowTheFurnaceRadiance)
 {
   Scene scene = Cloudlet({ 9, 8, 7 }, 0.85);
   scene.ShineFromEverywhere(3.0);
@@ -158,7 +158,7 @@ TEST_F(ShownMoments, ShowTheFurnaceRadiance)
 }
 
 /// In thin medium light is scattered once, by the whole phase function, not its moments: sigma_s p E along the ray.
-TEST_F(ShownMoments, ShowFirstScatteringByTheWholePhaseFunction)
+TEST_F(MomentsInPictures, ShowFirstScatteringByTheWholePhaseFunction)
 {
   constexpr double SigmaS = 1e-5, Irradiance = 5.0;
   for (const double g : { -0.7, 0.5, 0.9 })
@@ -193,7 +193,7 @@ TEST_F(ShownMoments, ShowFirstScatteringByTheWholePhaseFunction)
 }
 
 /// Light of two lamps and a sky is the sum of each, and colours do not mix.
-TEST_F(ShownMoments, AddUpOverLampsAndColours)
+TEST_F(MomentsInPictures, AddUpOverLampsAndColours)
 {
   const auto picture = [&](bool first, bool second, bool sky) {
     Scene scene = Cloudlet({ 10, 8, 9 }, 0.8, 0.95);
@@ -231,7 +231,7 @@ TEST_F(ShownMoments, AddUpOverLampsAndColours)
 }
 
 /// Alpha and depth tell of what is sharp behind the medium: of light that is not scattered at all.
-TEST_F(ShownMoments, AlphaIsOfLightThatIsNotScatteredAtAll)
+TEST_F(MomentsInPictures, AlphaIsOfLightThatIsNotScatteredAtAll)
 {
   Scene scene({ 6, 6, 6 }, 0.0f, 0.2f);
   scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.85);
@@ -285,7 +285,7 @@ TEST(Aureole, MakesUpForWhatIsTakenToGoStraightOn)
   }
 }
 
-TEST_F(ShownMoments, AreRefusedWhereTheyHaveTheWrongShape)
+TEST_F(MomentsInPictures, AreRefusedWhereTheyHaveTheWrongShape)
 {
   Scene scene({ 4, 4, 4 }, 0.1f, 0.5f);
   scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.8);
@@ -302,7 +302,7 @@ TEST_F(ShownMoments, AreRefusedWhereTheyHaveTheWrongShape)
 
 /// A small cloud with voxels of a third of a mean free path on average, from three sides: Data/Reference/
 /// cloud_pictures.csv by PictureMonteCarlo.h.
-TEST_F(ShownMoments, AgreeWithMonteCarlo)
+TEST_F(MomentsInPictures, AgreeWithMonteCarlo)
 {
   cloud_pictures::Setup setup = cloud_pictures::SmallCloud();
   cloud_pictures::LitCloud cloud(setup, { "degree 5", setup.g, 5, 25 });
