@@ -246,7 +246,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
     settings, monitor, kept);
   domain.Collective([&] { problem.Undo(light); });
   light.faceAlbedo = illumination.faceAlbedo;
-  WarnAboutInputLight(illumination, light);
+  WarnAboutInputLight(domain, illumination, light);
   return light;
 }
 }

@@ -42,12 +42,6 @@ Field LatticeProblem::WithGhosts(const Field& own)
   return this->Ghosts->Spread(own, this->GhostValues.back());
 }
 
-bool LatticeProblem::IsAnisotropic() const
-{
-  const Domain& domain = this->TheDomain();
-  return domain.Any(!domain.IsEmpty() && !this->Known.phase.IsIsotropic()) && this->Scene.Traits().scatters;
-}
-
 std::vector<float> LatticeProblem::WithGhosts(std::vector<float> own, int components) const
 {
   return this->Ghosts ? this->Ghosts->Spread(own, components) : std::move(own);

@@ -37,8 +37,8 @@ public:
   const Field& Index() const { return this->KnownIndex; } ///< refractive index; null values: 1
   const Illumination& TheIllumination() const { return this->Shining; }
   int Channels() const { return this->Scene.Channels(); } ///< 1 or 3
-  /// Whether the medium scatters anisotropically on any rank. Collective.
-  bool IsAnisotropic() const;
+  /// Whether the medium scatters anisotropically on any rank.
+  bool IsAnisotropic() const { return !this->Scene.IsIsotropic() && this->Scene.Traits().scatters; }
 
   /// Extends values of the block's voxels to its ghost voxels. Collective.
   std::vector<float> WithGhosts(std::vector<float> own, int components) const;

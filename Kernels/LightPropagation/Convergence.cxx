@@ -239,9 +239,9 @@ double ProgressOf(const PropagationSettings& settings, double residual, double i
   return std::min(std::max(creeping, way), 0.99);
 }
 
-void WarnAboutInputLight(const Illumination& illumination, LightField& light)
+void WarnAboutInputLight(const Domain& domain, const Illumination& illumination, LightField& light)
 {
-  if (illumination.uncollided.IsThere() && Reflects(illumination))
+  if (domain.Any(illumination.uncollided.IsThere()) && Reflects(illumination))
   {
     light.doubts.emplace_back("FaceAlbedo gives back scattered light only: through which cells of the faces the light "
                               "of UncollidedLight leaves is not known.");

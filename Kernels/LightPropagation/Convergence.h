@@ -76,7 +76,7 @@ constexpr double UncollidedPart = 0.5;
 
 /// Adds a warning to `light.doubts` if faces reflect and uncollided light is an input: the cells through which that
 /// light leaves are not known, so it is not reflected.
-void WarnAboutInputLight(const Illumination& illumination, LightField& light);
+void WarnAboutInputLight(const Domain& domain, const Illumination& illumination, LightField& light);
 
 /// Energy balance check of every conservative solver: all power must be absorbed, escape or be left over. A relative
 /// error above 1e-4 adds a warning to `light.doubts`.

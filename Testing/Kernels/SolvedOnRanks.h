@@ -178,8 +178,7 @@ inline tyndall::BlockPartition SingleVoxels(const tyndall::Grid& grid)
 /// Solves one rank's block.
 using SolveBlock = std::function<tyndall::LightField(const tyndall::Domain&, MediumToCut& part)>;
 
-/// The light of all blocks put together; what is not by voxel is that of the first rank that has voxels, and, but for
-/// words, must be the same on all.
+/// The light of all blocks put together; results that are not by voxel must be the same on all ranks.
 inline tyndall::LightField LightOnRanks(
   const tyndall::BlockPartition& partition, const MediumToCut& medium, const SolveBlock& solve)
 {
@@ -216,6 +215,8 @@ inline tyndall::LightField LightOnRanks(
     EXPECT_EQ(light.surfaceRadiance, whole.surfaceRadiance);
     EXPECT_EQ(light.relativeError, whole.relativeError);
     EXPECT_EQ(light.sweepsSaved, whole.sweepsSaved);
+    EXPECT_EQ(light.leftOut, whole.leftOut);
+    EXPECT_EQ(light.doubts, whole.doubts);
   }
   for (const auto array : ByVoxel)
   {

@@ -39,7 +39,7 @@ std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationR
   const int directions = static_cast<int>(parts.Usual.Set().directions.size());
   const DirectionSymmetry& symmetry = parts.Usual.Symmetry();
   say(parts.Layout.channels == 3 && parts.Layout.sharedExtinction, left_out::GreyExtinction);
-  say(parts.Problem.TheMedium().phase.IsIsotropic() && traits.scatters, left_out::Isotropic);
+  say(parts.Problem.IsIsotropic() && traits.scatters, left_out::Isotropic);
   say(!traits.scatters, left_out::NoScattering);
   say(!traits.absorbs, left_out::NoAbsorption);
   say(!traits.emits, left_out::NoEmission);
@@ -270,7 +270,7 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
     light.lampsApart = parts->Lights.LampsOf(illumination);
   }
   JudgeConvergence(settings, light);
-  WarnAboutInputLight(illumination, light);
+  WarnAboutInputLight(domain, illumination, light);
   return light;
 }
 }

@@ -32,6 +32,7 @@ PropagationProblem::PropagationProblem(const Domain& domain, const Medium& mediu
   this->TheTraits = TraitsOfAll(domain.Comm(), domain.IsEmpty() ? MediumTraits() : TraitsOf(this->Solved, true));
   this->TakeChannels();
   this->Given = domain.Any(this->SolvedLight.uncollided.IsThere());
+  this->Isotropic = !domain.Any(!domain.IsEmpty() && !this->Solved.phase.IsIsotropic());
   this->Truncate(memory);
   // The traits only know the extinction according to the similarity relation.
   this->TheTraits.greyExtinction =

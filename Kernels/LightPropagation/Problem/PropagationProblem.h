@@ -56,6 +56,8 @@ public:
   int Channels() const { return this->ChannelCount; } ///< 1 or 3
   /// Whether uncollided light is an input, given by voxel.
   bool HasGivenLight() const { return this->Given; }
+  /// Whether all voxels of the domain have an isotropic phase function.
+  bool IsIsotropic() const { return this->Isotropic; }
   /// Whether the source is linear within a voxel; false: constant, as in the published scheme.
   bool HasLinearSource() const { return this->TheSettings.source != PropagationSource::Constant; }
   /// Whether scattering is computed: the medium scatters, or the settings forbid leaving out computations.
@@ -84,6 +86,6 @@ private:
   std::optional<SceneChannels> Reduction;
   std::optional<TruncatedScattering> Truncated;
   int ChannelCount = 3;
-  bool Given = false;
+  bool Given = false, Isotropic = false;
 };
 }
