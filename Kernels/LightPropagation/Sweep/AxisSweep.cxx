@@ -73,7 +73,7 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
   {
     return;
   }
-  // The maps of a periodic axis hold the rays under way from the previous sweep.
+  // The maps of a periodic axis hold the rays in transit from the previous sweep.
   const bool mapsEmpty = !lit && !this->IsPeriodic() && !byCells;
   const double launches = this->Plan.laps == 1 ? this->Plan.launches : static_cast<double>(this->Plan.units.size());
   this->Cross(volume, { volume.source != nullptr, lit, volume.faceIn != nullptr, mapsEmpty }, this->FirstCrossings,
@@ -110,7 +110,7 @@ SweepTally AxisSweep::Finish()
   if (!this->IsPeriodic() && !this->Dark)
   {
     CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
-    // Power in the maps behind the last plane of an open axis has escaped.
+    // Power in the maps after the last plane of an open axis has escaped.
     const std::array<Rgb, 2> power = this->PowerInMaps();
     for (int way = 0; way < 2; ++way)
     {
@@ -123,7 +123,8 @@ SweepTally AxisSweep::Finish()
   return this->Tally;
 }
 
-/// Writes the incident light to the maps. If it is the same in each sweep, its border is cached.
+/// Writes the power of incident light to the maps, W. If the boundary source is the same in each sweep, its SweepBorder
+/// is cached.
 void AxisSweep::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
 {
   std::unique_ptr<SweepBorder>& kept = this->Borders[firstChannel];
@@ -140,14 +141,14 @@ void AxisSweep::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
   }
 }
 
-/// Carries rays on round a periodic axis until almost no power is under way.
+/// Continues rays around a periodic axis until almost no power is in transit, or they have crossed `mostPlanes` planes.
 void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor)
 {
   const int planes = this->Plan.PatternPlanes();
   CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
   if (!this->Kernel.IsBorderClear() || volume.faceIn)
   {
-    // Light beside the rows in the maps has entered, and must not enter again when rays wrap around.
+    // Light in the columns outside the plane has entered; it must not enter again when rays wrap around.
     this->RunOnMaps("darken_beside", nullptr, false, this->RowsOfMaps());
   }
   this->Kernel.ClearBorder();
@@ -164,13 +165,14 @@ void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor
   }
 }
 
-/// @param seconds  upper estimate for all launches together
+/// Queues the launches of the kernel `sweep` for a list of slabs of planes.
+/// @param seconds  upper estimate of the time of all launches together, s
 void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffer<CrossingInfo>& crossings,
   const SliceStream::Schedule& schedule, double seconds, const Monitor& monitor)
 {
   const SweepPlan& plan = this->Plan;
   const Deposit& to = volume.deposit;
-  // If planes are not chained anyway, one program serves periodic boxes as well.
+  // One compiled program serves both open and periodic boxes where planes are never chained.
   const bool faces = to.faceOut || entry.byCells, alone = plan.angular || faces;
   cl::Kernel kernel =
     this->Kernel.Make(faces, alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v], false);
@@ -205,7 +207,7 @@ void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffe
   }
 }
 
-/// Memory layout of the cells of the faces that rays of this axis pass sideways.
+/// Memory layout of the cells of the four faces parallel to the marching axis.
 FaceInfo AxisSweep::Faces(std::size_t firstChannel, const Deposit& to) const
 {
   const PlaneAxes& axes = this->Plan.axes;
@@ -227,8 +229,8 @@ FaceInfo AxisSweep::Faces(std::size_t firstChannel, const Deposit& to) const
 }
 
 /// Runs a kernel of SweepMaps.cl.
-/// @param volume  tells the cells of the faces across the axis; null: the kernel needs none
-/// @param ofFarFaces  the cells are those where rays end; false: those where they start
+/// @param volume  determines the cells of the faces across the marching axis; null: the kernel uses no cells
+/// @param ofFarFaces  whether the cells are on the faces where rays end; false: on those where rays start
 template <class... Arguments>
 void AxisSweep::RunOnMaps(
   const char* name, const SweepVolume* volume, bool ofFarFaces, const cl::NDRange& range, const Arguments&... arguments)
@@ -252,8 +254,8 @@ cl::NDRange AxisSweep::RowsOfMaps() const
   return cl::NDRange(this->Plan.plane.sizeV, this->Plan.bundles.size(), 2);
 }
 
-/// The buffer in which escaped power is summed by cell. Tens of thousands of rays end in a cell, too many for a sum in
-/// floats; and units that run concurrently need their own copies, as rays may share cells.
+/// Buffer in which escaped power is summed per cell of the box's faces, W. Its sums are exact (ExactValues), because
+/// tens of thousands of rays end in a cell; units that run concurrently have their own copies where they share cells.
 const cl::Buffer& AxisSweep::CellsOf(const Deposit& to)
 {
   if (!to.faceOut)
@@ -268,7 +270,7 @@ const cl::Buffer& AxisSweep::CellsOf(const Deposit& to)
   return this->FaceCells->Handle();
 }
 
-/// Adds the sweep's own sums by cell to faceOut.
+/// Adds the escaped power per cell, summed by this sweep, to Deposit::faceOut.
 void AxisSweep::TakeFaceCells(const Deposit& to)
 {
   cl::Kernel kernel = this->TheDevice.Kernel("take_face_cells", kernel_source::SweepMaps, ExactOption(this->TheDevice));
@@ -289,7 +291,7 @@ void AxisSweep::SumMaps()
   this->RunOnMaps("map_power", nullptr, false, this->RowsOfMaps(), this->Sums);
 }
 
-/// Power by way, from the sums of SumMaps.
+/// Power in the maps per sense of marching, W, from the sums that SumMaps computed.
 std::array<Rgb, 2> AxisSweep::PowerInMaps() const
 {
   std::array<Rgb, 2> power = {};

@@ -15,41 +15,44 @@
 
 namespace tyndall
 {
-/// Sweep along one axis: carries all rays of a set of bundles through a volume and deposits the power they lose.
-/// Propagation and collection are done in one pass, without a buffer per direction (Gruson et al. need one, their
-/// section 4.1; numerics.md, section 4).
+/// Sweep along one axis on a CPU: carries the rays of a set of bundles through a volume and deposits the power that
+/// they lose. Propagation and collection are done in one pass, without a buffer per direction (Gruson et al. 2012,
+/// section 4.1, need one; numerics.md, section 4).
 ///
-/// Memory: one float per voxel of a plane, direction, channel and way for the maps, and a few planes of scratch per
-/// unit. Both are in the workspace, except the maps of a periodic axis, whose rays are kept from one sweep to the next.
+/// Memory: the maps hold one float per voxel of a plane, direction, channel and sense of marching (forward, backward);
+/// each unit of work has scratch for a few planes. Both are in the workspace, except the maps of a periodic axis, whose
+/// rays are kept from one sweep to the next.
 class AxisSweep
 {
 public:
-  /// @param volume  its grid, its channels and the presence of a flux are used
+  /// @param volume  only its grid, its channels and whether it has a net flux are used
   /// @param workspace  must outlive this object; enlarged as needed
-  /// @param sameBoundary  the boundary is the same in every sweep of a volume
+  /// @param sameBoundary  whether the boundary source is the same in every sweep of a volume
   AxisSweep(Device& device, const SweepVolume& volume, const AxisBundles& rays, const std::array<bool, 3>& periodic,
     SweepWorkspace& workspace, bool sameBoundary);
 
-  /// Starts one sweep through the volume, both ways. Queues the work; on an open axis it returns without waiting.
+  /// Starts one sweep through the volume, forward and backward. Only queues the work on an open axis; waits on a
+  /// periodic axis.
   /// @param boundary  incident light; empty: none
-  /// @param mostPlanes  most planes that rays cross on a periodic axis before they wait for the next sweep
-  /// @param monitor  receives the fraction of this sweep that is done
+  /// @param mostPlanes  maximum number of planes that rays cross along a periodic axis in this sweep; the rest of their
+  /// power waits in the maps for the next sweep
+  /// @param monitor  receives the completed fraction of this sweep, 0 to 1
   void Start(const SweepVolume& volume, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
 
-  /// Discards the rays that are still under way round a periodic axis.
+  /// Discards the rays in transit along a periodic axis.
   void Forget();
 
-  /// Waits for the sweep that was started.
+  /// Waits for the end of the sweep begun by Start. @return incident, escaped and remaining power, W
   SweepTally Finish();
 
 private:
-  /// Which sources and boundary light a launch has.
+  /// Sources and incident light of a launch of the kernel `sweep`.
   struct Entry
   {
-    bool source = false;    ///< the medium has a source
-    bool border = false;    ///< light is incident on the faces that rays pass sideways
-    bool byCells = false;   ///< that light is given by cells
-    bool mapsEmpty = false; ///< the maps' memory is uninitialised
+    bool source = false;    ///< whether the medium has a source (emission or scattered light)
+    bool border = false;    ///< whether light is incident on the faces that rays cross sideways
+    bool byCells = false;   ///< whether incident radiance is also given per cell of those faces
+    bool mapsEmpty = false; ///< whether the memory of the maps is uninitialised
   };
   void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
   void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
@@ -64,7 +67,7 @@ private:
   const cl::Buffer& CellsOf(const Deposit& to);
   void TakeFaceCells(const Deposit& to);
   bool IsPeriodic() const { return this->Plan.periodic[this->Plan.axes.axis]; }
-  /// Ray maps, laid out as in SweepBorder.
+  /// Power of each ray, W, in the layout of SweepBorder::maps.
   Buffer<float>& Maps() { return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps; }
   void SumMaps();
   std::array<Rgb, 2> PowerInMaps() const;
@@ -76,16 +79,19 @@ private:
   const bool SameBoundary;
   SweepKernel Kernel;
 
-  Buffer<float> OwnMaps;                ///< maps of a periodic axis
-  std::optional<ExactValues> FaceCells; ///< escaped power by cell, as Deposit::faceOut: [unit][channel][cell]
-  Buffer<float> Sums;                   ///< power in the maps: [way][bundle][row][channel]
+  Buffer<float> OwnMaps;                ///< power of the rays of a periodic axis, W; unused on an open axis
+  std::optional<ExactValues> FaceCells; ///< escaped power per cell of the box's faces, W, [unit][channel][cell]
+  Buffer<float> Sums;                   ///< power in the maps, W, [sense][bundle][row][channel]
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> FirstCrossings;
-  std::unique_ptr<SliceStream> Stream; ///< for a volume in host memory; null: it is swept in place
-  SliceStream::Schedule First, Rounds; ///< of rays that start, and of rays that wrap around
+  /// Copies slices of a volume in host memory to the device; null: the volume is in device memory
+  std::unique_ptr<SliceStream> Stream;
+  /// Launches in which rays start, and launches in which rays wrap around the periodic axis
+  SliceStream::Schedule First, Rounds;
 
-  std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders; ///< by SweepVolume::first
-  bool Dark = false;                                           ///< the current sweep has no light to carry
-  SweepTally Tally;                                            ///< of the current sweep
+  /// Cached incident light of each group of channels; key: SweepVolume::first
+  std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders;
+  bool Dark = false; ///< whether the current sweep has neither a source nor incident light
+  SweepTally Tally;  ///< incident and escaped power of the current sweep
 };
 }

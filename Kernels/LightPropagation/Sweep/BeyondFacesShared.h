@@ -1,19 +1,22 @@
-// Shared by C++ and the kernels that read values from beyond the faces of a block: memory layout of these values.
+// Layout, shared by C++ and OpenCL kernels, of the values of voxels just beyond the faces of a block (subdomain).
 #pragma once
 
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// See BeyondFaces in Pipelined/AcrossFaces.h.
+/// Index of the values received from the neighbours of a block, one per cell of its faces (BeyondFaces in
+/// Pipelined/AcrossFaces.h).
 typedef struct
 {
-  int first[6]; ///< index of the first cell of each face of the block, -x to +z; -1: a face of the domain
-  ulong stride; ///< number of cells of all faces
+  /// Index of the first cell of each face of the block, -x to +z; -1: the face is on the domain's boundary
+  int first[6];
+  ulong stride; ///< number of cells of all faces of the block
 } BeyondFacesInfo;
 SHARED_END
 
 #ifdef __OPENCL_C_VERSION__
-// Index of the value of a voxel's neighbour across face d; -1: the neighbour is in the block, or outside the domain.
+// Index of the value of the voxel next to voxel `at` across face d of the block; -1: that voxel is in the block or
+// outside the domain.
 static long place_beyond(const BeyondFacesInfo* beyond, const int* size, const int* at, int d)
 {
   const int axis = d / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;

@@ -1,4 +1,4 @@
-// Shared by C++ and kernels: memory layout of angular moments.
+// Memory layout of angular moments, shared by C++ and OpenCL kernels.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -6,22 +6,24 @@
 SHARED_BEGIN
 enum
 {
-  MomentGroup = 16 ///< voxels of a row whose moments are stored together
+  MomentGroup = 16 ///< number of neighbouring voxels of a row along x whose moments are adjacent in memory
 };
 
-/// An array with angular moments begins with the first function, the fluence, stored like any other array:
-/// [channel][stride]. The other functions follow in groups of voxels, [z][y][channel][group][function][MomentGroup], so
-/// that a sweep along any axis reads contiguous memory. Beams come last, [beam][channel][stride].
+/// Memory layout of an array with the angular moments of each voxel. The first function, the fluence, is stored like
+/// any other array: [channel][stride]. The other functions follow in groups of voxels,
+/// [z][y][channel][group][function][MomentGroup], so that a sweep along any axis reads contiguous memory. Values of
+/// beams are last, [beam][channel][stride].
 typedef struct
 {
-  ulong second; ///< index of the second function's first value
+  ulong second; ///< index of the first value of the second angular function
   ulong beams;
-  int sizeX, groups; ///< voxels and groups of a row
+  int sizeX, groups; ///< number of voxels, and of groups of MomentGroup voxels, along x
   int channels;
-  int functions; ///< number of angular functions, including the first
+  int functions; ///< number of angular functions, including the first (fluence)
 } MomentPlaces;
 
-/// Index of a voxel's value of a function from the second on. `line` is z * sizeY + y, as ulong.
+/// Index of the value of angular function `function` >= 1 in the voxel at `x` of a row along x. `line` is z * sizeY +
+/// y, as ulong.
 #define MOMENT_PLACE(places, function, channel, line, x)                                                           \
   ((places).second +                                                                                               \
     ((((line) * (places).channels + (channel)) * (places).groups + (x) / MomentGroup) * ((places).functions - 1) + \

@@ -51,9 +51,9 @@ SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, H
   }
 }
 
-/// Rays enter where they start, and in place of rays that left sideways: one per row for each move along u, one per
-/// column for each move along v. Of the rays that move along u and v at once and enter at the plane's corner, half
-/// enter through u's face and half through v's.
+/// Writes the incident power of a bundle's member. Rays enter where they start, and in place of rays that left
+/// sideways: one per row for each move along u, one per column for each move along v. Of the rays that move along u and
+/// v at once and enter at the plane's corner, half enter through u's face and half through v's.
 void SweepBorder::EnterMember(
   const SweepBoundary& boundary, std::size_t b, int way, int m, const std::array<double, 2>& moves)
 {
@@ -86,7 +86,7 @@ void SweepBorder::EnterMember(
   }
 }
 
-/// Incident power of a ray, W per channel.
+/// Incident power of one ray that enters through `face`, W per channel.
 Rgb SweepBorder::PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle, int direction, int face) const
 {
   Rgb values = boundary(direction, face);
@@ -97,7 +97,9 @@ Rgb SweepBorder::PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle,
   return values;
 }
 
+/// Writes the power of the incident rays of one bundle member and channel, W.
 /// @param slot  index within the bundle, [member][channel]
+/// @param fromU, fromV, fromP  power of a ray that enters through the face across u, v, or the marching axis
 void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fromV, float fromP)
 {
   const BundleInfo& bundle = this->Plan.bundleRows[b];
@@ -115,8 +117,8 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
-  // The columns beside it hold rays that enter at the next move along u, as in the map. Rays that move along u and v at
-  // once come from these columns.
+  // The columns outside the row hold rays that enter at the next move along u; a ray that moves along u and v at once
+  // enters from these columns.
   const bool periodicU = this->Plan.periodic[this->Plan.axes.u];
   const float beside = periodicU ? fromV : fromU;
   float* beyond = this->outside.data() + way * this->Plan.eachWay.outside + bundle.outside + inBlock;

@@ -6,37 +6,42 @@
 
 namespace tyndall
 {
-/// Sideways moves of a bundle's rays over several planes, voxels, in the bundle's own frame: along u, along v.
+/// Distance that a bundle's rays move sideways while they cross `planes` planes, in voxels along the u and v axes of
+/// the bundle.
 std::array<double, 2> SidewaysMoves(const Bundle& bundle, int firstPlane, int planes);
 
-/// Adds power that left sideways to a tally.
-/// @param left  W, [any][-u, +u, -v, +v][channel]
+/// Adds power that escaped through the faces parallel to the marching axis to SweepTally::out.
+/// @param left  escaped power, W, [any][-u, +u, -v, +v][channel]
 void CountSideways(const SweepPlan& plan, const std::vector<float>& left, SweepTally& tally);
 
-/// Incident light of a sweep, in the layout of the sweep's buffers. Each buffer holds both ways, forward first.
+/// Incident light of a sweep along one axis, in the layout of the sweep's buffers. Each array holds both senses of
+/// marching, forward first.
 class SweepBorder
 {
 public:
-  /// Which members are filled.
+  /// Selection of the arrays that the constructor fills.
   enum class Holds
   {
-    Maps,     ///< all except `rays`
+    Maps,     ///< all arrays except `rays`
     RaysAlone ///< only `rays` and `powerIn`
   };
 
   /// @param plan  must outlive this object
-  /// @param boundary  not empty
+  /// @param boundary  incident radiance; not empty
   SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds = Holds::Maps);
 
-  /// Incident power of each ray, W, [way][bundle][member][channel]; components: through u's face, through v's face, at
-  /// the ray's start.
+  /// Incident power of a ray, W, [sense][bundle][member][channel]; components: entering through the face across u,
+  /// through the face across v, and at the start of the ray.
   std::vector<cl_float4> rays;
 
-  /// Initial power of the rays, W; the columns beside the plane hold the power of rays that enter through u's faces.
+  /// Initial power of each ray, W; columns outside the plane hold the power of rays that enter through the faces across
+  /// u.
   std::vector<float> maps;
-  std::vector<float> outside;      ///< power of rays that enter through v's faces, [bundle][member][channel][row]
-  std::vector<float> radiance;     ///< power of rays that enter through u's faces, [bundle][member][channel]
-  std::array<Rgb, 6> powerIn = {}; ///< incident power by face, W
+  /// Power of rays that enter through the faces across v, W, [bundle][member][channel][row]
+  std::vector<float> outside;
+  /// Power of a ray that enters through a face across u, W, [bundle][member][channel]
+  std::vector<float> radiance;
+  std::array<Rgb, 6> powerIn = {}; ///< incident power through each face of the box, W
 
 private:
   void EnterMember(

@@ -12,12 +12,15 @@ namespace tyndall
 namespace
 {
 constexpr double SecondsPerLaunch = 0.08;
-constexpr double SecondsPerRay = 1e-9; ///< per ray and voxel, on a slow core; only determines the size of launches
-constexpr double ZeroFunction = 1e-6;  ///< magnitude below which an angular function (mean square 1) counts as zero
-constexpr int MostGroups = 4;          ///< groups of bundles that march one behind the other
+/// Time per ray and voxel on a slow core, s; only determines the size of launches
+constexpr double SecondsPerRay = 1e-9;
+/// Magnitude below which an angular function (of mean square 1) is taken as zero
+constexpr double ZeroFunction = 1e-6;
+/// Maximum number of groups of bundles that march in the same sense, two slabs behind each other
+constexpr int MostGroups = 4;
 
-/// (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), to 2e-8 for 0 <= t < Thin: a minimax
-/// polynomial.
+/// Coefficients of (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), a minimax polynomial with an
+/// error of 2e-8 for 0 <= t < Thin.
 constexpr double MeanLength[MeanLengthTerms] = { -0.499999036, 0.166648826, -0.0415578957, 0.0080387554,
   -0.00101435666 };
 constexpr double Thin = 0.75;
@@ -28,8 +31,8 @@ cl_int Int(T value)
   return static_cast<cl_int>(value);
 }
 
-/// Floats of a padded row: an odd number of vectors, so that rows do not map to the same cache sets, and one of a few
-/// sizes, since kernels are compiled for each size.
+/// Number of floats in a padded row: an odd number of vectors, so that rows do not map to the same cache sets, and one
+/// of a few sizes, since kernels are compiled for each size.
 int RowFloats(int width, int vector)
 {
   int vectors = 2;
@@ -68,7 +71,7 @@ bool IsSwapped(const Member& member)
   return member.uFromU == 0;
 }
 
-/// Sorts members so that those whose directions differ only in signs are adjacent.
+/// Sorts the members of each bundle so that those whose directions differ only in signs are adjacent.
 void SortIntoFrames(std::vector<Bundle>& bundles)
 {
   for (Bundle& bundle : bundles)
@@ -78,7 +81,7 @@ void SortIntoFrames(std::vector<Bundle>& bundles)
   }
 }
 
-/// Longest path of a ray through one plane.
+/// Maximum length of a ray's path through one plane.
 double LongestWay(const std::vector<Bundle>& bundles)
 {
   double longest = 0.0;
@@ -129,8 +132,9 @@ SweepPlan::SweepPlan(const Device& device, const SweepDescription& sweep, const 
   this->LayRounds();
 }
 
-/// Rays that start in the few planes of a short periodic axis would all have the same pattern. They start in several
-/// laps instead, each with part of the power (numerics.md, section 4.6).
+/// Determines the number of laps around a short periodic axis in which rays start. Rays that start in its few planes
+/// would all have the same pattern of moves, so they start in several laps, each with a fraction of the power
+/// (numerics.md, section 4.6).
 void SweepPlan::LayLaps()
 {
   this->laps = PlanesOfPattern(this->Planes(), this->periodic[this->axes.axis]) / this->Planes();
@@ -162,7 +166,7 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
-  // Planes that are packed just before they are crossed stay in the cache if one call processes all bundles.
+  // Rows that are packed just before they are crossed stay in the cache if one call processes all bundles.
   const bool inOneTurn = this->plane.tile > 0 && this->bundles.size() <= BundlesTogether;
   this->rowsKept = inOneTurn && this->plane.block == 1 && this->plane.sizeV > RowsOfChainKept ? RowsOfChainKept : 0;
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
@@ -171,7 +175,7 @@ void SweepPlan::LayPlane(const Device& device)
 }
 
 /// Number of planes in a chain. If a bundle's rays in a plane exceed a core's cache, it crosses several planes
-/// together, row by row, so that rays are read from memory and written to it only once for all of them.
+/// together, row by row, so that rays are read from memory and written to it only once for all of these planes.
 int SweepPlan::PlanesChained(const Device& device) const
 {
   const std::size_t rays = static_cast<std::size_t>(MaxMembers) * this->channels * this->row * this->plane.sizeV;
@@ -190,7 +194,8 @@ void SweepPlan::LayMoments()
   this->momentRow = this->channels * groups * (this->moments.functions - 1) * MomentGroup;
 }
 
-/// Longest segment of a ray in a voxel; on a periodic axis, the longest path through a plane is used as a bound.
+/// Length of the longest segment of a ray in a voxel; for a periodic axis its upper bound, the longest path through a
+/// plane.
 double SweepPlan::LongestSegment() const
 {
   if (this->periodic[this->axes.axis])
@@ -215,11 +220,11 @@ void SweepPlan::LayBundles()
     this->eachWay.outside += rays * this->row;
     this->eachWay.radiance += rays;
   }
-  this->eachWay.maps += this->vector; // the last row's border
+  this->eachWay.maps += this->vector; // padding after the last row
   this->eachWay.outside += this->vector;
 }
 
-/// Description of a bundle that is placed after those laid out so far.
+/// Parameters of a bundle whose arrays follow those of the bundles laid out so far.
 BundleInfo SweepPlan::Describe(const Bundle& bundle) const
 {
   const std::array<double, 3>& spacing = this->grid.spacing;
@@ -244,7 +249,8 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   return description;
 }
 
-/// Finds the frames of each bundle and the positions of its coefficients, and computes the coefficients of both ways.
+/// Determines the frames of each bundle and the indices of its coefficients, and computes the coefficients for both
+/// senses of marching.
 void SweepPlan::LayFrames()
 {
   for (std::size_t b = 0; b < this->bundles.size(); ++b)
@@ -272,8 +278,8 @@ void SweepPlan::LayFrames()
   }
 }
 
-/// Bit i is set if the functions of parity i, in the order of FunctionOrder, are not all zero in the bundle's
-/// directions.
+/// Parities of the angular functions that a bundle needs: bit i is set if the functions of parity i, in the order of
+/// FunctionOrder, are not all zero in its directions.
 int SweepPlan::ParitiesOf(const Bundle& bundle) const
 {
   int parities = 0;
@@ -293,8 +299,8 @@ int SweepPlan::ParitiesOf(const Bundle& bundle) const
   return parities;
 }
 
-/// Computes the angular functions of each frame, for positive u and v, from any of its members, and the beams of each
-/// member.
+/// Computes the angular functions of each frame of bundle b, for positive u and v, and the beams of each of its
+/// members.
 void SweepPlan::LayCoefficients(std::size_t b, int way)
 {
   const auto directionOf = [way](const Member& member) { return way == 0 ? member.direction : member.opposite; };
@@ -328,7 +334,7 @@ void SweepPlan::LayCoefficients(std::size_t b, int way)
   }
 }
 
-/// Creates the units that run concurrently: for each way, as many groups of bundles as keep the cores busy.
+/// Creates the units that run concurrently: for each sense of marching, enough groups of bundles to occupy all cores.
 void SweepPlan::LayUnits(int computeUnits)
 {
   const int ways = (this->forward ? 1 : 0) + (this->backward ? 1 : 0);
@@ -374,26 +380,29 @@ int SweepPlan::CrossingPlanes() const
 
 std::size_t SweepPlan::ScratchFloats() const
 {
-  // Two rings, or the data that each bundle keeps, and the rays of a row of which only a part moves.
+  // Scratch of the bundles (two ring buffers, or the data kept between tiles), and the rays of a row of which only a
+  // fraction of the power moves.
   const std::size_t raysOfRow = static_cast<std::size_t>(MaxMembers) * this->channels * this->row;
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
   const std::size_t kept = this->angular
     ? together * BUNDLE_FLOATS(this->channels, this->row)
     : together * RINGS_OF(static_cast<std::size_t>(this->plane.chained)) * RingRows * raysOfRow;
-  // They are followed by the row of rays that enter by cells of the box's faces.
+  // With incident radiance per cell, one more row holds the rays that enter through the faces across v.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;
   const std::size_t quantities =
     PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
-  const std::size_t planes = quantities * rows * this->row; // also with rowsKept, since cells of faces need all rows
-  const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow; // source and path
+  // all rows also with rowsKept, since cells of faces need them
+  const std::size_t planes = quantities * rows * this->row;
+  // moments of source and of path
+  const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow;
   return ring + planes + rows + packed + 3 * this->vector;
 }
 
 /// Borders of slabs of planes. The number of slabs is even, large enough to keep launches short, and at least eight per
-/// group if there are several. Borders lie between blocks and chains, except in the middle, and are symmetric about it,
-/// as units of opposite ways wait for each other.
+/// group if there are several groups. Borders lie between blocks and chains, except in the middle, and are symmetric
+/// about it, because units of opposite senses wait for each other.
 std::vector<int> SweepPlan::SlabBorders(int groups)
 {
   const int planes = this->Planes();
@@ -413,8 +422,8 @@ std::vector<int> SweepPlan::SlabBorders(int groups)
   return borders;
 }
 
-/// Schedules slabs such that units never share planes: a group follows two slabs behind the previous one, and forward
-/// and backward units, which move towards each other, are in slabs of different parity.
+/// Schedules slabs such that units that run concurrently never share planes: a group follows two slabs behind the
+/// previous one, and forward and backward units, which approach each other, are in slabs of different parity.
 void SweepPlan::LaySchedule()
 {
   const int planes = this->Planes();
@@ -454,7 +463,7 @@ void SweepPlan::LayRounds()
   }
 }
 
-/// Rays per voxel of the unit that has most.
+/// Number of rays per voxel in the unit with the most rays.
 int SweepPlan::RaysPerUnit() const
 {
   std::size_t most = 0;
@@ -539,9 +548,9 @@ std::vector<OwnLightInfo> SweepPlan::OwnLight(int lapPlanes) const
   return rows;
 }
 
-/// Path of light within its voxel of origin, numerics.md, Eq. (26). For thin voxels: (l - p1) / sigma = -l^2
-/// (MeanLength[0] + sigma l (MeanLength[1] +
-/// ...)), summed over segments; sigma in units of `thin`.
+/// Path integral, per unit of source, of light within its voxel of origin (numerics.md, Eq. (26)). For thin voxels: the
+/// sum over segments of power (l - p1) / sigma_t = -power l^2 (MeanLength[0] + sigma_t l (MeanLength[1] + ...)), with
+/// sigma_t in units of `thin`.
 OwnLightInfo SweepPlan::OwnLightOf(const UnitInfo& unit, int ofPlane) const
 {
   double sum = 0.0;

@@ -12,23 +12,25 @@
 
 namespace tyndall
 {
-/// What a sweep along one axis carries and computes, as far as its plan depends on it.
+/// Properties of a sweep along one axis that its plan depends on.
 struct SweepDescription
 {
   Grid grid;
-  VoxelBox box = {}; ///< the part of the grid that is swept; empty, and if any axis is periodic: the whole grid
+  VoxelBox box = {}; ///< region of the grid that is swept; empty, and if any axis is periodic: the whole grid
   std::array<bool, 3> periodic = {};
   int channels = 1;
   bool netFlux = false;
-  bool partialCurrents = false; ///< power that enters each voxel through each of its faces
-  /// Angular functions in the bundles' directions, must outlive the plan; null: no angular moments, fluence only
+  /// Whether the power that enters each voxel through each of its faces is summed
+  bool partialCurrents = false;
+  /// Values of the angular functions in the bundles' directions, must outlive the plan; null: no angular moments,
+  /// fluence only
   const AngularValues* angular = nullptr;
   MomentPlaces moments = {}; ///< memory layout of the angular moments
-  bool faceIn = false;       ///< incident radiance is given for each cell of the box's faces
-  bool octantSource = false; ///< the source of a voxel differs between octants of directions
+  bool faceIn = false;       ///< whether incident radiance is given per cell of the box's faces
+  bool octantSource = false; ///< whether the source of a voxel differs between octants of directions
 };
 
-/// The sweep of a volume in which these axes are periodic.
+/// Description of the sweep of `volume`; periodic[a] tells whether axis a is periodic.
 SweepDescription Describe(const SweepVolume& volume, const std::array<bool, 3>& periodic);
 
 /// Plan of a sweep along one axis: memory layout of the bundles, the units of work that run concurrently, and the
@@ -38,48 +40,60 @@ struct SweepPlan : SweepDescription
   SweepPlan(const Device& device, const SweepDescription& sweep, const AxisBundles& rays);
 
   PlaneAxes axes;
-  std::vector<Bundle> bundles; ///< of 1, 2, 4 or 8 members: what the kernels are compiled for
-  bool forward = false;        ///< whether any rays march forward
+  /// Bundles of 1, 2, 4 or 8 members, the sizes for which the kernels are compiled
+  std::vector<Bundle> bundles;
+  bool forward = false; ///< whether any rays march from the lower to the upper end of the axis
   bool backward = false;
 
-  int vector = 8;   ///< floats of a work-item's vector
-  int row = 0;      ///< floats of a padded row
-  int rowsKept = 0; ///< rows of a plane held in scratch, if rows are packed just before they are crossed; 0: all rows
+  int vector = 8; ///< number of floats in a vector of the kernels (SIMD width)
+  int row = 0;    ///< number of floats in a padded row
+  /// Number of rows of a plane held in scratch if rows are packed just before they are crossed; 0: all rows
+  int rowsKept = 0;
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
-  EachWay eachWay = {};            ///< floats for one way, forward or backward
-  std::vector<float> coefficients; ///< see BundleInfo::coefficients; forward first
-  FunctionOrder order;             ///< order of the angular functions for this axis
-  bool momentsInPlace = false;     ///< rows of a plane are rows of the moments' array, so no packing is needed
-  int momentRow = 0;               ///< floats of a packed row: all channels and all functions from the second on
+  EachWay eachWay = {}; ///< number of floats of each array for one sense of marching
+  /// Values of the angular functions (BundleInfo::coefficients), forward first
+  std::vector<float> coefficients;
+  FunctionOrder order; ///< order of the angular functions for this axis
+  /// Whether rows of a plane are rows of the array of moments, so that they need no packing
+  bool momentsInPlace = false;
+  /// Number of floats in a packed row of moments: all channels, all functions from the second on
+  int momentRow = 0;
 
   std::vector<UnitInfo> units;
-  std::vector<cl_int2> schedule; ///< [launch][unit], planes from, to
+  /// Planes that each unit crosses in each launch, [launch][unit], first and end
+  std::vector<cl_int2> schedule;
   int launches = 0;
-  double secondsPerLaunch = 0.0; ///< upper estimate, for a slow core
-  int laps = 1; ///< laps round a short periodic axis in which rays start, so that the ray pattern fits; else 1
-  std::vector<cl_int2> roundSchedule; ///< launches that wrap around a periodic axis, one unit at a time
+  double secondsPerLaunch = 0.0; ///< upper estimate of the time of a launch on a slow core, s
+  /// Number of laps around a short periodic axis in which rays start, so that their pattern of moves fits; else 1
+  int laps = 1;
+  /// Planes that each unit crosses when rays wrap around a periodic axis; units run one after another
+  std::vector<cl_int2> roundSchedule;
 
   int Planes() const { return this->box.size[this->axes.axis]; }
-  int PatternPlanes() const { return this->Planes() * this->laps; } ///< planes in which the rays of a sweep start
-  /// Planes of the grid that rays cross before they reach the box. @param way  0 forward, 1 backward
+  /// Number of planes in which the rays of a sweep start
+  int PatternPlanes() const { return this->Planes() * this->laps; }
+  /// Number of planes of the grid that rays cross before they reach the swept box.
+  /// @param way  sense of marching: 0 forward, 1 backward
   int PlanesBefore(int way) const;
-  /// Planes of the ray pattern, from its start, that rays cross up to the end of the box; the larger of both ways.
+  /// Number of planes from the start of the ray pattern to the end of the swept box; the maximum over both senses of
+  /// marching.
   int CrossingPlanes() const;
-  std::size_t ScratchFloats() const; ///< scratch of one unit
+  std::size_t ScratchFloats() const; ///< number of floats of scratch memory per unit
 
-  /// How rays cross each plane, [plane][bundle]. @param firstPlane  first plane of the ray pattern
+  /// Moves and segment lengths of rays in each plane, [plane][bundle].
+  /// @param firstPlane  index of the first plane in the ray pattern
   std::vector<CrossingInfo> Crossings(int firstPlane, int planes) const;
-  /// Path of emitted and scattered light within its voxel of origin, [unit][plane].
-  /// @param lapPlanes  planes that the rays had crossed when this lap began
+  /// Path integral, per unit of source, of emitted and scattered light within its voxel of origin, [unit][plane].
+  /// @param lapPlanes  number of planes that the rays have crossed at the start of this lap around a periodic axis
   std::vector<OwnLightInfo> OwnLight(int lapPlanes = 0) const;
-  /// Position of each angular function in a group of moments (MomentPlacesShared.h), in this axis's order. 0 for the
-  /// first function, which is stored elsewhere, and if there are no angular moments.
+  /// Index of each angular function in a group of moments (MomentPlacesShared.h), in this axis's order of functions. 0
+  /// for the first function, which is stored elsewhere, and if there are no angular moments.
   std::vector<cl_int> FunctionPlaces() const;
-  /// What a launch of the kernel `sweep` takes from the plan.
+  /// Arguments of the kernel `sweep` that the plan determines.
   SweepInfo Info() const;
-  /// Lowers the limit for thin voxels (PlaneInfo::thin) so that it also holds on the longer segments of rays that
-  /// continue beyond the planes of their pattern. Call before OwnLight().
+  /// Lowers the extinction below which a voxel is thin (PlaneInfo::thin) so that it also holds for the longer segments
+  /// of rays that continue beyond the planes of their pattern, along a periodic axis. Call before OwnLight().
   void LetRaysGoOn();
 
 private:

@@ -1,4 +1,4 @@
-// Shared by C++ and the sweep's kernels: kernel arguments.
+// Arguments of the sweep's OpenCL kernels, shared with C++.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -7,24 +7,30 @@
 SHARED_BEGIN
 enum
 {
-  MaxMembers = 8,      ///< of a bundle
-  MaxFrames = 2,       ///< of a bundle: u and v in order, and exchanged
-  RingRows = 4,        ///< a stage reads rows y - 1 to y + 1 while the stage before writes row y + 2
-  MeanLengthTerms = 5, ///< of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
-  /// Bundles that cross the same planes in turn, if there are angular moments or planes are chained
+  MaxMembers = 8, ///< maximum number of members (mirror-image directions) in a bundle
+  MaxFrames = 2,  ///< maximum number of frames in a bundle: u and v in order, and exchanged
+  /// Rows in a ring buffer between stages: a stage reads rows y - 1 to y + 1 while the stage before it writes row y + 2
+  RingRows = 4,
+  /// Number of coefficients m of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
+  MeanLengthTerms = 5,
+  /// Maximum number of bundles that alternate on a tile of rows, if there are angular moments or planes are chained
   BundlesTogether = 16,
-  MomentRows = 8,   ///< rows for which a bundle's sources are stored: those that its stages are working on
-  MostChained = 2,  ///< most planes in a chain: planes that a bundle crosses together, row by row
-  RowsTogether = 8, ///< rows in a tile of a plane with many moments; a tile stays in the cache for all bundles
-  /// Rows in a tile of a chain, which bundles cross in turn; a tile stays in the cache for all bundles
+  MomentRows = 8, ///< rows for which a bundle's sources are stored: those that its stages are processing
+  /// Maximum number of planes in a chain, i.e. planes that a bundle crosses together, row by row
+  MostChained = 2,
+  /// Rows in a tile of a plane with angular moments; a tile stays in the cache while all bundles cross it
+  RowsTogether = 8,
+  /// Rows in a tile of chained planes; a tile stays in the cache while all bundles cross it
   RowsOfChain = 32,
-  RowsOfChainKept = 64, ///< rows of a tile, and those by which its last stage lags behind; a power of two
-  RowsAhead = 2,        ///< rows by which the prefetch of a chain's map is ahead
-  FloatsOfLine = 16,    ///< floats in a cache line
-  FirstRow = -2         ///< lowest row of a plane at which a first stage may begin
+  /// Rows of chained planes held in scratch: a tile and the rows by which its last stage lags behind; a power of two
+  RowsOfChainKept = 64,
+  RowsAhead = 2,     ///< number of rows by which the prefetch of a ray map is ahead in chained planes
+  FloatsOfLine = 16, ///< number of floats in a cache line
+  FirstRow = -2      ///< lowest row of a plane at which a first stage may begin
 };
 
-/// The first quantities of a plane that is being crossed; path, flux and partial currents follow (SweepLayout.cl).
+/// Indices of the first quantities stored per row of a plane that is being crossed; path, flux and partial currents
+/// follow (SweepLayout.cl).
 enum
 {
   PlaneSigma = 0,
@@ -34,7 +40,7 @@ enum
   PlaneSource = 3
 };
 
-/// Face through which a ray enters a voxel: across the marching axis, or the lower or upper face across u or v.
+/// Faces of a voxel through which a ray enters: across the marching axis, or the lower or upper face across u or v.
 enum
 {
   CurrentAxis = 0,
@@ -45,156 +51,168 @@ enum
   CurrentFaces = 5
 };
 
-/// Number of combinations of a ray's ways along u and v; index: bit 0 for u upwards, bit 1 for v upwards.
+/// Number of combinations of a ray's senses along u and v; bit 0 of the index is set for increasing u, bit 1 for
+/// increasing v.
 enum
 {
   WaysAside = 4
 };
 
-/// Number of quantities of a plane. Each channel has a source, a path and beams; a flux, currents and a source by
-/// octant if used.
+/// Number of quantities stored per row of a plane. Each channel has a source, a path integral and beams; also a net
+/// flux, partial currents and a source per octant if these are used.
 #define PLANE_COUNT(channels, beams, netFlux, currents, octants) \
   (PlaneSource +                                                 \
     (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0) + ((octants) ? WaysAside : 0)) * (channels))
 
-/// Number of rings of rows between the stages of `planes` chained planes, with at most three stages per plane.
+/// Number of ring buffers of rows between the stages of `planes` chained planes, with at most three stages per plane.
 #define RINGS_OF(planes) (3 * (planes)-1)
 
-/// Floats that a bundle keeps from one tile of rows to the next: two rings; for MomentRows rows the members' sources
-/// and paths, and the path of a unit source in its own voxel.
+/// Number of floats that a bundle keeps from one tile of rows to the next: two ring buffers; for MomentRows rows the
+/// members' sources and path integrals, and the path integral of a unit source in its own voxel.
 #define BUNDLE_FLOATS(channels, row) \
   ((RINGS_OF(1) * RingRows + 2 * MomentRows) * MaxMembers * (channels) * (row) + MomentRows * (row))
 
 typedef struct
 {
   int members;
-  int map;      ///< index of the first float of its maps
-  int border;   ///< index of the first of its radiances at the faces, [member][channel]
-  int outside;  ///< index of the first float of its rows outside, [member][channel][ROW]
-  float power;  ///< power of a ray at radiance 1, length^2 sr
-  float cosine; ///< cosine between its directions and the marching axis, for the net flux
+  int map;      ///< index of the first float of the bundle's maps (power of its rays)
+  int border;   ///< index of the bundle's first radiance at the faces across u, [member][channel]
+  int outside;  ///< index of the bundle's first float in the rows that enter across v, [member][channel][ROW]
+  float power;  ///< power of a ray of radiance 1 (numerics.md, Eq. (19)), length^2 sr
+  float cosine; ///< cosine of the angle between the bundle's directions and the marching axis, for the net flux
   float sineU, sineV;
-  float planesU, planesV;  ///< planes from one move along u, v to the next; at most those of the axis
+  /// Number of planes between two moves along u, and along v; at most the planes of the axis
+  float planesU, planesV;
   int move[MaxMembers][4]; ///< u from u, u from v, v from u, v from v: a signed permutation
-  /// A frame is a set of at most four members whose directions differ only in signs. firstOfFrame: index of each
-  /// frame's first member, then the end of the last frame.
+  /// Number of frames, and index of each frame's first member, then the end of the last frame. A frame is a set of at
+  /// most four members of the bundle whose directions differ only in signs.
   int frames, firstOfFrame[MaxFrames + 1];
-  int parities; ///< bit i: the functions of parity i are not all zero (SweepLayout.cl)
-  /// Index of its first coefficient, for each way: values of the angular functions for positive u and v,
-  /// [frame][function] in the order of the axis; then those of beams, [member][beam].
+  /// Bit i: not all angular functions of parity i are zero in the bundle's directions (SweepLayout.cl)
+  int parities;
+  /// Index of the bundle's first coefficient, for each sense of marching: values of the angular functions for positive
+  /// u and v, [frame][function] in the order of the axis; then values of beams, [member][beam].
   int coefficients;
 } BundleInfo;
 
-/// How rays of a bundle cross a plane.
+/// Moves and segments of a bundle's rays in one plane: each stage moves the rays sideways and takes them through one
+/// voxel.
 typedef struct
 {
   int stages;
   int moveU[3], moveV[3];
-  float part[3]; ///< part of each ray's power that moves; the rest stays
+  float part[3]; ///< fraction of each ray's power that moves; the rest stays
   float length[3];
 } CrossingInfo;
 
-/// Unit of work: the rays that one work-item carries.
+/// Unit of work: bundles and sense of marching of the rays that one work-item carries.
 typedef struct
 {
-  int backward; ///< 0 marches from the lower end of the axis, 1 from the upper
+  int backward; ///< 0: marches from the lower end of the axis, 1: from the upper end
   int firstBundle, bundles;
-  int scratch;      ///< index of its scratch's first float
-  int planesBefore; ///< planes of the ray pattern that its rays have crossed before the first plane of this unit
+  int scratch; ///< index of the first float of the unit's scratch memory
+  /// Number of planes of the ray pattern that the unit's rays have crossed before its first plane
+  int planesBefore;
 } UnitInfo;
 
-/// Memory layout of planes in the volume. The index of voxel (u, v) of plane p is
-/// (firstU + u) * stepU + (firstV + v) * stepV + (firstP + p) * stepP.
+/// Memory layout of the swept planes within the grid. The index of voxel (u, v) of plane p is (firstU + u) * stepU +
+/// (firstV + v) * stepV + (firstP + p) * stepP.
 typedef struct
 {
   int sizeU, sizeV, sizeP;
   int firstU, firstV, firstP;
   int stepU, stepV, stepP;
   int width;
-  int block;    ///< planes packed at once: 1 if rows are contiguous in memory, else the vector width
-  int together; ///< planes packed before any of them is crossed: a multiple of `block`
-  int chained;  ///< planes of `together` that form a chain, which a bundle crosses row by row
-  int tile;     ///< rows in a tile, which bundles cross in turn; 0: each bundle crosses all rows
-  float vacuum; ///< 1/length, smallest sigma_t, used instead of 0: exp(-tau) is 1 in float
-  float thin;   ///< 1/length, extinction below which the polynomial `meanLength` holds on all segments
+  int block;    ///< number of planes packed at once: 1 if rows are contiguous in memory, else the vector width
+  int together; ///< number of planes packed before any of them is crossed: a multiple of `block`
+  int chained;  ///< number of planes in a chain, which a bundle crosses together, row by row
+  int tile;     ///< number of rows in a tile, on which bundles alternate; 0: each bundle crosses all rows
+  float vacuum; ///< sigma_t used instead of 0 in vacuum, 1/length; so small that exp(-tau) is 1 in float
+  float thin;   ///< sigma_t below which the polynomial `meanLength` holds on all segments, 1/length
   float meanLength[MeanLengthTerms];
 } PlaneInfo;
 
-/// Path of emitted and scattered light within its voxel of origin, per unit of source: the sum over segments of power
-/// (l - p1) / sigma (numerics.md, Eq. (26)).
+/// Path integral, per unit of source, of emitted and scattered light within its voxel of origin: sum over segments of
+/// power (l - p1) / sigma_t, where l is the length and p1 the mean transmitted length (numerics.md, Eq. (26)).
 typedef struct
 {
-  float length;                 ///< sum over segments of power l
-  float terms[MeanLengthTerms]; ///< for a thin voxel, the whole sum as a polynomial in sigma / PlaneInfo::thin
+  float length; ///< sum over segments of power times length l
+  /// Coefficients of that sum as a polynomial in sigma_t / PlaneInfo::thin, for a thin voxel
+  float terms[MeanLengthTerms];
 } OwnLightInfo;
 
-/// Memory layout of the cells of the box's faces (BoxFaces.h). For the faces -u, +u, -v, +v: cell `i` of a row of plane
-/// p, along the other of u and v, has the index first + p * plane + i * along.
+/// Memory layout of the cells of the box's faces (BoxFaces.h). For the faces -u, +u, -v, +v, the cell at position i of
+/// plane p (i along v for the faces across u, along u for those across v) has the index first + p * plane + i * along.
 typedef struct
 {
   int first[4], plane[4], along[4];
-  ulong firstChannel, stride; ///< index of the first channel's first cell; cells from one channel to the next
-  ulong unit;                 ///< values in one unit's own copy of the cells, if `spread`: units run concurrently
-  int out;                    ///< 1: the power that leaves through each cell is counted
-  int spread;                 ///< 1: that power is spread over all cells that the ray represents; used if `out`
-  /// 1: incident light is given by cells, in addition to that which is uniform over each face
+  /// Index of the first channel's first cell; number of cells from one channel to the next
+  ulong firstChannel, stride;
+  /// Number of values in each unit's own copy of the cells, if `spread`, because units run concurrently
+  ulong unit;
+  int out;    ///< 1: the power that leaves through each cell is summed
+  int spread; ///< 1: escaped power is spread over all cells that the ray represents; used if `out`
+  /// 1: incident radiance is given per cell, in addition to the radiance that is uniform over each face
   int in;
 } FaceInfo;
 
-/// Floats of each array of a sweep for one way (forward or backward) along its axis.
+/// Number of floats of each array of a sweep for one sense of marching (forward or backward).
 typedef struct
 {
   ulong maps;
   ulong outside;      ///< rows of rays that enter through the faces across v
-  ulong radiance;     ///< rays that enter through the faces across u: one for each member and channel
-  ulong coefficients; ///< values of angular functions
+  ulong radiance;     ///< power of rays that enter through the faces across u: one value per member and channel
+  ulong coefficients; ///< values of the angular functions
 } EachWay;
 
-/// A launch of the kernel `sweep`.
+/// Arguments of a launch of the kernel `sweep`.
 typedef struct
 {
-  ulong sigmaFirst; ///< index of the channel's first value in sigma
-  /// Index of its first value in the other volumes (in the flux three times, in the currents six times this index), and
-  /// floats from one channel to the next.
+  ulong sigmaFirst; ///< index of the first channel's first value in sigma_t
+  /// Index of the first channel's first value in source and path (in the flux three times, in the partial currents six
+  /// times this index), and floats from one channel to the next.
   ulong first, stride;
   EachWay eachWay;
-  int empty;     ///< 1: the maps are uninitialised and are cleared where rays start
-  int shines;    ///< 1: the medium has a source (emission or scattered light)
-  int border;    ///< 1: light is incident on the faces that rays pass sideways
-  int roundAxis; ///< 1: rays wrap around the axis: planes are added to many times, with compensated summation
+  int empty;  ///< 1: the maps are uninitialised, and are cleared where rays start
+  int shines; ///< 1: the medium has a source (emission or scattered light)
+  int border; ///< 1: light is incident on the faces that rays cross sideways
+  /// 1: rays wrap around the marching axis, so each plane is added to many times, with compensated summation
+  int roundAxis;
   int periodicU, periodicV; ///< 1: the box is periodic along u, along v
   int bundles;
   int patternPlanes; ///< number of planes of the ray pattern
-  int launch;        ///< row of the schedule
+  int launch;        ///< index of this launch in the schedule
   int axis;
   PlaneInfo planes;
   FaceInfo faces;
   MomentPlaces moments;
-  int sizeY;          ///< extent along y of the grid or, if streamed, of a slot, voxels
-  int momentsInPlace; ///< 1: moments are read and added to in place; 0: they are packed like the rest of a plane
-  int packedMoments;  ///< floats of a packed row of moments
-  int parityEnds[4];  ///< end of each parity's range of angular functions (SweepLayout.cl)
+  int sizeY; ///< voxels along y of the grid or, if the volume is streamed, of a slot
+  /// 1: angular moments are read and added to in their array; 0: they are packed like the other quantities of a plane
+  int momentsInPlace;
+  int packedMoments; ///< number of floats in a packed row of moments
+  int parityEnds[4]; ///< end of the range of angular functions of each parity (SweepLayout.cl)
   int firstChannel;
-  int streamed;               ///< 1: the volumes are streamed in slices through slots (SliceStream.h)
-  ulong sourceSlot, pathSlot; ///< floats of a slot of source and of path, if streamed
-  int outerSides;             ///< for a block of a larger domain: bit i: light that crosses side i leaves the domain
+  int streamed; ///< 1: the volumes are streamed in slices through slots (SliceStream.h)
+  /// Floats of a slot of the source, and of a slot of the path integral, if streamed
+  ulong sourceSlot, pathSlot;
+  int outerSides; ///< for a subdomain: bit i: light that crosses side i leaves the domain
 } SweepInfo;
 
-/// A launch of the kernels that work on the maps of rays (SweepMaps.cl). Maps are [way][bundle][row][member][channel]
-/// with `row` floats for each row of a ray; rays are in its first sizeU floats after `border`.
+/// Arguments of the kernels on the maps of rays (SweepMaps.cl). Maps are [sense][bundle][row][member][channel], with
+/// `row` floats for each row of rays: the first `border` floats are padding, then `sizeU` rays follow.
 typedef struct
 {
-  ulong eachWay; ///< floats for one way
+  ulong eachWay; ///< floats of the maps for one sense of marching
   int bundles, channels;
   int row, border;
-  int sizeU, width; ///< voxels of a row; the same rounded up to whole vectors
-  ulong face[2];    ///< by way: index of the first channel's first cell of the face where rays start, or end
-  ulong faceStride; ///< cells from one channel to the next
+  int sizeU, width; ///< voxels of a row, and that number rounded up to whole vectors
+  /// Per sense of marching: index of the first channel's first cell of the face where rays start (or end)
+  ulong face[2];
+  ulong faceStride; ///< number of cells from one channel to the next
 } MapsInfo;
 SHARED_END
 
 #ifdef __OPENCL_C_VERSION__
-// Move of a bundle's member before a stage of a crossing, voxels along u and v.
+// Sideways move of a bundle's member before a stage of crossing a plane, voxels along u and v.
 static inline int2 move_of(
   const __global BundleInfo* bundle, int member, const __global CrossingInfo* crossing, int stage)
 {

@@ -8,7 +8,7 @@ namespace tyndall
 {
 namespace
 {
-/// Voxels per pass, few enough that cache lines of all parts stay in the cache until they are full
+/// Number of voxels per pass, small enough that cache lines of all components stay in the cache until they are full
 constexpr std::size_t AtOnce = 512;
 }
 

@@ -11,10 +11,10 @@
 
 namespace tyndall
 {
-/// Width of the widest vector in any kernel, floats.
+/// Number of floats in the widest vector of any kernel.
 constexpr std::size_t SweepPadding = 16;
 
-/// Channels that share one sigma_t and are swept together.
+/// Channels that share one sigma_t and are swept together: `count` channels from `first` on.
 struct ChannelGroup
 {
   int first = 0;
@@ -28,15 +28,15 @@ struct VolumeLayout
 {
   Grid grid;
   int channels = 1;
-  /// One extinction for all channels; false: three channels, each with its own extinction
+  /// True: all channels have the same sigma_t; false: three channels, each with its own sigma_t
   bool sharedExtinction = true;
 
   std::size_t Stride() const { return (this->grid.VoxelCount() + SweepPadding - 1) / SweepPadding * SweepPadding; }
-  /// Floats of one quantity, without padding at the end
+  /// Number of floats of one quantity in all channels, without the padding at the end
   std::size_t Values() const { return this->channels * this->Stride(); }
-  /// Floats of an array with `parts` values per voxel and channel, including the padding that vectors may read.
+  /// Number of floats of an array with `parts` values per voxel and channel, including the padding at the end.
   std::size_t Floats(int parts = 1) const { return this->FloatsOf(parts * this->channels); }
-  /// The same for `channelCount` channels.
+  /// Number of floats of an array with `channelCount` values per voxel, including the padding at the end.
   std::size_t FloatsOf(int channelCount) const { return channelCount * this->Stride() + SweepPadding; }
   /// Layout of an array with angular moments.
   MomentPlaces Places(int functions) const
@@ -56,13 +56,13 @@ struct VolumeLayout
   {
     return MOMENT_PLACE(places, function, channel, voxel / places.sizeX, voxel % places.sizeX);
   }
-  /// Channel of the value at index `at` of such an array; not for beams.
+  /// Channel of the value at index `at` of an array of angular moments; not for the values of beams.
   int ChannelOf(const MomentPlaces& places, std::size_t at) const
   {
     const std::size_t ofRow = static_cast<std::size_t>(places.groups) * (places.functions - 1) * MomentGroup;
     return static_cast<int>(at < places.second ? at / this->Stride() : (at - places.second) / ofRow % this->channels);
   }
-  /// Floats of an array with angular moments and beams, including padding.
+  /// Number of floats of an array with angular moments and beams, including the padding at the end.
   std::size_t MomentFloats(int functions, int beams = 0) const
   {
     return this->Places(functions).beams + this->Floats(beams);
@@ -76,8 +76,8 @@ struct VolumeLayout
   }
 };
 
-/// Writes value(voxel, channel) to `values` in this layout with `channels` channels, zero in the padding. `value` is
-/// called from several threads.
+/// Writes value(voxel, channel) to `values` in the layout [channel][stride], and zero to the padding. `value` is called
+/// from several threads.
 template <class Value>
 void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, float* values)
 {
@@ -95,7 +95,7 @@ void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, f
   std::fill_n(values + channels * stride, SweepPadding, 0.0f);
 }
 
-/// Like WritePlanar, into a new array.
+/// Returns an array [channel][stride] filled with value(voxel, channel), zero in the padding; see WritePlanar.
 template <class Value>
 std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
 {
@@ -104,8 +104,9 @@ std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value&
   return values;
 }
 
-/// Like WritePlanar, into a new device buffer; on a CPU device without a copy.
-/// @param what  name of the quantity, see Buffer
+/// Returns a device buffer [channel][stride] filled with value(voxel, channel), zero in the padding; written without a
+/// copy on a CPU. See WritePlanar.
+/// @param what  name of the quantity for error messages, see Buffer
 template <class Value>
 Buffer<float> PlanarOnDevice(
   Device& device, const VolumeLayout& layout, int channels, const Value& value, const char* what)
@@ -115,7 +116,7 @@ Buffer<float> PlanarOnDevice(
   return values;
 }
 
-/// The voxels' values of a planar array times `scale`, interleaved: the `parts` values of a voxel (channels times
-/// components) are adjacent.
+/// Values of a planar array times `scale`, interleaved: the values of each voxel (channels times components) are
+/// adjacent.
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale);
 }

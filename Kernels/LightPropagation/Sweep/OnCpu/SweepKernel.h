@@ -7,47 +7,56 @@
 
 namespace tyndall
 {
-/// The kernel `sweep` (Sweep.cl) for a plan: the arrays on the device that describe the plan's rays, and its arguments.
+/// Kernel `sweep` (OnCpu/Sweep.cl) of a plan, with its arguments and the device arrays that describe the plan's rays.
 class SweepKernel
 {
 public:
   /// @param plan  must outlive this object
   SweepKernel(Device& device, const SweepPlan& plan);
 
-  /// Sets the incident light that is uniform over each face the rays pass sideways; both as in SweepBorder.
+  /// Sets the incident light that is uniform over each face parallel to the marching axis.
+  /// @param outside, radiance  power of the rays that enter, W, as in SweepBorder
   void SetBorder(const std::vector<float>& outside, const std::vector<float>& radiance);
   void ClearBorder();
   bool IsBorderClear() const { return this->BorderIsClear; }
-  void SetOwnLight(const std::vector<OwnLightInfo>& own); ///< see SweepPlan::OwnLight
+  /// Path integral per unit of source in the voxel of origin, see SweepPlan::OwnLight
+  void SetOwnLight(const std::vector<OwnLightInfo>& own);
 
-  /// What one or several launches cross.
+  /// Arguments of one or several launches.
   struct Crossing
   {
-    SweepInfo info; ///< without the index of the launch
+    SweepInfo info; ///< all values except the index of the launch
     VolumeArrays volume;
     const Buffer<float>& maps;
     const Buffer<float>& scratch;
     const Buffer<CrossingInfo>& crossings;
-    const Buffer<cl_int2>& schedule; ///< [launch][unit] planes from, to; if streamed see SliceStream::Schedule
-    const cl::Buffer& entering;      ///< light by cells of the faces, or rays at the sides (Sweep.cl)
+    /// Planes of each unit, [launch][unit], first and end; if streamed, SliceStream::Schedule::rows
+    const Buffer<cl_int2>& schedule;
+    /// Incident radiance per cell of the faces, or power of the rays that enter through the sides (Sweep.cl)
+    const cl::Buffer& entering;
     const cl::Buffer& leaving;
     double secondsPerLaunch;
   };
-  /// The launch's data that depend only on plan and volume.
+  /// Arguments of the kernel that depend only on the plan and the volume.
+  /// @param goesRound  whether rays wrap around the marching axis
   SweepInfo InfoOf(const SweepVolume& volume, bool goesRound) const;
-  /// The parameters are the compiler options FACES, PERIODIC and SIDES (SweepLayout.cl).
+  /// Compiles the kernel. The parameters are its compiler options FACES, PERIODIC and SIDES (SweepLayout.cl).
   cl::Kernel Make(bool faces, bool periodic, bool sides) const;
-  /// Queues a launch. @param after  events to wait for; null: none. @param done  signalled at its end; null: not needed
+  /// Queues a launch of the kernel.
+  /// @param launch  index in the schedule
+  /// @param after  events to wait for; null: none
+  /// @param done  signalled at the end of the launch; null: not needed
   void Launch(cl::Kernel& kernel, Crossing& crossing, int launch, const std::vector<cl::Event>* after = nullptr,
     cl::Event* done = nullptr) const;
 
-  /// Power that left sideways in the launches so far, W: [plane][unit][-u, +u, -v, +v][channel].
+  /// Power that escaped through the faces parallel to the marching axis in the launches so far, W, [plane][unit][-u,
+  /// +u, -v, +v][channel].
   std::vector<float> Sideways() const { return this->Left.Read(); }
 
 private:
   Device& TheDevice;
   const SweepPlan& Plan;
-  Buffer<float> Border; ///< outside, then radiance, of both ways
+  Buffer<float> Border; ///< incident power: `outside`, then `radiance`, each for both senses of marching
   bool BorderIsClear = false;
   Buffer<float> Left, Coefficients;
   Buffer<BundleInfo> Bundles;

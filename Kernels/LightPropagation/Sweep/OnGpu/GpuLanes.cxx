@@ -55,7 +55,7 @@ GpuLanes::GpuLanes(const Device& device, const SweepVolume& volume, std::vector<
   , floatsOfDeposit(functionCount + (volume.deposit.flux ? 3 : 0) + (volume.deposit.partialCurrents ? 6 : 0))
 {
   SweepDescription sweep = Describe(volume, periodic);
-  sweep.faceIn = false; // LaneFaces has its own memory
+  sweep.faceIn = false; // incident radiance per cell is added by LaneFaces
   std::stable_partition(rays.begin(), rays.end(), [&](const AxisBundles& along) { return !periodic[along.axis]; });
   for (const AxisBundles& along : rays)
   {
@@ -76,7 +76,7 @@ GpuLanes::GpuLanes(const Device& device, const SweepVolume& volume, std::vector<
   }
 }
 
-/// Appends a plan's bundles and crossings to those laid out so far, and adds a lane for each way.
+/// Appends a plan's bundles and crossings to those laid out so far, and adds a lane for each sense of marching.
 void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
 {
   const int firstBundle = static_cast<int>(this->bundles.size());
@@ -98,7 +98,7 @@ void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
   }
 }
 
-/// Adds a lane; the positions of its maps and deposits are set later.
+/// Adds a lane for the rays of a plan that march in one sense; the indices of its maps and deposits are set in Place().
 void GpuLanes::LayLane(const SweepPlan& plan, int way, int firstBundle, int firstCrossing)
 {
   SweepLane lane = LaneOf(plan, way);
@@ -132,7 +132,7 @@ void GpuLanes::LayBatches(bool atOnce)
   }
 }
 
-/// Sets the positions of the maps and arrays of a batch's lanes, and updates the largest sizes of any batch.
+/// Sets the indices of the maps and arrays of a batch's lanes, and updates the maximum sizes over all batches.
 void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
 {
   for (int i = 0; i < batch.count; ++i)
@@ -156,7 +156,8 @@ void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
 
 std::size_t GpuLanes::ArrayFloats(std::size_t stride) const
 {
-  const std::size_t lost = Count(this->mostAround) * this->functionCount; // rounding errors
+  // Rounding errors of the path integrals, for compensated summation
+  const std::size_t lost = Count(this->mostAround) * this->functionCount;
   return (Count(this->mostWithArrays) * this->floatsOfDeposit + lost) * this->channels * stride;
 }
 

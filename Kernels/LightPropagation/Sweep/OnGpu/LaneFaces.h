@@ -7,38 +7,42 @@
 
 namespace tyndall
 {
-/// Light given or counted by cells of the box's faces (SweepRequest::faceIn, Deposit::faceOut) in a sweep on GPUs;
-/// kernels in LaneFaces.cl. The sides of the planes of a batch's lanes are stored on the device: one float per ray,
-/// plane and cell of the plane's edges, for entering and for leaving rays.
+/// Incident radiance and escaped power per cell of the box's faces (SweepRequest::faceIn, Deposit::faceOut) in a sweep
+/// on GPUs; kernels in LaneFaces.cl. The device stores the rays at the sides of the planes of a batch's lanes: one
+/// float per ray, plane and cell of the plane's edges, for entering and for leaving rays.
 class LaneFaces
 {
 public:
-  /// Arguments of `cross_plane` that describe how rays cross planes.
+  /// Arguments of the kernel `cross_plane` that describe the rays and their moves.
   struct Rays
   {
     const Buffer<SweepLane>& lanes;
     const Buffer<BundleInfo>& bundles;
     const Buffer<CrossingInfo>& crossings;
-    bool ofRound = false;              ///< PlaneLaunch::ofRound; no light enters any more
-    const Buffer<cl_float4>& entering; ///< incident light that is uniform over each face
+    bool ofRound = false; ///< PlaneLaunch::ofRound: rays wrap around a periodic axis, and no more light enters
+    const Buffer<cl_float4>& entering; ///< incident power that is uniform over each face
   };
 
   /// @param lanes  must outlive this object
-  /// @param request  has faceIn or faceOut
+  /// @param request  request with faceIn or faceOut
   LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request);
 
-  bool Shine() const { return this->FaceIn != nullptr; }      ///< incident light is given by cells
-  const Buffer<float>& In() const { return this->SidesIn; }   ///< sides of the planes: rays that enter
-  const Buffer<float>& Out() const { return this->SidesOut; } ///< rays that leave
+  bool Shine() const { return this->FaceIn != nullptr; } ///< whether incident radiance is given per cell
+  /// Power of the rays that enter through the sides of the planes, W
+  const Buffer<float>& In() const { return this->SidesIn; }
+  /// Power of the rays that leave through the sides of the planes, W
+  const Buffer<float>& Out() const { return this->SidesOut; }
 
-  /// Adds incident light to the maps where rays of an open axis start.
+  /// Adds the light incident per cell of the faces where rays of an open axis start to their maps.
   /// @param first  index of the first channel's first value in faceIn and faceOut
   void EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
-  /// Writes the incident light to the sides of the planes, before they are crossed.
+  /// Writes the light incident per cell to the sides of the planes, before these are crossed.
   void EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t first);
   /// Adds the power that left, from the sides of the planes that were crossed and from the maps at the ends of open
-  /// axes, to faceOut. Lane by lane, so the order of summation does not depend on which lanes run concurrently.
-  /// @param maps  rays before planes with even index, counted from where rays start, and with odd index
+  /// axes, to faceOut. Adds one lane after another, so that the order of summation does not depend on which lanes run
+  /// concurrently.
+  /// @param maps  power of the rays before planes with even index, counted from where rays start, and before those with
+  /// odd index
   void Leave(
     const LaneBatch& batch, const Rays& rays, std::size_t first, const std::array<const Buffer<float>*, 2>& maps) const;
 
@@ -53,9 +57,9 @@ private:
   const GpuLanes& The;
   const Buffer<float>*FaceIn, *FaceOut;
   bool Spreads;
-  std::size_t Cells; ///< cells of all faces, per channel
+  std::size_t Cells; ///< number of cells of all faces, per channel
   Buffer<LaneFaceInfo> Faces;
-  Buffer<cl_int2> RayPlaces; ///< by ray of all lanes: the index of its bundle, and of the member in the bundle
+  Buffer<cl_int2> RayPlaces; ///< per ray of all lanes: index of its bundle, and of its member in the bundle
   Buffer<float> SidesIn, SidesOut;
 };
 }

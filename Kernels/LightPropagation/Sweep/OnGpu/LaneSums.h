@@ -7,18 +7,19 @@
 
 namespace tyndall
 {
-/// Results of lanes that run concurrently or wrap around an axis, each in its own arrays: [lane], then as in the
-/// deposit. AddUp() adds them to the deposit in the order of the lanes, so that results are identical, bit for bit, to
+/// Deposits of lanes that run concurrently or wrap around an axis, each lane in its own arrays: [lane], then as in
+/// Deposit. AddUp() adds them to the deposit in the order of the lanes, so that results are identical, bit for bit, to
 /// those of lanes that add to the deposit directly.
 class LaneArrays
 {
 public:
   /// @param lanes  must outlive this object
-  /// @param to  the deposit; without flux if the flux is among the angular moments
+  /// @param to  the deposit; without net flux if that is among the angular moments
   LaneArrays(Device& device, const GpuLanes& lanes, const VolumeLayout& layout, const Deposit& to);
 
   void Clear(const LaneBatch& batch);
-  /// @param launch  a launch of the batch
+  /// Adds the deposits of the lanes of a batch to the deposit of the volume.
+  /// @param launch  arguments of any launch of the batch
   void AddUp(const LaneBatch& batch, const PlaneLaunch& launch, const SweepVolume& volume);
 
   Buffer<float> path, flux, currents;
@@ -33,26 +34,27 @@ private:
   Deposit To;
 };
 
-/// Power that leaves a sweep on GPUs: sideways, and in its maps behind the last plane. Rows are summed on the device,
-/// the sums of rows on the host in double precision.
+/// Power that escapes from a sweep on GPUs: through the faces parallel to the marching axis, and from its maps after
+/// the last plane. Rows are summed on the device, the sums of rows on the host in double precision.
 class LanePowers
 {
 public:
   /// @param lanes  must outlive this object
   LanePowers(Device& device, const GpuLanes& lanes);
 
-  /// Power that leaves sideways, W, written by the plane kernels; see SweepLane::escaped.
+  /// Power that escapes sideways, W, written by the plane kernels; see SweepLane::escaped.
   const Buffer<float>& Escaped() const { return this->OfPlanes; }
 
   using MapsOfLane = std::function<const Buffer<float>&(const SweepLane&)>;
 
-  /// Sums the rows of the planes that were crossed last.
+  /// Sums the rows of the planes that a batch crossed last.
   void AddUp(const LaneBatch& batch, const MapsOfLane& maps);
-  /// Adds the power that left through the sides of the box, from the sums of AddUp().
+  /// Adds the power that escaped through the faces parallel to the marching axis, from the sums of AddUp(), to
+  /// SweepTally::out.
   void CountSides(const LaneBatch& batch, SweepTally& tally) const;
-  /// Adds the power that left through the far ends of the batch's axes.
+  /// Adds the power that escaped through the far ends of the batch's axes to SweepTally::out.
   void CountEnds(const LaneBatch& batch, SweepTally& tally) const;
-  Rgb OfEnds(const LaneBatch& batch) const; ///< power in the maps behind the last plane, all lanes
+  Rgb OfEnds(const LaneBatch& batch) const; ///< power in the maps after the last plane, sum over all lanes, W
 
 private:
   Rgb OfEnds(int lane, const std::vector<float>& sums) const;

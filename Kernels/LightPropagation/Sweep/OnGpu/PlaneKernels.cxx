@@ -8,9 +8,10 @@ namespace tyndall
 {
 namespace
 {
-/// Work-items per group along u, whose voxels are mostly contiguous, and along v.
+/// Work-items per group along u, along which voxels are mostly contiguous in memory, and along v.
 constexpr std::size_t GroupU = 32, GroupV = 4;
-constexpr double GpuSecondsPerRay = 1e-10; ///< per ray and voxel; only determines how often to wait
+/// Time per ray and voxel, s; only determines how often the host waits
+constexpr double GpuSecondsPerRay = 1e-10;
 }
 
 LaneSlices::LaneSlices(const SweepPlan& plan, const SweepLane& lane)

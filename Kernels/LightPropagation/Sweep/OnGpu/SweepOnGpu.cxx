@@ -10,11 +10,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostAtOnce = 4; ///< concurrent ways may use 1 / this of the memory
-constexpr int AllSides = 15;  ///< all sides of the box are faces of the domain
+constexpr int MostAtOnce = 4; ///< lanes that run concurrently may use 1 / MostAtOnce of the memory
+constexpr int AllSides = 15;  ///< bits 0 to 3: each side of the box is a face of the domain
 
-/// Lanes with all ways concurrently, if their arrays fit in memory together. Ways run one by one if only a part of the
-/// grid is swept, since the remainder would have to be cleared, and if the volume is in host memory.
+/// Returns lanes of which both senses of all axes run concurrently, if their arrays fit in memory together. Otherwise,
+/// and if only a part of the grid is swept (the arrays of the remainder would have to be cleared) or the volume is in
+/// host memory, lanes run one after another.
 GpuLanes ChooseLanes(const Device& device, const SweepVolume& volume, const std::vector<AxisBundles>& rays,
   const std::array<bool, 3>& periodic, SweepOnGpu::Ways ways)
 {
@@ -70,7 +71,7 @@ void SweepOnGpu::MakeBuffers()
   }
 }
 
-/// Creates the slices of a volume in host memory. Call after everything that must be on the device has been allocated.
+/// Creates the slices of a volume in host memory. Call after all other buffers on the device have been allocated.
 void SweepOnGpu::MakeSlices()
 {
   if (!this->TheDevice.Streams())
@@ -102,7 +103,7 @@ SweepTally SweepOnGpu::ApplyGroup(
     return tally;
   }
   const bool lit = this->Enter(boundary, volume.firstChannel, tally);
-  if (boundary) // rays under way are discarded, as in SweepInMemory
+  if (boundary) // rays in transit are discarded, as in SweepInMemory
   {
     this->Forget(volume.firstChannel);
   }
@@ -114,7 +115,8 @@ SweepTally SweepOnGpu::ApplyGroup(
     {
       this->GoRound(batch, volume, tally, ofBatch);
     }
-    else if (lit || volume.source || this->ShineByCells()) // otherwise there is no light to carry
+    // Without incident light and source, there is no light to carry
+    else if (lit || volume.source || this->ShineByCells())
     {
       this->CrossOnce(batch, volume, tally, ofBatch);
     }
@@ -143,6 +145,7 @@ SweepOnGpu::Entered SweepOnGpu::EnteredFrom(const SweepBoundary& boundary) const
   return entered;
 }
 
+/// Computes the incident power of each ray, and adds the power by face to the tally.
 /// @return whether any light is incident
 bool SweepOnGpu::Enter(const SweepBoundary& boundary, int group, SweepTally& tally)
 {
@@ -165,7 +168,7 @@ bool SweepOnGpu::Enter(const SweepBoundary& boundary, int group, SweepTally& tal
   return !std::all_of(tally.in.begin(), tally.in.end(), IsBlack);
 }
 
-/// Carries rays from where they start to the end of their axis.
+/// Carries the rays of a batch of open axes from where they start to the end of their axis.
 void SweepOnGpu::CrossOnce(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
   const Crossing how = { volume.source != nullptr, &this->Entering };
@@ -182,8 +185,8 @@ void SweepOnGpu::CrossOnce(const LaneBatch& batch, const SweepVolume& volume, Sw
   this->Powers.CountEnds(batch, tally);
 }
 
-/// Carries rays through all laps in which they start and, with those of the previous sweep, on round the axis until
-/// almost no power is under way (numerics.md, section 4.6).
+/// Carries the rays of a batch of a periodic axis through all laps in which they start and, with those of the previous
+/// sweep, around the axis until almost no power is in transit (numerics.md, section 4.6).
 void SweepOnGpu::GoRound(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
   this->BeginLost(batch);
@@ -213,7 +216,7 @@ void SweepOnGpu::GoRound(const LaneBatch& batch, const SweepVolume& volume, Swee
   }
 }
 
-/// Clears the rounding errors and the own paths of lanes that wrap around.
+/// Clears the rounding errors of the path integrals and the own arrays of lanes that wrap around.
 void SweepOnGpu::BeginLost(const LaneBatch& batch)
 {
   if (batch.hasArrays)
@@ -240,7 +243,8 @@ SweepOnGpu::OnTheWay& SweepOnGpu::RaysOnTheWay(const LaneBatch& batch, int group
   return rays;
 }
 
-/// @param group  group of channels; none: all
+/// Discards the rays in transit along periodic axes.
+/// @param group  group of channels; none: all groups
 void SweepOnGpu::Forget(std::optional<int> group)
 {
   for (auto& [key, rays] : this->Rounds)
@@ -281,8 +285,8 @@ void SweepOnGpu::StartRays(const LaneBatch& batch)
   this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange, cl::NDRange(floats, batch.count));
 }
 
-/// Crosses all planes once.
-/// @param maps  maps that rays are read from and written to, alternately
+/// Carries the rays of a batch once through all planes.
+/// @param maps  the two maps of ray powers; each plane reads one and writes the other
 /// @return number of planes
 int SweepOnGpu::Cross(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
   const std::array<const Buffer<float>*, 2>& maps, const Monitor& monitor)
@@ -333,7 +337,7 @@ PlaneKernels::Size SweepOnGpu::SizeOf(const LaneBatch& batch) const
   return size;
 }
 
-/// The volume's arrays or, for results, the lanes' own.
+/// Arrays that the plane kernels read and add to: those of the volume or, for deposits, the lanes' own arrays.
 VolumeArrays SweepOnGpu::Arrays(const LaneBatch& batch, const SweepVolume& volume) const
 {
   if (!batch.hasArrays)

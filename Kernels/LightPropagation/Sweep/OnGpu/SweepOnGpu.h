@@ -15,33 +15,33 @@
 
 namespace tyndall
 {
-/// Sweep of a volume by one device, organised for GPUs: one work-item per voxel of a plane, for all rays of one way
-/// along an axis. All ways along open axes run concurrently if memory allows, as do both ways along a periodic axis.
-/// Agrees with SweepInMemory to 1e-5 and is reproducible bit for bit (numerics.md, section 4.8). A volume in host
-/// memory is streamed through the device in slices, one way after the other (LaneSlices), with bitwise identical
-/// results along open axes.
+/// Sweep of a volume by one device, organised for GPUs: one work-item per voxel of a plane, for all rays that march in
+/// one sense along an axis. Both senses of all open axes run concurrently if memory allows, as do both senses along a
+/// periodic axis. Agrees with SweepInMemory to 1e-5 and is reproducible bit for bit (numerics.md, section 4.8). A
+/// volume in host memory is streamed through the device in slices, one sense after another (LaneSlices), with bitwise
+/// identical results along open axes.
 ///
 /// Device memory:
-///  - maps: two floats per voxel of a plane, ray and channel; with angular moments one more, for the source along the
-///    ray;
-///  - if ways run concurrently, path, flux and partial currents of each way, in at most a quarter of the free memory
-///    (if they do not fit, ways follow one another); with angular moments there is one path per function;
-///  - along a periodic axis, paths take two floats and the maps are kept from sweep to sweep;
-///  - if light is given or counted by cells of the faces, two floats per ray, channel, plane and cell of the plane's
-///    edges.
+///  - maps: two floats per voxel of a plane, ray and channel; with angular moments a third float, for the source along
+///  the ray;
+///  - if senses run concurrently, path, flux and partial currents of each sense, in at most a quarter of the free
+///  memory (if they do not fit, senses run one after another); with angular moments there is one path per function;
+///  - along a periodic axis, paths take two floats, and the maps are kept from sweep to sweep;
+///  - if light is given or summed per cell of the faces, two floats per ray, channel, plane and cell of the plane's
+///  edges.
 ///
-/// For a volume in host memory all these and the slots are on the device.
+/// For a volume in host memory all these arrays and the slots are on the device.
 class SweepOnGpu : public SweepByGroups
 {
 public:
-  /// How the ways (forward and backward along each axis) are scheduled.
+  /// Schedule of the senses (forward and backward along each axis) of a sweep.
   enum class Ways
   {
-    Automatic, ///< concurrently if memory allows
+    Automatic, ///< senses run concurrently if memory allows
     OneByOne
   };
 
-  /// @param sigma_t  must outlive the sweep
+  /// @param sigma_t  extinction, 1/length; must outlive the sweep
   /// @param request  must not restrict the sweep to a box if the grid has periodic axes
   /// @param workspace  must outlive the sweep; may be shared by sweeps that never run concurrently
   SweepOnGpu(Device& device, const VolumeLayout& layout, const Buffer<float>& sigma_t,
@@ -51,20 +51,20 @@ public:
   void Forget() override { this->Forget({}); }
 
 private:
-  /// How the lanes of a batch cross planes.
+  /// Sources, incident light and moves of the rays in one crossing of all planes by a batch.
   struct Crossing
   {
-    bool shines;                                 ///< the medium has a source
-    const Buffer<cl_float4>* entering;           ///< light incident on the sides
-    const Buffer<CrossingInfo>* round = nullptr; ///< crossings of rays that wrap around; null: rays that start
+    bool shines;                                 ///< whether the medium has a source
+    const Buffer<cl_float4>* entering;           ///< power of the light incident on the sides
+    const Buffer<CrossingInfo>* round = nullptr; ///< moves of rays that wrap around; null: rays start
   };
-  /// Rays under way round a periodic axis between sweeps, for a batch and a group of channels.
+  /// Rays in transit along a periodic axis between sweeps, for a batch and a group of channels.
   struct OnTheWay
   {
     Buffer<float> maps[2];
     int current = 0;
   };
-  /// Incident light: the rays' power, as Entering, and the power by face.
+  /// Incident light: power of each ray, W, as in the buffer Entering, and power by face, W.
   using Entered = std::pair<std::vector<cl_float4>, std::array<Rgb, 6>>;
 
   SweepTally ApplyGroup(
@@ -92,20 +92,23 @@ private:
   SweepWorkspace& Workspace;
   GpuLanes The;
 
-  std::vector<std::unique_ptr<LaneSlices>> Slices; ///< by lane, for a volume in host memory; null: swept in place
+  /// Slices of each lane, for a volume in host memory; null: swept in place
+  std::vector<std::unique_ptr<LaneSlices>> Slices;
   Buffer<SweepLane> Lanes;
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> Crossings;
-  Buffer<float> Along;                            ///< GpuLanes::functions
-  Buffer<float> Directed;                         ///< source in the rays' directions, laid out as maps
-  Buffer<float> Maps[2];                          ///< maps of open axes
-  std::map<std::pair<int, int>, OnTheWay> Rounds; ///< by a batch's first lane, and group
-  /// [ray][channel] incident power, W: through u's, v's face, and where rays start
+  Buffer<float> Along;    ///< values of the angular functions, GpuLanes::functions
+  Buffer<float> Directed; ///< source in each ray's direction, W / (length^3 sr), in the layout of the maps
+  Buffer<float> Maps[2];  ///< power of the rays of open axes, W
+  /// Rays in transit along periodic axes; key: first lane of the batch, and group of channels
+  std::map<std::pair<int, int>, OnTheWay> Rounds;
+  /// Incident power of each ray, W, [ray][channel]: through the face across u, through the face across v, and where
+  /// rays start
   Buffer<cl_float4> Entering;
-  Buffer<cl_float4> Nothing; ///< zero incident power
+  Buffer<cl_float4> Nothing; ///< incident power of zero
   LaneArrays OfLanes;
   LanePowers Powers;
-  std::optional<LaneFaces> Faces;      ///< if light is given or counted by cells
-  std::map<int, Entered> KeptEntering; ///< cached incident light, by group
+  std::optional<LaneFaces> Faces;      ///< set if light is given or summed per cell of the faces
+  std::map<int, Entered> KeptEntering; ///< cached incident light of each group of channels
 };
 }

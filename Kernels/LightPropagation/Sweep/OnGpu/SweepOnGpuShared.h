@@ -1,35 +1,38 @@
-// Shared by C++ and the kernels of the sweep on GPUs: kernel arguments.
+// Arguments of the kernels of the sweep on GPUs, shared with C++.
 #pragma once
 
 #include "Device/SharedTypes.h"
 #include "LightPropagation/Sweep/SweepShared.h"
 
 SHARED_BEGIN
-/// A lane: all rays that march one way along an axis. They cross one of its planes per launch, one work-item per voxel
-/// of the plane. Maps and arrays belong to the lane's batch (GpuLanes.h).
+/// Lane: all rays that march in one sense along an axis. They cross one plane of the lane per launch, with one
+/// work-item per voxel of the plane. The indices of maps and arrays are those in the buffers of the lane's batch
+/// (GpuLanes.h).
 typedef struct
 {
   PlaneInfo planes;
   int axis;
-  int backward; ///< 0 marches from the lower end of the axis, 1 from the upper
-  /// Planes in which the rays of a sweep start: those of the axis, or of several laps round a periodic axis
+  int backward; ///< 0: marches from the lower end of the axis, 1: from the upper end
+  /// Number of planes in which the rays of a sweep start: those of the axis, or of several laps around a periodic axis
   int patternPlanes;
   int around;               ///< whether the marching axis is periodic, so rays cross a voxel repeatedly
   int periodicU, periodicV; ///< whether the axes across the marching axis are periodic
   int firstBundle, bundles;
-  int crossings; ///< index of the first crossing of its first plane, [plane][bundle]
-  /// Index of its first ray among the rays of all lanes: in `entering` (a float4 per ray and channel), `functions`
-  /// and maps
+  int crossings; ///< index of the first of the crossings of the lane's first plane, [plane][bundle]
+  /// Index of the lane's first ray among the rays of all lanes: in `entering` (a float4 per ray and channel),
+  /// `functions` and maps
   int firstRay;
-  ulong map;     ///< index of the first float of its maps, [ray][channel][v][u]
-  ulong path;    ///< index of the first float of its path integrals; with angular moments [function][channel][stride]
-  ulong deposit; ///< index of its first float in the currents, divided by 6, and in the flux, divided by 3
-  /// Index of the first float of its escaped power, [plane][-u, +u, -v, +v][channel][position along the face]
+  ulong map; ///< index of the first float of the lane's maps, [ray][channel][v][u]
+  /// Index of the first float of the lane's path integrals; with angular moments [function][channel][stride]
+  ulong path;
+  /// Index of the lane's first float in the partial currents, divided by 6, and in the net flux, divided by 3
+  ulong deposit;
+  /// Index of the first float of the lane's escaped power, [plane][-u, +u, -v, +v][channel][position along the face]
   ulong escaped;
   int positions; ///< number of positions along a face in `escaped`
   int rays;
-  /// Index of the first float of its sides, [plane][ray][channel] (LanePlane.cl), if light is given or counted by
-  /// cells
+  /// Index of the first float of the rays at the sides of the lane's planes, [plane][ray][channel] (LanePlane.cl), if
+  /// light is given or summed per cell of the faces
   ulong sides;
 } SweepLane;
 
@@ -39,30 +42,37 @@ typedef struct
 {
   int first[4], plane[4], along[4];
   int start, end;
-  int in;     ///< 1: incident light is given by cells, in addition to that which is uniform over each face
-  int spread; ///< 1: Deposit::spreadsAside
+  /// 1: incident radiance is given per cell, in addition to the radiance that is uniform over each face
+  int in;
+  int spread; ///< 1: escaped power is spread over the cells that a ray represents (Deposit::spreadsAside)
 } LaneFaceInfo;
 
-/// A launch of the kernel `cross_plane`.
+/// Arguments of a launch of the kernel `cross_plane`.
 typedef struct
 {
-  ulong sigmaFirst, sourceFirst; ///< index of the first channel's first value
-  ulong putFirst;                ///< the same in `path` (in the flux three times, in the currents six times this index)
-  ulong stride;                  ///< floats from one channel to the next
-  ulong slotSource, slotPath;    ///< for a streamed volume: index of the first float of the slot of source, of path
-  ulong slotValues; ///< the same for arrays with one value per voxel and channel; 0 if the volume is not streamed
-  int slotPlane;    ///< index in the box of the slot's first plane; 0 if the volume is not streamed
-  int plane;        ///< plane that is crossed, counted from where rays start
-  int firstLane;    ///< lane of the first work-items
-  /// 1: the array of crossings starts with those of this launch's lanes, for a lap round a periodic axis; 0: see
+  ulong sigmaFirst, sourceFirst; ///< index of the first channel's first value in sigma_t, in source
+  /// Index of the first channel's first value in `path` (in the net flux three times, in the partial currents six times
+  /// this index)
+  ulong putFirst;
+  ulong stride; ///< floats from one channel to the next
+  /// For a streamed volume: index of the first float of the slot of the source, of the path
+  ulong slotSource, slotPath;
+  /// For a streamed volume: index of the first float of the slot of arrays with one value per voxel and channel; else 0
+  ulong slotValues;
+  int slotPlane; ///< index in the box of the slot's first plane; 0 if the volume is not streamed
+  int plane;     ///< index of the plane that is crossed, counted from where rays start
+  int firstLane; ///< index of the lane of the first work-items
+  /// 1: the array of crossings begins with those of this launch's lanes, for a lap around a periodic axis; 0: at
   /// SweepLane::crossings
   int ofRound;
   int firstChannel;
   int shines; ///< 1: the medium has a source (emission or scattered light)
-  /// 1: lanes add to the arrays, one after the other or repeatedly round a periodic axis; 0: each lane writes its own
+  /// 1: lanes add to the arrays, one lane after another or repeatedly around a periodic axis; 0: each lane writes its
+  /// own arrays
   int adds;
-  int inPlaces;         ///< 1: moments lie as in the volume; 0: [function][channel][stride] in the lane's own arrays
-  int outerSides;       ///< bit i: light that crosses side i leaves the domain; if SIDES
-  MomentPlaces moments; ///< layout of the moments of source and path
+  /// 1: moments have the memory layout of the volume; 0: [function][channel][stride] in the lane's own arrays
+  int inPlaces;
+  int outerSides;       ///< bit i: light that crosses side i leaves the domain; used with SIDES
+  MomentPlaces moments; ///< memory layout of the moments of source and path
 } PlaneLaunch;
 SHARED_END

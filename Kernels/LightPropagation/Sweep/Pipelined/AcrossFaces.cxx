@@ -28,7 +28,7 @@ AcrossFaces::AcrossFaces(Device& device, Communicator& communicator, const Block
   }
 }
 
-/// Voxels of the domain that touch a block's face from outside; empty at a face of the domain.
+/// Layer of voxels that touches a block's face from outside; empty at a face of the domain.
 VoxelBox AcrossFaces::LayerBeyond(const VoxelBox& block, int face) const
 {
   const int axis = face / 2, size = this->Partition.whole.size[axis];

@@ -12,20 +12,21 @@
 
 namespace tyndall
 {
-/// Values of the neighbouring voxels just outside a block, at their faces that touch the block; taken from an array by
-/// voxel face such as Deposit::partialCurrents.
+/// Values of the voxels just outside a block at the faces that they share with it, from an array with a value per voxel
+/// and face such as Deposit::partialCurrents.
 struct BeyondFaces
 {
-  /// [channel][face][cell, x before y before z]; null: the block is the whole domain
+  /// Values [channel][face][cell, x before y before z]; null: the block is the whole domain
   const Buffer<float>* values = nullptr;
   BeyondFacesInfo info = { { -1, -1, -1, -1, -1, -1 }, 0 };
 };
 
-/// Fetches these values from the ranks that own them. Collective. The result is valid until the next call.
+/// Fetches the values of voxels beyond the faces of a block from the ranks that own them. Collective. The result is
+/// valid until the next call.
 using FetchBeyondFaces = std::function<BeyondFaces(const Buffer<float>& byFaces)>;
 
-/// Halo exchange of face values: gives each rank, for every voxel that touches a face of its block from outside and
-/// every channel, a value from the rank that owns the voxel (around a periodic axis possibly the rank itself).
+/// Halo exchange of face values: each rank receives, for every voxel that touches a face of its block from outside and
+/// every channel, a value from the rank that owns the voxel (around a periodic axis possibly the same rank).
 class AcrossFaces
 {
 public:
@@ -33,7 +34,7 @@ public:
   AcrossFaces(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
     const std::array<bool, 3>& periodic);
 
-  /// Collective.
+  /// Fetches the values beyond the faces of this rank's block. Collective.
   /// @param byFaces  [channel][face][stride] values of the block
   /// @return values owned by this object, valid until the next call
   BeyondFaces Fetch(const Buffer<float>& byFaces);
@@ -46,7 +47,7 @@ private:
   const BlockPartition& Partition;
   const VolumeLayout& Layout;
   const std::array<bool, 3> Periodic;
-  std::array<std::vector<VoxelBox>, 6> Wanted; ///< voxels needed from each rank, by face and rank
+  std::array<std::vector<VoxelBox>, 6> Wanted; ///< voxels needed from each rank, [face][rank]
   BeyondFacesInfo Info;
   Buffer<float> Values;
 };

@@ -10,58 +10,63 @@
 
 namespace tyndall
 {
-/// Power of the rays at the faces of a block, W: either all that enter, or all that leave.
+/// Power of the rays at the faces of a block, W: either of all rays that enter, or of all that leave.
 struct RaysAtFaces
 {
-  std::vector<float> maps; ///< rays at the end of the marching axis, in the layout of BlockCrossing
-  /// Rays at the other faces, [plane in the order of the march][ray][cell], see SweepSides.cl
+  std::vector<float> maps; ///< rays at an end of the marching axis, in the layout of BlockCrossing::RowOfMap
+  /// Rays at the faces parallel to the marching axis, [plane in marching order][ray][cell], see SweepSides.cl
   std::vector<float> sides;
 };
 
-/// Scratch memory shared by the sweeps of one rank. Contents are undefined between sweeps.
+/// Scratch memory shared by the sweeps of one rank. Its contents are undefined between sweeps.
 struct BlockWorkspace
 {
   SweepWorkspace sweep;
   Buffer<float> sidesIn, sidesOut;
-  Buffer<float> otherMaps, directed; ///< for GPU kernels: maps of every other plane, and the source along the rays
+  /// For GPU kernels: maps of every other plane, and the source along each ray
+  Buffer<float> otherMaps, directed;
 };
 
-/// The rays of a block that march one way along an axis.
+/// Rays of a block that march in one sense along an axis.
 struct RaysOfBlock
 {
-  const SweepPlan& plan; ///< plan of the block, without periodic axes; must outlive this
-  int way = 0;           ///< 0 forward along the axis, 1 backward
-  bool around = false;   ///< the domain's axis is periodic: rays enter the block repeatedly
+  const SweepPlan& plan; ///< plan of the block, without periodic axes; must outlive this object
+  int way = 0;           ///< sense of marching: 0 forward along the axis, 1 backward
+  /// Whether the marching axis of the domain is periodic, so that rays enter the block repeatedly
+  bool around = false;
 
-  /// Floats of the sides per ray and plane.
+  /// Number of floats per ray and plane in the rays at the sides.
   std::size_t SideFloats() const { return std::size_t(this->plan.plane.sizeU) + this->plan.plane.sizeV + 1; }
   std::size_t Sides() const { return this->plan.eachWay.radiance * this->plan.Planes() * this->SideFloats(); }
 };
 
-/// Carries rays through a block. Implemented with kernels for CPUs or for GPUs, each with its own layout of ray maps.
+/// Carries rays through a block (subdomain). Implemented with kernels for CPUs and for GPUs, each with its own layout
+/// of ray maps.
 class BlockCrossing
 {
 public:
   virtual ~BlockCrossing() = default;
 
   virtual std::size_t MapFloats() const = 0;
-  /// Index in a map of the first ray of row v; its columns follow.
+  /// Index in a map of the first ray of row v; the other rays of the row follow.
   /// @param slot  index within the bundle, [member][channel]
   virtual std::size_t RowOfMap(const BundleInfo& bundle, std::size_t slot, int v) const = 0;
 
-  /// Sets the ray pattern for rays that have crossed `planes` planes of the whole grid when they enter at its end.
+  /// Sets the pattern of moves for rays that have crossed `planes` planes of the domain when they enter it.
   virtual void LayPattern(int planes) = 0;
 
-  /// @param beyond  power of incident light from outside the domain, W, [ray][channel]: through u's, v's face. Needed
-  /// because some light enters and leaves at an edge of the domain without crossing a voxel
+  /// Carries rays through all planes of the block and adds to the volume's deposit.
+  /// @param beyond  power of light incident from outside the domain, W, [ray][channel]: through the face across u,
+  /// across v. Needed because some light enters and leaves at an edge of the domain without crossing a voxel
   /// @param outerSides  bit i: light that crosses side i of -u, +u, -v, +v leaves the domain
   /// @param rays  on entry, the incoming rays; on return, the outgoing ones
-  /// @return power that left the domain sideways, W, [plane, or part of it][-u, +u, -v, +v][channel]
+  /// @return power that left the domain sideways, W, [any][-u, +u, -v, +v][channel]
   virtual std::vector<float> Cross(const SweepVolume& volume, const std::vector<cl_float4>& beyond, int outerSides,
     RaysAtFaces& rays, const Monitor& monitor) = 0;
 };
 
-/// Create the implementations. @param workspace  must outlive the result; its sides are large enough
+/// Create a BlockCrossing for a CPU or a GPU.
+/// @param workspace  must outlive the result; its buffers for sides must be large enough
 std::unique_ptr<BlockCrossing> MakeBlockCrossingOnCpu(
   Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace);
 std::unique_ptr<BlockCrossing> MakeBlockCrossingOnGpu(

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// Carries rays through a block with the kernel `sweep` (Sweep.cl). The layout of the maps is that of SweepBorder.
+/// Carries rays through a block with the kernel `sweep` (OnCpu/Sweep.cl). Maps have the layout of SweepBorder::maps.
 class BlockCrossingOnCpu final : public BlockCrossing
 {
 public:
@@ -53,7 +53,7 @@ public:
   }
 
 private:
-  /// The same light for both ways, of which the rays march only one.
+  /// Sets the incident power of each ray, W, for both senses of marching; the rays use only one of them.
   void SetBorder(const std::vector<cl_float4>& beyond)
   {
     const SweepPlan& plan = this->Rays.plan;
@@ -78,7 +78,7 @@ private:
   {
     const SweepPlan& plan = this->Rays.plan;
     SweepInfo info = this->Kernel.InfoOf(volume, this->Rays.around);
-    info.eachWay.maps = 0; // they hold one way only
+    info.eachWay.maps = 0; // the maps hold only one sense of marching
     info.shines = volume.source != nullptr;
     info.outerSides = outerSides;
     SweepKernel::Crossing crossing = { info,

@@ -9,8 +9,8 @@ namespace tyndall
 {
 namespace
 {
-/// Carries a block's rays with the kernels of Sweep/OnGpu and SIDES (LanePlane.cl), as one lane that adds to the
-/// deposit. Maps are [ray][channel][v][u]. Arrays in host memory are streamed through the device in slices.
+/// Carries a block's rays with the kernels of Sweep/OnGpu and their option SIDES (LanePlane.cl), as one lane that adds
+/// to the deposit. Maps are [ray][channel][v][u]. Arrays in host memory are streamed through the device in slices.
 class BlockCrossingOnGpu final : public BlockCrossing
 {
 public:
@@ -40,22 +40,24 @@ private:
   std::unique_ptr<LaneSlices> MakeSlices();
   void Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor);
   std::vector<float> SumsOfSides();
-  /// Maps that hold the rays before plane k, counted from the block's first plane.
+  /// Map of the rays before plane k, counted from the block's first plane.
   const Buffer<float>& Maps(int k) const { return k % 2 == 0 ? this->Workspace.sweep.maps : this->Workspace.otherMaps; }
 
   Device& TheDevice;
   RaysOfBlock Rays;
-  const SweepPlan& Plan; ///< plan of the rays
+  const SweepPlan& Plan; ///< plan of `Rays`
   BlockWorkspace& Workspace;
   SweepLane Lane;
-  std::unique_ptr<LaneSlices> Slices; ///< null: the block lies on the device or is swept in place
+  /// Slices of a block in host memory; null: the block is on the device or is swept in place
+  std::unique_ptr<LaneSlices> Slices;
 
-  Buffer<SweepLane> Lanes; ///< one element: Lane
+  Buffer<SweepLane> Lanes; ///< device copy of `Lane`, one element
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> Crossings;
-  Buffer<float> Functions;   ///< angular functions in the rays' directions, if there are angular moments
-  Buffer<cl_float4> Beyond;  ///< see Cross
-  Buffer<float> Left, Sides; ///< power that leaves sideways, W, see SweepLane::escaped; sums of its rows
+  /// Values of the angular functions in the rays' directions, if there are angular moments
+  Buffer<float> Functions;
+  Buffer<cl_float4> Beyond;  ///< power of light incident from outside the domain, see BlockCrossing::Cross
+  Buffer<float> Left, Sides; ///< power that escapes sideways, W, see SweepLane::escaped; sums of its rows
 };
 
 BlockCrossingOnGpu::BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace)
@@ -78,7 +80,7 @@ BlockCrossingOnGpu::BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, 
   this->Beyond = Buffer<cl_float4>(device, plan.eachWay.radiance, "the light that comes in sideways");
   const std::size_t rows = std::size_t{ 4 } * plan.Planes() * plan.channels;
   ReserveOnDevice(device, this->Left, rows * this->Lane.positions, "the power that leaves sideways");
-  this->Left.Fill(0.0f); // the ends of rows of shorter faces stay zero
+  this->Left.Fill(0.0f); // entries beyond the end of shorter faces remain zero
   this->Sides = Buffer<float>(device, rows, "sums");
   this->Slices = this->MakeSlices();
   this->Lanes = Buffer<SweepLane>(device, std::vector<SweepLane>{ this->Lane }, "the rays' way");
@@ -96,7 +98,8 @@ std::vector<float> BlockCrossingOnGpu::Cross(const SweepVolume& volume, const st
   return this->SumsOfSides();
 }
 
-/// Creates slices with the block as the grid, since the block's arrays hold no other voxels.
+/// Creates the slices of a block in host memory. Their grid is the block, since the block's arrays hold no other
+/// voxels.
 std::unique_ptr<LaneSlices> BlockCrossingOnGpu::MakeSlices()
 {
   if (!this->TheDevice.Streams())
@@ -110,7 +113,7 @@ std::unique_ptr<LaneSlices> BlockCrossingOnGpu::MakeSlices()
   return LaneSlices::Make(this->TheDevice, plan, this->Lane, this->Workspace.sweep);
 }
 
-/// Crosses all planes, one after the other.
+/// Carries the rays through all planes of the block, one plane after another.
 void BlockCrossingOnGpu::Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor)
 {
   const SweepPlan& plan = this->Plan;

@@ -8,14 +8,14 @@ namespace tyndall
 {
 namespace
 {
-/// Plan of a block: the ray pattern is that of the whole grid, the arrays are those of the block.
+/// Plan of the sweep of a block: the ray pattern is that of the whole domain, the arrays are those of the block.
 SweepPlan PlanOf(
   Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
 {
   SweepDescription sweep = Describe(volume, {});
   sweep.grid = partition.whole;
   sweep.box = partition.blocks[rank];
-  sweep.faceIn = true; // rays enter through the sides
+  sweep.faceIn = true; // rays enter through the sides of the block
   SweepPlan plan(device, sweep, { rays.axis, rays.bundles });
   const std::array<int, 3>& n = partition.blocks[rank].size;
   const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
@@ -59,7 +59,7 @@ void BlockSweep::BeginLap(int planes)
   }
 }
 
-/// Sets how rays cross planes in this lap.
+/// Computes the moves and segments of rays in the block's planes for the current lap.
 void BlockSweep::LayPattern()
 {
   const SweepPlan& plan = this->Plan;
@@ -100,7 +100,7 @@ BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t
   return { through(axes.u), through(axes.v), through(axes.axis) };
 }
 
-/// Calls act(light, the bundle's row, ray of the bundle, channel) for each ray per voxel and each channel.
+/// Calls act(light, row of the bundle, index of the ray in the bundle, channel) for each ray per voxel and channel.
 template <class Act>
 void BlockSweep::ForRaysFrom(const SweepBoundary& boundary, const Act& act) const
 {
@@ -141,7 +141,8 @@ RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary, const LightBy
   return rays;
 }
 
-/// Writes incident light to the block's sides. Beyond an edge of the domain, half enters through each face.
+/// Writes the power of rays incident from outside the domain to the block's sides. At an edge of the domain, half of a
+/// ray that moves along u and v at once enters through either face.
 void BlockSweep::FillSides(const Light& light, std::size_t ray, int c, RaysAtFaces& rays) const
 {
   const bool outerU = this->IsOuter(this->Plan.axes.u, true), outerV = this->IsOuter(this->Plan.axes.v, true);
@@ -204,7 +205,7 @@ std::vector<cl_float4> BlockSweep::LightBeyond(const SweepBoundary& boundary) co
   return beyond;
 }
 
-/// Bits of the sides -u, +u, -v, +v through which rays leave the domain, see BlockCrossing::Cross.
+/// Bits of the sides -u, +u, -v, +v of the block through which rays leave the domain, see BlockCrossing::Cross.
 int BlockSweep::OuterSides() const
 {
   int outer = 0;
@@ -217,8 +218,8 @@ int BlockSweep::OuterSides() const
   return outer;
 }
 
-/// Adds the power that leaves the domain to the tally.
-/// @param aside  power that left sideways, W, see BlockCrossing::Cross
+/// Adds the power that leaves the domain from this block to the tally.
+/// @param aside  power that escaped sideways, W, see BlockCrossing::Cross
 void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& out, SweepTally& tally) const
 {
   const SweepPlan& plan = this->Plan;
@@ -245,8 +246,8 @@ void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& o
 }
 
 /// Calls visit(inSides, place) for each ray that crosses a contact: place is an index into the sides if inSides, else
-/// into the maps. In the order of the whole grid's cells, so that sender and receiver agree.
-/// @param out  true: places of outgoing rays; false: of incoming rays
+/// into the maps. The order is that of the cells in the whole domain, so that sender and receiver agree.
+/// @param out  true: indices of outgoing rays; false: of incoming rays
 template <class Visit>
 void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const
 {
@@ -260,7 +261,8 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
   const VoxelBox& cells = contact.cells;
   const int firstU = cells.first[axes.u] - this->Block.first[axes.u], endU = firstU + cells.size[axes.u];
   const int firstV = cells.first[axes.v] - this->Block.first[axes.v], endV = firstV + cells.size[axes.v];
-  const int edgeU = this->Bundles.signs[axes.u] > 0 ? plan.plane.sizeU - 1 : 0; // where rays leave across u
+  // Row or column through which rays leave across u
+  const int edgeU = this->Bundles.signs[axes.u] > 0 ? plan.plane.sizeU - 1 : 0;
   for (int plane = 0; plane < cells.size[axes.axis]; ++plane)
   {
     const int inBlock = cells.first[axes.axis] - this->Block.first[axes.axis] + plane;
@@ -284,7 +286,7 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
   }
 }
 
-/// The same for a contact at the end of the marching axis.
+/// Calls visit(inSides, place) for each ray that crosses a contact at the end of the marching axis; see ForEachPlace.
 template <class Visit>
 void BlockSweep::ForEachPlaceAlong(const BlockContact& contact, const Visit& visit) const
 {
@@ -309,7 +311,8 @@ void BlockSweep::ForEachPlaceAlong(const BlockContact& contact, const Visit& vis
   }
 }
 
-/// Calls act(ray) for the rays of all bundles and channels that make a move of this kind in plane k of the block.
+/// Calls act(ray) for the rays of all bundles and channels that make a sideways move of this kind in plane k of the
+/// block.
 template <class Act>
 void BlockSweep::ForRaysThatMove(int k, BlockContact::Kind kind, const Act& act) const
 {

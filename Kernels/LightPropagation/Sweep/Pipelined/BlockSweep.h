@@ -13,65 +13,68 @@
 
 namespace tyndall
 {
-/// Light by cells of the domain's faces, for the channels of a sweep, [channel][cell] (BoxFaces.h).
+/// Light per cell of the domain's faces, for the channels of a sweep, [channel][cell] (BoxFaces.h).
 struct LightByCells
 {
   const float* in = nullptr; ///< isotropic incident radiance, W / (length^2 sr); null: none
-  double* left = nullptr;    ///< escaped power, W, added to; null: not computed
-  bool spreads = false;      ///< Deposit::spreadsAside
+  double* left = nullptr;    ///< escaped power, W, which the sweep adds to; null: not computed
+  /// Whether escaped power is spread over the cells that a ray represents (Deposit::spreadsAside)
+  bool spreads = false;
 };
 
-/// Sweeps one block of a grid along one set of parallel bundles. Input: the rays that enter the block from other blocks
-/// and from outside the domain; output: the rays that leave it. Every ray crosses every voxel exactly as in a sweep of
-/// the whole grid.
+/// Sweep of one block (subdomain) along one set of parallel bundles. Input: the rays that enter the block from other
+/// blocks and from outside the domain; output: the rays that leave it. Every ray crosses every voxel exactly as in a
+/// sweep of the whole domain.
 class BlockSweep
 {
 public:
   /// @param rank  rank that owns the block; the block has at least one voxel
-  /// @param periodic  periodic axes: at their ends rays neither leave nor enter the domain
-  /// @param volume  the block's volume: its grid, channels and deposit
+  /// @param periodic  periodic axes of the domain: at their ends rays neither leave nor enter the domain
+  /// @param volume  grid, channels and deposit of the block
   /// @param workspace  must outlive this object
   BlockSweep(Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays,
     const std::array<bool, 3>& periodic, const SweepVolume& volume, BlockWorkspace& workspace);
   BlockSweep(const BlockSweep&) = delete;
   BlockSweep& operator=(const BlockSweep&) = delete;
 
-  /// Begins a lap round a periodic axis. @param planes  planes of the whole grid that rays have crossed when they enter
-  /// at its end
+  /// Begins a lap around a periodic axis.
+  /// @param planes  number of planes of the domain that rays have crossed when they enter at its end
   void BeginLap(int planes);
 
-  /// Rays that enter from outside the domain; rays from other blocks are zero.
+  /// Rays that enter the block from outside the domain; rays from other blocks are zero.
   /// @param boundary  empty: no incident light
   RaysAtFaces FromOutside(const SweepBoundary& boundary, const LightByCells& cells) const;
-  /// Incident power of the whole domain carried by this set of bundles, W, by face.
+  /// Power of this set of bundles incident on the whole domain, W, by face.
   std::array<Rgb, 6> PowerIn(const SweepBoundary& boundary) const;
 
   /// Carries the rays `in` through the block.
-  /// @param in  consumed
-  /// @param tally  power is added that leaves the domain from this block, or wraps around the axis
+  /// @param in  incoming rays; consumed
+  /// @param tally  receives the power that leaves the domain from this block, or wraps around the marching axis
+  /// @return outgoing rays
   RaysAtFaces Cross(const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary, const LightByCells& cells,
     SweepTally& tally, const Monitor& monitor);
 
-  /// Appends to `message` the rays that cross a contact with another block, in an order that both ranks know. Unpack()
-  /// is the inverse.
-  /// @param at  position of the contact's first value in `message`; on return, the position after its last
+  /// Pack() appends to `message` the rays that cross a contact with another block, in an order that both ranks know.
+  /// Unpack() reads them from the message.
+  /// @param at  index of the contact's first value in `message`; on return, the index after its last value
   void Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const;
   void Unpack(const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const;
 
   /// Number of values in the messages of incoming rays.
   std::size_t Values(const std::vector<BlockContact>& contacts) const;
   int Axis() const { return this->Bundles.axis; }
-  std::size_t Bytes() const; ///< host memory of the rays at faces, in and out
+  std::size_t Bytes() const; ///< host memory of the incoming and outgoing rays at the block's faces
 
 private:
   struct Light
   {
-    Rgb u, v, along; ///< W, power that a ray carries in through each kind of face
+    /// Power of a ray that enters through a face across u, across v, or across the marching axis, W
+    Rgb u, v, along;
   };
   Light LightOf(const SweepBoundary& boundary, std::size_t bundle, const Member& member) const;
   int DirectionOf(const Member& member) const;
   void LayPattern();
-  /// Whether the block's face where rays enter, or leave, is a face of the domain.
+  /// Whether the block's face where rays enter (`entry`) or leave along `axis` is a face of the domain.
   bool IsAtEnd(int axis, bool entry) const;
   bool IsOuter(int axis, bool entry) const { return !this->Periodic[axis] && this->IsAtEnd(axis, entry); }
   template <class Act>
@@ -95,40 +98,42 @@ private:
   SweepPlan Plan;
   RaysOfBlock Rays;
   std::unique_ptr<BlockCrossing> Carrier;
-  std::vector<CrossingInfo> Crossings;      ///< [plane of the block][bundle]
-  std::vector<std::array<double, 2>> Moves; ///< moves of a bundle along its own u and v through the whole grid, voxels
-  int LapPlanes = 0;                        ///< planes that rays have already crossed in earlier laps
-  std::size_t SideFloats = 0;               ///< floats of the sides per ray and plane
-  std::size_t RayCount = 0;                 ///< members of all bundles, times channels
+  std::vector<CrossingInfo> Crossings; ///< [plane of the block][bundle]
+  /// Sideways moves of each bundle's rays through the whole domain, voxels along the bundle's u and v
+  std::vector<std::array<double, 2>> Moves;
+  int LapPlanes = 0;          ///< number of planes of the domain that rays have crossed in earlier laps
+  std::size_t SideFloats = 0; ///< number of floats per ray and plane in the rays at the sides
+  std::size_t RayCount = 0;   ///< number of members of all bundles, times channels
 };
 
-/// Move of a bundle's member in one stage of a crossing, voxels along u and v.
+/// Sideways move of a bundle's member in one stage of crossing a plane, voxels along u and v.
 std::array<int, 2> MoveOf(const BundleInfo& bundle, int member, const CrossingInfo& crossing, int stage);
 
-/// Light by cells of the domain's faces in the sweep of a block: adds incident light and counts what leaves. Same
-/// computation as SweepSides.cl and SweepMaps.cl, but on the host, where the block's rays at faces are.
+/// Light per cell of the domain's faces in the sweep of a block: adds incident light and sums escaped power. Computes
+/// the same as SweepSides.cl and SweepMaps.cl, but on the host, where the rays at the block's faces are.
 class BlockSweep::ByCells
 {
 public:
   /// @param sweep  must outlive this object
   ByCells(const BlockSweep& sweep, const LightByCells& cells);
 
-  void Enter(RaysAtFaces& in) const; ///< adds incident light to the incoming rays
-  /// Counts escaped power by cell.
+  void Enter(RaysAtFaces& in) const; ///< adds the light incident per cell to the incoming rays
+  /// Sums escaped power per cell of the domain's faces.
   /// @param out       outgoing rays
-  /// @param boundary  further incident light; some of it passes an edge of the domain without crossing a voxel
-  /// @param tally     only light of `cells.in` that passes such an edge is added
+  /// @param boundary  incident light that is uniform over each face; some of it passes an edge of the domain without
+  /// crossing a voxel
+  /// @param tally     receives only the light of `cells.in` that passes such an edge
   void Leave(const RaysAtFaces& out, const SweepBoundary& boundary, SweepTally& tally) const;
 
 private:
-  using Voxel = std::array<int, 3>; ///< indexed in the whole grid
-  /// A ray, of one bundle and channel, that moves sideways in a plane.
+  using Voxel = std::array<int, 3>; ///< indices of a voxel in the whole domain
+  /// A ray, of one bundle member and channel, that moves sideways in a plane.
   struct Aside
   {
     std::size_t bundle = 0;
-    int member = 0, channel = 0, plane = 0; ///< plane: in the order of the march
+    int member = 0, channel = 0, plane = 0; ///< plane: index in marching order
     int du = 0, dv = 0;
-    double part = 1.0; ///< of its power that moves
+    double part = 1.0; ///< fraction of the ray's power that moves
     std::size_t ray = 0;
   };
   template <class Act>

@@ -20,8 +20,8 @@ BlockSweep::ByCells::ByCells(const BlockSweep& sweep, const LightByCells& cells)
   }
 }
 
-/// Calls act for every ray per voxel, channel and plane that moves sideways in the plane; only if the block has lateral
-/// faces that are faces of the domain.
+/// Calls act for every ray per voxel, channel and plane that moves sideways in the plane; does nothing if no face of
+/// the block parallel to the marching axis is a face of the domain.
 template <class Act>
 void BlockSweep::ByCells::ForAside(const Act& act) const
 {
@@ -48,7 +48,7 @@ void BlockSweep::ByCells::ForAside(const Act& act) const
   }
 }
 
-/// Calls act(bundle, channel, index in a map, u, v) for every ray of a map; used for both ends of the axis.
+/// Calls act(bundle, channel, index in a map, u, v) for every ray at an end of the marching axis.
 template <class Act>
 void BlockSweep::ByCells::ForEnds(const Act& act) const
 {
@@ -70,7 +70,7 @@ void BlockSweep::ByCells::ForEnds(const Act& act) const
   }
 }
 
-/// The voxel (u, v) in the ray's plane, indexed in the whole grid.
+/// Voxel (u, v) of the plane in which the ray moves, indexed in the whole domain.
 BlockSweep::ByCells::Voxel BlockSweep::ByCells::VoxelAt(const Aside& ray, int u, int v) const
 {
   const SweepPlan& plan = this->Sweep.Plan;
@@ -81,7 +81,7 @@ BlockSweep::ByCells::Voxel BlockSweep::ByCells::VoxelAt(const Aside& ray, int u,
   return voxel;
 }
 
-/// Index of the block's first or last voxel along an axis, where rays enter (`entry`) or leave.
+/// Index of the block's first or last voxel along an axis: where rays enter (`entry`) or leave.
 int BlockSweep::ByCells::Edge(int axis, bool entry) const
 {
   return (this->Sweep.Bundles.signs[axis] > 0) == entry ? 0 : this->Sweep.Block.size[axis] - 1;
@@ -108,7 +108,8 @@ double BlockSweep::ByCells::LightOf(int face, const Voxel& voxel, int channel) c
   return this->Cells.in ? this->Cells.in[this->CellOf(face, voxel, channel)] : 0.0;
 }
 
-/// Mean incident light of a cell and, if it is on the face, the cell one move further.
+/// Mean of the incident radiance of a face's cell and of the cell one move of the ray further, if that cell is on the
+/// face.
 double BlockSweep::ByCells::MeanLight(int face, const Voxel& voxel, int aside, int move, int channel) const
 {
   const int size = this->Sweep.Whole.size[aside];
@@ -159,8 +160,8 @@ void BlockSweep::ByCells::EnterAside(const Aside& ray, RaysAtFaces& in) const
   {
     return;
   }
-  // Beyond an edge of the domain, half enters through each face; beyond another edge of the block, all enters through
-  // one.
+  // A ray that moves along u and v at once: at an edge of the domain, half of it enters through either face; at another
+  // edge of the block, all of it enters through the one face of the domain.
   const double beyond = outerU && outerV
     ? 0.5 * (this->LightOf(faceV, this->VoxelAt(ray, u0, v0), c) + this->LightOf(faceU, this->VoxelAt(ray, u0, v0), c))
     : outerV ? this->MeanLight(faceV, this->VoxelAt(ray, u0 - ray.du, v0), axes.u, ray.du, c)
@@ -189,8 +190,8 @@ void BlockSweep::ByCells::Leave(const RaysAtFaces& out, const SweepBoundary& bou
   });
 }
 
-/// Counts power that leaves sideways. Of the rays at an edge of the domain that move along u and v at once, half leave
-/// through each face.
+/// Sums the power that leaves sideways, per cell. Of a ray at an edge of the domain that moves along u and v at once,
+/// half leaves through either face.
 void BlockSweep::ByCells::LeaveAside(const Aside& ray, const RaysAtFaces& out) const
 {
   const SweepPlan& plan = this->Sweep.Plan;
@@ -212,7 +213,7 @@ void BlockSweep::ByCells::LeaveAside(const Aside& ray, const RaysAtFaces& out) c
   }
 }
 
-/// Counts light that enters and leaves at an edge of the domain without crossing a voxel.
+/// Sums the power of light that enters and leaves at an edge of the domain without crossing a voxel.
 void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& boundary, SweepTally& tally) const
 {
   if (ray.du == 0 || ray.dv == 0)
@@ -237,8 +238,8 @@ void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& bound
   }
 }
 
-/// Counts light that leaves through the face across axis `through` and entered through that across axis `from`.
-/// @param alike  power of incident light that is uniform over the face, W; it is counted elsewhere
+/// Sums the power that leaves through the face across axis `through` after entry through the face across axis `from`.
+/// @param alike  power of incident light that is uniform over the face, W; BlockCrossing adds it to the tally
 void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, double alike, SweepTally& tally) const
 {
   const PlaneAxes& axes = this->Sweep.Plan.axes;
@@ -252,7 +253,7 @@ void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, doub
   }
 }
 
-/// Adds power that leaves through the face across `axis` to the cells of all planes that the ray represents.
+/// Adds power that leaves through the face across `axis` to the cells in all planes that the ray represents.
 void BlockSweep::ByCells::LeaveThrough(const Aside& ray, int axis, const Voxel& voxel, double power) const
 {
   const SweepPlan& plan = this->Sweep.Plan;

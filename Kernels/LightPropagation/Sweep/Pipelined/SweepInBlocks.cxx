@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-/// Replaces each rank's power by the sum over all ranks. Collective.
+/// Replaces the power on each rank by its sum over all ranks, W. Collective.
 void AddUp(Communicator& communicator, std::array<Rgb, 6>& power)
 {
   std::vector<double> values;
@@ -80,7 +80,8 @@ SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWo
   const SweepVolume volume = this->VolumeOf(0);
   task.sweep =
     std::make_unique<BlockSweep>(this->TheDevice, this->Partition, own, rays, this->Periodic, volume, workspace);
-  /// Contacts that do not wrap around, and those that wrap around sideways and along the marching axis.
+  /// Contacts between two blocks in three lists: within the domain, around a periodic axis sideways, and around the
+  /// marching axis.
   const auto sorted = [&](int from, int to) {
     std::array<Contacts, 3> found;
     for (const BlockContact& contact : ContactsBetween(this->Partition, rays, from, to, this->Periodic))
@@ -128,7 +129,8 @@ void SweepInBlocks::Forget()
   }
 }
 
-/// Collective. After an error, ranks continue to exchange messages, marked as failed, so that no rank waits forever.
+/// Sweeps the whole domain once. Collective. After an error, ranks continue to exchange messages, marked as failed, so
+/// that no rank waits forever.
 SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
 {
   const Deposit& to = this->Request.deposit;
@@ -155,7 +157,7 @@ SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary
   return tally;
 }
 
-/// Sweeps open axes in one lap, periodic axes until almost no power is under way, as in AxisSweep.
+/// Sweeps open axes in one lap, periodic axes until almost no power is in transit, as in AxisSweep.
 SweepTally SweepInBlocks::ApplyGroup(
   std::size_t group, const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor)
 {
@@ -196,14 +198,14 @@ SweepTally SweepInBlocks::ApplyGroup(
   return sweeping.tally;
 }
 
-/// Index of the group's first cell in FaceIn and Left, which are those of the whole domain.
+/// Index of the group's first cell in FaceIn and Left, which hold all channels of the whole domain's faces.
 std::size_t SweepInBlocks::FirstCell(const SweepVolume& volume) const
 {
   return volume.firstChannel * BoxFaceCellCount(this->Partition.whole);
 }
 
 /// Sweeps one lap: first with sources and incident light if rays still start, then repeatedly with only the rays that
-/// wrap around sideways, until there are none.
+/// wrap around sideways, until there are none. Collective.
 /// @return false if an error occurred on any rank
 bool SweepInBlocks::SweepLap(Sweeping& sweeping, const Monitor& monitor)
 {
@@ -238,7 +240,7 @@ bool SweepInBlocks::SweepLap(Sweeping& sweeping, const Monitor& monitor)
   return true;
 }
 
-/// Sweeps all blocks along all rays of the lap.
+/// Sweeps this rank's block along all sets of bundles of the lap.
 /// @return whether any rays have wrapped around sideways to this rank
 bool SweepInBlocks::SweepPass(Sweeping& sweeping, const Monitor& monitor)
 {
@@ -261,10 +263,10 @@ void AddOverRanks(Device& device, Communicator& communicator, const std::vector<
   std::transform(out.begin(), out.end(), ofAll.begin(), out.begin(),
     [](float before, double more) { return static_cast<float>(before + more); });
   to.CopyFrom(Buffer<float>(device, out, "the light that leaves by cells"), 0, out.size());
-  device.Finish(); // before the buffer is destroyed
+  device.Finish(); // the copy must end before the buffer is destroyed
 }
 
-/// Whether this rank reports the incident power, which all ranks with voxels know.
+/// Whether this rank reports the incident power of the domain; only one of the ranks with voxels does.
 bool SweepInBlocks::CountsPowerIn() const
 {
   return IsFirstThatHas(this->Comm, this->Partition);
@@ -317,7 +319,7 @@ void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, const Monitor& mon
   this->SendOn(number, state, rays);
 }
 
-/// Sends rays to ranks downwind and around periodic axes.
+/// Sends outgoing rays to ranks downwind and around periodic axes.
 void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
 {
   const Task& task = this->Tasks[number];
@@ -345,8 +347,8 @@ void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
   }
 }
 
-/// Receives the rays that wrapped around in this pass, from all ranks, after this rank has finished it.
-/// @return whether any of them continue in another pass
+/// Receives the rays that wrapped around in this pass, from all ranks, after this rank has finished the pass.
+/// @return whether any of these rays continue in another pass
 bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping)
 {
   const auto isLit = [](float value) { return value != 0.0f; };
@@ -379,7 +381,7 @@ bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping)
   return any;
 }
 
-/// Collects the incoming rays, from outside the domain and from other ranks.
+/// Collects the incoming rays of a block, from outside the domain and from other ranks.
 SweepInBlocks::State SweepInBlocks::Enter(
   Task& task, const std::vector<std::vector<float>>& messages, const Sweeping& sweeping, RaysAtFaces& rays) const
 {
@@ -412,8 +414,8 @@ SweepInBlocks::State SweepInBlocks::Enter(
   return this->EnterFromAround(task, sweeping, rays) == State::Lit ? State::Lit : state;
 }
 
-/// Adds waiting rays that wrapped around: those along the marching axis in a lap's first pass, those sideways in later
-/// passes.
+/// Adds the waiting rays that wrapped around a periodic axis to the incoming rays: those along the marching axis in a
+/// lap's first pass, those sideways in later passes.
 SweepInBlocks::State SweepInBlocks::EnterFromAround(Task& task, const Sweeping& sweeping, RaysAtFaces& rays) const
 {
   State state = State::Dark;

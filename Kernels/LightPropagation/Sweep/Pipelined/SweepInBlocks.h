@@ -14,43 +14,44 @@
 
 namespace tyndall
 {
-/// Adds the power that left through each cell of the domain's faces on any rank, W, to an array that every rank has.
-/// Collective.
+/// Adds the power that left through each cell of the domain's faces on any rank, W, to an array of which every rank has
+/// a copy. Collective.
 void AddOverRanks(Device& device, Communicator& communicator, const std::vector<double>& left, const Buffer<float>& to);
 
-/// Sweep of a distributed grid: each block lies on one rank, in its device's memory, and no rank holds more than its
-/// own block. Rays pass from block to block downwind, along several sets of bundles concurrently (numerics.md, section
-/// 4.9; Koch, Baker and Alcouffe 1992). The result is that of SweepInMemory on the whole grid, up to the order of
-/// summation.
+/// Sweep of a distributed grid: each block (subdomain) is in the device memory of one rank, and no rank holds more than
+/// its own block. Rays pass from block to block downwind, along several sets of bundles concurrently (numerics.md,
+/// section 4.9; Koch, Baker and Alcouffe 1992). The result is that of SweepInMemory on the whole domain, up to the
+/// order of summation.
 ///
 /// Rays that leave the domain at the end of a periodic axis enter at its other end after all blocks have been swept.
-/// Rays that wrap around sideways enter the same planes in another pass of only these rays, repeated until none are
+/// Rays that wrap around sideways enter the same planes in another pass with only these rays, repeated until none are
 /// left. Rays that wrap around along the marching axis enter in the next lap, as in AxisSweep.
 ///
-/// Construction and Apply() are collective, with the same rays on all ranks. Light by cells of faces
+/// Construction and Apply() are collective, with the same rays on all ranks. Light per cell of the faces
 /// (SweepRequest::faceIn, Deposit::faceOut) refers to the whole domain and is identical on all ranks.
 class SweepInBlocks : public SweepByGroups
 {
 public:
   /// @param communicator, partition, sigma_t  must outlive this object
   /// @param layout  layout of this rank's block
-  /// @param request  its box is ignored, the whole domain is swept. Ranks without voxels need no angular values
+  /// @param request  its box is ignored: the whole domain is swept. Ranks without voxels need no angular values
   /// @param workspace  must outlive this object; may be shared by sweeps that never run concurrently
-  /// @param mostRays  most rays that cross a block together; 0: the number that minimises the time of the sweep
-  /// (FastestParts)
+  /// @param mostRays  maximum number of rays that cross a block together; 0: the number that minimises the time of the
+  /// sweep (FastestParts)
   /// @throws InvalidInput if the request contains something unsupported, or blocks wait for each other in a cycle
   SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request,
     BlockWorkspace& workspace, int mostRays = 0);
 
-  /// Collective.
+  /// Sweeps the whole domain once. Collective.
   /// @return the tally summed over all ranks, identical on each
   /// @throws on every rank, if any rank throws
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
   void Forget() override;
 
   const SweepSchedule& Schedule() const { return this->TheSchedule; }
-  std::size_t FaceBytes() const; ///< host memory of the rays at faces, for one set of bundles
+  /// Host memory of the rays at the faces of this rank's block, for one set of bundles
+  std::size_t FaceBytes() const;
 
 private:
   using Contacts = std::vector<BlockContact>;
@@ -58,15 +59,18 @@ private:
   struct Around
   {
     Contacts aside, ahead;
-    std::vector<float> rays;                 ///< sideways: enter in the next pass
-    std::vector<std::vector<float>> waiting; ///< along the marching axis: enter in the next lap; by group of channels
+    std::vector<float> rays; ///< rays that wrap around sideways: enter in the next pass
+    /// Per group of channels: rays that wrap around along the marching axis, entering in the next lap
+    std::vector<std::vector<float>> waiting;
   };
   struct Task
   {
     std::unique_ptr<BlockSweep> sweep;
-    std::vector<Contacts> senders, receivers;      ///< one list for each rank in contact
-    std::vector<Around> aroundFrom;                ///< the same around periodic axes
-    std::vector<std::array<Contacts, 2>> aroundTo; ///< sideways, and along the marching axis
+    /// Contacts with each rank from which rays come, or to which they are sent, within the domain
+    std::vector<Contacts> senders, receivers;
+    std::vector<Around> aroundFrom; ///< rays that wrap around a periodic axis from each rank to this one
+    /// Contacts around periodic axes with each receiving rank: sideways, and along the marching axis
+    std::vector<std::array<Contacts, 2>> aroundTo;
   };
   enum class State
   {
@@ -87,9 +91,10 @@ private:
     std::size_t group = 0;
     int lap = 0;
     std::array<bool, 3> goesOn = {}; ///< axes whose rays take part in this lap
-    bool again = false;              ///< a pass of rays that have wrapped around sideways
+    bool again = false;              ///< whether this pass carries only rays that have wrapped around sideways
     SweepTally tally = {};
-    std::array<Rgb, 3> ahead = {}; ///< W, power that left through the ends of periodic axes in this lap
+    /// Power that left through the ends of periodic axes in this lap, by axis, W
+    std::array<Rgb, 3> ahead = {};
   };
   SweepTally ApplyGroup(
     std::size_t group, const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor) override;
@@ -102,7 +107,7 @@ private:
   void SendOn(int number, State state, const RaysAtFaces& rays);
   bool TakeFromAround(const Sweeping& sweeping);
   bool IsAnyPeriodic() const { return this->Periodic[0] || this->Periodic[1] || this->Periodic[2]; }
-  int Laps(int axis) const; ///< laps in which rays start
+  int Laps(int axis) const; ///< number of laps in which rays start
 
   Device& TheDevice;
   Communicator& Comm;
@@ -111,11 +116,12 @@ private:
   BlockWorkspace& Workspace;
   std::vector<ParallelBundles> Parts;
   SweepSchedule TheSchedule;
-  std::vector<Task> Tasks; ///< of this rank, in the order of Parts
+  std::vector<Task> Tasks; ///< tasks of this rank, in the order of Parts
 
-  // Of the sweep in progress.
-  std::exception_ptr Error;  ///< what went wrong on this rank
-  std::vector<float> FaceIn; ///< SweepRequest::faceIn; empty: none, or zero
-  std::vector<double> Left; ///< power that left this rank's block by cells of the domain's faces, W; empty: not counted
+  // State of the sweep in progress.
+  std::exception_ptr Error;  ///< error on this rank, if any
+  std::vector<float> FaceIn; ///< incident radiance per cell, SweepRequest::faceIn; empty: none, or zero
+  /// Power that left this rank's block per cell of the domain's faces, W; empty: not summed
+  std::vector<double> Left;
 };
 }

@@ -15,7 +15,8 @@ namespace tyndall
 {
 namespace
 {
-/// The members of a bundle that march one way along its axis with these signs of direction across it.
+/// Members of a bundle that march in sense `way` along its axis, with the signs signU, signV of their direction along
+/// u, v.
 Bundle MembersThatGo(const Bundle& bundle, int way, int signU, int signV)
 {
   Bundle part = bundle;
@@ -33,7 +34,7 @@ Bundle MembersThatGo(const Bundle& bundle, int way, int signU, int signV)
   return part;
 }
 
-/// Divides a set of bundles into parts of at most mostRays rays, or of one bundle if that has more.
+/// Divides a set of parallel bundles into sets of at most mostRays rays (one bundle with more rays is not divided).
 void AddParts(const ParallelBundles& whole, int mostRays, std::vector<ParallelBundles>& parts)
 {
   ParallelBundles part = whole;
@@ -106,7 +107,7 @@ std::vector<BlockContact> ContactsBetween(
     return {};
   }
   const PlaneAxes axes = AcrossAxis(rays.axis);
-  // Layers of cells upwind of the target block, along each of the axes.
+  // Finds a contact; its cells are those upwind of the target block along each of the axes `along`.
   const auto contact = [&](BlockContact::Kind kind, std::initializer_list<int> along) {
     BlockContact found = { from, to, kind, target, false };
     for (const int axis : along)
@@ -143,22 +144,23 @@ std::vector<BlockContact> ContactsBetween(
 
 namespace
 {
-/// Rank that a block sends rays to after it is swept along a set of bundles.
+/// Rank to which a block sends its outgoing rays after its sweep along a set of bundles, and the number of these rays.
 struct Receiver
 {
   int rank = 0;
   std::size_t rays = 0;
 };
 
-/// Dependency graph of one set of bundles: senders and receivers, and the longest chain of blocks downwind of each.
+/// Dependency graph of the blocks for one set of bundles: senders, receivers, and the longest chain of blocks downwind
+/// of each.
 struct TaskGraph
 {
-  std::vector<std::vector<Receiver>> receivers; ///< by rank
-  std::vector<int> waitsFor;                    ///< number of senders, by rank
+  std::vector<std::vector<Receiver>> receivers; ///< receivers of each rank
+  std::vector<int> waitsFor;                    ///< number of senders to each rank
   std::vector<int> behind;
 };
 
-/// Number of rays through one layer of cells; `bundles` determine how often they move.
+/// Number of rays through one layer of cells; for a sideways contact it depends on how often the bundles' rays move.
 std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& contact)
 {
   const double cells = static_cast<double>(contact.cells.VoxelCount());
@@ -176,14 +178,14 @@ std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& cont
   return static_cast<std::size_t>(rays);
 }
 
-/// Number of blocks on the longest downwind path from a block; recursive.
+/// Number of blocks on the longest downwind path from a block; found by recursion.
 int FindBehind(TaskGraph& graph, int rank)
 {
   int& behind = graph.behind[rank];
   Require(behind != -2, "Blocks lie such that each waits for another: cut the grid by planes, one after the other.");
   if (behind == -1)
   {
-    behind = -2; // being visited
+    behind = -2; // marks the block as being visited, to detect cycles
     int most = 0;
     for (const Receiver& receiver : graph.receivers[rank])
     {
@@ -195,7 +197,7 @@ int FindBehind(TaskGraph& graph, int rank)
   return behind;
 }
 
-/// Whether two blocks share a face, an edge or a corner; only then can they be in contact.
+/// Whether two blocks share a face, an edge or a corner; only then can rays pass from one into the other.
 bool Touch(const VoxelBox& a, const VoxelBox& b)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -241,7 +243,7 @@ TaskGraph GraphOf(const BlockPartition& partition, const ParallelBundles& bundle
   return graph;
 }
 
-/// Simulation of a sweep.
+/// Event simulation of a distributed sweep.
 class Play
 {
 public:
@@ -287,7 +289,7 @@ public:
       {
         this->Ready[rank].insert({ -this->Graphs[task].behind[rank], task });
       }
-      // Other events at the same time may have priority.
+      // Other events at the same time may make a more urgent task ready.
       if (this->Events.empty() || std::get<0>(this->Events.top()) > now)
       {
         this->StartAll(now);
@@ -342,11 +344,12 @@ private:
   const std::vector<ParallelBundles>& Tasks;
   const SweepCosts& Costs;
   std::vector<TaskGraph> Graphs;
-  std::vector<std::set<std::pair<int, int>>> Ready; ///< by rank: tasks ready to run, the most urgent first
+  /// Per rank: tasks that are ready to run, the most urgent first
+  std::vector<std::set<std::pair<int, int>>> Ready;
   std::vector<bool> Busy;
   std::set<int> Touched;                             ///< ranks with an event at the current time
-  std::map<std::pair<int, int>, double> LastArrival; ///< by rank and task
-  using Event = std::tuple<double, int, int, int>;   ///< time; 0 ready, 1 finished; rank; task
+  std::map<std::pair<int, int>, double> LastArrival; ///< time of the last message; key: rank, task
+  using Event = std::tuple<double, int, int, int>;   ///< time; 0: task ready, 1: task finished; rank; task
   std::priority_queue<Event, std::vector<Event>, std::greater<Event>> Events;
 };
 }
@@ -366,8 +369,8 @@ SweepSchedule::SweepSchedule(
 
 std::vector<ParallelBundles> FastestParts(const BlockPartition& partition, const std::vector<AxisBundles>& rays)
 {
-  // In units of one ray through one voxel, about 2 to 3 ns. Queueing a block's launches was measured to take about 1
-  // ms.
+  // Costs in units of one ray through one voxel, about 2 to 3 ns. The time to queue a block's launches was measured as
+  // about 1 ms.
   const SweepCosts costs = { 1.0, 4e5, 2e3, 1.0 };
   std::vector<ParallelBundles> fastest = SortByOctant(rays, 0);
   double least = SweepSchedule(partition, fastest, costs).Time();

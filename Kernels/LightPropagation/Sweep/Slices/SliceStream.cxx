@@ -8,12 +8,12 @@ namespace tyndall
 {
 namespace
 {
-/// Planes per slot, if memory allows: as many as in Gruson et al.; more for GPUs, since slices along x are transferred
-/// in rows of this many voxels.
+/// Number of planes per slot, if memory allows: on a CPU as many as in Gruson et al. (2012); more on a GPU, since
+/// slices along x are transferred in rows of this many voxels.
 constexpr int SliceThickness = 16, SliceThicknessOnGpu = 64;
-constexpr std::size_t SlotsPerUnit = 2; ///< one being crossed, and one being transferred
+constexpr std::size_t SlotsPerUnit = 2; ///< one slot is crossed while the other is transferred
 
-/// Floats per voxel in all streamed arrays.
+/// Number of floats per voxel in all streamed arrays.
 std::size_t FloatsOfVoxel(const SweepPlan& plan)
 {
   const int light = plan.angular ? plan.moments.functions : 1;
@@ -25,7 +25,7 @@ std::size_t FloatsOfVoxel(const SweepPlan& plan)
         (plan.octantSource ? 8 : 0)));
 }
 
-/// Planes per slot such that all slots fit in the memory that rays and scratch leave; at least one.
+/// Number of planes per slot such that all slots fit in the memory not used by rays and scratch; at least one.
 int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspace& workspace)
 {
   std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
@@ -39,7 +39,7 @@ int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspa
   return static_cast<int>(std::clamp<std::size_t>(fit, 1, most));
 }
 
-/// The piece that a unit crosses next, from the remaining range `left`.
+/// Piece of the remaining range `left` that a unit crosses next: planes that fit in one slot.
 SlicePiece NextPiece(const SweepPlan& plan, bool backward, const cl_int2& left, int thickness, int aligned)
 {
   const int planes = plan.Planes();
@@ -63,9 +63,9 @@ SlicePiece NextPiece(const SweepPlan& plan, bool backward, const cl_int2& left, 
 }
 
 /// Cuts a sweep's launches into shorter ones, [launch][unit], so that in each launch a unit needs at most one slot of
-/// the volume. Which units run concurrently and the order of additions to each plane do not change: results are
-/// identical bit for bit.
-/// @param schedule  [launch][unit], planes from, to
+/// the volume. The choice of units that run concurrently and the order of additions to each plane do not change, so
+/// results are identical bit for bit.
+/// @param schedule  planes of each unit, [launch][unit], first and end
 /// @param thickness  planes per slot
 /// @param aligned  pieces end at multiples of this number of planes or at the end of a slab; 1: anywhere
 std::vector<std::vector<SlicePiece>> CutIntoPieces(
@@ -94,7 +94,7 @@ std::vector<std::vector<SlicePiece>> CutIntoPieces(
   return launches;
 }
 
-/// Whether `first` and `second` contain planes of the same group of `aligned` planes.
+/// Whether the pieces `first` and `second` contain planes of the same group of `aligned` planes.
 bool Meet(const SlicePiece& first, const SlicePiece& second, int aligned)
 {
   const auto begin = [aligned](const SlicePiece& piece) { return piece.begin / aligned; };
@@ -103,7 +103,7 @@ bool Meet(const SlicePiece& first, const SlicePiece& second, int aligned)
     begin(second) < end(first);
 }
 
-/// Whether units that run concurrently never access the same planes.
+/// Whether the units that run concurrently in each launch never access the same planes.
 bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
 {
   for (const std::vector<SlicePiece>& launch : launches)
@@ -122,7 +122,7 @@ bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
   return true;
 }
 
-/// Whether a unit of the next launch accesses planes that some unit is crossing now.
+/// Whether a unit of the next launch accesses planes that some unit crosses in the current launch.
 bool Follows(const std::vector<SlicePiece>& now, const std::vector<SlicePiece>& next, int aligned)
 {
   return std::any_of(now.begin(), now.end(), [&](const SlicePiece& before) {
@@ -208,7 +208,8 @@ std::size_t SliceStream::SlotFloats(SlotArray array) const
 const Buffer<float>& SliceStream::Slots(SlotArray array) const
 {
   const Buffer<float>& slots = this->Workspace.slots[static_cast<std::size_t>(array)];
-  return slots.Size() > 0 ? slots : this->Workspace.slots[static_cast<std::size_t>(SlotArray::Path)]; // not accessed
+  // Any buffer serves as the argument: kernels do not access it
+  return slots.Size() > 0 ? slots : this->Workspace.slots[static_cast<std::size_t>(SlotArray::Path)];
 }
 
 VolumeArrays SliceStream::Arrays() const
@@ -218,7 +219,7 @@ VolumeArrays SliceStream::Arrays() const
     this->Slots(SlotArray::PartialCurrents) };
 }
 
-/// Number of planes whose angular moments are stored together.
+/// Number of planes whose angular moments are adjacent in memory.
 int SliceStream::Aligned() const
 {
   return this->HasMoments() && this->Plan.axes.axis == 0 ? MomentGroup : 1;
@@ -283,7 +284,7 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   }
   if (this->Plan.periodic[this->Plan.axes.axis])
   {
-    // CPU kernels store rounding errors for the fluence only, GPU kernels for all functions.
+    // CPU kernels store rounding errors of the fluence only, GPU kernels those of all functions.
     arrays.push_back(
       { &this->Workspace.lost, SlotArray::Lost, channels, volume.first, true, this->HasMoments() ? 0 : -1 });
   }
@@ -302,7 +303,7 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   return arrays;
 }
 
-/// Rows of one part of an array.
+/// Rows of a piece in one part of an array without moments.
 SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
 {
   const int axis = this->Plan.axes.axis;
@@ -318,7 +319,7 @@ SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
     place(inSlot, this->Extent), Count(this->Extent[0]), Count(this->Extent[0]) * Count(this->Extent[1]) };
 }
 
-/// Rows of all angular functions except the first.
+/// Rows of a piece in the angular moments, all functions except the first.
 SliceStream::Rows SliceStream::MomentRows(const SlicePiece& piece) const
 {
   const MomentPlaces& host = this->Plan.moments;
@@ -362,10 +363,10 @@ void SliceStream::CopyRows(const Streamed& array, const Rows& rows, std::size_t 
     this->Transfers.enqueueCopyBufferRect(array.host->Handle(), slots, inHost, inSlot, region, rows.hostRow * Float,
       rows.hostLayer * Float, rows.slotRow * Float, rows.slotLayer * Float, after, &this->Last);
   }
-  this->Waiting.clear(); // later commands in the queue wait for this one
+  this->Waiting.clear(); // the queue is in order, so later commands wait for this copy
 }
 
-/// Copies the slices of a launch to its slots, or copies slots back to the host.
+/// Copies the slices of a launch from the host to its slots, or from the slots back to the host (`back`).
 void SliceStream::Copy(
   const std::vector<Streamed>& arrays, const std::vector<SlicePiece>& launch, int parity, bool back)
 {
@@ -382,6 +383,7 @@ void SliceStream::Copy(
   }
 }
 
+/// Copies one piece of an array from the host to a slot, or back.
 /// @param slot  index of the slot's first float
 void SliceStream::CopyArray(const Streamed& array, const SlicePiece& piece, std::size_t slot, bool back)
 {
@@ -422,7 +424,7 @@ void SliceStream::Cross(const Schedule& schedule, const SweepVolume& volume, con
     const std::vector<cl::Event> after = { fetched };
     const bool isLast = l + 1 == schedule.pieces.size();
     const bool ahead = !isLast && !Follows(schedule.pieces[l], schedule.pieces[l + 1], this->Aligned());
-    if (ahead) // comes first: a launch may wait for its own beginning
+    if (ahead) // queued first, since launch() may block until its kernel starts
     {
       fetch(l + 1);
       fetched = this->Last;

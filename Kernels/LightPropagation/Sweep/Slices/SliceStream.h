@@ -10,33 +10,35 @@
 
 namespace tyndall
 {
-/// Planes of the box that one unit crosses in one launch, all of them in one slot.
+/// Planes of the box that one unit crosses in one launch, all of them in one slot (a device buffer for a few planes).
 struct SlicePiece
 {
-  cl_int2 range = { { 0, 0 } }; ///< as in SweepPlan::schedule
-  int begin = 0, end = 0;       ///< planes of the box, [begin, end); empty: the unit is idle in this launch
+  cl_int2 range = { { 0, 0 } }; ///< planes of the ray pattern, first and end, as in SweepPlan::schedule
+  /// The same planes as indices in the box, [begin, end); empty: the unit is idle in this launch
+  int begin = 0, end = 0;
 };
 
-/// Streams a volume in host memory through slots on the device during a sweep (Gruson et al., section 4.2; numerics.md,
-/// section 4.10). While the units cross the slices in their slots, a second queue copies the previous slices back to
-/// the host and fetches the next ones. The rays stay on the device.
+/// Streams a volume in host memory through slots on the device during a sweep (Gruson et al. 2012, section 4.2;
+/// numerics.md, section 4.10). While the units cross the slices in their slots, a second queue copies the previous
+/// slices back to the host and fetches the next ones. The rays stay on the device.
 ///
 /// Each unit has two slots. A slot holds a few planes of every array, [slot][part][z][y][x] with the slot's extents, in
 /// buffers of the workspace.
 class SliceStream
 {
 public:
-  /// Returns null if the volume is not streamed: because it lies on the device, because the kernels work on host memory
-  /// in place, or because its planes along the axis are not separate in memory (moments along x, if the volume is swept
-  /// in part or its slabs do not end between groups of voxels). The sweep then accesses the arrays in place.
+  /// Returns null if the volume is not streamed: because it is in device memory, because the kernels work on host
+  /// memory in place, or because its planes along the axis are not separate in memory (moments along x, if only a part
+  /// of the volume is swept or its slabs do not end between groups of voxels). The sweep then accesses the arrays in
+  /// place.
   /// @param plan, workspace  must outlive this object; maps and scratch of the workspace are already allocated
   static std::unique_ptr<SliceStream> Make(Device& device, const SweepPlan& plan, SweepWorkspace& workspace);
 
   SliceStream(Device& device, const SweepPlan& plan, SweepWorkspace& workspace, int thickness);
 
-  int Thickness() const { return this->Extent[this->Plan.axes.axis]; } ///< planes that a slot holds
+  int Thickness() const { return this->Extent[this->Plan.axes.axis]; } ///< number of planes that a slot holds
 
-  /// The sweep's launches, and the same cut into pieces if the volume is streamed.
+  /// Launches of the sweep, cut into pieces that fit in a slot if the volume is streamed.
   struct Schedule
   {
     std::vector<std::vector<SlicePiece>> pieces; ///< [launch][unit]; empty: the volume is not streamed
@@ -45,7 +47,7 @@ public:
   };
   Schedule Cut(const std::vector<cl_int2>& schedule) const;
 
-  /// The slot that holds a unit's piece of a launch.
+  /// Slot that holds a unit's piece in a launch.
   struct SlotPlace
   {
     std::size_t slot;
@@ -53,31 +55,32 @@ public:
   };
   SlotPlace PlaceOf(const SlicePiece& piece, std::size_t launch, std::size_t unit) const;
 
-  /// Replaces the volume's memory layout in `info` by the slots' layout.
+  /// Replaces the memory layout of the volume in `info` by that of the slots.
   void Describe(SweepInfo& info) const;
-  VolumeArrays Arrays() const; ///< the slots
+  VolumeArrays Arrays() const; ///< device arrays of the slots
 
-  /// Queues a launch that waits for the events `after` (null: for none) and signals `done`.
+  /// Queues a launch that waits for the events `after` (null: none) and signals `done`.
   using Launch = std::function<void(int launch, const std::vector<cl::Event>* after, cl::Event* done)>;
-  /// Runs all launches with their transfers. The device's queue continues when all results are back on the host.
+  /// Runs all launches and their transfers. Later commands in the device's queue wait until all results are on the
+  /// host.
   void Cross(const Schedule& schedule, const SweepVolume& volume, const Launch& launch);
 
 private:
-  /// A box of floats to be copied between host array and slot array, row by row.
+  /// A box of floats to be copied between a host array and a slot, row by row.
   struct Rows
   {
     std::array<std::size_t, 3> count; ///< floats per row, rows per layer, layers
     std::size_t hostFirst, hostRow, hostLayer;
     std::size_t slotFirst, slotRow, slotLayer;
   };
-  /// An array of the volume.
+  /// An array of the volume that is streamed.
   struct Streamed
   {
     const Buffer<float>* host;
     SlotArray slots;
-    int parts;         ///< [part][stride]
-    std::size_t first; ///< index of the first float of part 0, and of the angular moments
-    bool comesBack;    ///< the sweep adds to it: copied back to the host
+    int parts;         ///< number of parts, e.g. channels; the host array is [part][stride]
+    std::size_t first; ///< index in the host array of the first float of part 0, and of the angular moments
+    bool comesBack;    ///< whether the sweep adds to the array, so that it is copied back to the host
     int beams = -1;    ///< number of beams, for arrays with angular moments; -1: an array without moments
   };
   std::vector<Streamed> StreamedArrays(const SweepVolume& volume) const;
@@ -96,10 +99,10 @@ private:
   const SweepPlan& Plan;
   SweepWorkspace& Workspace;
   cl::CommandQueue Transfers;
-  std::array<int, 3> Extent;      ///< of a slot, in voxels
-  std::size_t Stride = 0;         ///< floats from one part of a slot to the next
-  MomentPlaces Places = {};       ///< layout of the moments in a slot
-  std::vector<cl::Event> Waiting; ///< that the next transfer waits for
-  cl::Event Last;                 ///< of the last transfer
+  std::array<int, 3> Extent;      ///< extent of a slot, voxels
+  std::size_t Stride = 0;         ///< number of floats from one part of a slot to the next
+  MomentPlaces Places = {};       ///< memory layout of the moments in a slot
+  std::vector<cl::Event> Waiting; ///< events that the next transfer waits for
+  cl::Event Last;                 ///< event of the last transfer
 };
 }
