@@ -14,8 +14,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Rounding = 1e-6;    ///< relative rounding error of radiance that counts as uniform
-constexpr double MissedAtMost = 0.3; ///< by whole rays; a box of one voxel misses up to a fifth of one face's
+constexpr double Rounding = 1e-6; ///< relative difference of radiances that are taken as equal
+/// Fraction of the power that whole rays may miss; in a box of one voxel they miss up to a fifth of the power through
+/// one face
+constexpr double MissedAtMost = 0.3;
 
 int FaceOf(const Direction& direction, int axis)
 {
@@ -27,7 +29,7 @@ bool Enough(double exact, double whole)
   return std::abs(whole - exact) <= MissedAtMost * exact;
 }
 
-/// Light that enters, by exact shares of rays and by whole ones.
+/// Power that enters with exact fractional numbers of rays, and with whole rays, W.
 struct EnteringRays
 {
   Rgb exact = {}, whole = {};
@@ -127,7 +129,7 @@ std::array<Rgb, 6> BoundaryLight::IncomingPower() const
   return power;
 }
 
-/// @return total entering power with exact fractional ray counts, and with whole rays
+/// Power that enters through all faces with exact fractional numbers of rays, and with whole rays, W.
 std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
 {
   EnteringRays entering;
@@ -201,11 +203,11 @@ void BoundaryLight::CheckRays(int channels) const
 
 namespace
 {
-/// Rays in the maps of a sweep for one marching direction: 128 MiB of floats.
+/// Maximum number of rays in the maps of a sweep for one sense of marching: 128 MiB of floats.
 constexpr std::size_t MostRays = std::size_t(1) << 25;
 
-/// Makes rays cross whole voxels, as straight lines do. Fractional moves serve to let in the power of boundary sources;
-/// in an emitting medium they would change path lengths in the outermost emitting voxels.
+/// Restricts rays to whole moves, as of straight lines. Fractional moves serve to admit exactly the power of boundary
+/// sources; in an emitting medium they would change path lengths in the outermost emitting voxels.
 void MoveAsLines(std::vector<Bundle>& bundles)
 {
   for (Bundle& bundle : bundles)
@@ -220,7 +222,7 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor)
 {
-  // a function rather than none: the maps of the opposite marching direction must be cleared, too
+  // a function instead of none, so that the maps of the opposite sense of marching are cleared too
   const SweepBoundary dark = [](int, int) { return Rgb{}; };
   const Grid& grid = volume.domain.Whole();
   const int channels = volume.layout.Groups().front().count; // number of channels that are swept together

@@ -11,11 +11,11 @@ namespace tyndall
 namespace
 {
 constexpr double BrightPart = 0.05; ///< fraction of a cell's solid angle in which peaks are sought
-constexpr double Outshines = 4.0;   ///< peaks exceed this multiple of the mean radiance of the rest of the cell
+constexpr double Outshines = 4.0;   ///< multiple of the mean radiance of the rest of the cell that a peak exceeds
 constexpr double LeastPower = 1.0 / 500.0;
 constexpr std::size_t MostPeaks = 64;
 
-/// A pixel, to be sorted by brightness within its cell.
+/// A pixel of the environment, to be sorted by brightness within its cell.
 struct Pixel
 {
   std::size_t index;
@@ -25,9 +25,9 @@ struct Pixel
 
 struct Peak
 {
-  /// Pixel, and the fraction of its radiance that stays in the environment.
+  /// Index of a pixel, and the fraction of its radiance that remains in the environment.
   std::vector<std::pair<std::size_t, double>> kept;
-  std::array<double, 3> towards = {}; ///< power-weighted
+  std::array<double, 3> towards = {}; ///< sum of the directions towards the pixels, weighted by power
   Rgb irradiance = {};
   double brightness = 0.0;
 };
@@ -50,7 +50,7 @@ double SolidAngle(const Environment& environment, std::size_t pixel)
   return (std::cos(top) - std::cos(bottom)) * 2.0 * Pi / environment.width;
 }
 
-/// The radiance above the limit in the brightest part of a cell.
+/// Peak of a cell: the radiance above the limit in the brightest part of its solid angle.
 Peak FindPeak(const Environment& environment, std::vector<Pixel>& cell)
 {
   std::sort(cell.begin(), cell.end(), [](const Pixel& a, const Pixel& b) {

@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-/// Adds to the first values of an array.
+/// Adds `values` to the first elements of the array `to`.
 void AddFirst(Device& device, const std::vector<float>& values, const Buffer<float>& to)
 {
   std::vector<float> sum(values.size());
@@ -20,7 +20,7 @@ void AddFirst(Device& device, const std::vector<float>& values, const Buffer<flo
   device.Queue().enqueueWriteBuffer(to.Handle(), CL_TRUE, 0, sum.size() * sizeof(float), sum.data());
 }
 
-/// The scalar times the mean direction in each voxel, [channel][x, y, z][stride].
+/// Scalar in each voxel times the mean direction there, [channel][x, y, z][stride].
 std::vector<float> Along(const VolumeLayout& layout, const std::vector<float>& scalar, const Field& direction)
 {
   std::vector<float> flux(layout.Floats(3), 0.0f);

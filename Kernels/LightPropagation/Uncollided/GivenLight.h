@@ -10,12 +10,12 @@ namespace tyndall
 /// Uncollided flux that another solver computed for each voxel (UncollidedImage.h, numerics.md, section 5.7).
 ///
 /// The image is attenuated by the untruncated extinction of the medium, whereas sweeps treat the forward peak of
-/// scattering as unscattered light. The part of the image's light that scatters into the forward peak is therefore a
-/// separate source, AddStraightOn().
+/// scattering as unscattered light. The light of the image that scatters into the forward peak is therefore a separate
+/// source, AddStraightOn().
 class GivenLight : public UncollidedSource
 {
 public:
-  /// @param image, medium, scattering  must outlive this object; in the solver's units and channels
+  /// @param image, medium, scattering  in the solver's units and channels; must outlive this object
   GivenLight(const UncollidedImage& image, const Medium& medium, const TruncatedScattering& scattering);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
@@ -23,7 +23,7 @@ public:
 
   /// Adds the light scattered into the forward peak to `source`, W / (length^3 sr), with its angular moments if `basis`
   /// is not null.
-  /// @return whether there is any
+  /// @return whether any light scatters into the forward peak
   bool AddStraightOn(
     Device& device, const VolumeLayout& layout, const AngularBasis* basis, const Buffer<float>& source) const;
 
@@ -33,11 +33,12 @@ private:
   const TruncatedScattering& Scattering;
 };
 
-/// Power of the image's light that the medium removes and that escapes, for `channels` channels from `first` on. The
-/// faces through which the light entered are unknown: all of it is counted as incident on the first face.
+/// Energy balance of the image's light: power that the medium removes and power that escapes, for `channels` channels
+/// from `first` on, W. The faces through which the light entered are unknown: all of it is counted as incident on the
+/// first face.
 SweepTally TallyOf(const UncollidedImage& image, const Medium& medium, int first, int channels);
 
-/// exp(-2 s) for the smallest s at which a peak with moments exp(-s l (l + 1)) up to `degree` is nowhere negative: the
-/// argument `peak` of AddNarrowMoments().
+/// Value of the argument `peak` of AddNarrowMoments() for a peak that is nowhere negative: exp(-2 s) for the smallest s
+/// at which the peak with moments exp(-s l (l + 1)), l up to `degree`, is nowhere negative.
 double SmoothPeak(int degree);
 }

@@ -1,6 +1,6 @@
-// Angular moments of light that has a single direction, or nearly one, in each voxel, such as that of lamps. Options:
+// Angular moments of light that has a single direction, or nearly one, in each voxel, such as that of lamps. One
+// work-item per voxel of a row, row, and channel. The host defines
 //   DEGREE  highest degree of the moments
-// One work-item per voxel of a row, row, and channel.
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
@@ -8,8 +8,8 @@
 
 #define MOMENTS ((DEGREE + 1) * (DEGREE + 1))
 
-// Adds light whose direction in each voxel is that of the net flux.
-// basis    [function][harmonic], AngularBasis.h
+// Adds the angular moments of light whose direction in each voxel is that of its net flux.
+// basis    coefficients of the angular functions, [function][harmonic], AngularBasis.h
 // path     W length, [channel][stride]
 // flux     net flux of the same light, W length, [channel][x, y, z][stride]
 // moments  W length, with angular moments (MomentPlacesShared.h), added to
@@ -34,7 +34,8 @@ __kernel void add_narrow_moments(MomentPlaces places, const __global float* basi
   }
   float harmonics[MOMENTS];
   find_harmonics(flow / size, harmonics);
-  // Diffusive spread of directions about their mean: the moment of degree l is spread^(l (l + 1) / 2).
+  // Directions spread diffusively about their mean: the moment of degree l is spread^(l (l + 1) / 2), with spread =
+  // |flux| / path.
   const float spread = fmin(size / power, 1.0f) * peak;
   float whole = 1.0f / peak, step = spread;
   for (int l = 1; l <= DEGREE; ++l)
@@ -53,8 +54,8 @@ __kernel void add_narrow_moments(MomentPlaces places, const __global float* basi
   }
 }
 
-// Adds light that has the same direction everywhere.
-// values   of the angular functions in the light's direction, [function]
+// Adds the angular moments of light that has the same direction in all voxels.
+// values   values of the angular functions in the light's direction, [function]
 __kernel void add_beam_moments(
   MomentPlaces places, const __global float* values, const __global float* path, __global float* moments, ulong stride)
 {

@@ -32,7 +32,7 @@ Deposit NarrowLight::To() const
 
 namespace
 {
-/// Runs a kernel of NarrowLight.cl. Its arguments are the places of the moments, then `arguments`.
+/// Runs a kernel of NarrowLight.cl whose arguments are the memory layout of the moments, then `arguments`.
 template <class... Arguments>
 void RunOnMoments(Device& device, const VolumeLayout& layout, const AngularBasis& basis, const char* name,
   const Arguments&... arguments)
@@ -42,7 +42,7 @@ void RunOnMoments(Device& device, const VolumeLayout& layout, const AngularBasis
   const std::array<int, 3>& size = layout.grid.size;
   device.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], layout.channels));
-  device.Finish(); // the arrays are released
+  device.Finish(); // the arrays may be released after this
 }
 }
 

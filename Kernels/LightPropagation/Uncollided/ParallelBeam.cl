@@ -1,21 +1,23 @@
-// After the sweep of a parallel beam: adds its path to a deposit, and computes its first moments.
+// Kernel that follows the sweep of a parallel beam: adds its path to a deposit, and computes its first moments.
 
 #include "LightPropagation/Sweep/BeyondFacesShared.h"
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"
 
-// Mean distance, in voxels, from a voxel's centre towards the entry face at which light that enters through one face is
-// lost, with exponential attenuation over the optical length tau.
+// Mean distance of the place of loss from a voxel's centre towards the entry face, in voxels, for light that enters
+// through one face and is attenuated exponentially over the optical length tau.
 static float distance_to_face(float tau)
 {
   return tau < 0.05f ? tau / 12.0f : 0.5f - 1.0f / tau + (tau < 80.0f ? 1.0f / expm1(tau) : 0.0f);
 }
 
-// Adds the beam's path, and first moments computed from the powers through the faces (numerics.md, Eq. (39)). These are
-// exact if as much power enters as leaves through the lateral faces, and never exceed those of light that all enters
-// through one face.
-// path, currents           of the beam, as in Sweep/SweepOperator.h
-// beyond                   power that enters voxels beyond a block's faces, from this channel on
-// all_path, first_moments  of the deposit, added to
+// Adds the beam's path, and its first moments computed from the powers through the faces (numerics.md, Eq. (39)), to
+// the deposit. The first moments are exact if as much power enters as leaves through the lateral faces, and never
+// exceed those of light that all enters through one face.
+// path, currents           path integral, W length, and partial currents, W, of the beam (Deposit,
+//                          Sweep/SweepOperator.h)
+// beyond                   power that enters voxels beyond a block's faces, W
+// channel                  index of this group's first channel in `beyond`
+// all_path, first_moments  arrays of the deposit, added to
 __kernel void add_beam(BeamInfo beam, const __global float* sigma, ulong sigma_first, const __global float* path,
   const __global float* currents, const __global float* beyond, ulong channel, __global float* all_path,
   __global float* first_moments, ulong first, ulong stride)

@@ -17,14 +17,15 @@ namespace tyndall
 {
 namespace
 {
-/// Computes the uncollided flux of a directional light by sweeps along its one direction, with 2 x 2 parallel rays a
+/// Computes the uncollided flux of a directional light by sweeps along its direction, with 2 x 2 parallel rays per
 /// voxel (numerics.md, section 5.3); with 8 x 8 if the deposit has first moments.
 ///
-/// @return incident power, escaped power, and the power still in flight around periodic axes
+/// @return incident power, escaped power, and power in transit along periodic axes, W
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor);
 
 // DepositBeam() in two steps, for arrays that cover only a block of the grid that the rays cross.
 
+/// Sweeps along the beam of a directional light.
 /// @param volume  its deposit is not used
 /// @param firstMoments  whether AddWithFirstMoments() follows, which needs more rays
 /// @param deposit  receives the light of the beam
@@ -40,9 +41,9 @@ void AddWithFirstMoments(
 
 namespace
 {
-constexpr int RaysPerEdge = 2; ///< rays per edge of a voxel
-/// Rays per edge if first moments are wanted: with few rays an oblique beam enters some voxels through one face and
-/// their neighbours through another, and each voxel seems to be lit from one side only.
+constexpr int RaysPerEdge = 2; ///< rays per edge of a voxel's face
+/// Rays per edge of a voxel's face if first moments are computed: with few rays an oblique beam enters some voxels
+/// through one face and their neighbours through another, and each voxel seems to be lit from one side only.
 constexpr int RaysPerThickEdge = 8;
 
 }
@@ -98,7 +99,7 @@ void AddWithFirstMoments(
       cl_ulong(to.first), cl_ulong(to.stride));
     Launch(volume.device, add, cl::NDRange(grid.VoxelCount(), to.channels));
   }
-  volume.device.Finish(); // the beam's arrays are released
+  volume.device.Finish(); // the beam's arrays are released after this
 }
 
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor)
@@ -158,7 +159,7 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   return tally;
 }
 
-/// Deposits path integrals, flux and first moments, but no angular moments.
+/// Deposits path integrals, net flux and first moments of the lamp's light, but no angular moments.
 SweepTally UncollidedLamp::Put(const UncollidedVolume& volume, const Monitor& monitor) const
 {
   if (this->Lamp.type == LightType::Directional)

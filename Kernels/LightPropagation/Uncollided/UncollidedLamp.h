@@ -5,12 +5,12 @@
 
 namespace tyndall
 {
-/// The uncollided flux of one lamp along exact rays: parallel ones (ParallelBeam.h) or those from a point
-/// (LampBeams.h).
+/// Uncollided flux of one lamp along exact rays: parallel rays for a directional light (ParallelBeam.h), else rays from
+/// a point (LampBeams.h).
 class UncollidedLamp : public UncollidedSource
 {
 public:
-  explicit UncollidedLamp(const Light& lamp); ///< must outlive this object
+  explicit UncollidedLamp(const Light& lamp); ///< `lamp` must outlive this object
   const Light& TheLight() const { return this->Lamp; }
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;

@@ -14,45 +14,46 @@
 
 namespace tyndall
 {
-/// The medium that uncollided light crosses, and the arrays that receive it.
+/// Medium that uncollided light crosses, and the arrays to which the light is added.
 struct UncollidedVolume
 {
   Device& device;
   const Domain& domain;
-  const VolumeLayout& layout;   ///< of this rank's block
-  const Buffer<float>& sigma_t; ///< 1/length
+  const VolumeLayout& layout;   ///< memory layout of this rank's block
+  const Buffer<float>& sigma_t; ///< extinction, 1/length
   const std::array<bool, 3>& periodic;
-  SweepMaker makeSweep; ///< makes sweeps of the domain along sets of parallel rays
+  SweepMaker makeSweep; ///< factory of sweeps of the domain along sets of parallel rays
   Deposit deposit;
-  /// Basis of the angular moments in the deposit's path; null: it has none. If there is one, sources do not deposit net
-  /// flux, which the moments contain.
+  /// Basis of the angular moments in the deposit's path; null: no angular moments. With a basis, sources do not deposit
+  /// net flux, which the moments contain.
   const AngularBasis* basis = nullptr;
-  /// Receives the path integrals of a parallel beam alone, W length, [channel][stride]; null: not wanted.
+  /// Receives the path integrals of a parallel beam alone, W length, [channel][stride]; null: not needed.
   const Buffer<float>* beamPath = nullptr;
-  /// On several ranks: fetches the power that enters voxels beyond the block's faces; empty: the block is the domain,
-  /// or first moments are not wanted.
+  /// With several ranks: fetches the power that enters voxels beyond the block's faces; empty: the block is the domain,
+  /// or no first moments are computed.
   FetchBeyondFaces fetchBeyond = {};
 };
 
-/// A source of uncollided flux: one lamp, the light through the box's faces, or a localised emission in the medium
-/// (numerics.md, section 5). It is computed once per solve; the light that it scatters is the first-collision source.
+/// Source of uncollided flux: one lamp, the light through the box's faces, or a localised emission in the medium
+/// (numerics.md, section 5). Computed once per solve; the light that it scatters is the first-collision source.
 class UncollidedSource
 {
 public:
   virtual ~UncollidedSource() = default;
 
-  /// Adds path integrals, and net flux and first moments if the deposit has arrays for them, to the deposit.
-  /// Collective: failures on one rank become errors on all before the last collective step; errors after it may occur
-  /// on one rank alone.
-  /// @return incident power, escaped power, and the power still in flight around periodic axes
+  /// Adds the path integrals of this source, and net flux and first moments if the deposit has arrays for them, to the
+  /// deposit. Collective: failures on one rank become errors on all before the last collective step; errors after it
+  /// may occur on one rank alone.
+  /// @return incident power, escaped power, and power in transit along periodic axes, W
   virtual SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const = 0;
 
-  /// Whether AddTo() returns the tally of a rank's own voxels rather than of all ranks.
+  /// Whether AddTo() returns the tally of this rank's own voxels; false: the tally of all ranks.
   virtual bool TalliesOwnVoxels() const { return false; }
 };
 
-/// Calls `add` for each group of channels that share one sigma_t, and sums the tallies.
+/// Calls `add` for each group of channels that share one sigma_t.
 /// @param add  (volume of the group's channels, first channel, monitor) -> tally
+/// @return the sum of the tallies
 template <class AddGroup>
 SweepTally AddByGroups(const UncollidedVolume& volume, const Monitor& monitor, const AddGroup& add)
 {

@@ -1,6 +1,6 @@
-// Carries rays through a range of planes, on a CPU. A work-item carries all rays of its unit (one way along the axis,
-// some or all bundles) and deposits into the volume directly. Units of one launch never share a plane, so there are no
-// races and the order of summation is fixed. The host defines what SweepLayout.cl requires.
+// Kernel that carries rays through a range of planes, on a CPU. A work-item carries all rays of its unit (one sense of
+// marching, some or all bundles) and deposits into the volume directly. Units of one launch never share a plane, so
+// there are no races and the order of summation is fixed. The host defines the options of SweepLayout.cl.
 
 #include "LightPropagation/Sweep/OnCpu/SweepCrossing.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -8,7 +8,7 @@
 #include "LightPropagation/Sweep/OnCpu/SweepPartialCurrents.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepSides.cl"
 
-// Selects plane k of a chain.
+// Sets the state to plane k of a chain.
 static void go_to_plane(sweep_state* state, int k)
 {
   const struct plane_place* place = state->places + k;
@@ -23,7 +23,7 @@ static void go_to_plane(sweep_state* state, int k)
 }
 
 #if OCTANT_SOURCE
-// The two combinations of ways along u and v (WaysAside) of a member's direction; they differ if it has no component
+// The two combinations of senses along u and v (WaysAside) of a member's direction; they differ if it has no component
 // along u or v.
 static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 {
@@ -50,20 +50,20 @@ static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 
-// The volume that a unit sweeps, see `sweep`; from the group's first channel on.
+// Arrays of the volume that a unit sweeps, from the group's first channel on; see the arguments of `sweep`.
 typedef struct
 {
   const SweepInfo* info;
   const __global float *sigma, *source, *beams, *octants;
   __global float *path, *lost, *flux, *currents;
 #if ANGULAR
-  const __global float* moments; // of the source, from the second function on
-  __global float* momentPath;    // likewise of the path
+  const __global float* moments; // angular moments of the source, from the second function on
+  __global float* momentPath;    // angular moments of the path integral, from the second function on
 #endif
   int backward;
 } swept_volume;
 
-// The rays of a unit's way, see `sweep`.
+// Rays of a unit's sense of marching, see the arguments of `sweep`.
 typedef struct
 {
   __global float* maps;
@@ -74,13 +74,13 @@ typedef struct
   __global leaving_float* leaving;
 } swept_rays;
 
-// Scratch of a unit, besides what sweep_state holds.
+// Scratch of a unit, in addition to that in sweep_state.
 typedef struct
 {
   __global float* planes;
-  __global int* thin; // [plane][row]
+  __global int* thin; // whether all voxels of a row are optically thin, [plane][row]
 #if ANGULAR
-  __global float *momentSource, *momentPath; // packed moments, [plane][row]
+  __global float *momentSource, *momentPath; // packed moments of source and path, [plane][row]
 #endif
 } unit_scratch;
 
@@ -88,12 +88,13 @@ typedef struct
 typedef struct
 {
   __global float* planes;
-  __global int* thin; // [plane][row]
+  __global int* thin; // whether all voxels of a row are optically thin, [plane][row]
   int first, count;
-  const __global OwnLightInfo* own; // of the first plane crossed; [plane, counted from where rays start]
+  // Path integrals per unit source within the voxel of origin: from the first plane crossed on
+  const __global OwnLightInfo* own;
 } packed_planes;
 
-// Finds the rows in which all voxels are optically thin.
+// Determines the rows in which all voxels are optically thin, sigma_t < PlaneInfo::thin.
 static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float* plane, int2 rows, __global int* thin)
 {
   for (int v = rows.x; v < rows.y; ++v)
@@ -108,7 +109,7 @@ static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float*
   }
 }
 
-// Prepares rows [rows.x, rows.y) of planes for crossing.
+// Packs rows [rows.x, rows.y) of planes for crossing, and clears their sums.
 static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -133,7 +134,7 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
       __global float* row = ROW_OF(plane, 0, v);
       for (int at = 0; at < ROW; at += REAL_WIDTH)
       {
-        // Vacuum is treated as a very thin medium, which avoids 0 / 0.
+        // Vacuum is treated as a very thin medium, to avoid 0 / 0.
         const real s = fmax(load_real(at, row + PlaneSigma * ROW), (real)layout->vacuum);
         store_real(s, at, row + PlaneSigma * ROW);
         store_real((real)1.0f / s, at, row + PlaneInverse * ROW);
@@ -156,8 +157,9 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
 }
 
 #if !ANGULAR
-// Adds to a row the path of emitted and scattered light within its voxel of origin (numerics.md, Eq. (26)): (length -
-// taken) / sigma, or a polynomial if that would cancel or `taken` was not stored.
+// Adds the path integral of emitted and scattered light within its voxel of origin to a row (numerics.md, Eq. (26)):
+// source times (length - taken) / sigma_t; in thin voxels, where the difference would cancel and `taken` is not stored,
+// a polynomial replaces it.
 static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
   for (int at = 0; at < ROW; at += REAL_WIDTH)
@@ -182,7 +184,7 @@ static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, c
 }
 #endif
 
-// Adds the sums of rows of the planes to the volume.
+// Adds the sums of rows of the packed planes to the arrays of the volume.
 static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -225,7 +227,7 @@ static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* pac
 }
 
 // Carries the rays of bundle `b` through a chain of planes.
-// @param crossings  of all bundles
+// @param crossings  moves and segments of all bundles, from the chain's first plane on
 static void cross_planes(sweep_state* state, int planes, const swept_rays* rays, int b,
   const __global CrossingInfo* crossings, int first_row, int end_row)
 {
@@ -246,10 +248,11 @@ static void cross_planes(sweep_state* state, int planes, const swept_rays* rays,
 #undef CROSS
 }
 
-// Carries rays of `count` bundles from `first` on through a chain of planes. If the planes hold much data (moments, or
-// large chained planes), works tile by tile of rows, so that a tile stays in the cache for all bundles.
+// Carries the rays of `count` bundles, from bundle `first` on, through a chain of planes. If the planes hold much data
+// (moments, or large chained planes), bundles alternate on tiles of rows, so that a tile stays in the cache for all
+// bundles.
 // @param planes  number of planes; 1 if CHAINED is 0
-// @param packed  the planes, whose rows are packed tile by tile if KEPT_ROWS; the bundles are then all there are
+// @param packed  the planes; if KEPT_ROWS, their rows are packed tile by tile, and `count` is the number of all bundles
 static void cross_bundles(sweep_state* state, const swept_volume* volume, const packed_planes* packed, int planes,
   const swept_rays* rays, int first, int count, const __global CrossingInfo* crossings)
 {
@@ -268,7 +271,7 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
     return;
   }
   const int behind = ROWS_BEHIND(state->chained_before + planes);
-  int ended = 0; // rows
+  int ended = 0; // number of rows that are finished
   for (int row = FirstRow; row < state->sizeV + behind; row += tile)
   {
     if (KEPT_ROWS)
@@ -295,8 +298,9 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
   state->ring = kept;
 }
 
-// For streamed volumes, slots hold slices (SliceStream.h): the steps in PlaneInfo are those of a slot, slot.x is the
-// slot's number, and slot.y is the index in the box of the slot's first plane.
+// For streamed volumes, moves the pointers of the volume to a slot, which holds a slice (SliceStream.h). The steps in
+// PlaneInfo are those of a slot, slot.x is the slot's number, and slot.y is the index in the box of the slot's first
+// plane.
 static void go_to_slot(SweepInfo* info, int2 slot, swept_volume* volume)
 {
   info->planes.firstP = -slot.y;
@@ -330,7 +334,7 @@ static void go_to_channel(swept_volume* volume)
   volume->octants += 8 * info->first;
 }
 
-// Sets the state that is the same for all planes, except its pointers.
+// Sets the part of the state that is the same for all planes, except its pointers.
 static void begin_state(sweep_state* state, const SweepInfo* info)
 {
   const PlaneInfo* layout = &info->planes;
@@ -365,13 +369,13 @@ static void begin_state(sweep_state* state, const SweepInfo* info)
 #endif
 }
 
-// Number of bundles that cross the same planes in turn.
+// Number of bundles that cross the same planes before other bundles do.
 static int bundles_together(const sweep_state* state, int bundles)
 {
   return ANGULAR || state->tile > 0 ? min(bundles, (int)BundlesTogether) : bundles;
 }
 
-// Divides a unit's scratch, and clears the rows of rays in it.
+// Divides a unit's scratch into arrays, and clears the rows of rays in it.
 static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __global float* scratch, int together)
 {
   const PlaneInfo* layout = &info->planes;
@@ -382,7 +386,7 @@ static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __glo
   state->moving = state->ring + rings;
   clear(state->ring, rings + RAYS_OF_ROW + PAD);
   unit_scratch parts;
-  parts.planes = state->moving + RAYS_OF_ROW + PAD; // past the last row's border
+  parts.planes = state->moving + RAYS_OF_ROW + PAD; // begins after the padding of the last row
 #if FACES || SIDES
   state->outside = parts.planes;
 #endif
@@ -395,7 +399,7 @@ static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __glo
   return parts;
 }
 
-// Packs planes, except rows that are packed tile by tile.
+// Packs planes and their moments, except rows that are packed tile by tile.
 static void begin_planes(const swept_volume* volume, const packed_planes* packed, const unit_scratch* scratch)
 {
   const SweepInfo* info = volume->info;
@@ -415,7 +419,7 @@ static void begin_planes(const swept_volume* volume, const packed_planes* packed
 #endif
 }
 
-// Adds what the planes have received to the volume.
+// Adds the sums of the packed planes to the arrays of the volume.
 static void end_planes(const swept_volume* volume, const packed_planes* packed, const unit_scratch* scratch)
 {
   if (!KEPT_ROWS)
@@ -431,7 +435,7 @@ static void end_planes(const swept_volume* volume, const packed_planes* packed, 
 }
 
 #if ANGULAR
-// Finds the moments of a plane of the box: in the volume, or packed.
+// Sets the pointers to the angular moments of a plane of the box: in the volume, or packed in scratch.
 static void go_to_moments(
   sweep_state* state, const swept_volume* volume, const unit_scratch* scratch, int plane, int first_packed)
 {
@@ -458,8 +462,8 @@ static void go_to_moments(
 }
 #endif
 
-// Sets the places of packed planes in the order in which rays cross them, and clears their tallies.
-// @param escaped, rounding  [plane]
+// Lists packed planes in the order in which rays cross them, and clears their tallies of escaped power.
+// @param escaped, rounding  escaped power, W, and its rounding errors, [plane][side][channel]
 static void place_planes(struct plane_place* places, const swept_volume* volume, const packed_planes* packed,
   float (*escaped)[4][CHANNELS], float (*rounding)[4][CHANNELS])
 {
@@ -493,8 +497,8 @@ static packed_planes part_of(const packed_planes* packed, const swept_volume* vo
   return part;
 }
 
-// Number of planes that are packed together next, from the one that `begin` counts, which belongs to the lap that began
-// at `lap`, to `end` at most.
+// Number of planes to pack together, from plane `begin` of the ray pattern on; at most up to plane `end`, and to the
+// end of the lap that began at plane `lap`.
 static int planes_to_pack(const SweepInfo* info, int begin, int end, int lap, int backward)
 {
   const PlaneInfo* layout = &info->planes;
@@ -507,7 +511,8 @@ static int planes_to_pack(const SweepInfo* info, int begin, int end, int lap, in
 }
 
 // Carries the rays of a unit through packed planes, chain by chain.
-// @param places  of the planes; `begin` counts the first one from where rays start
+// @param places  the packed planes in marching order
+// @param begin  index of the first of these planes, counted from where rays start
 static void cross_chains(sweep_state* state, const swept_volume* volume, const swept_rays* rays, const UnitInfo* unit,
   const packed_planes* packed, const unit_scratch* scratch, const struct plane_place* places, int begin)
 {
@@ -537,25 +542,26 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
   }
 }
 
-// sigma     1/length, [voxel]
+// Carries the rays of the units of a launch through their planes. One work-item per unit.
+// sigma     extinction, 1/length, [voxel]
 // source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
-// octants   see SweepRequest::octantSource
-// path      W length, with its angular moments, added to
-// lost      rounding errors of path in this sweep (compensated summation), if rays wrap around the axis
-// flux      W length, [channel][x, y, z][stride], added to
-// currents  W, [channel][-x, +x, -y, +y, -z, +z][stride], added to: power that enters the voxel through that face
-// maps      rays of both ways, or of the only one
-// border    incident rays: the rows outside of both ways, then the radiances of both ways
-// coefficients  see BundleInfo, both ways
-// crossings [plane of the ray pattern][bundle]
-// own       [unit][plane from where rays start], see add_own_light
-// schedule  [launch][unit] first plane and end, counted from where rays start; planes beyond the last
-//           wrap around; if streamed [launch][planes, slots][unit], see go_to_slot
+// octants   additional source per octant, see SweepRequest::octantSource
+// path      path integrals, W length, with their angular moments, added to
+// lost      rounding errors of path in this sweep (compensated summation), if rays wrap around the marching axis
+// flux      net flux, W length, [channel][x, y, z][stride], added to
+// currents  power that enters the voxel through each face, W, [channel][-x, +x, -y, +y, -z, +z][stride], added to
+// maps      power of the rays of both senses of marching (or of the only one), W
+// border    power of incident rays, W: the rows outside for both senses, then the radiances for both senses
+// coefficients  values of the angular functions, see BundleInfo, both senses
+// crossings moves and segments, [plane of the ray pattern][bundle]
+// own       path integrals per unit source within the voxel of origin, [unit][plane from where rays start]
+// schedule  first plane and end, counted from where rays start, [launch][unit]; planes beyond the last plane wrap
+//           around; if streamed [launch][planes, slots][unit], see go_to_slot
 // tally     escaped power, W, [plane, counted from where rays start][unit][-u, +u, -v, +v][channel]
-// entering  if SIDES: rays that enter through the sides (SweepSides.cl); else light by cells of the box's faces
-//           (SweepRequest::faceIn), if FaceInfo::in
-// leaving   if SIDES: rays that leave; else the sweep's own Deposit::faceOut, if FaceInfo::out, [unit][channel][cell]
-//           if rays spread
+// entering  if SIDES: power of the rays that enter through the sides (SweepSides.cl); else, if FaceInfo::in, incident
+//           radiance per cell of the box's faces (SweepRequest::faceIn)
+// leaving   if SIDES: power of the rays that leave; else, if FaceInfo::out, escaped power per cell,
+//           [unit][channel][cell] if FaceInfo::spread, else [channel][cell]
 // function_places  see SweepPlan::FunctionPlaces
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* lost,

@@ -1,9 +1,9 @@
-// Carries one bundle through one plane. Compiled once for each number of MEMBERS.
+// Functions that carry the rays of one bundle through one plane. Compiled once for each number of MEMBERS.
 //
 // A plane is crossed in up to three stages, one per segment. A stage reads every ray where the previous stage left it:
 // the whole map moves by one voxel or none, which costs only an offset in the load. The stages process rows one after
-// the other, each LAG rows behind the previous one, so that intermediate rows stay in the cache; the last stage writes
-// the map in place.
+// another, each stage LAG rows behind the previous stage, so that intermediate rows stay in the cache; the last stage
+// writes the map in place.
 
 #define NAME_OF(a, b) TYNDALL_JOIN(a, b)
 #define CROSS_VOXELS NAME_OF(cross_voxels_, MEMBERS)
@@ -30,7 +30,8 @@
 
 #if ANGULAR
 #include "LightPropagation/Sweep/OnCpu/SweepMoments.cl"
-// Calls FUNCTION with the bundle's number of frames as a constant: one for a single member, two for eight.
+// Calls FUNCTION with the bundle's number of frames as a constant: one frame for a single member, two for eight
+// members.
 #define FOR_FRAMES(FUNCTION, y, slot)                       \
   if (MEMBERS == 8 || (MEMBERS > 1 && bundle->frames == 2)) \
   {                                                         \
@@ -42,25 +43,26 @@
   }
 #else
 
-// The rows of the plane that a segment works on.
+// Rows of the plane that a segment reads and adds to.
 typedef struct
 {
   const __global float *inverse, *source, *octants;
   __global float *path, *flux;
-  __global float* entered; // power that enters the plane's voxels, [channel][CurrentFaces]; null: not needed
+  // Power that enters the plane's voxels, W, [channel][CurrentFaces]; null: not computed
+  __global float* entered;
   bool deposit, thin;
-  float power, cosine; // of the bundle
+  float power, cosine; // power of a ray at radiance 1, and cosine to the marching axis, see BundleInfo
 } SEGMENT_ROWS;
 
-// Directions of the bundle's members.
+// Directions of the bundle's members across the marching axis.
 typedef struct
 {
-  float alongU[MEMBERS], alongV[MEMBERS]; // components, for the net flux
-  int2 aside[MEMBERS];                    // see ways_aside
+  float alongU[MEMBERS], alongV[MEMBERS]; // components along u and v, for the net flux
+  int2 aside[MEMBERS];                    // combinations of senses along u and v, see ways_aside
 } MEMBER_WAYS;
 
 // Carries all rays of a channel through one segment in a vector of voxels.
-// own_path  path, within the voxel, of the light of a unit source in it, times the cosine between rays and axis
+// own_path  path integral of a unit source within its own voxel, times the cosine between rays and axis
 static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_ROWS* rows, const MEMBER_WAYS* ways,
   int x, int c, const real_crossing* crossing, real own_path, const __global float** in, __global float* out)
 {
@@ -100,7 +102,7 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
     return;
   }
 #if OCTANT_SOURCE
-  // the additional octant source is not lost in its own voxel
+  // power of the additional octant source is not lost in its own voxel
   sum -= all_more * load_real(x, rows->inverse) * rows->power;
 #endif
   __global float* path = rows->path + c * ROW;
@@ -114,11 +116,11 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
 #endif
 }
 
-// Carries all rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al., Eq. 3, in
-// conservative form):
+// Carries all rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al. 2012, Eq. 3, in
+// conservative form), with p1 the mean transmitted length:
 //   path += p1 P,  P' = P - sigma p1 P + power q p1
-// The path of the source's light within its own voxel does not depend on P and is added by add_own_light in Sweep.cl.
-// @param entered  rows of the power that enters the plane's voxels, [channel][CurrentFaces]; null if not needed
+// The path integral of the source's light within its own voxel does not depend on P; add_own_light in Sweep.cl adds it.
+// @param entered  rows of the power that enters the plane's voxels, W, [channel][CurrentFaces]; null if not computed
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
   const __global float** in, __global float* out, float length, const __global BundleInfo* bundle,
   __global float* entered)
@@ -151,9 +153,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
       const real taken = multiply_add(crossing.meanLength, (real)(rows.power * MEMBERS), load_real(x, taken_row));
       store_real(taken, x, taken_row);
     }
-    // Path, within the voxel, of the light of its own source, (length - mean_length) / sigma. Across the axis the
-    // contributions of mirror images to the net flux cancel; along it they do not, as a ray and its opposite may cross
-    // the voxel in different segments.
+    // Path integral of a unit source within its own voxel, (length - mean_length) / sigma, times the cosine. Across the
+    // axis the contributions of mirror images to the net flux cancel; along the axis they do not, as a ray and its
+    // opposite may cross the voxel in different segments.
     const real own_path =
       NET_FLUX ? own_path_of(x, &crossing, inverse_row, length) * (rows.power * MEMBERS * rows.cosine) : (real)0.0f;
 #pragma unroll
@@ -168,7 +170,7 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 
 // Carries the rays of a row through one segment, with or without angular moments.
 // @param slot  index of the row among those for which a bundle keeps sources
-// @param first  whether this is the row's first segment in the plane
+// @param first  whether this segment is the row's first in the plane
 static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool deposit, const __global float** in,
   __global float* out, float length, const __global BundleInfo* bundle)
 {
@@ -198,11 +200,12 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
   }
 }
 
-// Counts the power of the rays that leave row y of `row` in a move of (du, dv), of which `part` moves. Rays that move
-// along u and v at once are taken to cross u first and v first in equal parts. Of those at the box's edge, half leave
-// through each of its faces, and half of the light that enters next to the edge passes straight through.
-// across_u, across_v  power that enters through the faces across u and v, at [FIRST(m, c)] of the row and at [m][c],
-//                     without light given by cells
+// Adds the power of the rays that leave the box from row y of `row` in a move of (du, dv), of which the fraction `part`
+// moves, to the escaped power. Rays that move along u and v at once are taken to cross u first and v first in equal
+// parts. At the box's edge, half of their power leaves through either face, and half of the light that enters next to
+// the edge passes straight through.
+// across_u, across_v  power that enters through the faces across u and v, W, at [m][c] and at [FIRST(m, c)] of the row,
+//                     without light given per cell
 static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv,
   float part, const __global BundleInfo* bundle, const __global float* across_u, const __global float* across_v)
 {
@@ -260,7 +263,8 @@ static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, 
   }
 }
 
-// Mixes rays of a row of which only a part moves: `in` are the rays that arrive, `own` the row itself.
+// Mixes the rays of a row of which only the fraction `part` moves, Eq. (22): `in` are the rays that arrive, `own` those
+// that stay.
 static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
 {
   for (int m = 0; m < MEMBERS; ++m)
@@ -280,7 +284,8 @@ static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global floa
   }
 }
 
-// Writes the rays that enter from the side within a row to the columns at both ends of every row in the rings.
+// Writes the power of the rays that enter through the faces across u to the columns at both ends of every row in the
+// rings.
 static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
@@ -295,7 +300,7 @@ static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radianc
 }
 
 #if FACES
-// Adds light given by cells of the faces across u to the columns beside row y.
+// Adds the light incident per cell of the faces across u to the columns beside row y.
 static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, int s, __global float* out)
 {
@@ -311,7 +316,7 @@ static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* 
   }
 }
 
-// Computes the row of rays that enter through the faces across v, including light given by cells.
+// Computes the row of rays that enter through the faces across v, including the light incident per cell.
 static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outside, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
@@ -340,7 +345,7 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
           row[size] = row[0];
           continue;
         }
-        // Beyond the edge, half enters through each face.
+        // At the edge of the box, half of the light enters through either face.
         const int corner = dv > 0 ? 0 : state->sizeV - 1;
         const int column = du > 0 ? 0 : size - 1;
         const float half_light = du == 0
@@ -355,8 +360,9 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
 #endif
 
 #if CURRENTS
-// Counts the power that enters row y by face, see SweepPartialCurrents.cl; the rays of one face are added together.
-// `own` is the row itself, before the move.
+// Adds the power that enters row y, by face, to the partial currents (SweepPartialCurrents.cl); the rays through one
+// face are added together.
+// @param own  rays of row y before the move
 static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, int s, const __global float** in,
   const __global float* own, const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
@@ -399,8 +405,8 @@ static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, int s, const __glob
 }
 #endif
 
-// Finds the row from which a stage reads its rays, for each member: `in`. Counts the rays that leave the box.
-// @param own     the row itself as the previous stage left it; null: rays are read from the map and do not move
+// Sets `in` to the row from which a stage reads the rays of each member. Tallies the rays that leave the box.
+// @param own  row y as the previous stage left it; null: rays are read from the map and do not move
 static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __global float* map,
   const __global float* ring, const __global float* own, const __global float* beside, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
@@ -437,7 +443,7 @@ static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __glob
   }
 }
 
-// Writes the rays that enter beside a row within a plane, before stage s.
+// Writes the rays that enter through the faces across u to the columns beside a row within a plane, before stage s.
 static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, __global float* out)
 {
@@ -483,8 +489,8 @@ static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __globa
     }
   }
   go_to_plane(state, 0);
-  // With periodicity, rows beyond the plane are rows of the other side and are recomputed there. The first rows are
-  // needed after they have been overwritten.
+  // Along a periodic v, rows beyond the plane are the rows of its opposite side and are recomputed there. Copies the
+  // first rows, which are needed after they have been overwritten.
   for (int i = 0; PERIODIC_V && begins && i < (chain->stages - 1) * BLOCK; ++i)
   {
     map[state->sizeV * BLOCK + i] = map[(i / BLOCK % state->sizeV) * BLOCK + i % BLOCK];
@@ -506,7 +512,7 @@ static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __globa
 }
 
 // Carries row y of a bundle through stage g of a chain. Parameters as for CROSS_PLANES.
-// @param beside  the row of rays that enter through the faces across v
+// @param beside  row of rays that enter through the faces across v
 static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state, const chain_of_stages* chain, int g,
   int y, __global float* map, const __global float* beside, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
@@ -516,14 +522,15 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
   const bool inside = y >= 0 && y < height;
   const int wrapped = inside ? y : (y % height + height) % height;
   const __global CrossingInfo* crossing = crossings + chain->of[g].plane * state->allBundles;
-  const __global float* ring = state->ring + (g - 1) * (RingRows * RAYS_OF_ROW); // of the previous stage
+  // Rows that the previous stage wrote
+  const __global float* ring = state->ring + (g - 1) * (RingRows * RAYS_OF_ROW);
   const __global float* own = g > 0 ? ring + (y & (RingRows - 1)) * RAYS_OF_ROW : 0;
   const __global float* in[MEMBERS];
   TAKE_ROW(state, y, inside, s, map, ring, own, beside, outside, radiance, bundle, crossing, in);
   __global float* out =
     g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
 #if CURRENTS
-  if (inside && (ANGULAR || s > 0)) // otherwise done where voxels are crossed
+  if (inside && (ANGULAR || s > 0)) // else CROSS_CHANNEL adds the power that enters
   {
     COUNT_CURRENTS(state, y, s, in, own, bundle, crossing);
   }
@@ -556,14 +563,14 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
 #endif
 }
 
-// Carries a bundle through a chain of planes, with all stages of all planes row by row, so that rays are read from the
-// map and written to it only once.
+// Carries the rays of a bundle through a chain of planes, with all stages of all planes row by row, so that rays are
+// read from the map and written to it only once.
 //
 // @param planes   number of planes; 1 if CHAINED is 0
-// @param map      rays of the bundle, [row][member][channel][ROW], with two rows more than the plane
-// @param outside  a row of rays that enter through the faces across v, [member][channel][ROW]
-// @param radiance power of rays that enter through the faces across u, [member][channel]
-// @param crossings  crossing of the first plane; those of the following planes are state->allBundles apart
+// @param map      power of the bundle's rays, W, [row][member][channel][ROW], with two rows more than the plane
+// @param outside  row of rays that enter through the faces across v, W, [member][channel][ROW]
+// @param radiance power of rays that enter through the faces across u, W, [member][channel]
+// @param crossings  moves and segments in the first plane; those in the following planes are state->allBundles apart
 // @param coefficients  values of the bundle's angular functions
 // @param first_row, end_row  rows of the first stage that are crossed in this call; successive calls start at FirstRow
 static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, const __global float* outside,

@@ -1,22 +1,22 @@
-// Effect of a segment on the power of a ray, for a vector of voxels.
+// Functions for the effect of a segment on the power of a ray, for a vector of voxels.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 #include "Numerics/Prefetch.cl"
 
-// For rays with power P and a source q: path += p1 P, P' = P - sigma p1 P + power q p1, p1 = (1 - exp(-tau)) / sigma
-// (numerics.md, Eqs. (23), (24)). For small tau, P' is computed as P minus the loss; for large tau, as P times the
-// transmittance. Both avoid cancellation. P' = P keep + P change + ...
+// Effect of a segment on rays of power P with a source q: path += p1 P, P' = P - sigma p1 P + power q p1, with the mean
+// transmitted length p1 = (1 - exp(-tau)) / sigma (numerics.md, Eqs. (23), (24)). P' = P keep + P change + power q p1:
+// for small tau P minus the loss, for large tau P times the transmittance, to avoid cancellation.
 typedef struct
 {
   real tau;
-  real meanLength; // p1
+  real meanLength; // mean transmitted length p1
   real keep;       // 1 for small tau, else 0
   real change;
 } real_crossing;
 
-// Computes a segment's effect. If the whole row is thin, p1 is evaluated as a polynomial, which halves the work. `thin`
-// must be a compile-time constant.
+// Computes the effect of a segment. If the whole row is thin, p1 is evaluated as a polynomial, which halves the work.
+// `thin` must be a compile-time constant.
 static inline __attribute__((always_inline)) real_crossing cross_length(const sweep_state* state, int x,
   const __global float* sigma_row, const __global float* inverse_row, float length, bool thin)
 {
@@ -48,7 +48,8 @@ static inline __attribute__((always_inline)) real_crossing cross_length(const sw
   return crossing;
 }
 
-// Path, within its own voxel, of the light of a unit source, per unit of a ray's power: (length - p1) / sigma.
+// Path integral of a unit source within its own voxel, per unit of a ray's power: (length - p1) / sigma, numerics.md,
+// Eq. (24).
 static inline __attribute__((always_inline)) real own_path_of(
   int x, const real_crossing* crossing, const __global float* inverse_row, float length)
 {
@@ -57,14 +58,15 @@ static inline __attribute__((always_inline)) real own_path_of(
   return select(thick_path, thin_path, crossing->tau < (real)1e-2f);
 }
 
-// Signs of a member's u and v in the frame of its bundle.
+// Signs of the direction of a bundle's member along u and v.
 static inline float2 signs_of(const __global BundleInfo* bundle, int m)
 {
   return (float2)(bundle->move[m][0] + bundle->move[m][1], bundle->move[m][2] + bundle->move[m][3]);
 }
 
-// Maps of chained planes come from memory. Their rows are prefetched into the second-level cache, a few cache lines at
-// each vector of voxels; prefetching a whole row at once would stall.
+// Prefetches the next cache lines of the map of chained planes, which is in main memory, into the second-level cache.
+// This is done a few cache lines at each vector of voxels, because prefetching a whole row at once would stall the
+// core.
 static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* state)
 {
   for (int i = 0; i < state->asks; ++i)
@@ -74,7 +76,7 @@ static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* sta
   state->asked += state->asks * FloatsOfLine;
 }
 
-// Selects the part of row y (of `floats` floats) that stage g of `stages` prefetches; y < 0: none.
+// Selects the part of row y (of `floats` floats) that stage g of `stages` prefetches; y < 0: nothing.
 static inline void ask_ahead(sweep_state* state, const __global float* map, int y, int floats, int g, int stages)
 {
   state->asks = 0;

@@ -1,21 +1,22 @@
-// Memory layout of a sweep, shared by the files that include this one. The host defines
-//   REAL_WIDTH  4, 8 or 16 floats of a vector
-//   CHANNELS  1 or 3 colours that share sigma_t
+// Memory layout of a sweep on CPUs, shared by the files that include this one. The host defines
+//   REAL_WIDTH  number of floats in a vector: 4, 8 or 16
+//   CHANNELS  number of channels that share sigma_t: 1 or 3
 //   ROW       floats in a padded row; the floats after a row's voxels and before the next row's are its border
-//   ANGULAR   1 if light is represented by angular moments; 0: fluence only
+//   ANGULAR   1: light is represented by angular moments; 0: fluence only
 //   BEAMS     number of sources with their own angular distribution, besides the moments; if ANGULAR
-//   NET_FLUX  1 if the net flux is computed
-//   CURRENTS  1 if the power that enters each voxel through each face is computed
-//   OCTANT_SOURCE  1 if voxels may have an additional source by octant; only if ANGULAR is 0
-//   PERIODIC  1 if the box may be periodic along u or v; SweepInfo says along which
-//   FACES     1 if light may be counted or given by cells of the box's faces (SweepSides.cl); FaceInfo says which
+//   NET_FLUX  1: the net flux is computed
+//   CURRENTS  1: the power that enters each voxel through each face is computed
+//   OCTANT_SOURCE  1: voxels may have an additional source per octant; only if ANGULAR is 0
+//   PERIODIC  1: the box may be periodic along u or v; SweepInfo tells along which
+//   FACES     1: escaped power may be summed, and incident radiance given, per cell of the box's faces (SweepSides.cl);
+//             FaceInfo tells which
 //   ROWS_KEPT  rows of chained planes that fit in scratch, a power of two; 0: all
-//   SIDES     1 if the box is a block of a larger domain (SweepSides.cl)
+//   SIDES     1: the box is a block of a larger domain (SweepSides.cl)
 // Options whose run-time test is nearly free are in SweepInfo instead: sweeps of incident light and of scattered light
 // thus share one program, which takes seconds to compile.
 //
-// Rays carry power (W), so escaped power needs no further factor at any face. A row of a map holds the rays by the
-// voxel they enter, for all members of a bundle and all channels: float [member][channel][ROW].
+// Rays carry power (W), so escaped power needs no further factor at any face. A row of a map holds the power of the
+// rays, at the voxels that they enter, for all members of a bundle and all channels: float [member][channel][ROW].
 
 #pragma once
 #include "LightPropagation/Sweep/SweepShared.h"
@@ -23,24 +24,26 @@
 #include "Numerics/Numerics.cl"
 
 #define PAD REAL_WIDTH
-#define LAG 2 // rows by which a stage lags behind the previous one
-#define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained) // at most
+#define LAG 2 // rows by which a stage lags behind the previous stage
+// Maximum number of planes packed together
+#define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained)
 #define FLUX (NET_FLUX ? 3 : 0)
 
-// The quantities of one plane that follow those of SweepShared.h.
+// Indices of the quantities of one plane that follow those of SweepShared.h.
 #define PLANE_BEAMS (PlaneSource + CHANNELS)
-#define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // the path integral of power, W length
+#define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
 #define PLANE_CURRENTS (PLANE_FLUX + FLUX * CHANNELS) // power that enters through CurrentFaces, W
-#define PLANE_OCTANTS (PLANE_CURRENTS + (CURRENTS ? CurrentFaces : 0) * CHANNELS) // by WaysAside, W / (length^3 sr)
+// Additional source, by WaysAside, W / (length^3 sr)
+#define PLANE_OCTANTS (PLANE_CURRENTS + (CURRENTS ? CurrentFaces : 0) * CHANNELS)
 #define PLANES PLANE_COUNT(CHANNELS, BEAMS, NET_FLUX, CURRENTS, OCTANT_SOURCE)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 
-// Whether up to PLANES_CHAINED planes may be crossed as a chain, row by row. Not if rays that enter or leave beside
-// rows are stored by plane, or rows wrap around.
+// Whether up to PLANES_CHAINED planes may be crossed as a chain, row by row. Not possible if the rays that enter or
+// leave sideways are stored by plane, or if rows wrap around.
 #define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
-// For functions that are called at most once per row. Inlining them in unrolled loops makes compilation a third slower;
-// where planes may be chained, however, calls cost 10% of a sweep with 64 voxels per row.
+// Attribute of functions that are called at most once per row. Inlining them in unrolled loops makes compilation a
+// third slower; where planes may be chained, however, calls cost 10% of a sweep with 64 voxels per row.
 #if CHAINED
 #define BY_ROW
 #else
@@ -50,93 +53,97 @@
 #define PERIODIC_V (PERIODIC && state->periodicV)
 #define KEPT_ROWS (CHAINED ? ROWS_KEPT : 0)
 
-// A plane is [row][quantity][ROW]: data used together is contiguous, and no stride is a power of two. If KEPT_ROWS,
-// only the rows that bundles are working on are stored, in a ring of that many rows.
+// Position of a row and quantity in a plane, [row][quantity][ROW]: data used together is contiguous, and no stride is a
+// power of two. If KEPT_ROWS, only the rows that bundles are crossing are stored, in a ring buffer of that many rows.
 #define PLACE_OF_ROW(row) (KEPT_ROWS ? (row) & (KEPT_ROWS - 1) : (row))
 #define ROW_OF(planes, quantity, row) ((planes) + (PLACE_OF_ROW(row) * PLANES + (quantity)) * ROW)
 
 #if ANGULAR
-// Offset of voxel x in a row of moments with `higher` functions from the second on, see MomentPlacesShared.h.
+// Index of voxel x in a row of moments with `higher` functions from the second on, see MomentPlacesShared.h.
 #define IN_ROW(x, higher) ((x) / MomentGroup * ((higher)*MomentGroup) + (x) % MomentGroup)
-// Floats of the moments from the second on of a channel's row in the volume.
+// Number of floats of a channel's row in the volume's array of moments, all functions from the second on.
 #define MOMENTS_OF_CHANNEL(info) ((ulong)(info)->moments.groups * ((info)->moments.functions - 1) * MomentGroup)
 #endif
 
-// Planes of a chain, their stages, and the lag of the last stage.
+// Limits of a chain: planes, stages, and the lag of the last stage.
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)
-#define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2) // most rows by which the last stage lags behind the first
+// Maximum number of rows by which the last stage lags behind the first
+#define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2)
 typedef struct
 {
   int stages; // number of stages
-  int before; // stages of the chain's earlier planes, as if it had been crossed from its first one on
+  int before; // number of stages of the chain's planes before the first plane in `of`
   struct
   {
-    int plane, stage; // of the plane
+    int plane, stage; // index of the plane, and of the stage in that plane
   } of[STAGES];
 } chain_of_stages;
 
-// The rows kept are those of a tile, and those by which its last stage lags behind.
+// Compile-time check: the rows kept must hold a tile and the rows by which its last stage lags behind.
 typedef char kept_rows_suffice[!KEPT_ROWS || KEPT_ROWS >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 
-// A plane that is being crossed.
+// A plane that is being crossed: its packed quantities, thin rows and escaped power.
 struct plane_place
 {
   __global float* planes;
   __global int* thin;
   float (*escaped)[CHANNELS];
   float (*rounding)[CHANNELS];
-  int plane; // of the box
+  int plane; // index of the plane in the box
 };
 
-// State of a work-item: its planes, rows and buffers.
+// State of a work-item: the planes, rows and buffers that it works on.
 typedef struct
 {
   int sizeU, sizeV;                 // voxels of the plane
   int width;                        // sizeU rounded up to whole vectors
-  int shines, border, roundAxis;    // see SweepInfo
-  int periodicU, periodicV;         // likewise
-  int allBundles;                   // number of bundles, of all units
+  int shines, border, roundAxis;    // flags, see SweepInfo
+  int periodicU, periodicV;         // flags, see SweepInfo
+  int allBundles;                   // number of bundles of all units
   const struct plane_place* places; // the planes of a chain
-  __global float* planes;           // of the plane that is being crossed
-  __global int* thin;               // [row] of it: 1 if all voxels are thin
+  __global float* planes;           // quantities of the plane that is being crossed
+  __global int* thin;               // 1 if all voxels of a row of that plane are thin, [row]
   float meanLength[MeanLengthTerms];
-  int chained_before;          // planes of the chain that were crossed before those of `places`
-  const __global float* asked; // prefetch, if CHAINED: next address, and number of cache lines per vector of voxels
+  int chained_before; // number of planes of the chain that were crossed before those of `places`
+  // Prefetch, if CHAINED: next address, and number of cache lines per vector of voxels
+  const __global float* asked;
   int asks;
-  int tile;             // rows in a tile, which bundles cross in turn; 0: each bundle crosses all rows
-  int rings;            // number of rings: one after each stage except the last
-  __global float* ring; // [rings][RingRows][RAYS_OF_ROW]
+  int tile;             // rows in a tile, on which bundles alternate; 0: each bundle crosses all rows
+  int rings;            // number of ring buffers: one after each stage except the last
+  __global float* ring; // rows between stages, [ring][RingRows][RAYS_OF_ROW]
 #if ANGULAR
-  __global float* sources; // MomentRows rows of RAYS_OF_ROW floats: W / (length^3 sr) in the members' directions
-  __global float* paths;   // the members' paths, W length, laid out as sources
-  __global float* ownPath; // MomentRows rows: path of a unit source within its own voxel
-  // Moments of the plane from the second function on: source and path, and the distance between rows and channels.
+  // Sources in the members' directions, W / (length^3 sr), MomentRows rows of RAYS_OF_ROW floats
+  __global float* sources;
+  __global float* paths;   // path integrals of the members, W length, laid out as sources
+  __global float* ownPath; // path integral of a unit source within its own voxel, MomentRows rows
+  // Moments of the plane from the second function on: of source and path, and the floats from one row, and one channel,
+  // to the next.
   const __global float* momentSource;
   __global float* momentPath;
   ulong momentStep, momentChannel;
-  // Number of angular functions; position of each in a group of moments, sorted by parity along u and v: even-even,
+  // Number of angular functions; index of each in a group of moments, sorted by parity along u and v: even-even,
   // odd-even, even-odd, odd-odd; and the end of each parity's range.
   int functions;
   const __global int* functionPlaces;
   int parityEnds[4];
 #endif
-  __global float* moving;     // rays of a row of which only a part moves
+  __global float* moving;     // rays of a row of which only a fraction moves
   float (*escaped)[CHANNELS]; // escaped power of the plane through -u, +u, -v, +v, W, and its rounding errors
   float (*rounding)[CHANNELS];
 #if FACES
   const FaceInfo* faces;
-  ulong faceFirst[4];        // first cells of the plane that is being crossed, first channel
-  int firstPlane;            // of the box, in the grid
-  __global exact* faceOut;   // the unit's own escaped power by cell
-  int facePlane, facePlanes; // plane that is being crossed; number of planes
+  ulong faceFirst[4];        // index of the first cell of the plane that is being crossed, per side, first channel
+  int firstPlane;            // index in the grid of the first plane of the box
+  __global exact* faceOut;   // escaped power per cell that the unit sums
+  int facePlane, facePlanes; // index of the plane that is being crossed; number of planes
   const __global float* faceIn;
 #endif
 #if FACES || SIDES
-  __global float* outside; // the row of the bundle's rays that enter this plane through the faces across v
+  __global float* outside; // row of the bundle's rays that enter this plane through the faces across v
 #endif
 #if SIDES
-  const __global float* sidesIn; // sides of the plane that is being crossed (SweepSides.cl)
+  const __global float* sidesIn; // rays at the sides of the plane that is being crossed (SweepSides.cl)
   __global float* sidesOut;
   int outerSides;
 #endif
@@ -167,7 +174,8 @@ static float sum_of_row(const __global float* row, int count)
   return sum_of(sum);
 }
 
-static void add_exactly(float* sum, float* rounding, float value) // Kahan
+// With compensation of rounding errors (Kahan)
+static void add_exactly(float* sum, float* rounding, float value)
 {
   const float y = value - *rounding;
   const float t = *sum + y;

@@ -1,18 +1,18 @@
-// Start and end of a sweep: power in the maps of rays. The host defines what Exact.cl requires.
+// Kernels for the start and end of a sweep, on the maps of rays. The host defines the options of Exact.cl.
 
 #include "LightPropagation/Sweep/SweepShared.h"
 #include "Numerics/Exact.cl"
 
-// Index in the maps of the first ray of a row of a bundle; its other rays, [member][channel], follow at distances of
-// `row` floats.
+// Index in the maps of the first ray of a row of a bundle; the rays of further members and channels, [member][channel],
+// follow at distances of `row` floats.
 static ulong row_of_maps(const MapsInfo* info, const __global BundleInfo* bundle, int row, int way)
 {
   return way * info->eachWay + bundle->map + (ulong)row * bundle->members * info->channels * info->row + info->border;
 }
 
-// Sums the power of the rays in the maps, which leaves at the far end of an axis. One work-item per row of a bundle and
-// way.
-// sums     [way][bundle][row][channel]
+// Sums the power of the rays in the maps, W, which escapes at the far end of an open axis. One work-item per row of a
+// bundle and sense of marching.
+// sums     [sense][bundle][row][channel]
 __kernel void map_power(
   MapsInfo info, const __global float* maps, const __global BundleInfo* bundles, __global float* sums)
 {
@@ -41,8 +41,8 @@ __kernel void map_power(
   }
 }
 
-// Clears the columns beside a row's voxels, which hold light incident on u's face; there is none once rays wrap around
-// a periodic axis. One work-item per row of a bundle and way.
+// Clears the columns beside a row's voxels, which hold light incident on u's face; no light is incident once rays wrap
+// around a periodic axis. One work-item per row of a bundle and sense of marching.
 __kernel void darken_beside(MapsInfo info, __global float* maps, const __global BundleInfo* bundles)
 {
   const __global BundleInfo* bundle = bundles + get_global_id(1);
@@ -57,8 +57,8 @@ __kernel void darken_beside(MapsInfo info, __global float* maps, const __global 
 }
 
 // For open axes: adds the power of rays that leave at the far end to the cells of that face. One work-item per row of
-// the face and way.
-// face_out  the sweep's own escaped power, W, [channel][cell], added to
+// the face and sense of marching.
+// face_out  escaped power summed by this sweep, W, [channel][cell], added to
 __kernel void leave_by_cells(
   MapsInfo info, const __global float* maps, const __global BundleInfo* bundles, __global exact* face_out)
 {
@@ -79,8 +79,8 @@ __kernel void leave_by_cells(
   }
 }
 
-// Sums the units' own escaped power by cells, in the order of the units, adds it to face_out and clears it. One
-// work-item per value.
+// Adds the escaped power per cell of all units, in the order of the units, to face_out, and clears it. One work-item
+// per value.
 __kernel void take_face_cells(__global exact* units, int count, ulong values, __global float* face_out)
 {
   const ulong i = get_global_id(0);
@@ -93,9 +93,9 @@ __kernel void take_face_cells(__global exact* units, int count, ulong values, __
   face_out[i] = (float)(face_out[i] + sum);
 }
 
-// The inverse of leave_by_cells: adds incident light by cells of the faces where rays start to the maps. One work-item
-// per row of a bundle and way.
-// face_in  W / (length^2 sr), [channel][cell]
+// Adds the light incident per cell of the faces where rays start to the maps. One work-item per row of a bundle and
+// sense of marching.
+// face_in  incident radiance, W / (length^2 sr), [channel][cell]
 __kernel void enter_by_cells(
   MapsInfo info, __global float* maps, const __global BundleInfo* bundles, const __global float* face_in)
 {

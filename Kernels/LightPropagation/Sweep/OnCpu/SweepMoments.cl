@@ -1,15 +1,16 @@
-// Carries a bundle through a row, with light and source in angular moments (numerics.md, section 4.7). Compiled once
-// for each number of MEMBERS, by SweepBundle.cl.
+// Functions that carry a bundle through a row, with light and source in angular moments (numerics.md, section 4.7).
+// Compiled once for each number of MEMBERS, by SweepBundle.cl.
 //
 // Members of a frame differ only in the signs of u and v, so the values of an angular function in their directions
 // differ only in sign. Functions are therefore summed by parity along u and v, which gives four sums for up to four
-// members, instead of one per member. A bundle has one frame or two; each value of a moment is read once for both.
+// members, instead of one sum per member. A bundle has one frame or two; each value of a moment is read once for both.
 
 #define MOST_OF_FRAME (MEMBERS < 4 ? MEMBERS : 4)
-#define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f]) // eight members are two full frames
+// Eight members are two full frames
+#define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f])
 
-// Loops over the functions k, from the second on, parity by parity, and skips parities whose functions are zero in all
-// of the bundle's directions. BEGIN_PARITIES loads the values needed into registers.
+// Loops over the functions k, from the second on, parity by parity; skips parities whose functions are zero in all of
+// the bundle's directions. BEGIN_PARITIES loads the values needed into registers.
 #define BEGIN_PARITIES                                                  \
   const int functions = state->functions, parities = bundle->parities;  \
   const int end_0 = state->parityEnds[0], end_1 = state->parityEnds[1]; \
@@ -36,8 +37,8 @@
     FUNCTIONS_OF(MACRO, end_2, end_3, 3) \
   }
 
-// Evaluates the source in the direction of each member, in row y, into slot `slot`. Rows are laid out as in the rings;
-// the border of the rings' last row is also that of the first row here.
+// Computes the source in the direction of each member, in row y, into slot `slot` of state->sources, Eq. (29b). Rows
+// are laid out as in the rings; the border of the rings' last row is also that of the first row here.
 // @param frames  number of frames of the bundle, a compile-time constant
 static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
@@ -94,8 +95,8 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
   }
 }
 
-// Carries all rays of a row through one segment each, like CROSS_VOXELS, but with a separate source and path for each
-// member.
+// Carries all rays of a row through one segment each, like CROSS_VOXELS, but with a separate source and path integral
+// for each member.
 static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* state, int y, int slot, bool first,
   bool thin, const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
 {
@@ -129,7 +130,7 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
   }
 }
 
-// Adds the members' paths to the moments of row y.
+// Adds the members' path integrals to the moments of row y, Eq. (29b).
 // @param frames  number of frames of the bundle, a compile-time constant
 static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)

@@ -1,5 +1,5 @@
-// Copies planes from the volume to scratch and back. In scratch, the rows that rays cross are contiguous and padded to
-// whole vectors, whatever the orientation of the axis in the volume.
+// Functions that copy planes from the volume to scratch and back. In scratch, the rows that rays cross are contiguous
+// and padded to whole vectors, whatever the orientation of the axis in the volume.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -12,7 +12,7 @@
 #define ROUNDS 2
 #endif
 
-// Transposes a square of vectors, by interleaving its halves log2(REAL_WIDTH) times.
+// Transposes a square of REAL_WIDTH vectors, by interleaving its halves log2(REAL_WIDTH) times.
 static void transpose(real* rows)
 {
 #pragma unroll
@@ -35,14 +35,14 @@ static void transpose(real* rows)
   }
 }
 
-// Index in the volume of voxel (u, v) of a plane.
+// Index in the volume of voxel (u, v) of a plane of the box.
 static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
 {
   return (ulong)(layout->firstU + u) * layout->stepU + (ulong)(layout->firstV + v) * layout->stepV +
     (ulong)(layout->firstP + plane) * layout->stepP;
 }
 
-// Floats of all quantities of a plane.
+// Number of floats of all quantities of a plane.
 static int plane_floats(const PlaneInfo* layout)
 {
   return PLANES * (KEPT_ROWS ? KEPT_ROWS : layout->sizeV) * ROW;
@@ -57,9 +57,9 @@ static BY_ROW void clear(__global float* floats, int count)
   }
 }
 
-// Transposes a block: reads REAL_WIDTH rows, `step` floats apart, of REAL_WIDTH planes; writes as many vectors along
-// the rows, `plane` floats apart.
-// @param last  last row that exists
+// Copies a block, transposed: reads REAL_WIDTH rows, `step` floats apart, of REAL_WIDTH planes; writes as many vectors
+// along the rows, `plane` floats apart.
+// @param last  index of the last row that exists
 // @param count  number of planes to write
 static inline __attribute__((always_inline)) void pack_block(
   const __global float* from, ulong step, int last, integer beyond, __global float* to, int plane, int count)
@@ -133,7 +133,7 @@ static void add_one(float value, __global float* sum, __global float* lost)
   }
 }
 
-// The inverse of pack_block: adds a block to the volume, multiplied by `sign`.
+// Adds a block of packed planes to the volume, multiplied by `sign`: the inverse of pack_block.
 // @param used  number of rows that exist
 static inline __attribute__((always_inline)) void unpack_block(
   const __global float* from, int plane, float sign, __global float* volume, __global float* lost, ulong step, int used)
@@ -155,8 +155,8 @@ static inline __attribute__((always_inline)) void unpack_block(
   }
 }
 
-// Adds one quantity of rows of the planes to the volume, multiplied by `sign`. Touches exactly their voxels, since
-// other units may be working on neighbouring ones.
+// Adds one quantity of rows of packed planes to the volume, multiplied by `sign`. Accesses exactly the voxels of these
+// rows, since other units may access neighbouring voxels concurrently.
 static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, int2 rows,
   float sign, __global float* volume, __global float* lost)
 {
@@ -198,23 +198,24 @@ static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, i
 // Packing and unpacking of angular moments.
 #if ANGULAR
 // Index in the volume of the moments (from the second function on) of position (u, v) and a channel, for planes from
-// `first` on, which must lie in one group.
+// `first` on, which must be in one group of MomentGroup planes.
 static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
 {
   const PlaneInfo* layout = &info->planes;
-  const ulong line = (ulong)(layout->firstV + v) * info->sizeY + layout->firstU + u; // along x rows are y and z
+  // For the x axis, u is y and v is z
+  const ulong line = (ulong)(layout->firstV + v) * info->sizeY + layout->firstU + u;
   const int higher = info->moments.functions - 1;
   return (line * info->moments.channels + channel) * info->moments.groups * (higher * MomentGroup) +
     IN_ROW(layout->firstP + first, higher);
 }
 
-// The same index in packed planes.
+// Index in packed planes of the moments (from the second function on) of position (u, v) and a channel.
 static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
 {
   return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u, info->moments.functions - 1);
 }
 
-// Number of planes in the same group, from the next plane that rays cross.
+// Number of planes in the same group of moments, from the next plane that rays cross on.
 static int of_one_group(const PlaneInfo* layout, int next, int backward)
 {
   const int plane = layout->firstP + (backward ? layout->sizeP - 1 - next : next);
@@ -284,7 +285,7 @@ static BY_ROW void unpack_moments(
 #endif
 
 #if OCTANT_SOURCE
-// Packs the additional source for the octants of one way along the axis.
+// Packs the additional source for the octants of one sense of marching along the axis.
 static void pack_octants(const SweepInfo* info, __global float* planes, int first, int count, int2 rows,
   const __global float* octants, int backward)
 {

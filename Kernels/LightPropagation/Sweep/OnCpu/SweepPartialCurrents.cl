@@ -1,11 +1,12 @@
-// Partial currents: power that enters voxels through their faces from their neighbours, for the balance of a diffusion
-// system.
+// Functions that sum partial currents: the power that enters voxels through their faces from their neighbours
+// (numerics.md, Eq. (29)), for the balance of a diffusion system.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
 #if CURRENTS
-// Adds a part of several rays of row y that enter through one kind of face. `count` must be a compile-time constant.
+// Adds the fraction `part` of several rays of row y that enter through `face` to the partial currents. `count` must be
+// a compile-time constant.
 inline __attribute__((always_inline)) void add_currents(
   sweep_state* state, int y, int face, const __global float** rays, int count, float part)
 {
@@ -29,8 +30,8 @@ static BY_ROW void add_current(sweep_state* state, int y, int face, const __glob
   add_currents(state, y, face, &rays, 1, part);
 }
 
-// Adds a part of the rays that go to column x via column x - du of row y, which they enter through v. They then enter x
-// itself through u, or leave the box.
+// Adds the fraction `part` of the rays that pass to column x through column x - du of row y, which they enter through
+// v. They then enter column x through u, or leave the box.
 static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int size = state->sizeU;
@@ -49,10 +50,10 @@ static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const
   }
 }
 
-// Adds a part of the rays that cross the edge between four voxels: half passes through the neighbour along u, half
-// through the neighbour along v.
-//   rays  by the voxel they enter
-//   own   row y, by the voxel they come from
+// Adds the fraction `part` of the rays that cross the edge between four voxels to the partial currents: half passes
+// through the neighbour along u, half through the neighbour along v.
+//   rays  power of the rays, at the voxel that they enter
+//   own   power of the rays of row y, at the voxel that they come from
 static BY_ROW void add_through_edge(
   sweep_state* state, int y, int du, int dv, const __global float* rays, const __global float* own, float part)
 {
@@ -70,7 +71,7 @@ static BY_ROW void add_through_edge(
   add_current(state, y, u_face, rays, half_part);
   if (!PERIODIC_V && y == (dv > 0 ? height - 1 : 0))
   {
-    add_current(state, y, u_face, own - du, half_part); // on their way out of the box
+    add_current(state, y, u_face, own - du, half_part); // rays that leave the box
   }
 }
 #endif

@@ -1,12 +1,14 @@
-// Rays that enter and leave through the sides of the box. Sides 0 to 3 are the faces -u, +u, -v, +v. The host defines
+// Functions for the rays that enter and leave through the sides of the box. Sides 0 to 3 are the faces -u, +u, -v, +v.
+// The host defines
 //   SIDES  1: the box is a block of a larger domain: rays enter from its neighbours and leave to them. Requires that
-//          PERIODIC, FACES and SweepInfo's border are 0
-//   FACES  1: escaped power may be counted, and incident light given, by cells of the box's faces; FaceInfo tells which
+//          PERIODIC, FACES and SweepInfo::border are 0
+//   FACES  1: escaped power may be summed, and incident radiance given, per cell of the box's faces; FaceInfo tells
+//          which
 //
-// Layout of rays from and to neighbours: [plane][ray][SIDE_FLOATS], with rays by the voxel they come from, or are in,
-// before they move. First the rays that move across v, one for each column; then those that move across u, one for each
-// row; then the one that moves across both at once. Incoming rays come from beyond the box, outgoing ones from its last
-// columns and rows. Rays are numbered as the bundles' radiances are, [bundle][member][channel].
+// Memory layout of the power of rays from and to neighbours: [plane][ray][SIDE_FLOATS], with rays at the voxel they
+// come from, or are in, before they move. First the rays that move across v, one for each column; then those that move
+// across u, one for each row; then the ray that moves across both at once. Incoming rays come from beyond the box,
+// outgoing ones from its last columns and rows. Rays are numbered as the bundles' radiances, [bundle][member][channel].
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -15,7 +17,7 @@
 #define SIDE_FLOATS(state) ((state)->sizeU + (state)->sizeV + 1)
 #define SIDE_OF_RAY(state, sides, bundle, ray) ((sides) + ((bundle)->border + (ray)) * SIDE_FLOATS(state))
 
-// Reads the row of rays of all members that enter across v, into `outside`.
+// Reads the rays of all members that enter across v into the row `outside`.
 static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* bundle, int rays)
 {
   for (int ray = 0; ray < rays; ++ray)
@@ -42,7 +44,7 @@ static BY_ROW void take_across_u(
   }
 }
 
-// Writes the rays of a member's row y that leave in a move of (du, dv).
+// Writes the rays of a member's row y that leave the box in a move of (du, dv) to the sides.
 static BY_ROW void give_sides(
   sweep_state* state, const __global BundleInfo* bundle, int member, const __global float* row, int y, int du, int dv)
 {
@@ -62,18 +64,18 @@ static BY_ROW void give_sides(
   }
 }
 
-// True if light that crosses the side leaves the domain.
+// Whether light that crosses the side leaves the domain.
 #define LEAVES_GRID(state, side) (((state)->outerSides >> (side)) & 1)
 #else
 #define LEAVES_GRID(state, side) true
 #endif
 
-// Cell i of a side is at row i or column i of the plane that is crossed.
+// Index of cell i of a side, which is at row i (sides across u) or column i (across v) of the plane that is crossed.
 #if FACES
 #define FACE_CELL(state, side, i, c) \
   ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)
 
-// Selects the cells of plane `plane` of the grid.
+// Sets the cells of the four sides to those of plane `plane` of the grid.
 static BY_ROW void go_to_faces(sweep_state* state, int plane)
 {
   for (int side = 0; side < 4; ++side)
@@ -84,12 +86,13 @@ static BY_ROW void go_to_faces(sweep_state* state, int plane)
 }
 
 // Range of planes through whose cells a ray leaves. Rays nearly parallel to a face meet it only every few planes; if
-// `spread`, a ray leaves through all cells between it and the next ray.
+// FaceInfo::spread, a ray leaves through all cells between it and the next ray.
 typedef struct
 {
   float begin, end;
 } face_planes;
 
+// Range of planes for a ray that moves sideways in the plane that is crossed.
 // @param planes  number of planes from one ray to the next
 static face_planes planes_of_ray(const sweep_state* state, float planes)
 {
@@ -103,7 +106,7 @@ static face_planes planes_of_ray(const sweep_state* state, float planes)
   return found;
 }
 
-// First cell of plane p of a side.
+// Escaped power of the first cell of plane p on a side.
 static __global exact* cells_of_plane(const sweep_state* state, int side, int p, int c)
 {
   p = (p + state->facePlanes) % state->facePlanes; // wraps around a periodic axis
@@ -111,7 +114,7 @@ static __global exact* cells_of_plane(const sweep_state* state, int side, int p,
   return state->faceOut + FACE_CELL(state, side, 0, c) + planes * state->faces->plane[side];
 }
 
-// Part of a ray's power that leaves through plane p.
+// Fraction of a ray's power that leaves through the cells of plane p.
 static float part_of_plane(face_planes of, int p)
 {
   return (fmin(of.end, p + 1.0f) - fmax(of.begin, (float)p)) / (of.end - of.begin);
@@ -125,7 +128,7 @@ static BY_ROW void leave_through(const sweep_state* state, int side, int i, int 
   }
 }
 
-// Counts the power of a row of rays that leaves through the cells of one side.
+// Adds the power of a row of rays that leaves through the cells of one side to the escaped power per cell.
 static BY_ROW void leave_all_through(
   const sweep_state* state, int side, int c, face_planes of, const __global float* rays, float part)
 {
@@ -147,7 +150,7 @@ static float light_of_cell(const sweep_state* state, int side, int i, int c)
 }
 
 // Mean incident radiance of cell i and, if it is on the face, cell i + move: half of the rays that move along u and v
-// at once pass each.
+// at once pass through each cell.
 static BY_ROW float light_of_cells(const sweep_state* state, int side, int i, int move, int c)
 {
   const int size = side < 2 ? state->sizeV : state->sizeU;

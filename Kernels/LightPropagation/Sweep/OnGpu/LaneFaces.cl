@@ -1,13 +1,13 @@
-// Light by cells of the box's faces, in a sweep on GPUs. Incident light of each cell is written to the sides
-// (LanePlane.cl) before planes are crossed; what leaves through each cell is summed afterwards, one work-item per
-// cell, so the order is fixed and no atomics are needed. Physics and numerics are those of SweepSides.cl and
-// SweepMaps.cl. The host defines
+// Incident radiance and escaped power per cell of the box's faces, in a sweep on GPUs. The light incident through each
+// cell is written to the sides (LanePlane.cl) before planes are crossed; escaped power is summed per cell afterwards,
+// by one work-item per cell, so the order of summation is fixed and no atomics are needed. Physics and numerics are
+// those of SweepSides.cl and SweepMaps.cl. The host defines
 //   CHANNELS  channels swept together
 
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
 #include "Numerics/Numerics.cl"
 
-// The cells of one channel beside a lane's plane.
+// Cells of the box's faces, for one channel, that adjoin a plane of a lane.
 typedef struct
 {
   const __global SweepLane* lane;
@@ -16,7 +16,7 @@ typedef struct
   int plane;
 } cells_beside;
 
-// A ray of a lane in a plane, and its moves.
+// A ray of a lane in a plane: its bundle, member and moves.
 typedef struct
 {
   const __global BundleInfo* bundle;
@@ -24,7 +24,8 @@ typedef struct
   int member;
 } ray_in_plane;
 
-// @param rays  by ray of all lanes: the index of its bundle, and of the member in the bundle
+// Ray number `ray` of a lane in the k-th plane that the lane crosses.
+// @param rays  per ray of all lanes: the index of its bundle, and of its member in the bundle
 static ray_in_plane ray_of(const __global SweepLane* lane, const __global int2* rays,
   const __global BundleInfo* bundles, const __global CrossingInfo* crossings, int ray, int k)
 {
@@ -39,7 +40,7 @@ static float light_of_cell(const cells_beside* cells, int side, int i)
   return cells->light[faces->first[side] + cells->plane * faces->plane[side] + i * faces->along[side]];
 }
 
-// Incident power of a ray: the mean over cell i and, if it is on the face, cell i + move, times `power`.
+// Incident power of a ray, W: mean radiance of cell i and, if it is on the face, cell i + move, times `power`.
 static float light_of_cells(const cells_beside* cells, float power, int side, int i, int move)
 {
   if (!cells->faces->in)
@@ -55,8 +56,9 @@ static float light_of_cells(const cells_beside* cells, float power, int side, in
     (move == 0 || beside < 0 || beside >= size ? here : 0.5f * (here + light_of_cell(cells, side, beside)));
 }
 
-// Writes the rays that enter through the sides of a lane's planes. One work-item per position of LanePlane.cl.
-// crossings  of the lane's planes
+// Writes the power of the rays that enter through the sides of a lane's planes, W. One work-item per position along the
+// sides (LanePlane.cl).
+// crossings  moves of rays, from the lane's first plane on
 __kernel void enter_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
   const __global float4* entering, const __global float* face_in, ulong first, ulong stride, __global float* sides_in)
@@ -81,7 +83,8 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
     {
       light = alike.x + light_of_cells(&cells, power, faceU, place - sizeU, move.y);
     }
-    if (place == sizeU + sizeV && move.x != 0 && move.y != 0) // half enters through each face
+    // At the plane's edge, half of the power enters through either face
+    if (place == sizeU + sizeV && move.x != 0 && move.y != 0)
     {
       light = 0.5f *
         (alike.x + alike.y + light_of_cells(&cells, power, faceV, move.x > 0 ? 0 : sizeU - 1, 0) +
@@ -91,8 +94,8 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
   sides_in[lane->sides + ((ulong)k * lane->rays * CHANNELS + slot) * SIDE_FLOATS(&lane->planes) + place] = light;
 }
 
-// Part of a ray, which moves sideways in `plane`, that leaves through the cells of plane p.
-// @param planes  number of planes from one of its moves to the next
+// Fraction of a ray's power that leaves through the cells of plane p, where the ray moves sideways in `plane`.
+// @param planes  number of planes from one sideways move of the ray to the next
 static float part_through(const __global SweepLane* lane, int spread, int plane, int p, float planes)
 {
   if (!spread)
@@ -111,15 +114,15 @@ static float part_through(const __global SweepLane* lane, int spread, int plane,
   return part / (end - begin);
 }
 
-// Power of a ray that leaves through cell `i` of a side in a plane; half of it for rays that move along u and v at an
-// edge.
-// @param in, out  sides of the ray and plane (LanePlane.cl)
+// Power of a ray that leaves through cell `i` of a side in a plane, W; at an edge of the plane, half of the power of
+// rays that move along u and v at once.
+// @param in, out  power of the rays at the sides, for this ray and plane (LanePlane.cl)
 static float power_through(const __global SweepLane* lane, const ray_in_plane* ray, int side, int i,
   const __global float* in, const __global float* out)
 {
   const int sizeU = lane->planes.sizeU, sizeV = lane->planes.sizeV;
   const bool of_u = side < 2;
-  const int size = of_u ? sizeV : sizeU; // along the face
+  const int size = of_u ? sizeV : sizeU; // number of cells along the face
   const bool edges = !(of_u ? lane->periodicV : lane->periodicU);
   float power = 0.0f;
   for (int s = 1; s < ray->crossing->stages; ++s)
@@ -133,7 +136,8 @@ static float power_through(const __global SweepLane* lane, const ray_in_plane* r
     const bool turns = edges && along != 0;
     const float stays = turns && i == (along > 0 ? size - 1 : 0) ? 0.5f : 1.0f;
     float leaves = stays * out[of_u ? sizeU + i : i];
-    if (turns && i == (along > 0 ? 0 : size - 1)) // entered beside it and passes straight through
+    // Power that entered through the adjacent face and leaves without crossing a voxel
+    if (turns && i == (along > 0 ? 0 : size - 1))
     {
       const int last = side % 2 ? (of_u ? sizeU : sizeV) - 1 : 0;
       leaves += 0.5f * in[of_u ? last : sizeU + last];
@@ -143,8 +147,8 @@ static float power_through(const __global SweepLane* lane, const ray_in_plane* r
   return power;
 }
 
-// Adds the power that leaves through the cells of the faces beside a lane. One work-item per cell of a side and
-// channel.
+// Adds the power that leaves through the cells of the faces parallel to the marching axis to face_out, W. One work-item
+// per cell, side and channel.
 __kernel void leave_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings, int of_round,
   const __global float* sides_in, const __global float* sides_out, __global float* face_out, ulong first, ulong stride)
@@ -163,10 +167,11 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   {
     const int2 of = rays[lane->firstRay + r];
     const __global BundleInfo* bundle = bundles + of.x;
-    // its move across this side is the bundle's move along u
+    // a ray's move across this side is a move along the bundle's u
     const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0;
     const float planes = ofU ? bundle->planesU : bundle->planesV;
-    // Planes in which a move may make it pass these cells.
+    // Number of planes before and behind this one in which the ray may move so that power leaves through this plane's
+    // cells.
     const int reach = lane->around ? lane->patternPlanes : of_lane->spread ? (int)ceil(0.5f * planes) : 0;
     for (int k = max(at - reach, 0); k < min(at + reach + 1, lane->patternPlanes); ++k)
     {
@@ -182,7 +187,8 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   face_out[first + c * stride + of_lane->first[side] + p * of_lane->plane[side] + i * of_lane->along[side]] += left;
 }
 
-// Adds incident light by cells to a lane's rays where they start. One work-item per float of its maps.
+// Adds the light incident per cell to the power of a lane's rays where they start. One work-item per float of the
+// lane's maps.
 __kernel void enter_start(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global float* face_in, ulong first,
   ulong stride, __global float* maps)
@@ -194,7 +200,7 @@ __kernel void enter_start(int number, const __global SweepLane* lanes, const __g
   maps[lane->map + i] += power * face_in[first + slot % CHANNELS * stride + faces[number].start + i % plane];
 }
 
-// Adds the power of a lane's rays to the cells where the lane ends. One work-item per cell and channel.
+// Adds the power of a lane's rays to the cells of the face where they end, W. One work-item per cell and channel.
 __kernel void leave_end(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global float* maps, __global float* face_out, ulong first, ulong stride)
 {

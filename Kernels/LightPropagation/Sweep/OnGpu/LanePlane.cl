@@ -1,6 +1,6 @@
-// A plane of a lane of a sweep on GPUs, and its sides.
+// Index of the planes that a lane of a sweep on GPUs crosses, and memory layout of the rays at their sides.
 //
-// Layout of the rays that enter or leave through the sides: [plane, counted from where rays
+// The power of rays that enter or leave through the sides is stored as [plane, counted from where rays
 // start][ray][channel][SIDE_FLOATS], see SweepSides.cl.
 
 #pragma once
@@ -8,9 +8,10 @@
 
 #define SIDE_FLOATS(plane) ((plane)->sizeU + (plane)->sizeV + 1)
 
-// Index in the box of the k-th plane that a lane crosses.
+// Index in the box of the k-th plane that a lane crosses, k >= 0.
 static int plane_of(const __global SweepLane* lane, int k)
 {
-  const int of_axis = k % lane->planes.sizeP; // in laps round a periodic axis
+  // Beyond the axis' planes, rays are in another lap around a periodic axis
+  const int of_axis = k % lane->planes.sizeP;
   return lane->backward ? lane->planes.sizeP - 1 - of_axis : of_axis;
 }

@@ -1,10 +1,11 @@
-// Start and end of a sweep on GPUs: initialises rays, and sums the results of the lanes. The host defines
+// Kernels for the start and end of a sweep on GPUs: they initialise rays, and sum the deposits of the lanes. The host
+// defines
 //   CHANNELS   channels swept together
 //   FUNCTIONS  number of angular functions; 1: fluence only
 
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 
-// Initialises the rays of a lane where they start. One work-item per float of its maps.
+// Sets the power of a lane's rays where they start, W. One work-item per float of the lane's maps.
 __kernel void start_rays(
   int first_lane, const __global SweepLane* lanes, const __global float4* entering, __global float* maps)
 {
@@ -17,7 +18,7 @@ __kernel void start_rays(
   }
 }
 
-// Sums rows of floats, in order and with compensated (Kahan) summation. One work-item per row.
+// Sums each row of floats, in order and with compensated (Kahan) summation. One work-item per row.
 __kernel void sum_rows(const __global float* rows, ulong first, int length, __global float* sums, ulong first_sum)
 {
   const __global float* row = rows + first + (ulong)get_global_id(0) * length;
@@ -32,8 +33,8 @@ __kernel void sum_rows(const __global float* rows, ulong first, int length, __gl
   sums[first_sum + get_global_id(0)] = sum;
 }
 
-// Adds the lanes' own arrays to the sum, in the order of the lanes, so that the result is identical, bit for bit, to
-// that of lanes that add directly. One work-item per value.
+// Adds the deposits of lanes with their own arrays to the sum, in the order of the lanes, so that the result is
+// identical, bit for bit, to that of lanes that add to the sum directly. One work-item per value.
 __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values, __global float* sum, ulong first)
 {
   const ulong i = get_global_id(0);
@@ -45,7 +46,8 @@ __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values,
   sum[first + i] = all;
 }
 
-// The same for angular moments. One work-item per voxel, function and channel.
+// Adds the angular moments of lanes with their own arrays to the sum, in the order of the lanes. One work-item per
+// voxel, function and channel.
 __kernel void add_moments_of_lanes(
   PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)
 {

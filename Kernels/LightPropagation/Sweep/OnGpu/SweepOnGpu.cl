@@ -1,17 +1,17 @@
-// Carries rays through one plane, on a GPU: one work-item per voxel of the plane and way along the axis (numerics.md,
-// section 4.8). In each of the up to three segments of the plane, a work-item reads the rays that enter its voxel from
-// the maps of the previous plane and recomputes what its neighbours did to them: arithmetic is cheap on a GPU, and so
-// rays are read and written once per plane, without synchronisation other than the launch. Each voxel is added to only
-// by its own work-item, bundle by bundle, so the order of summation is fixed. Physics and numerics are those of
-// SweepBundle.cl.
+// Kernels that carry rays through one plane on a GPU: one work-item per voxel of the plane and sense along the axis
+// (numerics.md, section 4.8). In each of the up to three segments of the plane, a work-item reads the rays that enter
+// its voxel from the maps of the previous plane and recomputes their attenuation in the neighbouring voxels: arithmetic
+// is cheap on a GPU, so rays are read and written once per plane, without synchronisation other than the launch. Only a
+// voxel's own work-item adds to its sums, bundle by bundle, so the order of summation is fixed. Physics and numerics
+// are those of SweepBundle.cl.
 //
 // The host defines CHANNELS, NET_FLUX, CURRENTS, OCTANT_SOURCE, ANGULAR as in SweepLayout.cl, and
 //   FUNCTIONS  number of angular functions; 1: fluence only
 //   BEAMS      number of sources with their own angular distribution; only if ANGULAR
-//   SIDES      rays that enter and leave through the sides of the box are stored (LanePlane.cl)
-//              0: they are not
-//              1: the box is a block of a larger domain; its axes are then open
-//              2: the box is the domain, with light given and counted by cells of its faces (LaneFaces.cl)
+//   SIDES      0: rays that enter and leave through the sides of the box are not stored
+//              1: they are stored (LanePlane.cl); the box is a block (subdomain), whose axes are open
+//              2: they are stored; the box is the domain, with light given and summed per cell of its faces
+//              (LaneFaces.cl)
 
 #define REAL_WIDTH 1
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
@@ -22,7 +22,7 @@ static void put(__global float* where, float value, int adds)
   *where = adds ? *where + value : value;
 }
 
-// Adds to a path; with compensated (Kahan) summation if rays cross a voxel repeatedly.
+// Adds `value` to a path integral; with compensated (Kahan) summation if rays cross a voxel repeatedly.
 static void put_path(const plane_state* state, __global float* path, __global float* lost, float value)
 {
   if (!state->lane->around)
@@ -37,8 +37,8 @@ static void put_path(const plane_state* state, __global float* path, __global fl
 }
 
 #if ANGULAR
-// Adds the path of the ray that was just computed to the moments, and resets it for the next ray.
-// @param functions  angular functions in the ray's direction
+// Adds the path integral of the last computed ray, sums->path, to the angular moments, and resets it for the next ray.
+// @param functions  values of the angular functions in the ray's direction
 static void gather_moments(
   voxel_sums* sums, const member_state* member, const __global float* functions, int shines, ulong plane, ulong here)
 {
@@ -58,8 +58,8 @@ static void gather_moments(
 }
 #endif
 
-// Carries all bundles of the lane through voxel (u, v).
-// directed, functions  of the lane's rays, if ANGULAR
+// Carries the rays of all bundles of the lane through voxel (u, v).
+// directed, functions  source along each ray and values of the angular functions, if ANGULAR
 static void cross_bundles(const plane_state* state, voxel_sums* sums, const __global BundleInfo* bundles,
   const __global CrossingInfo* crossings, const __global float* before, __global float* after,
   const __global float4* entering, const __global float* directed, const __global float* functions, int u, int v)
@@ -108,7 +108,8 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
 }
 
 #if ANGULAR
-// @param places  layout of the moments in `path`, with inPlaces; otherwise it is [function][channel][stride]
+// Adds the angular moments of one channel and voxel to `path`.
+// @param places  memory layout of `path`: that of the volume with inPlaces, else [function][channel][stride]
 static void put_moments(const plane_state* state, const PlaneLaunch* places, const float* moments, int c, ulong voxel,
   __global float* path, __global float* lost)
 {
@@ -123,7 +124,7 @@ static void put_moments(const plane_state* state, const PlaneLaunch* places, con
 }
 #endif
 
-// Writes the voxel's sums to the lane's arrays.
+// Writes (or adds, if state->adds) the voxel's sums to the lane's arrays.
 static void put_sums(const plane_state* state, const PlaneLaunch* places, const voxel_sums* sums, ulong voxel, int u,
   int v, __global float* path, __global float* lost, __global float* flux, __global float* currents)
 {
@@ -167,8 +168,8 @@ static void put_sums(const plane_state* state, const PlaneLaunch* places, const 
   }
 }
 
-// Writes the power that leaves sideways from voxel (u, v). A position along a side has one voxel; a voxel at the box's
-// edge has two positions.
+// Writes the power that escapes sideways from voxel (u, v), W. Each position along a side has one voxel; a voxel at the
+// box's edge has two positions.
 static void put_escaped(
   const plane_state* state, const voxel_sums* sums, int plane, int u, int v, __global float* escaped)
 {
@@ -184,18 +185,19 @@ static void put_escaped(
   }
 }
 
-// sigma     1/length, [voxel]
+// Carries the rays of several lanes through one plane. One work-item per voxel of the plane and lane.
+// sigma     extinction, 1/length, [voxel]
 // source    W / (length^3 sr), [channel][stride]
-// octants   see SweepRequest::octantSource
-// path, flux, currents  as of the kernel `sweep`
-// lost      as path, if the marching axis is periodic
-// before    the lanes' maps: power of the rays, by the voxel that they enter in this plane, W
-// after     the same for the next plane
+// octants   additional source per octant, see SweepRequest::octantSource
+// path, flux, currents  output arrays, as for the kernel `sweep`
+// lost      rounding errors of the path, laid out as path, if the marching axis is periodic
+// before    power of the rays at the voxel that they enter in this plane, W, [ray][channel][v][u] for each lane
+// after     power of the rays at the voxel that they enter in the next plane, W, laid out as `before`
 // entering  incident power, W, [ray][channel]: through u's face, through v's face, and where rays start
-// directed  laid out as `before`: source in the direction of each ray, W / (length^3 sr); if ANGULAR
-// functions angular functions in the rays' directions, [ray][function, then beam]; if ANGULAR
-// escaped   power that leaves sideways, W, see SweepLane
-// sides_in, sides_out  see LanePlane.cl; if SIDES
+// directed  source in the direction of each ray, W / (length^3 sr), laid out as `before`; if ANGULAR
+// functions values of the angular functions in the rays' directions, [ray][function, then beam]; if ANGULAR
+// escaped   power that escapes sideways, W, see SweepLane::escaped
+// sides_in, sides_out  power of the rays that enter and leave through the sides, W, see LanePlane.cl; if SIDES
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* lost,
   __global float* flux, __global float* currents, const __global float* before, __global float* after,
@@ -247,8 +249,8 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
 }
 
 #if ANGULAR
-// Evaluates the source in the direction of each ray, for the voxels of a plane, from its angular moments and beams. One
-// work-item per voxel of the plane and lane.
+// Computes the source in the direction of each ray, for the voxels of a plane, from its angular moments and beams
+// (numerics.md, Eq. (29b)). One work-item per voxel of the plane and lane.
 __kernel void find_directed(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* source,
   const __global float* functions, __global float* directed)
 {

@@ -1,19 +1,20 @@
-// Carries the rays of one bundle through a voxel of a plane; for SweepOnGpu.cl, which lists the host's definitions. A
-// voxel's work-item recomputes what the neighbours do to the rays that enter from them (numerics.md, Eq. (30a)).
+// Functions that carry the rays of one bundle through a voxel of a plane, for the kernel in SweepOnGpu.cl, which lists
+// the host's definitions. A voxel's work-item recomputes the attenuation, in the neighbouring voxels, of the rays that
+// enter from them (numerics.md, Eq. (30a)).
 
 #pragma once
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
 #include "Numerics/Numerics.cl"
 
-// Sides 0 to 3 are the faces -u, +u, -v, +v. True if light that crosses the side leaves the domain.
+// Whether light that crosses a side leaves the domain. Sides 0 to 3 are the faces -u, +u, -v, +v.
 #if SIDES
 #define LEAVES_GRID(state, side) (((state)->outerSides >> (side)) & 1)
 #else
 #define LEAVES_GRID(state, side) true
 #endif
 
-// Effect of a segment on rays, see SweepCrossing.cl. own: path, within the voxel, of the light that a unit source in it
-// emits.
+// Effect of a segment on rays, see SweepCrossing.cl. own: path integral, within the voxel, of the light that a unit
+// source in it emits.
 typedef struct
 {
   float meanLength, keep, change, own;
@@ -24,40 +25,43 @@ typedef struct
   float power[CHANNELS];
 } colours;
 
-// The plane that a work-item is in.
+// The plane that a work-item crosses, with the arrays at that plane.
 typedef struct
 {
   const __global SweepLane* lane;
-  const __global float* sigma;   // at the plane's voxel (0, 0)
-  const __global float* source;  // the same
-  const __global float* octants; // the same, if OCTANT_SOURCE
+  const __global float* sigma;  // extinction, 1/length, from the plane's voxel (0, 0) on
+  const __global float* source; // source, W / (length^3 sr), from the plane's voxel (0, 0) on
+  // Additional source per octant, from the plane's voxel (0, 0) on, if OCTANT_SOURCE
+  const __global float* octants;
   ulong stride;
   int sizeU, sizeV;
-  int shines, adds; // see PlaneLaunch
+  int shines, adds; // whether there is a source; whether values are added or written, see PlaneLaunch
   float meanLength[MeanLengthTerms];
   float thin, vacuum;
 #if SIDES
-  const __global float* sidesIn; // incoming rays at the plane's sides, [ray][channel][SIDE_FLOATS]
+  // Power of the incoming rays at the plane's sides, W, [ray][channel][SIDE_FLOATS]
+  const __global float* sidesIn;
   __global float* sidesOut;
   int outerSides;
 #endif
 } plane_state;
 
-// A member of a bundle, with the bundle's crossing of the plane.
+// A member of a bundle, with its moves and segments in the plane.
 typedef struct
 {
-  const __global float* rays;      // power of the member's rays, [channel][v][u]
-  const __global float4* entering; // [channel] incident power through u's, v's face
-  const __global float* directed;  // source in its direction, W / (length^3 sr), laid out as rays; if ANGULAR
+  const __global float* rays;      // power of the member's rays, W, [channel][v][u]
+  const __global float4* entering; // incident power of a ray through u's, v's face, W, [channel]
+  // Source in the member's direction, W / (length^3 sr), [channel][v][u]; if ANGULAR
+  const __global float* directed;
 #if SIDES
-  const __global float* sidesIn; // of the member, [channel][SIDE_FLOATS]
+  const __global float* sidesIn; // power of the member's incoming rays at the sides, W, [channel][SIDE_FLOATS]
   __global float* sidesOut;
 #endif
   float power;
   float length[3], part[3];
   int du[3], dv[3];
-  bool bothAtOnce; // moves along u and v in one segment
-  int octants[2];  // octants of its direction; they differ if it has no component along u or v
+  bool bothAtOnce; // whether its rays move along u and v at once in some segment
+  int octants[2];  // octants of the member's direction; they differ if it has no component along u or v
 } member_state;
 
 static segment_effect effect_of(const plane_state* state, float sigma, float length)
@@ -102,7 +106,7 @@ static segment_effect effect_at(const plane_state* state, int u, int v, float le
   return effect_of(state, fmax(state->sigma[voxel_of(state, u, v)], state->vacuum), length);
 }
 
-// Additional source of a voxel in a member's octant.
+// Additional source of a voxel in the octant of a member's direction, W / (length^3 sr).
 static float shines_more(const plane_state* state, const member_state* member, int c, long voxel)
 {
 #if OCTANT_SOURCE
@@ -113,7 +117,7 @@ static float shines_more(const plane_state* state, const member_state* member, i
 #endif
 }
 
-// Power of the rays after a segment in voxel (u, v).
+// Power of the rays after a segment in voxel (u, v), Eq. (23), W.
 static colours behind(
   const plane_state* state, const member_state* member, int u, int v, colours before, segment_effect effect)
 {
@@ -146,7 +150,7 @@ static colours rays_at(const plane_state* state, const member_state* member, int
   return rays;
 }
 
-// Power of the rays that enter through the sides of the box, from (u, v) outside it.
+// Power of the rays that enter the box through its sides from position (u, v) outside it, W.
 static colours coming_in(const plane_state* state, const member_state* member, int u, int v)
 {
   const bool beyondU = u < 0 || u >= state->sizeU, beyondV = v < 0 || v >= state->sizeV;
@@ -167,7 +171,7 @@ static colours coming_in(const plane_state* state, const member_state* member, i
 }
 
 #if SIDES
-// Writes the rays of voxel (u, v) that leave the block in the move before segment s.
+// Writes the power of the rays that leave the box from voxel (u, v) in the move before segment s.
 static void give_sides(const plane_state* state, const member_state* member, int s, int u, int v, colours rays)
 {
   const int du = member->du[s], dv = member->dv[s];
@@ -188,7 +192,7 @@ static void give_sides(const plane_state* state, const member_state* member, int
 }
 #endif
 
-// Wraps (u, v) around the periodic axes; the result may still be outside the plane.
+// Position (u, v) wrapped around the periodic axes; may still be outside the plane.
 static int2 go_round(const plane_state* state, int u, int v)
 {
   const int size_u = state->sizeU, size_v = state->sizeV;
@@ -197,7 +201,7 @@ static int2 go_round(const plane_state* state, int u, int v)
   return (int2)(state->lane->periodicU ? u + past_u : u, state->lane->periodicV ? v + past_v : v);
 }
 
-// Power of the rays after the plane's first segment.
+// Power of the rays after the first segment of the plane, in the voxel at (of_u, of_v), W.
 static colours behind_first(const plane_state* state, const member_state* member, int of_u, int of_v)
 {
   const int2 at = go_round(state, of_u, of_v);
@@ -218,7 +222,7 @@ static colours mixed(colours stay, colours come, float part)
   return stay;
 }
 
-// Power of the rays after the plane's second segment.
+// Power of the rays after the second segment of the plane, in the voxel at (of_u, of_v), W.
 static colours behind_second(const plane_state* state, const member_state* member, int of_u, int of_v)
 {
   const int2 at = go_round(state, of_u, of_v);
@@ -235,21 +239,21 @@ static colours behind_second(const plane_state* state, const member_state* membe
   return behind(state, member, u, v, rays, effect_at(state, u, v, member->length[1]));
 }
 
-// Sums that a voxel's work-item accumulates over all bundles.
+// Sums over all bundles in one voxel, accumulated by its work-item.
 typedef struct
 {
-  float path[CHANNELS]; // if ANGULAR, of one ray
-  float own;            // path of a unit source within its own voxel; if ANGULAR, of one ray
+  float path[CHANNELS]; // path integral, W length; if ANGULAR, of one ray
+  float own;            // path integral of a unit source within its own voxel; if ANGULAR, of one ray
 #if ANGULAR
   float moments[CHANNELS][FUNCTIONS];
 #endif
-  float flux[CHANNELS][3]; // along u, v and the axis
-  float ownFlux;           // along the axis
+  float flux[CHANNELS][3]; // net flux along u, v and the marching axis, W length
+  float ownFlux;           // net flux of a unit source within its own voxel, along the marching axis
   float currents[CHANNELS][CurrentFaces];
-  float escaped[4][CHANNELS]; // through -u, +u, -v, +v
+  float escaped[4][CHANNELS]; // power that escapes through -u, +u, -v, +v, W
 } voxel_sums;
 
-// Adds a segment's path, and flux, to the sums.
+// Adds the path integral, and net flux, of a segment to the sums.
 // @param not_lost  power of the voxel's additional octant source, which is not lost in the voxel itself
 static void put_down(voxel_sums* sums, colours rays, colours not_lost, float meanLength, float3 along)
 {
@@ -265,7 +269,8 @@ static void put_down(voxel_sums* sums, colours rays, colours not_lost, float mea
   }
 }
 
-// Counts the power of the rays that leave the box from voxel (u, v) in the move before segment s, see COUNT_ESCAPED.
+// Adds the power of the rays that leave the box from voxel (u, v) in the move before segment s to the sums, see
+// COUNT_ESCAPED in SweepBundle.cl.
 static void count_escaped(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours rays)
 {
@@ -279,7 +284,8 @@ static void count_escaped(
   {
 #if SIDES == 2
     const __global float* in = member->sidesIn + c * SIDE_FLOATS(state);
-    const float2 beyond = (float2)(in[state->sizeU + v], in[u]); // where rays move both ways in this segment
+    // Power that enters at the voxel, where rays move along u and v at once in this segment
+    const float2 beyond = (float2)(in[state->sizeU + v], in[u]);
 #else
     const float2 beyond = member->entering[c].xy;
 #endif
@@ -310,9 +316,10 @@ static void add_current(voxel_sums* sums, int face, colours rays, float part)
   }
 }
 
-// Counts the power that enters voxel (u, v) in the move before segment s, see SweepPartialCurrents.cl. Rays that cross
-// the edge between four voxels on their way to the neighbours also pass through this voxel.
-// @param come  rays that arrive from the move's starting voxel
+// Adds the power that enters voxel (u, v) through its faces in the move before segment s to the partial currents, see
+// SweepPartialCurrents.cl. Rays that cross the edge between four voxels also pass through the two voxels adjacent to
+// both.
+// @param come  power of the rays that arrive from the voxel where the move starts
 static void count_currents(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours come)
 {
@@ -332,7 +339,7 @@ static void count_currents(
 }
 #endif
 
-// Power of the additional octant source that is not lost in the voxel itself, see put_down.
+// Power of the additional octant source that is not lost in the voxel itself, W, see put_down.
 static colours not_lost_of(const plane_state* state, const member_state* member, long voxel)
 {
   colours more = { { 0.0f } };
@@ -345,7 +352,7 @@ static colours not_lost_of(const plane_state* state, const member_state* member,
   return more;
 }
 
-// Carries one member of a bundle through voxel (u, v). Returns the power of its rays at the next plane.
+// Carries the rays of one bundle member through voxel (u, v). Returns their power at the next plane, W.
 static colours cross_voxel(const plane_state* state, voxel_sums* sums, const member_state* member, int stages,
   const segment_effect* effects, float3 along, int u, int v)
 {
@@ -378,7 +385,7 @@ static colours cross_voxel(const plane_state* state, voxel_sums* sums, const mem
   return rays;
 }
 
-// Finds the octants of a member's direction, see SweepBundle.cl.
+// Determines the octants of a member's direction, see SweepBundle.cl.
 static void find_octants(const __global SweepLane* lane, const __global BundleInfo* bundle, int m, int* octants)
 {
   const int u = lane->axis == 0 ? 1 : 0, v = lane->axis == 2 ? 1 : 2;

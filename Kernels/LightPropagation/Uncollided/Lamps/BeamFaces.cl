@@ -1,14 +1,14 @@
-// Where a lamp's beams meet the faces of the box. Options as for LampBeams.cl.
+// Entry and exit of a lamp's beams through the faces of the box. Options as for LampBeams.cl.
 #pragma once
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 #include "Numerics/FixedPoint.cl"
 
 #define INSIDE 0
-#define BEFORE 1 // outside, and approaching
+#define BEFORE 1 // outside the box, and approaching it
 #define AFTER 2
 
-// Position of voxel i of an axis relative to the box, for a beam with this tangent along it; wraps i around on a
-// periodic axis.
+// Position of voxel i of an axis relative to the box (INSIDE, BEFORE or AFTER), for a beam with this tangent along the
+// axis; wraps i around on a periodic axis.
 static int place(const LampInfo* lamp, int axis, float tangent, int* i)
 {
   const int n = lamp->size[axis];
@@ -24,7 +24,8 @@ static int place(const LampInfo* lamp, int axis, float tangent, int* i)
   return (*i < 0) == (tangent < 0.0f) ? AFTER : BEFORE;
 }
 
-// Index of a voxel in the arrays, which on a periodic axis may hold voxels of the opposite side of the grid.
+// Index of a voxel in the arrays of LampInfo, whose halo on a periodic axis may hold voxels of the opposite side of the
+// grid.
 static ulong place_in_arrays(const LampInfo* lamp, const int* voxel)
 {
   ulong place = 0;
@@ -40,9 +41,9 @@ static ulong place_in_arrays(const LampInfo* lamp, const int* voxel)
 typedef struct
 {
   float entered, escaped[6], stranded;
-  bool counts;          // the beam has reached the layers in which it is counted and deposited
-  int along;            // current layer, without wrapping around periodic axes
-  __global long* cells; // escaped power in fixed point, as a fraction of the traced power, [cell] (BoxFaces.h)
+  bool counts;          // whether the beam has reached the layers in which it deposits light and is tallied
+  int along;            // current layer, not wrapped around periodic axes
+  __global long* cells; // escaped power per cell (BoxFaces.h) in fixed point, as a fraction of the traced power
 } lamp_tally;
 
 static float square_distance(const LampInfo* lamp, const int* voxel, const float* place)
@@ -56,14 +57,15 @@ static float square_distance(const LampInfo* lamp, const int* voxel, const float
   return sum;
 }
 
-// Whether light that has wrapped around an axis by this many voxels belongs to the rectangle or to its nearest images.
+// Whether light that has wrapped around an axis by this many voxels originates from the rectangle or one of its nearest
+// images.
 static bool is_image(const LampInfo* lamp, int axis, int around)
 {
   return abs(around) <= (uint)(lamp->images[axis] * lamp->size[axis]);
 }
 
-// Whether a part of a rectangle illuminates a voxel (coordinates not wrapped): neither the larger part, which was
-// divided into this one, nor the smaller parts of this one do.
+// Whether a part of a rectangle illuminates a voxel (coordinates not wrapped): neither the larger part that was divided
+// into this part, nor the smaller parts of this part illuminate it.
 static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
 {
   return !VACUUM ||
@@ -71,7 +73,7 @@ static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
       square_distance(lamp, voxel, row->whole) < row->wholeFrom);
 }
 
-// Counts power that leaves through one face of the box at a voxel.
+// Adds power that leaves through one face of the box at a voxel to the tally and to the face's cell.
 static void leave_box(const LampInfo* lamp, int face, const int* voxel, float power, lamp_tally* tally)
 {
   if (!tally->counts)
@@ -91,7 +93,7 @@ static void leave_box(const LampInfo* lamp, int face, const int* voxel, float po
   add_units(tally->cells + cell, convert_long_sat_rte(power * LampPowerUnits));
 }
 
-// The first voxel that the interval `edges` overlaps, and the fraction of the interval that lies in it.
+// Index of the first voxel that the interval `edges` overlaps, and the fraction of the interval in that voxel.
 static void overlap(float2 edges, int* voxel, float* part)
 {
   *voxel = (int)floor(edges.x);
@@ -99,9 +101,9 @@ static void overlap(float2 edges, int* voxel, float* part)
 }
 
 // Clips the cross-section along u (k 0) or v (1) at the faces of the box: at the face that the beam approaches and,
-// unless the lamp is beside the box along this axis, also at the opposite one.
+// unless the lamp is outside the box along this axis, also at the opposite face.
 // @param up  set to whether light leaves through the upper face
-// @return the fraction of the cross-section between the faces
+// @return fraction of the cross-section between the faces
 static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2* edges, int* up)
 {
   const int axis = (row->axis + 1 + k) % 3;
@@ -127,10 +129,10 @@ static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float 
   return all > 0.0f ? clamp(inside / all, 0.0f, 1.0f) : 0.0f;
 }
 
-// Counts power that left through a lateral face since the middle of the previous step, at most one step ago, in two
-// halves.
+// Tallies the power that left through a lateral face since the middle of the previous step, at most one step ago, in
+// two halves.
 //   at    current lateral position, voxels
-//   here  the middle of the step, in layers from the beam's start
+//   here  middle of the current step, in layers from the beam's start
 static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, float2 tangent, float2 at, float here,
   float step, float power, lamp_tally* tally)
 {
@@ -157,9 +159,9 @@ static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, floa
   }
 }
 
-// Removes the power of a beam that has left through the lateral faces since the last step. The rest is spread over the
-// rest of the cross-section, to which the edges are clipped.
-//   first  the beam reaches the box here: the part outside the box has not entered
+// Removes the power of a beam that has left through the lateral faces since the last step. The remaining power is
+// distributed uniformly over the cross-section inside the box, to which the edges are clipped.
+//   first  whether the beam reaches the box in this step, so that the part outside the box has not entered
 static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, float2 tangent, float2 way,
   float2* edges_u, float2* edges_v, BeamOnItsWay* beam, lamp_tally* tally)
 {
@@ -177,7 +179,7 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     goes[k] = within[k] < beam->stays[k] ? 1.0f - within[k] / beam->stays[k] : 0.0f;
     beam->stays[k] = fmin(beam->stays[k], within[k]);
   }
-  // It left between the step before and this one: in the mean half way between them.
+  // The power left between the previous step and this one, on average half way between them.
   const float ago = 0.5f * fmin(way.y - way.x, 0.5f * (way.x + way.y));
   for (int k = 0; k < 2; ++k)
   {
@@ -185,7 +187,7 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     {
       continue;
     }
-    // At an edge of the box: half through either face.
+    // At an edge of the box, half of the power leaves through either face.
     const float power = beam->left * goes[k] * (1.0f - 0.5f * goes[1 - k]);
     const int axis = (row->axis + 1 + k) % 3, other = (row->axis + 2 - k) % 3;
     const float moved = tangents[1 - k] * ago;

@@ -1,16 +1,16 @@
-// Fixed-point units of a lamp's sums, solid angles of rectangles, and power of the beams of a lamp. Options as for
-// LampBeams.cl.
+// Functions for the fixed-point units of a lamp's sums, the solid angles of rectangles, and the power of a lamp's
+// beams. Options as for LampBeams.cl.
 #pragma once
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 
-// Factor by which a path in a voxel is multiplied in fixed point (numerics.md, Eq. (35)): path lengths in optically
-// thick voxels are small.
+// Factor b by which the path integral in a voxel is multiplied in fixed point (numerics.md, Eq. (35)), because path
+// lengths in optically thick voxels are small.
 static float units_of(float sigma, float diagonal)
 {
   return fmax(sigma * diagonal, 1.0f);
 }
 
-#define FIRST_OF_FLUX (1 + 3 * MOMENTS) // index of the first of these sums
+#define FIRST_OF_FLUX (1 + 3 * MOMENTS) // index of the first of the sums for the net flux
 #define FIRST_OF_VACUUM (FIRST_OF_FLUX + 3 * NET_FLUX)
 
 static float corner_angle(float a, float b, float d)
@@ -24,7 +24,7 @@ static float solid_angle_nearby(float a, float b, float width, float height, flo
   return corner_angle(a1, b1, d) - corner_angle(a0, b1, d) - corner_angle(a1, b0, d) + corner_angle(a0, b0, d);
 }
 
-// By a Gauss rule of 2 x 2 points.
+// Solid angle of a rectangle, as for solid_angle(), by a Gauss rule of 2 x 2 points.
 static float solid_angle_far_away(float a, float b, float width, float height, float d)
 {
   float sum = 0.0f;
@@ -38,9 +38,9 @@ static float solid_angle_far_away(float a, float b, float width, float height, f
   return 0.25f * sum * width * height * d;
 }
 
-// Solid angle of a rectangle of this width and height, centred at (a, b), at distance d: in closed form nearby, by
-// quadrature far away, where the closed form is a small difference of large angles.
-//   far  square of the distance between the two, in units of the longer edge
+// Solid angle, sr, of a rectangle of this width and height, centred at (a, b), at distance d: in closed form nearby
+// (numerics.md, Eq. (16)), by quadrature far away, where the closed form is a small difference of large angles.
+//   far  squared distance, in units of the longer edge, at which quadrature replaces the closed form
 static float solid_angle(float a, float b, float width, float height, float d, float far)
 {
   return a * a + b * b + d * d < far * fmax(width * width, height * height)
@@ -48,7 +48,7 @@ static float solid_angle(float a, float b, float width, float height, float d, f
     : solid_angle_far_away(a, b, width, height, d);
 }
 
-// Cosine of the angle between a ray and the lamp's direction.
+// Cosine of the angle between a ray of this tangent and the lamp's direction.
 static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 {
   const int u = (row->axis + 1) % 3;
@@ -61,10 +61,10 @@ static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
     rsqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
 }
 
-#define SLICES 512 // slices of a beam that the border of the cone crosses
+#define SLICES 512 // number of slices of a beam that the border of the cone crosses
 
-// Rays d = (ahead, u + x, v) of a pyramid at fixed v. Those in the cone satisfy a x^2 + 2 b x + c <= 0 and along + x
-// slope >= 0 (numerics.md, Eq. (33a)).
+// Slice of a pyramid: its rays d = (ahead, u + x, v) at fixed v. Rays in the cone satisfy a x^2 + 2 b x + c <= 0 and
+// along + x slope >= 0 (numerics.md, Eq. (33a)).
 typedef struct
 {
   float ahead, u, v;
@@ -72,7 +72,8 @@ typedef struct
   float along, slope;
 } cone_slice;
 
-// @param v  relative to the base of the pyramid, length
+// Slice of the pyramid at v.
+// @param v  length, relative to the base of the pyramid
 static cone_slice slice_at(const LampInfo* lamp, const BeamRow* row, float v)
 {
   const int i = row->axis, j = (i + 1) % 3, k = (i + 2) % 3;
@@ -107,7 +108,7 @@ static bool is_in_cone(const cone_slice* slice, float x)
   return (slice->a * x + 2.0f * slice->b) * x + slice->c <= 0.0f && slice->along + slice->slope * x >= 0.0f;
 }
 
-// The part of the slice from edges.x to edges.y that is in the cone.
+// Interval of x in the slice, from edges.x to edges.y, whose rays are in the cone.
 static float2 part_of_slice(const cone_slice* slice, float2 edges)
 {
   const bool low = is_in_cone(slice, edges.x), high = is_in_cone(slice, edges.y);
@@ -129,7 +130,7 @@ static float2 part_of_slice(const cone_slice* slice, float2 edges)
   return within ? (float2)(first, second) : edges.xx;
 }
 
-// Solid angle of a part of a slice, divided by the slice's height.
+// Solid angle of an interval of x of a slice, divided by the slice's height.
 static float angle_of_slice(const cone_slice* slice, float2 part)
 {
   const float x = slice->u + 0.5f * (part.x + part.y);
@@ -138,7 +139,7 @@ static float angle_of_slice(const cone_slice* slice, float2 part)
 }
 
 // Fraction of a beam's solid angle that is in the cone.
-//   middle  its centre, relative to the base of the pyramid
+//   middle  tangents of the beam's centre, relative to the base of the pyramid
 static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middle)
 {
   const float2 spacing = (float2)(lamp->spacing[(row->axis + 1) % 3], lamp->spacing[(row->axis + 2) % 3]);
@@ -160,8 +161,8 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middl
   return inside / all;
 }
 
-// Tangents of a beam's centre, relative to the base of its pyramid; below, relative to the pyramid's axis; and the
-// beam's centre at its start.
+// Tangents of a beam's centre: relative to the base of its pyramid (tangent_from_base), and relative to the pyramid's
+// axis (tangent_of). begin_of() is the position of the beam's centre at its start, voxels.
 static float2 tangent_from_base(const BeamRow* row, int beam)
 {
   return (float2)(row->tangentU + beam * row->widthU, row->tangentV);

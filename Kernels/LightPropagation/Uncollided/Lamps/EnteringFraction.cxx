@@ -16,12 +16,12 @@ namespace tyndall
 {
 namespace
 {
-/// Largest distance of a rectangle, in geometric means of its edge and the box's, at which the contour integral is
+/// Maximum distance of a rectangle, in geometric means of its edge and the box's edge, at which the contour integral is
 /// accurate in doubles.
 constexpr double Farthest = 1e4;
 
-/// Fraction of a point's light that enters the box: 1 inside; from outside, by the solid angles of the faces that the
-/// point sees; on the boundary, the inward part.
+/// Fraction of a point's light that enters the box: 1 for a point inside; from outside, by the solid angles of the
+/// faces that the point sees; on the boundary, the fraction emitted inwards.
 double OfPoint(const Grid& grid, const glm::dvec3& place, const std::array<bool, 3>& periodic)
 {
   double angle = 0.0, onFaces = 1.0;
@@ -62,8 +62,9 @@ std::array<glm::dvec3, 4> CornersOfFace(const Grid& grid, int face, const glm::d
   return corners;
 }
 
-/// Signed solid angle of the region between a cone's axis and the arc from a to b, inside the cone. All vectors are
-/// unit vectors.
+/// Signed solid angle, sr, of the region between a cone's axis and the arc from a to b, inside the cone. All vectors
+/// are unit vectors.
+/// @param half  half angle of the cone
 double AngleInCone(const glm::dvec3& axis, double half, const glm::dvec3& a, const glm::dvec3& b)
 {
   const glm::dvec3 across = glm::cross(glm::cross(a, b), a);
@@ -74,7 +75,8 @@ double AngleInCone(const glm::dvec3& axis, double half, const glm::dvec3& a, con
   }
   const glm::dvec3 t = across / aside;
   const double most = std::hypot(glm::dot(axis, a), glm::dot(axis, t)), cosine = std::cos(half);
-  const double middle = std::atan2(glm::dot(axis, t), glm::dot(axis, a)); // where the arc is closest to the axis
+  // Position on the arc closest to the axis
+  const double middle = std::atan2(glm::dot(axis, t), glm::dot(axis, a));
   const double reach = std::acos(std::clamp(most > 0.0 ? cosine / most : cosine * 1e300, -1.0, 1.0));
   std::vector<double> cuts = { 0.0, end };
   for (const double cut : { middle - reach, middle + reach, middle - reach + 2.0 * Pi, middle + reach - 2.0 * Pi })
@@ -116,13 +118,14 @@ double OfSpot(const Grid& grid, const Light& spot, const glm::dvec3& place)
       seen +=
         AngleInCone(Vector(DirectionOf(spot)), half, glm::normalize(corners[i]), glm::normalize(corners[(i + 1) % 4]));
     }
-    seen = face % 2 ? -seen : seen;                  // seen from outside
-    angle += seen < -1e-9 * all ? seen + all : seen; // the face encloses the direction opposite to the axis
+    seen = face % 2 ? -seen : seen; // as seen from outside
+    // Adds the cone if the face encloses the direction opposite to the axis
+    angle += seen < -1e-9 * all ? seen + all : seen;
   }
   return angle / all;
 }
 
-/// The part of the polygon where normal . x >= least.
+/// Part of the polygon where normal . x >= least.
 Polygon Clip(const Polygon& polygon, const glm::dvec3& normal, double least)
 {
   return Clipped(polygon, [&](const glm::dvec3& x) { return glm::dot(x, normal) - least; });
@@ -148,7 +151,7 @@ Edge EdgeOf(const Polygon& polygon, std::size_t i)
   return { polygon[i], polygon[(i + 1) % polygon.size()] - polygon[i] };
 }
 
-/// Integral of ln |point - x| over x along an edge.
+/// Integral of ln |point - x| over x along an edge, in closed form.
 double LogarithmAlong(const Edge& edge, const glm::dvec3& point)
 {
   const double length = glm::length(edge.way);
@@ -161,8 +164,8 @@ double LogarithmAlong(const Edge& edge, const glm::dvec3& point)
   return upTo(length - along) - upTo(-along);
 }
 
-/// Integral of ln |x - y| dx . dy over two edges: over the second by the tanh-sinh rule, split where the first one is
-/// near.
+/// Integral of ln |x - y| dx . dy over two edges: over the second edge by the tanh-sinh rule, split where the first
+/// edge is near.
 double LogarithmOver(const Edge& first, const Edge& second)
 {
   constexpr double step = 0.18;
@@ -198,7 +201,7 @@ double LogarithmOver(const Edge& first, const Edge& second)
 }
 
 /// Integral of cos cos / (pi r^2) over two polygons that face each other, by Stokes's theorem: contour integrals around
-/// both.
+/// both (numerics.md, Eq. (33c)).
 double FormFactor(const Polygon& first, const Polygon& second)
 {
   double sum = 0.0;
@@ -213,8 +216,8 @@ double FormFactor(const Polygon& first, const Polygon& second)
   return std::abs(sum) / (2.0 * Pi);
 }
 
-/// Fraction of a rectangle's light that enters the box: all light of the part inside, and for each face the light
-/// through it of the part beyond.
+/// Fraction of a rectangle's light that enters the box: all light of the part inside the box, and for each face the
+/// light that the part beyond it emits through it.
 double OfRectangle(const Grid& grid, const RectangleArea& area, const glm::dvec3& normal)
 {
   const glm::dvec3 end = EndOf(grid);
@@ -246,7 +249,7 @@ double OfRectangle(const Grid& grid, const RectangleArea& area, const glm::dvec3
   return (SizeOf(inside) + through) / area.Size();
 }
 
-/// Distance between a rectangle and the box, by alternating projection.
+/// Distance between a rectangle and the box, by alternating projection, lengths.
 double DistanceToBox(const RectangleArea& area, const Grid& grid)
 {
   glm::dvec3 at = area.middle, inBox = at;

@@ -1,19 +1,20 @@
-// Traces beams from a point lamp through the box. Options:
-//   ATOMICS        1: the device has 64-bit atomics; else one work-item does everything
-//   LAMBERT, CONE  1 for a rectangle, a spot
-//   MOMENTS        1: first moments of the deposit are wanted
-//   NET_FLUX       1: net flux is wanted
-//   FACE_OUT       1: the power that leaves through each cell of the box's faces is wanted
-//   VACUUM         1: a rectangle in parts, each for some voxels; also sums the deposit that vacuum would have and, if
-//                  an axis is periodic (AROUND 1), the deposit of beams before they wrap around it
-//   THIN           optical length of a voxel below which loss is taken as uniform
+// Kernel that traces the beams from one point of a lamp through the box. Options:
+//   ATOMICS        1: the device has 64-bit atomics; else one work-item traces all beams
+//   LAMBERT, CONE  1: the lamp is a rectangle, a spot
+//   MOMENTS        1: first moments of the deposit are computed
+//   NET_FLUX       1: net flux is computed
+//   FACE_OUT       1: the power that leaves through each cell of the box's faces is summed
+//   VACUUM         1: the lamp is a rectangle in parts, each of which lights some voxels; the deposit that there would
+//                  be in vacuum is summed too and, if an axis is periodic (AROUND 1), the deposit of beams before they
+//                  wrap around it
+//   THIN           optical thickness of a voxel below which loss is taken as uniform in it
 //   IN_BLOCK       1: beams are traced in a block of the grid, and stop where they leave it
 //
-// Space around the lamp is divided into six pyramids, one for each direction along an axis. In a pyramid beams lie on a
-// grid of tangents, fine enough that a beam is at most a voxel wide where it leaves the box. A beam advances layer by
-// layer; its square cross-section overlaps up to four voxels, each of which takes its part (numerics.md, Eqs. (33),
-// (34)). All values are fractions of the share of the lamp's power that may reach the box (LampOnGrid.h): the channels
-// share sigma_t.
+// Space around the lamp is divided into six pyramids, one for each sense along an axis. In a pyramid beams form a grid
+// of tangents, fine enough that a beam is at most a voxel wide where it leaves the box. A beam advances layer by layer;
+// its square cross-section overlaps up to four voxels, each of which is crossed by its share of the power (numerics.md,
+// Eqs. (33), (34)). All values are fractions of the traced power, the share of the lamp's power that may reach the box
+// (LampOnGrid.h), and apply to all channels, which share sigma_t.
 
 #include "LightPropagation/Uncollided/Lamps/BeamFaces.cl"
 #include "LightPropagation/Uncollided/Lamps/BeamPower.cl"
@@ -23,8 +24,8 @@
 
 #define STEPS 2 // steps per layer: a beam moves laterally by at most half a voxel per step
 
-// Adds first moments: the path in a voxel times the mean position of the loss relative to the voxel's centre, along the
-// beam's axis and laterally (numerics.md, Eqs. (37), (38)).
+// Adds first moments: the path integral in a voxel times the mean position of the loss relative to the voxel's centre,
+// along the pyramid's axis and laterally (numerics.md, Eqs. (37), (38)).
 //   way   start and end of the step, in layers from the beam's start
 //   mean  centre of the cross-section's part in the voxel, half way through the step
 static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* voxel, float2 way, float2 mean,
@@ -45,7 +46,8 @@ static void add_moments(const LampInfo* lamp, const BeamRow* row, const int* vox
   }
 }
 
-// Adds path times direction, along x, y, z, for a step from way.x to way.y layers from the beam's start.
+// Adds the net flux, path integral times direction along x, y, z, for a step from way.x to way.y layers from the beam's
+// start.
 static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, float2 way, float length, float path,
   __global long* flux, ulong stride)
 {
@@ -57,8 +59,8 @@ static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, f
   add_units(flux + v * stride, convert_long_sat_rte(layers * tangent.y * lamp->spacing[v]));
 }
 
-// Advances a beam by one step: each part of it crosses its voxel. Updates its remaining power and the rounding
-// compensation.
+// Advances a beam by one step: each part of its cross-section crosses its voxel and deposits the power lost, Eq. (34).
+// Updates the remaining power and its rounding compensation.
 // @return power that has not reached the box yet
 static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, float2 tangent, float2 middle, float2 width,
   float2 way, float length, const __global float* sigma, __global long* path, ulong stride, BeamOnItsWay* beam,
@@ -80,7 +82,8 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
   {
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
     const float power = beam->left * part;
-    if ((VACUUM ? part : power) <= 0.0f) // where there is no light any more, vacuum would have some
+    // Without any power left in the medium, the deposit in vacuum still counts
+    if ((VACUUM ? part : power) <= 0.0f)
     {
       continue;
     }
@@ -93,7 +96,7 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
     const int at_v = place(lamp, v, tangent.y, &voxel[v]);
     if (at_u != INSIDE || at_v != INSIDE)
     {
-      after += power; // it enters later, or never
+      after += power; // power that enters the box later, or never
       waiting += power;
       continue;
     }
@@ -140,16 +143,15 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
   return waiting;
 }
 
-// Edges of a beam's cross-section along u or v, t layers from its start.
+// Lower and upper edge of a beam's cross-section along u or v, t layers from its start, voxels.
 static float2 edges_at(float start, float tangent, float open, float width, float t)
 {
   const float middle = start + tangent * t, half_width = 0.5f * fmin(open + width * t, 1.0f);
   return (float2)(middle - half_width, middle + half_width);
 }
 
-// Handles a beam that starts outside the box, at the face of the box's first layer: the part that passes beside the box
-// does not enter.
-//   start  its centre there
+// Removes the power of a beam from outside the box that misses the face of the box's first layer.
+//   start  position of the beam's centre at that face, voxels
 static void enter_box(
   const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, BeamOnItsWay* beam, lamp_tally* tally)
 {
@@ -158,7 +160,7 @@ static void enter_box(
   leave_sides(lamp, row, true, tangent, (float2)(0.0f), &edges_u, &edges_v, beam, tally);
 }
 
-// Fraction of the cross-section along u (k 0) or v (1) that is inside the box; of the part that has not left it.
+// Fraction, of the cross-section along u (k 0) or v (1) that has not left the box, that is inside the box.
 static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2 edges)
 {
   int up, first;
@@ -171,7 +173,8 @@ static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float 
     (place(lamp, axis, tangent, &second) == INSIDE ? 1.0f - part : 0.0f);
 }
 
-// Fraction of the cross-section that has not reached the box yet; of the part that has not left it.
+// Fraction, of the cross-section that has not left the box, that has not reached it yet, t layers from the beam's
+// start.
 static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t)
 {
   const float2 edges_u = edges_at(start.x, tangent.x, row->openU, row->widthU, t);
@@ -179,8 +182,8 @@ static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start
   return 1.0f - part_inside(lamp, row, 0, tangent.x, edges_u) * part_inside(lamp, row, 1, tangent.y, edges_v);
 }
 
-// Handles a beam that entered sideways, at the end of the box: in the last half step more of it reaches the box, and
-// the remainder never enters.
+// Removes the power of a beam that misses the box, where a beam that enters through lateral faces reaches the end of
+// the box: in the last half step more of it reaches the box, and the remainder never enters.
 //   waiting  power that had not reached the box in the middle of the last step, at `here`
 static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float here, float end,
   float waiting, BeamOnItsWay* beam, lamp_tally* tally)
@@ -191,11 +194,12 @@ static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, flo
   beam->left -= missed;
 }
 
-#define BEYOND 1 // beyond the voxels that its part illuminates
+#define BEYOND 1 // beyond the voxels that the beam's part of the rectangle illuminates
 #define SHORT_OF 2
 #define AMID 0
 
-// Position of a beam's centre relative to the voxels that its part of the rectangle illuminates.
+// Position of a beam's centre relative to the voxels that its part of the rectangle illuminates: AMID, SHORT_OF or
+// BEYOND.
 static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float2 middle)
 {
   int voxel[3];
@@ -207,8 +211,8 @@ static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float
                                                                  : AMID;
 }
 
-// Advances a beam by one step, along its centre, where it illuminates no voxel.
-// @return whether all of its cross-section is in the box
+// Attenuates a beam over one step, along its centre, where it illuminates no voxel.
+// @return whether the whole cross-section is in the box; if not, nothing is done
 static bool pass_through(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, float2 width, float length,
   const __global float* sigma, BeamOnItsWay* beam)
 {
@@ -231,8 +235,8 @@ static bool pass_through(const LampInfo* lamp, const BeamRow* row, int layer, fl
   return true;
 }
 
-// Counts the power of a beam that leaves at the far end of its axis, through up to four cells.
-//   start  its centre at its start
+// Tallies the power of a beam that leaves at the far end of its axis, through up to four cells.
+//   start  position of the beam's centre at its start, voxels
 static void leave_end(
   const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t, float left, lamp_tally* tally)
 {
@@ -265,8 +269,8 @@ static void leave_end(
   }
 }
 
-// Finds the voxel that contains the beam's centre, or the nearest one of the grid. @return whether beams are traced
-// there
+// Determines the voxel that contains the beam's centre, or the nearest voxel of the grid.
+// @return whether beams are traced in the voxel at the beam's centre
 static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, int* voxel)
 {
   voxel[row->axis] = layer;
@@ -283,9 +287,9 @@ static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, flo
 }
 
 // Traces one beam from its entry into the box, or from its saved state, until it leaves.
-// @param begin  its centre at its start
-// @param power  its initial power
-// @return whether it has ended; otherwise, if IN_BLOCK, it has left the block, with its state in `beam`
+// @param begin  position of the beam's centre at its start, voxels
+// @param power  initial power of the beam
+// @return whether the beam has ended; otherwise, if IN_BLOCK, it has left the block, with its state in `beam`
 static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, float2 tangent, float power,
   const __global float* sigma, __global long* path, ulong stride, BeamOnItsWay* beam, lamp_tally* tally)
 {
@@ -300,7 +304,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
   const int layers = row->up ? n - first : first + 1;
   const int all = lamp->periodic[row->axis] ? row->layers : min(row->layers, layers);
   const int nearby = VACUUM ? layers + lamp->images[row->axis] * n : 0;
-  // On a periodic axis beams continue until their power is negligible; on others they leave.
+  // On a periodic axis beams continue until their power is negligible; on an open axis they leave.
   const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
   const int before = beam->layer;
   float now = before == 0 ? 0.0f : row->up ? first + before - start : start - (first - (before - 1));
@@ -323,8 +327,8 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
       const float t1 = now + (end - now) * (s + 1) / STEPS;
       here = 0.5f * (t0 + t1);
       const float2 middle = begin + tangent * here;
-      // The rank that received the beam always takes its first step, so that it advances whatever rounding says about
-      // its voxel.
+      // The rank that received the beam always computes its first step, so that the beam advances even if rounding
+      // assigns its voxel to another rank.
       if (IN_BLOCK && !is_followed(lamp, row, layer, middle, beam->voxel) && !follows)
       {
         beam->layer = k;
@@ -371,7 +375,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
   return true;
 }
 
-// Begins a beam with this power.
+// Sets a beam to its initial state with this power.
 static void begin_beam(BeamOnItsWay* beam, float power)
 {
   beam->layer = beam->step = 0;
@@ -393,7 +397,8 @@ static void clear_tally(lamp_tally* tally, __global long* cells)
   tally->cells = cells;
 }
 
-// [entered, escaped through -x to +z, stranded, emitted in the beams' directions], fractions of the power
+// Writes the tallies of a row or beam, as fractions of the traced power: [entered, escaped through -x to +z, in transit
+// at the end, emitted in the beams' directions].
 static void write_sums(const lamp_tally* tally, float shone, __global float* sums)
 {
   sums[0] = tally->entered;
@@ -405,7 +410,7 @@ static void write_sums(const lamp_tally* tally, float shone, __global float* sum
   sums[8] = shone;
 }
 
-// Traces a beam through a block of the grid. beam: replaced by its state when it has left the block, or ended
+// Traces a beam through a block of the grid. `beam` is replaced by its state when it has left the block, or ended.
 static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsWay* beam, const __global float* sigma,
   __global long* path, ulong stride, __global long* cells, __global float* sums)
 {
@@ -422,7 +427,7 @@ static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsW
     tally.entered = row->skipped > 0 ? 0.0f : shone;
     begin_beam(beam, shone);
   }
-  // The remaining power of a beam that has already travelled may be negative by rounding.
+  // The remaining power of a beam that has already crossed other blocks may be negative by rounding.
   const bool is_there = beam->begun || shone > 0.0f;
   beam->begun = true;
   beam->ended = !is_there ||
@@ -461,7 +466,7 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 // cells power that leaves through the box's faces, in fixed point, [cell]; if FACE_OUT
 // beams IN_BLOCK: replaced by their states when they have left the block, or ended
 // first, count  rows or beams of this launch
-// sums  [row or beam], see write_sums()
+// sums  tallies, [row or beam][LampRowSums], see write_sums()
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   ulong stride, __global long* cells, const __global BeamRow* rows, __global BeamOnItsWay* beams, int first, int count,
   __global float* sums)

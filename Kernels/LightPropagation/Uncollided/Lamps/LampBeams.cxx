@@ -25,24 +25,26 @@ static const int* WhereIs(const BeamOnItsWay& beam)
 
 namespace
 {
-constexpr int RowsPerLaunch = 256; ///< keeps a launch well below a tenth of a second for rows of a thousand voxels
-constexpr int BeamsOfRow = 64;     ///< rows with fewer beams are launched in larger numbers
-constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< the same for beams in a block
-constexpr int Reach = 2; ///< halo in voxels: a beam may extend one voxel beyond the block, and one more by rounding
+/// Rows per launch; keeps it well below a tenth of a second for rows of a thousand voxels
+constexpr int RowsPerLaunch = 256;
+constexpr int BeamsOfRow = 64;                  ///< rows with fewer beams are launched in larger numbers
+constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they are traced in a block
+/// Halo in voxels: a beam may extend one voxel beyond the block, and one more by rounding
+constexpr int Reach = 2;
 
-constexpr int PassesAtMost = 9; ///< number of passes
-/// Number of passes after which the remaining light of a box without faces is spread uniformly.
+constexpr int PassesAtMost = 9; ///< maximum number of passes
+/// Number of passes after which the remaining light of a box that is periodic along all axes is distributed uniformly.
 constexpr int EvenFrom = 3;
-constexpr double LeftAtMost = 5e-5; ///< no further pass once this fraction of the power, or less, is still in flight
+constexpr double LeftAtMost = 5e-5; ///< fraction of the power in transit at which passes end
 
-/// Traces the beams of a pass and adds the result to the shares.
-/// @param factor  multiplies the power that the beams start with
+/// Traces the beams of a pass and adds their tallies to the shares.
+/// @param factor  multiplies the initial power of the beams
 using FollowPass = std::function<void(const Pass& pass, double factor, const Monitor& monitor)>;
 
 /// Traces a lamp's light around periodic axes in passes (numerics.md, section 5.3): beams that are still in the box at
 /// the end of a pass are replaced by fewer beams, which share their power.
-/// @param shares  of the lamp over all passes so far, updated by `follow`
-/// @return fraction of the lamp's power to be spread uniformly over a box that is periodic along all axes; else 0
+/// @param shares  shares of the lamp over all passes so far, updated by `follow`
+/// @return fraction of the lamp's power to be distributed uniformly over a box that is periodic along all axes; else 0
 double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, LampShares& shares,
   const FollowPass& follow, const Monitor& monitor)
 {
@@ -55,7 +57,8 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
     const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
     const double wanted = std::exchange(shares.onTheWay, 0.0);
     pass = pass.Next();
-    follow({ pass.begin, pass.end, true }, 1.0, {}); // power that the new beams have left where the pass begins
+    // Determines the power that the new beams have left where the pass begins
+    follow({ pass.begin, pass.end, true }, 1.0, {});
     const double found = std::exchange(shares.onTheWay, 0.0);
     if (!(found > 0.0))
     {
@@ -67,8 +70,8 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
   return endless ? std::exchange(shares.onTheWay, 0.0) : 0.0;
 }
 
-/// The voxel of the grid nearest to a beam's start. An approximation suffices: the rank that owns it takes the first
-/// step.
+/// Voxel of the grid nearest to a beam's start. An approximation suffices: the rank that owns the voxel computes the
+/// first step.
 std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   const double begins[] = { row.startU + static_cast<double>(beam) * row.openU, row.startV };
@@ -88,7 +91,7 @@ std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const Grid& grid, co
   return voxel;
 }
 
-/// sigma_t of a volume's voxels and of their halo, 1/length. Collective.
+/// Extinction sigma_t of a volume's voxels and of their halo, 1/length. Collective.
 Buffer<float> WithHalo(Device& device, const Domain& domain, const SweepVolume& volume, const Halo& halo)
 {
   std::vector<float> own(volume.grid.VoxelCount());
@@ -105,7 +108,7 @@ Buffer<float> WithHalo(Device& device, const Domain& domain, const SweepVolume& 
   return values;
 }
 
-/// The beams of one lamp that a rank traces, from all points that represent it.
+/// Tracer of the beams of one lamp on one rank, from all points that represent the lamp.
 class LampBeams
 {
 public:
@@ -137,12 +140,12 @@ private:
   const Domain& TheDomain;
   const SweepVolume& Volume;
   const LampOnGrid Lamp;
-  const Halo Stored;     ///< the voxels whose sums this rank holds while beams are traced
+  const Halo Stored;     ///< voxels whose sums this rank holds while beams are traced: its block and the halo
   tyndall::Rounds Ranks; ///< sends beams from block to block
-  Buffer<float> SigmaT;  ///< of the stored voxels; empty on one rank, where that of the volume is used
+  Buffer<float> SigmaT;  ///< sigma_t of the stored voxels; empty on one rank, where that of the volume is used
   std::unique_ptr<LampSums> Sums;
   cl::Kernel Kernel;
-  LampShares Shares; ///< of all ranks, over all passes
+  LampShares Shares; ///< shares of all ranks, over all passes
 };
 
 LampBeams::LampBeams(Device& device, const Domain& domain, const SweepVolume& volume, const Light& light,
@@ -184,7 +187,7 @@ void LampBeams::FollowPoints(const Pass& pass, double factor, const Monitor& mon
 {
   const std::vector<LampPoint>& points = this->Lamp.PointsOf(pass);
   const double all = static_cast<double>(points.size());
-  LampShares found; // of this rank
+  LampShares found; // shares of this rank
   for (std::size_t p = 0, next; p < points.size(); p = next)
   {
     const Rows rows = this->Lamp.Rows(pass, factor, p, next);
@@ -194,7 +197,7 @@ void LampBeams::FollowPoints(const Pass& pass, double factor, const Monitor& mon
   this->Shares.Add(found.SumOver(this->TheDomain));
 }
 
-/// Runs follow_lamp of LampBeams.cl for some rows or, on several ranks, beams.
+/// Runs the kernel follow_lamp of LampBeams.cl for some rows or, on several ranks, for some beams.
 void LampBeams::Launch(const Buffer<float>& sigmaT, std::size_t sigmaFirst, const Buffer<BeamRow>& rows,
   const Buffer<BeamOnItsWay>& beams, std::size_t first, std::size_t count, const Buffer<float>& sums)
 {
@@ -206,7 +209,7 @@ void LampBeams::Launch(const Buffer<float>& sigmaT, std::size_t sigmaFirst, cons
   this->TheDevice.Finish();
 }
 
-/// Traces rows of beams through the whole grid.
+/// Traces rows of beams through the whole domain.
 void LampBeams::FollowRows(const Rows& rows, LampShares& found, const Monitor& monitor)
 {
   if (rows.empty())
@@ -228,7 +231,7 @@ void LampBeams::FollowRows(const Rows& rows, LampShares& found, const Monitor& m
   }
 }
 
-/// Traces rows of beams from block to block until no rank has any of them left. Collective.
+/// Traces rows of beams from block to block until no rank has any beams left. Collective.
 void LampBeams::FollowInRounds(const Rows& rows, LampShares& found, const Monitor& monitor)
 {
   Buffer<BeamRow> onDevice;
@@ -244,7 +247,7 @@ void LampBeams::FollowInRounds(const Rows& rows, LampShares& found, const Monito
     monitor);
 }
 
-/// The beams that start in this rank's block.
+/// Beams that start in this rank's block.
 LampBeams::Beams LampBeams::Starting(const Rows& rows) const
 {
   Beams own;
@@ -262,7 +265,8 @@ LampBeams::Beams LampBeams::Starting(const Rows& rows) const
   return own;
 }
 
-/// @return beams that have left the block for another
+/// Traces beams through this rank's block.
+/// @return beams that have left this block for another
 LampBeams::Beams LampBeams::FollowInBlock(
   const Rows& rows, const Buffer<BeamRow>& onDevice, const Beams& beams, LampShares& found, const Monitor& monitor)
 {
@@ -288,7 +292,7 @@ LampBeams::Beams LampBeams::FollowInBlock(
   return gone;
 }
 
-/// Number of rows per launch, fewer where beams travel far around a periodic axis.
+/// Number of rows per launch, fewer if beams travel far around a periodic axis.
 std::size_t LampBeams::RowsTogether(const BeamRow& row) const
 {
   const double layers = this->Stored.Periodic()[row.axis] ? static_cast<double>(row.count) * row.layers : 1.0;
@@ -296,7 +300,7 @@ std::size_t LampBeams::RowsTogether(const BeamRow& row) const
   return static_cast<std::size_t>(std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, most));
 }
 
-/// Number of beams per launch, fewer where beams travel far around a periodic axis within the block.
+/// Number of beams per launch, fewer if beams travel far around a periodic axis within the block.
 std::size_t LampBeams::BeamsTogether(const BeamRow& row) const
 {
   const bool all = this->TheDomain.Own().size[row.axis] == this->TheDomain.Whole().size[row.axis];
@@ -305,8 +309,8 @@ std::size_t LampBeams::BeamsTogether(const BeamRow& row) const
   return static_cast<std::size_t>(std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, most));
 }
 
-/// Replaces the sums of the stored voxels by those of this rank's own voxels, to which all ranks whose beams crossed
-/// them contribute. Collective.
+/// Replaces the sums of the stored voxels by those of this rank's own voxels, adding the contributions of other ranks'
+/// beams. Collective.
 void LampBeams::AddToOwners()
 {
   std::vector<cl_long> found, own;
@@ -334,7 +338,8 @@ void LampBeams::AddToOwners()
   });
 }
 
-/// Escaped power by cell of the whole grid's faces, summed over ranks; empty if not wanted. Collective.
+/// Escaped power per cell of the domain's faces, in LampPowerUnits, summed over ranks; empty if it is not summed.
+/// Collective.
 std::vector<cl_long> LampBeams::CellsOfAll() const
 {
   if (!this->Volume.deposit.faceOut)
@@ -351,7 +356,7 @@ std::vector<cl_long> LampBeams::CellsOfAll() const
 }
 
 /// Adds the sums of this rank's voxels to the deposit. Collective.
-/// @param even  fraction of the power to be spread uniformly
+/// @param even  fraction of the lamp's power to be distributed uniformly
 LampFactors LampBeams::AddToDeposit(double even)
 {
   const Domain& domain = this->TheDomain;
@@ -371,9 +376,9 @@ LampFactors LampBeams::AddToDeposit(double even)
       this->Sums->AddCellsTo(this->Volume, faceFirst, this->Lamp, factors.out);
     }
     this->Sums->SpreadEvenly(this->Volume, this->Lamp, factors.out * even, extinction);
-    this->TheDevice.Finish(); // the sums are released
+    this->TheDevice.Finish(); // the sums are released after this
   });
-  this->Shares.onTheWay += extinction > 0.0 ? 0.0 : even; // no voxel absorbs it
+  this->Shares.onTheWay += extinction > 0.0 ? 0.0 : even; // the power remains in transit if no voxel removes it
   return factors;
 }
 }

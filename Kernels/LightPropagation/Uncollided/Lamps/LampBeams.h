@@ -9,10 +9,10 @@
 namespace tyndall
 {
 /// Computes the uncollided flux of one point, spot or rectangle lamp along exact rays. The power that rays lose is
-/// deposited as in a sweep (numerics.md, sections 5.4 and 5.5). A quadrature would represent such a lamp by a few rays
+/// deposited as in a sweep (numerics.md, sections 5.3 to 5.5). A quadrature would represent such a lamp by a few rays
 /// (ray effects of 100% and more).
 ///
-/// Lamps send square beams, at most half a voxel wide where they leave the box and at least 16 across a spot's cone,
+/// Lamps emit square beams, at most half a voxel wide where they leave the box and at least 16 across a spot's cone,
 /// each with the power of its solid angle, Eq. (33). A rectangle is divided into parts, each of which lights the voxels
 /// that are far enough away from it, with beams one voxel wide or more; each voxel's path is then scaled to be exact in
 /// vacuum, Eq. (34a). Deposits are summed in 64-bit fixed point, Eq. (35), so that the sum does not depend on the order
@@ -29,9 +29,9 @@ namespace tyndall
 /// around periodic axes, except for beams with less than 1e-7 of their initial power, which are dropped.
 ///
 /// Collective.
-/// @param volume  this rank's block; the face cells of its deposit are those of the whole grid
-/// @return incident power (for a lamp inside the box: all of its power), escaped power, and the power still in flight
-///   around periodic axes; of all ranks
+/// @param volume  this rank's block; the face cells of its deposit are those of the whole domain
+/// @return incident power (for a lamp inside the box: all of its power), escaped power, and power in transit along
+/// periodic axes, W; sums over all ranks
 SweepTally DepositLamp(Device& device, const Domain& domain, const SweepVolume& volume, const Light& light,
   const std::array<bool, 3>& periodic, const Monitor& monitor);
 }

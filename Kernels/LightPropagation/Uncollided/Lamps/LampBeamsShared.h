@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels of LampBeams.cl.
+// Arguments of the kernels of LampBeams.cl and LampSums.cl, shared with C++.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -6,81 +6,91 @@
 SHARED_BEGIN
 enum
 {
-  /// Tallies per row of beams: entered, escaped through each of 6 faces, stranded (in flight at the end), emitted.
+  /// Number of tallies per row of beams: power that entered, escaped through each of 6 faces, is in transit at the end,
+  /// was emitted.
   LampRowSums = 9
 };
 
-/// Fixed-point units that represent a lamp's full power: 2^56; a sum of 64 times that power still fits.
+/// Fixed-point units that represent a lamp's full power: 2^56; a sum of 64 times that power still fits in 64 bits.
 #define LampPowerUnits 72057594037927936.0f
 
-/// A lamp and the box. Lengths along axis a are in units of `spacing[a]`, unless said otherwise.
+/// A lamp and the box that its beams cross. Lengths along axis a are in units of `spacing[a]`, unless said otherwise.
 typedef struct
 {
   int size[3];
   int first[3], stored[3];         ///< voxels that the arrays cover: all, or a block and its halo
   int followed[3], followedEnd[3]; ///< voxels in which beams are traced
   int periodic[3];
-  int images[3]; ///< periodic images to either side whose light is corrected together with the rectangle's, by axis
+  /// Number of periodic images to either side, per axis, whose light is corrected together with the rectangle's
+  int images[3];
   float spacing[3];
-  float direction[3];       ///< unit, in space
-  float cosine, sineSquare; ///< cosine and squared sine of the cone's half angle
-  float intensity; ///< fraction of the traced power (LampOnGrid::Share) per steradian; at normal emission if LAMBERT
-  float scale;     ///< fixed-point units per length
-  float diagonal;  ///< diagonal of a voxel, length
-  /// As in BoxFaceLayout: first cell by face; step by axis of the face, along each axis.
+  float direction[3];       ///< axis of a spot's cone or normal of a rectangle, unit vector in space
+  float cosine, sineSquare; ///< cosine and squared sine of the half angle of a spot's cone
+  /// Fraction of the traced power (LampOnGrid::Share) emitted per steradian; at normal emission if LAMBERT
+  float intensity;
+  float scale;    ///< fixed-point units per length
+  float diagonal; ///< diagonal of a voxel, length
+  /// Cells of the box's faces, as in BoxFaceLayout: index of the first cell of each face; index step along each axis,
+  /// by the axis of the face.
   int faceFirst[6], faceStep[3][3];
 } LampInfo;
 
-/// The beams of one pyramid at one tangent v.
+/// Row of beams: the beams of one pyramid at one tangent v, which differ in their tangent u.
 typedef struct
 {
-  int axis, up; ///< marching axis, and 1: towards +, 0: towards -
-  /// Reference tangents of the pyramid, to which the others are relative: the axis of a narrow cone.
+  int axis, up; ///< marching axis of the pyramid, and sense: 1 towards +, 0 towards -
+  /// Reference tangents of the pyramid, to which tangentU and tangentV are relative: those of the axis of a narrow
+  /// cone.
   float baseU, baseV;
   float crossing[3]; ///< cross product of the reference direction and the cone's axis: along the marching axis, u, v
-  float tangentU, tangentV; ///< of the first beam's centre, relative to the base; tangentV is that of all beams
-  float widthU, widthV;     ///< width of a beam, in tangents
-  int count;                ///< number of beams along u
-  int outside;              ///< 1: the lamp is outside the box along the marching axis
-  float from;               ///< start of the beams: the lamp's position along the axis, or the box's face, voxels
-  float startU, startV;     ///< centre of the first beam at the start, voxels
-  float openU, openV;       ///< width of a beam at the start, voxels
-  int skipped;              ///< layers that beams cross before anything is counted and deposited
-  int layers;               ///< layers that beams cross in all, at most
-  int beside;    ///< bits 1, 2: the lamp is beside the box along u, v, so that beams may enter through the faces there
-  float share;   ///< fraction of the lamp's power that the beams' origin emits
-  float part[3]; ///< centre of the part of a rectangle that the beams come from
-  /// Squared distances from it beyond which voxels receive its light, and beyond which beams may reach such voxels.
+  /// Tangents of the first beam's centre, relative to the base; tangentV is that of all beams
+  float tangentU, tangentV;
+  float widthU, widthV; ///< width of a beam, in tangents
+  int count;            ///< number of beams along u
+  int outside;          ///< 1: the lamp is outside the box along the marching axis
+  float from;           ///< start of the beams: the lamp's position along the axis, or the box's face, voxels
+  float startU, startV; ///< centre of the first beam at the start, voxels
+  float openU, openV;   ///< width of a beam at the start, voxels
+  int skipped;          ///< number of layers that beams cross before they deposit light and are tallied
+  int layers;           ///< maximum number of layers that beams cross
+  /// Bits 1, 2: the lamp is outside the box along u, v, so that beams may enter through the faces across u, v
+  int beside;
+  float share;   ///< fraction of the lamp's power emitted by the point from which the beams originate
+  float part[3]; ///< centre of the part of a rectangle that this point represents
+  /// Squared distances from `part` beyond which voxels receive its light, and beyond which beams may reach such voxels.
   float partFrom, partSeen;
-  float whole[3]; ///< the same for the larger part that was divided into this one; there its light ends
+  float whole[3]; ///< centre of the larger part of which `part` is a subdivision
+  /// Squared distances from `whole` at which the light of `part` ends, and beyond which beams of `part` light no voxel.
   float wholeFrom, wholeSeen;
 } BeamRow;
 
-/// A beam between two of its steps, as it is sent from one block to another.
+/// State of a beam between two of its steps, as sent from one block to another.
 typedef struct
 {
-  int row, beam;   ///< its row, and its number in the row
-  int layer, step; ///< the next layer, counted from the beam's first one, and the next step in it
-  int begun;       ///< 0: it has not started
-  float left;      ///< remaining power, fraction of the traced power of the lamp
+  int row, beam;   ///< index of the beam's row, and of the beam in the row
+  int layer, step; ///< next layer, counted from the beam's first layer, and next step in it
+  int begun;       ///< 0: the beam has not started
+  float left;      ///< remaining power, as a fraction of the traced power of the lamp
   float rest;      ///< compensation of rounding errors in `left`
-  float stays[2];  ///< fraction of its cross-section that has not left the box, along u and v
-  float free;      ///< power that would remain in vacuum
-  int voxel[3];    ///< voxel that contains its centre, or the nearest one of the grid
-  int ended;       ///< 1: it has left the grid
+  float stays[2];  ///< fraction of the beam's cross-section that has not left the box, along u and v
+  float free;      ///< power that would remain in vacuum, as a fraction of the traced power
+  int voxel[3];    ///< voxel that contains the beam's centre, or the nearest voxel of the grid
+  int ended;       ///< 1: the beam has left the grid
 } BeamOnItsWay;
 
-/// A rectangular lamp, and the voxels of a grid, or of a block of it, that it illuminates. In lengths.
+/// A rectangular lamp, and the voxels of a grid, or of a block of it, that it illuminates. Lengths are in the dataset's
+/// unit.
 typedef struct
 {
   float corner[3];   ///< corner of the block relative to the rectangle's centre, along its two edges and its normal
   float edges[3][3]; ///< unit vectors along the two edges and the normal
-  float reach[2];    ///< half the edge lengths
+  float reach[2];    ///< half the lengths of the two edges
   int size[3];       ///< size of the block, voxels
-  /// Size of the whole grid, voxels, and number of periodic images to either side that also emit.
+  /// Size of the whole grid, voxels, and number of periodic images of the lamp to either side that also emit.
   int period[3], images[3];
   float spacing[3];
-  float path;  ///< path per voxel and per steradian of the visible rectangle, W length, for a lamp of 1 W
+  /// Path integral per voxel and per steradian of the visible rectangle, W length, for a lamp of 1 W
+  float path;
   float scale; ///< fixed-point units per length
 } RectangleInfo;
 SHARED_END

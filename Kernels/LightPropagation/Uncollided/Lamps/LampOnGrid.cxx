@@ -17,18 +17,19 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t BeamsTogether = 1 << 18;
-/// Periodic images to either side of a rectangle whose light in vacuum is exact; fewer in a box without faces, where
-/// light never escapes.
+/// Number of periodic images of a rectangle to either side whose light in vacuum is exact; fewer in a box that is
+/// periodic along all axes, where light never escapes.
 constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
 
-/// Width of beams where they leave the box, voxels: of a lamp, of a rectangle, of one with many points.
+/// Width of beams where they leave the box, voxels: of a point or spot, of a rectangle, of a rectangle with more than
+/// ManyPoints points.
 constexpr double BeamWidth = 0.5, BeamWidthOfRectangle = 1.0, BeamWidthOfMany = 1.4;
 constexpr std::size_t ManyPoints = 64;
 /// Number of times that the full power may cross one voxel without overflow in fixed point.
 constexpr int RoundsAtMost = 64;
 
-/// A rectangle on one end of a periodic axis that emits out of the box is moved to the other end, where it emits into
-/// the box.
+/// Moves a rectangle on one end of a periodic axis that emits out of the box to the other end, where it emits into the
+/// box.
 Light ShiningIn(Light light, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   if (light.type != LightType::Rectangle)
@@ -68,7 +69,8 @@ LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bo
   }
 }
 
-/// Sets the number of a rectangle's periodic images whose light in vacuum is exact: none unless it is in the box.
+/// Sets the number of a rectangle's periodic images whose light in vacuum is exact: none unless the rectangle is in the
+/// box.
 void LampOnGrid::CountImages()
 {
   const glm::dvec3 end = EndOf(this->TheGrid);
@@ -85,7 +87,8 @@ void LampOnGrid::CountImages()
   }
 }
 
-/// Whether its beams carry all of its light: it is in the box, or its cone lies within the box's solid angle.
+/// Whether the traced beams carry all light of the lamp: it is in the box, or its cone lies within the box's solid
+/// angle.
 bool LampOnGrid::FollowsAll() const
 {
   const glm::dvec3 place = this->Centre[0].place;
@@ -109,26 +112,27 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
   {
     return { in, in, in };
   }
-  // The light of a rectangle's parts does not add up exactly: the power that the medium removes and the power that
-  // leaves are corrected, mostly the larger of the two (numerics.md, Eq. (34b)).
+  // The light of a rectangle's parts does not conserve energy exactly: the power that the medium removes and the power
+  // that escapes are corrected, mostly the larger of the two (numerics.md, Eq. (34b)).
   const double share = this->Share(), left = share * (shares.Out() + even), kept = share * taken;
   const double square = kept * kept + left * left;
   if (!(square > 0.0))
   {
-    return { 0.0, 0.0, 0.0 }; // the box is dark
+    return { 0.0, 0.0, 0.0 }; // no light reaches the box
   }
   const double rest = (in * shares.In() - kept - left) / square;
   return { in, share * (1.0 + rest * kept), share * (1.0 + rest * left) };
 }
 
-/// From the solid angle of the sphere around the box; a power of two.
+/// The lamp's intensity times the solid angle of the sphere around the box, rounded up to a power of two; for a
+/// rectangle the fraction that enters the box, rounded likewise, if it is known.
 double LampOnGrid::Share() const
 {
   if (this->Lamp.type == LightType::Rectangle && this->Entering > 0.0)
   {
     return std::exp2(std::ceil(std::log2(this->Entering)));
   }
-  // solid angle of a sphere over pi (radius / distance)^2, at most, from twice its radius on
+  // upper bound of the solid angle of a sphere over pi (radius / distance)^2, at distances of at least twice its radius
   constexpr double ofNearBall = 1.1;
   const Grid& grid = this->TheGrid;
   const double radius = 0.5 * std::hypot(grid.Length(0), grid.Length(1), grid.Length(2));
@@ -153,7 +157,7 @@ std::vector<BeamRow> LampOnGrid::Rows(const Pass& pass, double factor, std::size
 {
   const double ofRectangle = this->Points.size() < ManyPoints ? BeamWidthOfRectangle : BeamWidthOfMany;
   const double width = this->Lamp.type == LightType::Rectangle ? ofRectangle / this->Lamp.fineness : BeamWidth;
-  const double margin = 2.0 * this->Diagonal(); // allows for a beam's cross-section and a step
+  const double margin = 2.0 * this->Diagonal(); // margin for a beam's cross-section and a step
   const std::vector<LampPoint>& points = this->PointsOf(pass);
   std::vector<BeamRow> rows;
   std::size_t beams = 0;
@@ -248,7 +252,8 @@ LampInfo LampOnGrid::Describe(const VoxelBox& stored, const VoxelBox& followed) 
   return info;
 }
 
-/// No voxel can gather more than the full power along its diagonal, once per round.
+/// The scale allows for RoundsAtMost times the full power along the diagonal of a voxel, the maximum path integral of a
+/// passage.
 double LampOnGrid::UnitsPerLength() const
 {
   return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost))));

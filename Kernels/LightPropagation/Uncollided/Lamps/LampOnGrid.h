@@ -18,34 +18,35 @@
 
 namespace tyndall
 {
-/// Factors that convert LampShares to fractions of the lamp's power.
+/// Factors that convert the entries of LampShares to fractions of the lamp's power.
 struct LampFactors
 {
-  /// For the power that enters, that the medium removes, and that escapes or is still in flight.
+  /// Factors for the power that enters, that the medium removes, and that escapes or is in transit.
   double in, taken, out;
 };
 
 /// Power balance of a lamp's beams, as fractions of its power.
 struct LampShares
 {
-  std::array<double, 6> in = {}, out = {}; ///< by face
-  double onTheWay = 0.0;                   ///< still in flight around a periodic axis
-  double shone = 0.0;                      ///< emitted into the directions that were traced
+  std::array<double, 6> in = {}, out = {}; ///< power that enters, and that escapes, by face
+  double onTheWay = 0.0;                   ///< power in transit along a periodic axis
+  double shone = 0.0;                      ///< power emitted into the directions that were traced
 
   double In() const { return std::accumulate(this->in.begin(), this->in.end(), 0.0); }
   double Out() const { return std::accumulate(this->out.begin(), this->out.end(), this->onTheWay); }
 
-  /// @param sums  tallies of one row of beams, [LampRowSums]
+  /// Adds the tallies of one row of beams.
+  /// @param sums  tallies of the row, [LampRowSums]
   void Count(const BeamRow& row, const float* sums)
   {
-    // by the marching direction, for light of a lamp inside the box crosses no face on its way in
+    // by marching direction, since light of a lamp inside the box crosses no face as it enters
     this->in[2 * row.axis + row.up] += sums[0];
     for (int face = 0; face < 6; ++face)
     {
       this->out[face] += sums[1 + face];
     }
     this->onTheWay += sums[7];
-    // counts each part of the lamp once: parts of the finest level only
+    // each part of a rectangle counts once: only rows of the finest level
     this->shone += row.skipped > 0 || row.partFrom > 0.0f ? 0.0 : sums[8];
   }
 
@@ -60,7 +61,7 @@ struct LampShares
     this->shone += other.shone;
   }
 
-  /// The sum over ranks. Collective.
+  /// Sum of the shares over all ranks. Collective.
   LampShares SumOver(const Domain& domain) const
   {
     std::vector<double> values = { this->shone, this->onTheWay };
@@ -75,7 +76,8 @@ struct LampShares
     return sum;
   }
 
-  /// @param power  of the lamp, W, by channel; `channels` of these are used
+  /// Converts the shares to power, W.
+  /// @param power  power of the lamp, W, by channel; `channels` of these are used
   SweepTally Times(const Rgb& power, int channels, const LampFactors& factors) const
   {
     SweepTally tally;
@@ -92,11 +94,11 @@ struct LampShares
   }
 };
 /// A point, spot or rectangle lamp inside or outside a grid, prepared for the kernels that trace its beams
-/// (numerics.md, sections 5.4 and 5.5).
+/// (numerics.md, sections 5.3 to 5.5).
 class LampOnGrid
 {
 public:
-  /// Layers that all beams of a launch cross together; keeps it below a tenth of a second.
+  /// Number of layers that all beams of a launch cross together; keeps the launch below a tenth of a second.
   static constexpr double LayersPerLaunch = 4e6;
 
   /// @param grid  the whole grid; must outlive this object
@@ -104,33 +106,34 @@ public:
 
   const Light& TheLight() const { return this->Lamp; }
 
-  /// The points that represent the lamp in a pass: several for a rectangle in the first pass, else one.
+  /// Points that represent the lamp in a pass: several for a rectangle in the first pass, else one.
   const std::vector<LampPoint>& PointsOf(const Pass& pass) const
   {
     return pass.begin == 0 ? this->Points : this->Centre;
   }
 
-  /// The beams from a batch of the pass's points.
+  /// Beams, as rows, from a batch of the pass's points.
   /// @param factor  multiplies the power of the beams
   /// @param first  index of the batch's first point
-  /// @param next  set to the index at which the next batch begins
+  /// @param next  set to the index of the next batch's first point
   std::vector<BeamRow> Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const;
 
   /// Factors that normalise the lamp's shares. If the power that is traced (a lamp inside the box, a cone that lies
   /// within the box's solid angle) or that enters the box is known exactly, the factors enforce it.
   /// @param taken  share that the medium removes, for a rectangle
-  /// @param even  share that is to be spread uniformly
+  /// @param even  share that is to be distributed uniformly over the box
   LampFactors Factors(const LampShares& shares, double taken, double even) const;
 
-  /// Upper bound, in (0, 1], of the fraction of the lamp's power that reaches the box. Sums are kept as fractions of
-  /// this power, so that they retain their precision however far away the lamp is.
+  /// Upper bound, in (0, 1], of the fraction of the lamp's power that reaches the box. Sums are fractions of this
+  /// power, so that they retain their precision however far away the lamp is.
   double Share() const;
 
+  /// Arguments of the kernels that describe the lamp and the box.
   /// @param stored  voxels that the arrays cover
-  /// @param followed  voxels, among these, in which beams are traced
+  /// @param followed  voxels of `stored` in which beams are traced
   LampInfo Describe(const VoxelBox& stored, const VoxelBox& followed) const;
 
-  /// Number of additional sums per voxel for the correction in vacuum; 0 unless the lamp is a rectangle.
+  /// Number of additional sums per voxel for the deposit of a rectangle in vacuum, Eq. (34a); 0 for other lamps.
   int SumsOfVacuum() const;
   RectangleInfo DescribeRectangle(const VoxelBox& own) const;
 
@@ -138,7 +141,8 @@ public:
   double UnitsPerLength() const;
   double Diagonal() const; ///< diagonal of a voxel, length
 
-  /// @param source  of LampBeams.cl, or of a file that uses the same options
+  /// Compiles a kernel with the options of LampBeams.cl.
+  /// @param source  source of LampBeams.cl, or of a file with the same options
   /// @param inBlock  option IN_BLOCK of LampBeams.cl
   cl::Kernel Kernel(
     Device& device, const char* name, std::string_view source, const Deposit& deposit, bool inBlock = false) const;
@@ -151,9 +155,9 @@ private:
   Light Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
-  /// Periodic images to either side of a rectangle whose light is exact in vacuum, by axis.
+  /// Number of periodic images of a rectangle to either side, per axis, whose light is exact in vacuum.
   std::array<int, 3> Images = {};
-  double Entering = 0.0; ///< fraction of the power that enters the box; 0: unknown
+  double Entering = 0.0; ///< fraction of the lamp's power that enters the box; 0: unknown
   std::vector<LampPoint> Points, Centre;
 };
 }

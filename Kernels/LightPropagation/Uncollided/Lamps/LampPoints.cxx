@@ -71,7 +71,7 @@ std::vector<std::pair<glm::dvec3, double>> RectangleArea::Points(int perEdge) co
   constexpr double shares[][most] = { { 1.0 }, { 0.5, 0.5 }, { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 },
     { 0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727 } };
   const double longer = std::sqrt(glm::length(this->half[0]) / glm::length(this->half[1]));
-  const auto along = [=](double stretch) { // rounding must not make rotated scenes differ
+  const auto along = [=](double stretch) { // 1e-9: rounding must not make rotated scenes differ
     return perEdge == 1 ? 1 : static_cast<int>(std::clamp(perEdge * stretch + 0.5 + 1e-9, 1.0, most + 0.5));
   };
   const int counts[] = { along(longer), along(1.0 / longer) };
@@ -87,15 +87,16 @@ std::vector<std::pair<glm::dvec3, double>> RectangleArea::Points(int perEdge) co
 
 namespace
 {
-/// A part lights voxels at least this far from its centre, in its radii; for nearer ones it is divided.
+/// Minimum distance of voxels from the centre of a part that lights them, in radii of the part; for nearer voxels it is
+/// divided.
 constexpr double PartDistance = 2.0;
-/// Gauss points along an edge of a square: of a part, and of a rectangle that is not divided
+/// Number of Gauss points along an edge of a square: of a part, and of a rectangle that is not divided
 constexpr int PointsOfPart = 2, PointsOfAll = 3;
 constexpr double FinestPart = 2.0;   ///< longer edge of the smallest parts, voxels
 constexpr double PartsAcross = 64.0; ///< maximum number of smallest parts along the box's longest edge
 constexpr double Faint = 0.1;        ///< relative error below which one point represents a part
 
-/// Solid angle of a triangle (van Oosterom, Strackee).
+/// Solid angle of a triangle, sr (van Oosterom and Strackee).
 double SolidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 {
   const double x = glm::length(a), y = glm::length(b), z = glm::length(c);
@@ -104,8 +105,8 @@ double SolidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
       x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
 }
 
-/// Divides a rectangle into parts: each voxel is lit by parts that are small compared with their distance from it, and
-/// that together make up the whole rectangle.
+/// Division of a rectangle into parts: each voxel is lit by parts that are small compared with their distance from it,
+/// and that together make up the whole rectangle.
 class RectangleParts
 {
 public:
@@ -127,7 +128,7 @@ public:
   std::vector<LampPoint> Points;
 
 private:
-  /// Smallest and largest distance of the box's voxels from a point.
+  /// Smallest and largest distance of the box's voxels from a point, lengths.
   std::array<double, 2> Distances(const glm::dvec3& point) const
   {
     const glm::dvec3 end = EndOf(this->TheGrid);
@@ -195,8 +196,8 @@ private:
   const std::array<bool, 3>& Periodic;
   RectangleArea Whole;
   glm::dvec3 Normal;
-  double Finest; ///< longer edge of the smallest parts
-  double Away;   ///< PartDistance; like PerEdge and LeastError adapted to the light's fineness
+  double Finest; ///< length of the longer edge of the smallest parts
+  double Away;   ///< PartDistance, adapted to the light's fineness like PerEdge and LeastError
   int PerEdge;
   double LeastError;
 };

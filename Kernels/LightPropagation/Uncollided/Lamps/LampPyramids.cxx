@@ -12,16 +12,17 @@ namespace
 {
 constexpr double RightAngle = 0.5 * Pi;
 constexpr int BeamsAcrossCone = 16; ///< minimum number of beams across a spot's cone
-constexpr int FirstReach = 2;    ///< length of the first pass along a periodic axis, in the box's longest edge, voxels
-constexpr int Farther = 4;       ///< factor by which each further pass reaches farther
-constexpr int BeamsAtLeast = 16; ///< minimum number of beams along an edge of a pyramid on a periodic axis
+/// Length of the first pass along a periodic axis, in the box's longest edge, voxels
+constexpr int FirstReach = 2;
+constexpr int Farther = 4;             ///< factor by which each further pass reaches farther
+constexpr int BeamsAtLeast = 16;       ///< minimum number of beams along an edge of a pyramid on a periodic axis
 constexpr double BeamsPerVoxel = 64.0; ///< approximate number of beams that cross each voxel in a pass
 
 /// Number of adjacent beams between two tangents.
-/// @param far  layers to where they are to be `width` voxels wide
+/// @param far  number of layers from the lamp to where beams are `width` voxels wide
 int BeamsBetween(const std::array<double, 2>& tangents, double far, double width)
 {
-  // rounding must not add a beam
+  // 1e-6: rounding must not add a beam
   return static_cast<int>(std::ceil((tangents[1] - tangents[0]) * far / width - 1e-6));
 }
 
@@ -30,16 +31,16 @@ bool IsEmpty(const std::array<double, 2>& range)
   return range[0] >= range[1];
 }
 
-/// A grid of adjacent beams: ranges of tangents, and numbers of beams.
+/// Grid of adjacent beams in a pyramid: ranges of tangents along u and v, and numbers of beams.
 struct BeamGrid
 {
   std::array<double, 2> u, v;
   int countU, countV;
 };
 
-/// A spot's cone in the plane of a pyramid's axis and one lateral axis. The planes that touch the cone and contain the
-/// third axis are rotated by asin(sin(half angle) / R) from the cone's axis, where R is the length of that axis'
-/// projection onto the plane.
+/// Projection of a spot's cone onto the plane of a pyramid's axis and one lateral axis. The planes that touch the cone
+/// and contain the third axis are rotated by asin(sin(half angle) / R) from the cone's axis, where R is the length of
+/// that axis' projection onto the plane.
 struct ConeInPlane
 {
   ConeInPlane(double forward, double aside, double sine)
@@ -49,16 +50,17 @@ struct ConeInPlane
   {
   }
 
-  bool hasSides; ///< false: the cone covers all angles in the plane
+  bool hasSides; ///< whether the cone is bounded in the plane; false: it covers all angles
   double turn, reach;
 };
 
 /// Weights that define the borders of pyramids: a ray belongs to the axis along which its weighted component, in
-/// voxels, is largest. For a distant lamp the whole box lies in one pyramid, since the beams' steps leave uneven gaps
+/// voxels, is largest. For a distant lamp the whole box is in one pyramid, since the beams' steps leave uneven gaps
 /// where two pyramids meet.
 std::array<double, 3> WeightsOfAxes(const Grid& grid, const glm::dvec3& position)
 {
-  constexpr double widest = 1.5; // tangent at which beams still move laterally by less than a voxel per step
+  // Largest tangent at which beams still move laterally by less than a voxel per step
+  constexpr double widest = 1.5;
   double least = widest;
   std::array<double, 3> weights = { 1.0, 1.0, 1.0 };
   for (int axis = 0; axis < 3; ++axis)
@@ -80,9 +82,9 @@ std::array<double, 3> WeightsOfAxes(const Grid& grid, const glm::dvec3& position
   return weights;
 }
 
-/// The pyramid of beams along one direction of an axis. Tangents along the k-th axis after it are lateral voxels per
-/// layer, relative to `Base`: the tangent of a narrow cone's axis, so that they keep their precision however narrow the
-/// cone is, else 0.
+/// Pyramid of beams along one sense of an axis. Tangents along the k-th axis after it are lateral voxels per layer,
+/// relative to `Base`: the tangent of a narrow cone's axis, so that they keep their precision however narrow the cone
+/// is, else 0.
 class Pyramid
 {
 public:
@@ -117,7 +119,7 @@ public:
     return (this->Far > 0.0 || (around && this->Far == 0.0)) && (pass.begin == 0 || around) && this->Near < this->Reach;
   }
 
-  /// Range of tangents of the beams that are still in the box in a pass.
+  /// Range of tangents, along the k-th axis after the pyramid's, of the beams that are still in the box in a pass.
   std::array<double, 2> Seen(int k, const Light& light, const Pass& pass) const
   {
     const int aside = (this->Axis + k) % 3;
@@ -131,13 +133,14 @@ public:
     if (light.type == LightType::Spot)
     {
       const std::array<double, 2> cone = this->Cone(k, light);
-      const double aroundIt = 0.01 * (cone[1] - cone[0]); // keeps beams' edges off the cone's
+      // Margin that separates the beams' edges from the cone's
+      const double aroundIt = 0.01 * (cone[1] - cone[0]);
       seen = { std::max(seen[0], cone[0] - aroundIt), std::min(seen[1], cone[1] + aroundIt) };
     }
     return seen;
   }
 
-  /// Whether the part of a spot's cone in this pyramid is covered completely.
+  /// Whether the beams cover all of the part of a spot's cone in this pyramid.
   bool SeesAllOfCone(const Light& spot) const
   {
     bool isThere = true, seesAll = this->Far > 0.0;
@@ -156,7 +159,7 @@ public:
   {
     const double width[] = { (beams.u[1] - beams.u[0]) / beams.countU, (beams.v[1] - beams.v[0]) / beams.countV };
     const double middle[] = { beams.u[0] + 0.5 * width[0], beams.v[0] + (number + 0.5) * width[1] };
-    const auto start = [&](int k) { // in doubles: for a distant lamp both terms are large
+    const auto start = [&](int k) { // computed in doubles: for a distant lamp both terms are large
       return static_cast<float>(this->Position[(this->Axis + 1 + k) % 3] + (this->Base[k] + middle[k]) * this->Near);
     };
     const bool outside = this->Near > 0.0;
@@ -192,8 +195,8 @@ public:
     return row;
   }
 
-  /// Number of beams along the k-th axis after this one. They are at most `width` voxels wide where they leave the box,
-  /// or where a pass begins.
+  /// Number of beams along the k-th axis after the pyramid's. Each is at most `width` voxels wide where it leaves the
+  /// box, or where a pass begins.
   int Count(int k, const std::array<double, 2>& seen, const Light& light, const Pass& pass, double width) const
   {
     const int aside = (this->Axis + k) % 3, other = (this->Axis + 3 - k) % 3;
@@ -228,8 +231,8 @@ private:
     return this->Position[aside] < 0.0 || this->Position[aside] > this->TheGrid.size[aside];
   }
 
-  /// Whether the cone is so narrow, and so far from the planes across the axis, that its border is near its axis'
-  /// tangent.
+  /// Whether the cone is so narrow, and so far from the plane across the pyramid's axis, that its border is near its
+  /// axis' tangent.
   static bool IsNarrow(const ConeInPlane& cone)
   {
     constexpr double narrow = 0.1;
@@ -248,7 +251,7 @@ private:
       std::sin(HalfAngle(spot)) };
   }
 
-  /// Range of tangents to the box within the pyramid; for a lamp on one of its faces all inward tangents.
+  /// Range of tangents to the box within the pyramid; for a lamp on one of the box's faces all inward tangents.
   std::array<double, 2> Box(int k) const
   {
     const int aside = (this->Axis + k) % 3;
@@ -292,8 +295,8 @@ private:
   const Grid& TheGrid;
   const std::array<bool, 3>& Periodic;
   const glm::dvec3& Position;
-  const double Near, Far;                      ///< layers from the lamp to the box's near face and to its far face
-  const double Reach;                          ///< layers from the lamp to where its beams end at the latest
+  const double Near, Far; ///< number of layers from the lamp to the box's near face and to its far face
+  const double Reach;     ///< maximum number of layers from the lamp to the end of its beams
   std::array<double, 2> Widest = { 1.0, 1.0 }; ///< absolute tangents at which other pyramids begin
   bool HasBase = false;
   std::array<double, 2> Base = {};

@@ -1,4 +1,4 @@
-// Adds the deposits of a lamp's beams, which are in fixed point, to the arrays of a deposit. Options as for
+// Kernels that add the deposits of a lamp's beams, which are in fixed point, to the arrays of a deposit. Options as for
 // LampBeams.cl.
 
 #include "LightPropagation/Uncollided/Lamps/BeamPower.cl"
@@ -7,8 +7,8 @@
 
 #define DEEPEST 7 // maximum number of halvings of a voxel close to a rectangle
 
-// Solid angle of the rectangle as seen from a point, whose coordinates are along its edges and its normal; 0 from
-// behind.
+// Solid angle of the rectangle as seen from a point, sr; 0 from behind. Coordinates are along the rectangle's edges and
+// its normal, lengths.
 static float angle_seen(const RectangleInfo* rectangle, float3 from)
 {
   return from.z > 0.0f
@@ -16,14 +16,14 @@ static float angle_seen(const RectangleInfo* rectangle, float3 from)
     : 0.0f;
 }
 
-// A subcell of a voxel: its centre, relative to the rectangle's, along the rectangle's edges and normal; and its edges
-// along x, y, z.
+// A subcell of a voxel: centre, relative to the rectangle's centre, along the rectangle's edges and normal; and edge
+// lengths along x, y, z.
 typedef struct
 {
   float3 middle;
   float edge[3];
-  float radius; // of the circumscribed sphere
-  float deep;   // half its extent along the normal
+  float radius; // radius of the circumscribed sphere
+  float deep;   // half the cell's extent along the rectangle's normal
 } voxel_cell;
 
 static float distance_to_border(const RectangleInfo* rectangle, float3 from)
@@ -44,8 +44,8 @@ static float3 to_rectangle(const RectangleInfo* rectangle, float x, float y, flo
   return (float3)(along[0], along[1], along[2]);
 }
 
-// Integral of the solid angle over a cell, divided by the cell's volume. The cell is divided into columns along the
-// axis nearest to the normal, each cut off at the rectangle's plane, with two Gauss points along each axis.
+// Integral of the rectangle's solid angle over a cell, divided by the cell's volume. The cell is divided into columns
+// along the axis nearest to the normal, each cut off at the rectangle's plane, with two Gauss points along each axis.
 static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* cell)
 {
   const float gauss = 0.288675135f;
@@ -63,7 +63,7 @@ static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* ce
     offset[(axis + 2) % 3] = (column & 2 ? gauss : -gauss) * cell->edge[(axis + 2) % 3];
     const float middle = cell->middle.z + rectangle->edges[2][0] * offset[0] + rectangle->edges[2][1] * offset[1] +
       rectangle->edges[2][2] * offset[2];
-    // Where the plane intersects the column, as a fraction of its length, from its centre.
+    // Position where the rectangle's plane intersects the column, as a fraction of its length, from its centre.
     const float plane = clamp(-middle / slope, -0.5f, 0.5f);
     const float from = slope > 0.0f ? plane : -0.5f, to = slope > 0.0f ? 0.5f : plane;
     for (int i = 0; i < 2; ++i)
@@ -82,7 +82,7 @@ static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* ce
 
 // Whether a cell must be halved: the solid angle varies fast near the rectangle's border, and with the inverse square
 // of the distance near a small rectangle.
-//   before  how far the voxel extends in front of the rectangle's plane
+//   before  extent of the voxel in front of the rectangle's plane, length
 static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, int level, float before)
 {
   const float3 normal =
@@ -96,7 +96,7 @@ static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, in
   return level < levels && distance_to_border(rectangle, cell->middle) < 2.5f * cell->radius;
 }
 
-// Mean over a voxel of the rectangle's solid angle, over the part of the voxel in front of it. The voxel is divided
+// Mean over a voxel of the rectangle's solid angle, sr, which is 0 behind the rectangle. The voxel is divided
 // adaptively into cells, which are visited in Morton order.
 static float mean_solid_angle(const RectangleInfo* rectangle, const int* voxel)
 {
@@ -145,7 +145,7 @@ static float mean_solid_angle(const RectangleInfo* rectangle, const int* voxel)
   return sum;
 }
 
-// Sum of mean_solid_angle() over the rectangle and its periodic images.
+// Sum of mean_solid_angle() over the rectangle and its periodic images, sr.
 static float mean_of_images(const RectangleInfo* rectangle, const int* voxel)
 {
   const int* images = rectangle->images;
@@ -165,8 +165,8 @@ static float mean_of_images(const RectangleInfo* rectangle, const int* voxel)
   return sum;
 }
 
-// Finds the factor by which each voxel's path from a rectangle's beams is multiplied to be exact in vacuum. Voxels that
-// no beam reaches get the path of vacuum, attenuated within the voxel.
+// Computes the factor by which each voxel's path from a rectangle's beams is multiplied to be exact in vacuum
+// (numerics.md, Eq. (34a)). In voxels that no beam reaches, the path is that in vacuum, attenuated within the voxel.
 // fixed_path  as in follow_lamp (LampBeams.cl)
 __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulong stride, __global float* gains,
   ulong first, const __global float* sigma, ulong sigma_first, float diagonal)
@@ -192,16 +192,17 @@ __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulo
   }
 }
 
-// Factor of a voxel's path.
+// Factor of a voxel's path that find_gains() computed; 1 for lamps other than rectangles.
 static float gain_of(const __global float* gains, ulong i)
 {
   return VACUUM ? gains[i] : 1.0f;
 }
 
+// Adds a lamp's path integrals to those of the deposit. One work-item per voxel and channel.
 // gains  factor of each voxel, if VACUUM
 // path   W length, [channel][stride], added to
-// units  [channel] W length of a fixed-point unit
-// sigma  1/length, shared by the channels
+// units  value of a fixed-point unit, W length, [channel]
+// sigma  extinction, 1/length, shared by the channels
 __kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
   const __global float* sigma, ulong sigma_first, float diagonal, const __global float* gains)
 {
@@ -212,9 +213,11 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
     (float)fixed_path[i] * unit * gain_of(gains, i) / units_of(sigma[sigma_first + i], diagonal);
 }
 
+// Adds the power of a lamp that escaped through each cell of the box's faces to the deposit. One work-item per cell and
+// channel.
 // cells     as in follow_lamp (LampBeams.cl)
 // face_out  W, [channel][cell], added to
-// watts     [channel] of the lamp
+// watts     power of the lamp, W, [channel]
 __kernel void add_fixed_cells(
   const __global long* cells, __global float* face_out, ulong first, ulong stride, float4 watts)
 {
@@ -224,6 +227,7 @@ __kernel void add_fixed_cells(
   face_out[first + channel * stride + i] += (float)cells[i] * unit;
 }
 
+// Adds a lamp's net flux to that of the deposit. One work-item per voxel and channel.
 // fixed_path  as in follow_lamp (LampBeams.cl)
 // flux  W length, [channel][x, y, z][stride], added to
 __kernel void add_fixed_flux(const __global long* fixed_path, __global float* flux, ulong first, ulong stride,
@@ -239,6 +243,7 @@ __kernel void add_fixed_flux(const __global long* fixed_path, __global float* fl
   }
 }
 
+// Adds a lamp's first moments to those of the deposit. One work-item per voxel and channel.
 // fixed_path  as in follow_lamp (LampBeams.cl)
 // first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
 __kernel void add_fixed_moments(const __global long* fixed_path, __global float* first_moments, ulong first,
@@ -258,7 +263,7 @@ __kernel void add_fixed_moments(const __global long* fixed_path, __global float*
   }
 }
 
-// Adds the same path, W length, to every voxel.
+// Adds the same path integral, W length, to every voxel.
 __kernel void add_evenly(__global float* path, ulong first, float each)
 {
   path[first + get_global_id(0)] += each;

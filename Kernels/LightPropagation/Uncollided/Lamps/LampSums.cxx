@@ -11,9 +11,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t GainsPerLaunch = 1 << 16; ///< keeps a launch below a tenth of a second
+constexpr std::size_t GainsPerLaunch = 1 << 16; ///< voxels per launch; keeps it below a tenth of a second
 
-/// Power that voxels with these path sums, times their gains, remove; as a fraction of the traced power.
+/// Power that voxels with these sums of path integrals, times their gains, remove; as a fraction of the traced power.
 double Taken(
   const SweepVolume& volume, const LampOnGrid& lamp, const std::vector<cl_long>& sums, const std::vector<float>& gains)
 {
@@ -22,7 +22,8 @@ double Taken(
   for (std::size_t i = 0; i < volume.grid.VoxelCount(); ++i)
   {
     const double extinction = sigma[volume.sigma_t_first + i];
-    const double path = static_cast<double>(sums[i]) / std::max(extinction * lamp.Diagonal(), 1.0); // Eq. (35)
+    // Path integral from its fixed-point sum, Eq. (35)
+    const double path = static_cast<double>(sums[i]) / std::max(extinction * lamp.Diagonal(), 1.0);
     taken += extinction * path * gains[i];
   }
   return taken / lamp.UnitsPerLength();
@@ -95,7 +96,7 @@ void LampSums::AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, cons
   cl::Kernel add = lamp.Kernel(this->TheDevice, "add_fixed_cells", kernel_source::LampSums, volume.deposit);
   With(add, this->OfCells, *volume.deposit.faceOut, cl_ulong(faceFirst), cl_ulong(cells), watts);
   this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells, volume.channels), cl::NullRange);
-  this->TheDevice.Finish(); // the cells may be released
+  this->TheDevice.Finish(); // the caller may release the cells after this
 }
 
 void LampSums::SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const

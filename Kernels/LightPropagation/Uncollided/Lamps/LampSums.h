@@ -6,8 +6,8 @@
 namespace tyndall
 {
 /// Sums of a lamp's deposits in 64-bit fixed point, as fractions of its power, so that they do not depend on the order
-/// of their terms (numerics.md, Eq. (35)): path times length, followed by first moments and net flux if the deposit has
-/// them, and for a rectangle the deposit in vacuum, [path, 3 first moments, 3 of flux, ...][stride]; and the power that
+/// of their terms (numerics.md, Eq. (35)): path integral, followed by first moments and net flux if the deposit has
+/// them, and for a rectangle the same in vacuum, [path, 3 first moments, 3 of flux, ...][stride]; and the power that
 /// escapes through each cell of the grid's faces, if the deposit has it.
 class LampSums
 {
@@ -22,33 +22,34 @@ public:
   }
 
   Buffer<cl_long>& Sums() { return this->Fixed; }
-  /// Escaped power by cell (BoxFaces.h), in LampPowerUnits; a single value if not wanted.
+  /// Escaped power per cell of the faces (BoxFaces.h), in LampPowerUnits; a single value if it is not summed.
   Buffer<cl_long>& Cells() { return this->OfCells; }
   std::size_t Stride() const { return this->TheStride; }
 
-  /// For a rectangle: finds the factors by which each voxel's path must be multiplied to be exact in vacuum
-  /// (numerics.md, section 5.3). AddTo() applies them.
-  /// @param own  the voxels of the sums
+  /// For a rectangle: computes the factors by which each voxel's path must be multiplied to be exact in vacuum
+  /// (numerics.md, Eq. (34a)). AddTo() applies them.
+  /// @param own  voxels that the sums cover
   /// @return fraction of the lamp's power that these voxels then remove; 0 for other lamps
   double FitToVacuum(const SweepVolume& volume, const LampOnGrid& lamp, const VoxelBox& own);
 
-  /// Adds the sums, times the lamp's power, to the deposit's arrays.
+  /// Adds the sums, times the lamp's power, to the arrays of the volume's deposit.
   /// @param volume  its stride is that of the sums
   /// @param factor  multiplies the lamp's power
   void AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const;
-  /// AddTo() for the cells of the faces; the deposit's begin at `faceFirst`.
+  /// Adds the sums per cell of the faces, times the lamp's power, to the deposit's faceOut.
+  /// @param faceFirst  index of the first channel's first cell in faceOut
   void AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, const LampOnGrid& lamp, double factor) const;
 
-  /// Adds light uniformly to the deposit's path: its limit after many wraps around a box that is periodic along all
+  /// Adds light uniformly to the deposit's path: the limit after many wraps around a box that is periodic along all
   /// axes.
   /// @param share  fraction of the lamp's power
-  /// @param extinction  Extinction() of the whole box; if it is 0, nothing is added
+  /// @param extinction  Extinction() of the whole box, 1/length; if it is 0, nothing is added
   void SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const;
 
 private:
   Device& TheDevice;
   Buffer<cl_long> Fixed, OfCells;
-  Buffer<float> Gains; ///< factor by voxel; a single value if there are none
+  Buffer<float> Gains; ///< factor for each voxel's path, FitToVacuum(); a single value if there are none
   std::size_t TheStride;
 };
 
