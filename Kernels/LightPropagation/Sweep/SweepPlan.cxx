@@ -393,9 +393,9 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t quantities =
     PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
-  // all rows also with rowsKept, since cells of faces need them
+  // Planes have all rows also with rowsKept, since cells of faces need them.
   const std::size_t planes = quantities * rows * this->row;
-  // moments of source and of path
+  // Moments of source and of path.
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow;
   return ring + planes + rows + packed + 3 * this->vector;
 }

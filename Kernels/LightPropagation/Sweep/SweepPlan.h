@@ -54,7 +54,7 @@ struct SweepPlan : SweepDescription
   EachWay eachWay = {}; ///< number of floats of each array for one sense of marching
   /// Values of the angular functions (BundleInfo::coefficients), forward first
   std::vector<float> coefficients;
-  FunctionOrder order; ///< order of the angular functions for this axis
+  FunctionOrder order; ///< order of the angular functions for the marching axis
   /// Whether rows of a plane are rows of the array of moments, so that they need no packing
   bool momentsInPlace = false;
   /// Number of floats in a packed row of moments: all channels, all functions from the second on

@@ -83,7 +83,8 @@ typedef struct
   float sineU, sineV;
   /// Number of planes between two moves along u, and along v; at most the planes of the axis
   float planesU, planesV;
-  int move[MaxMembers][4]; ///< u from u, u from v, v from u, v from v: a signed permutation
+  int move[MaxMembers]
+          [4]; ///< per member, signed permutation of the bundle's moves: u from u, u from v, v from u, v from v
   /// Number of frames, and index of each frame's first member, then the end of the last frame. A frame is a set of at
   /// most four members of the bundle whose directions differ only in signs.
   int frames, firstOfFrame[MaxFrames + 1];

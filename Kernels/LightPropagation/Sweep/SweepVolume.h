@@ -20,9 +20,9 @@ struct SweepVolume
   int channels = 1; ///< number of channels that share one sigma_t: 1 or 3
   std::size_t stride = 0;
   const AngularValues* angular = nullptr; ///< values of the angular functions, as in SweepRequest
-  const Buffer<float>* sigma_t = nullptr; ///< 1/length
+  const Buffer<float>* sigma_t = nullptr; ///< extinction, 1/length
   std::size_t sigma_t_first = 0;          ///< index of the first channel's first value in sigma_t
-  const Buffer<float>* source = nullptr;  ///< W / (length^3 sr); null: no source
+  const Buffer<float>* source = nullptr;  ///< source, W / (length^3 sr); null: no source
   Deposit deposit;                        ///< output arrays; no flux if there are angular moments, which include it
   /// Index of the first channel's first value in source and path (in flux three times this index, in partialCurrents
   /// and firstMoments six times).
@@ -72,9 +72,9 @@ void ReserveOnDevice(Device& device, Buffer<float>& buffer, std::size_t floats, 
 /// Scratch memory shared by sweeps along different axes. Its contents are undefined between sweeps.
 struct SweepWorkspace
 {
-  Buffer<float> maps;    ///< quantities of the planes that are being crossed
-  Buffer<float> scratch; ///< rounding errors of `path` (compensated summation), in sweeps along a periodic axis
-  Buffer<float> lost;    ///< rounding errors of `path` (compensated summation), in sweeps round a periodic axis
+  Buffer<float> maps;    ///< power of the rays of an open (not periodic) axis, W
+  Buffer<float> scratch; ///< quantities of the planes that are being crossed
+  Buffer<float> lost;    ///< rounding errors of `path` (compensated summation), in sweeps along a periodic axis
   std::array<Buffer<float>, SlotSizes().size()> slots; ///< slots of streamed volumes (SliceStream.h)
 
   /// Enlarges `maps` and `scratch` to these sizes. No sweep may be in progress, because buffers that are too small are

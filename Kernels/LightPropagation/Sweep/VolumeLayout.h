@@ -38,7 +38,7 @@ struct VolumeLayout
   std::size_t Floats(int parts = 1) const { return this->FloatsOf(parts * this->channels); }
   /// Number of floats of an array with `channelCount` values per voxel, including the padding at the end.
   std::size_t FloatsOf(int channelCount) const { return channelCount * this->Stride() + SweepPadding; }
-  /// Layout of an array with angular moments.
+  /// Memory layout of an array with the moments of `functions` angular functions.
   MomentPlaces Places(int functions) const
   {
     const std::size_t groups = (this->grid.size[0] + MomentGroup - 1) / MomentGroup;

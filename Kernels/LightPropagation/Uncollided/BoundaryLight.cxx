@@ -222,7 +222,7 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor)
 {
-  // a function instead of none, so that the maps of the opposite sense of marching are cleared too
+  // A function instead of none, so that the maps of the opposite sense of marching are cleared too
   const SweepBoundary dark = [](int, int) { return Rgb{}; };
   const Grid& grid = volume.domain.Whole();
   const int channels = volume.layout.Groups().front().count; // number of channels that are swept together

@@ -23,7 +23,7 @@ namespace
 /// @return incident power, escaped power, and power in transit along periodic axes, W
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor);
 
-// DepositBeam() in two steps, for arrays that cover only a block of the grid that the rays cross.
+// The two steps of DepositBeam(), for arrays that cover only a block of the grid that the rays cross.
 
 /// Sweeps along the beam of a directional light.
 /// @param volume  its deposit is not used

@@ -102,7 +102,7 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
     return;
   }
 #if OCTANT_SOURCE
-  // power of the additional octant source is not lost in its own voxel
+  // Power of the additional octant source is not lost in its own voxel
   sum -= all_more * load_real(x, rows->inverse) * rows->power;
 #endif
   __global float* path = rows->path + c * ROW;

@@ -167,7 +167,7 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   {
     const int2 of = rays[lane->firstRay + r];
     const __global BundleInfo* bundle = bundles + of.x;
-    // a ray's move across this side is a move along the bundle's u
+    // A ray's move across this side is a move along the bundle's u
     const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0;
     const float planes = ofU ? bundle->planesU : bundle->planesV;
     // Number of planes before and behind this one in which the ray may move so that power leaves through this plane's

@@ -51,9 +51,10 @@ struct PlaneRays
   const Buffer<cl_float4>& entering;
   /// Power of the rays before planes with even index, and before planes with odd index
   std::array<const Buffer<float>*, 2> maps;
-  const Buffer<float>&directed, &functions; ///< used only with angular moments
+  const Buffer<float>&directed,
+    &functions; ///< source along each ray, and angular functions; used only with angular moments
   const Buffer<float>& escaped;
-  const Buffer<float>&sidesIn, &sidesOut; ///< used only with SIDES
+  const Buffer<float>&sidesIn, &sidesOut; ///< power of the rays at the sides, W; used only with SIDES
 };
 
 /// Values of the compiler option SIDES of the plane kernels: rays that enter and leave through the sides of the box are

@@ -317,8 +317,8 @@ static void add_current(voxel_sums* sums, int face, colours rays, float part)
 }
 
 // Adds the power that enters voxel (u, v) through its faces in the move before segment s to the partial currents, see
-// SweepPartialCurrents.cl. Rays that cross the edge between four voxels also pass through the two voxels adjacent to
-// both.
+// SweepPartialCurrents.cl. Half of the rays that cross the edge between four voxels, from and to neighbours, pass
+// through voxel (u, v).
 // @param come  power of the rays that arrive from the voxel where the move starts
 static void count_currents(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours come)

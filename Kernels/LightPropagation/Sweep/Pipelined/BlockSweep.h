@@ -98,7 +98,7 @@ private:
   SweepPlan Plan;
   RaysOfBlock Rays;
   std::unique_ptr<BlockCrossing> Carrier;
-  std::vector<CrossingInfo> Crossings; ///< [plane of the block][bundle]
+  std::vector<CrossingInfo> Crossings; ///< moves and segments of rays, [plane of the block][bundle]
   /// Sideways moves of each bundle's rays through the whole domain, voxels along the bundle's u and v
   std::vector<std::array<double, 2>> Moves;
   int LapPlanes = 0;          ///< number of planes of the domain that rays have crossed in earlier laps

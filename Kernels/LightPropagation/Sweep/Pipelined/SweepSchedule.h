@@ -31,8 +31,8 @@ struct BlockContact
 {
   enum Kind
   {
-    Along,  ///< through faces across the marching axis, at the end of a plane
-    AsideU, ///< through faces across u or v, within a plane
+    Along,  ///< through faces across the marching axis, after the last plane of a block
+    AsideU, ///< AsideU, AsideV: through faces across u, v, within a plane
     AsideV,
     Edge ///< by a sideways move along u and v at once
   };
@@ -49,10 +49,10 @@ std::vector<BlockContact> ContactsBetween(const BlockPartition& partition, const
 /// Cost model of a distributed sweep, in an arbitrary unit of time.
 struct SweepCosts
 {
-  double ofRay = 1.0;     ///< per ray and voxel
+  double ofRay = 1.0;     ///< cost per ray and voxel
   double ofTask = 0.0;    ///< overhead per block and set of parallel bundles
-  double ofMessage = 0.0; ///< per message between ranks
-  double ofValue = 0.0;   ///< per ray and cell in a message
+  double ofMessage = 0.0; ///< cost per message between ranks
+  double ofValue = 0.0;   ///< cost per ray and cell in a message
 };
 
 /// Order in which each rank sweeps its block along the sets of parallel bundles. The sets of all octants start

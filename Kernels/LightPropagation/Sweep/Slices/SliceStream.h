@@ -41,9 +41,10 @@ public:
   /// Launches of the sweep, cut into pieces that fit in a slot if the volume is streamed.
   struct Schedule
   {
-    std::vector<std::vector<SlicePiece>> pieces; ///< [launch][unit]; empty: the volume is not streamed
-    Buffer<cl_int2>
-      rows; ///< as the kernel reads it: [launch][unit] planes from, to; of pieces [launch][ranges, slots][unit]
+    std::vector<std::vector<SlicePiece>> pieces; ///< pieces of each launch, [launch][unit]; empty: not streamed
+    /// Planes of each unit, first and end, as the kernel reads them: [launch][unit]; of pieces
+    /// [launch][ranges, slots][unit]
+    Buffer<cl_int2> rows;
   };
   Schedule Cut(const std::vector<cl_int2>& schedule) const;
 

@@ -27,7 +27,7 @@ namespace
 {
 /// Rows per launch; keeps it well below a tenth of a second for rows of a thousand voxels
 constexpr int RowsPerLaunch = 256;
-constexpr int BeamsOfRow = 64;                  ///< rows with fewer beams are launched in larger numbers
+constexpr int BeamsOfRow = 64;                  ///< number of beams in a row below which a launch has more rows
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they are traced in a block
 /// Halo in voxels: a beam may extend one voxel beyond the block, and one more by rounding
 constexpr int Reach = 2;

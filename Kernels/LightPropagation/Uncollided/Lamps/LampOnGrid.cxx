@@ -132,7 +132,7 @@ double LampOnGrid::Share() const
   {
     return std::exp2(std::ceil(std::log2(this->Entering)));
   }
-  // upper bound of the solid angle of a sphere over pi (radius / distance)^2, at distances of at least twice its radius
+  // Upper bound of the solid angle of a sphere over pi (radius / distance)^2, at distances of at least twice its radius
   constexpr double ofNearBall = 1.1;
   const Grid& grid = this->TheGrid;
   const double radius = 0.5 * std::hypot(grid.Length(0), grid.Length(1), grid.Length(2));

@@ -25,7 +25,7 @@ struct LampFactors
   double in, taken, out;
 };
 
-/// Power balance of a lamp's beams, as fractions of its power.
+/// Energy balance of a lamp's beams, as fractions of its power.
 struct LampShares
 {
   std::array<double, 6> in = {}, out = {}; ///< power that enters, and that escapes, by face
@@ -39,14 +39,14 @@ struct LampShares
   /// @param sums  tallies of the row, [LampRowSums]
   void Count(const BeamRow& row, const float* sums)
   {
-    // by marching direction, since light of a lamp inside the box crosses no face as it enters
+    // By marching direction, not by face, since light of a lamp inside the box enters through no face.
     this->in[2 * row.axis + row.up] += sums[0];
     for (int face = 0; face < 6; ++face)
     {
       this->out[face] += sums[1 + face];
     }
     this->onTheWay += sums[7];
-    // each part of a rectangle counts once: only rows of the finest level
+    // Only rows of the finest level, so that each part of a rectangle counts once.
     this->shone += row.skipped > 0 || row.partFrom > 0.0f ? 0.0 : sums[8];
   }
 

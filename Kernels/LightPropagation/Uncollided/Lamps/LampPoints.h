@@ -42,13 +42,13 @@ inline glm::dvec3 EndOf(const Grid& grid)
   return { grid.Length(0), grid.Length(1), grid.Length(2) };
 }
 
-using Polygon = std::vector<glm::dvec3>; ///< planar and convex
+using Polygon = std::vector<glm::dvec3>; ///< corners of a planar, convex polygon, lengths
 
 /// A rectangular lamp, or a part of one. Lengths are from the grid's corner.
 struct RectangleArea
 {
   glm::dvec3 middle;
-  std::array<glm::dvec3, 2> half; ///< half edge vectors
+  std::array<glm::dvec3, 2> half; ///< vectors of half the two edges
 
   RectangleArea(const Light& light, const Grid& grid);
 

@@ -12,7 +12,7 @@ namespace
 {
 constexpr double RightAngle = 0.5 * Pi;
 constexpr int BeamsAcrossCone = 16; ///< minimum number of beams across a spot's cone
-/// Length of the first pass along a periodic axis, in the box's longest edge, voxels
+/// Length of the first pass along a periodic axis, as a multiple of the box's longest edge in voxels
 constexpr int FirstReach = 2;
 constexpr int Farther = 4;             ///< factor by which each further pass reaches farther
 constexpr int BeamsAtLeast = 16;       ///< minimum number of beams along an edge of a pyramid on a periodic axis

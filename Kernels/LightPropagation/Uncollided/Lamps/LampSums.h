@@ -7,8 +7,8 @@ namespace tyndall
 {
 /// Sums of a lamp's deposits in 64-bit fixed point, as fractions of its power, so that they do not depend on the order
 /// of their terms (numerics.md, Eq. (35)): path integral, followed by first moments and net flux if the deposit has
-/// them, and for a rectangle the same in vacuum, [path, 3 first moments, 3 of flux, ...][stride]; and the power that
-/// escapes through each cell of the grid's faces, if the deposit has it.
+/// them, and for a rectangle its path integral in vacuum, [path, 3 first moments, 3 of flux, ...][stride]; and the
+/// power that escapes through each cell of the grid's faces, if the deposit has it.
 class LampSums
 {
 public:
