@@ -7,7 +7,7 @@
 SHARED_BEGIN
 enum
 {
-  MaxMembers = 8, ///< maximum number of members (mirror-image directions) in a bundle
+  MaxMembers = 8, ///< maximum number of members, i.e. symmetric directions, in a bundle
   MaxFrames = 2,  ///< maximum number of frames in a bundle: u and v in order, and exchanged
   /// Rows in a ring buffer between stages: a stage reads rows y - 1 to y + 1 while the stage before it writes row y + 2
   RingRows = 4,
@@ -160,7 +160,7 @@ typedef struct
 typedef struct
 {
   ulong maps;
-  ulong outside;      ///< rows of rays that enter through the faces across v
+  ulong outside;      ///< power of rays that enter through the faces across v: one row per member and channel
   ulong radiance;     ///< power of rays that enter through the faces across u: one value per member and channel
   ulong coefficients; ///< values of the angular functions
 } EachWay;

@@ -5,8 +5,8 @@
 
 namespace tyndall
 {
-/// Uncollided flux of one lamp along exact rays: parallel rays for a directional light (ParallelBeam.h), else rays from
-/// a point (LampBeams.h).
+/// Uncollided flux of one lamp along exact rays: parallel rays for a directional light (ParallelBeam.cl), else rays
+/// from a point (LampBeams.h).
 class UncollidedLamp : public UncollidedSource
 {
 public:

@@ -263,8 +263,8 @@ static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, 
   }
 }
 
-// Mixes the rays of a row of which only the fraction `part` moves, Eq. (22): `in` are the rays that arrive, `own` those
-// that stay.
+// Mixes the rays of a row of which only the fraction `part` moves (numerics.md, Eq. (22)): `in` are the rays that
+// arrive, `own` those that stay.
 static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
 {
   for (int m = 0; m < MEMBERS; ++m)
@@ -530,7 +530,7 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
   __global float* out =
     g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
 #if CURRENTS
-  if (inside && (ANGULAR || s > 0)) // else CROSS_CHANNEL adds the power that enters
+  if (inside && (ANGULAR || s > 0)) // else CROSS_CHANNEL adds the power
   {
     COUNT_CURRENTS(state, y, s, in, own, bundle, crossing);
   }

@@ -22,10 +22,10 @@ public:
   /// Path integral per unit of source in the voxel of origin, see SweepPlan::OwnLight
   void SetOwnLight(const std::vector<OwnLightInfo>& own);
 
-  /// Arguments of one or several launches.
+  /// Arguments of one or several launches of the kernel.
   struct Crossing
   {
-    SweepInfo info; ///< all values except the index of the launch
+    SweepInfo info; ///< arguments of the launch except its index
     VolumeArrays volume;
     const Buffer<float>& maps;
     const Buffer<float>& scratch;

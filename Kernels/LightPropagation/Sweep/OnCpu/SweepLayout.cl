@@ -72,7 +72,7 @@
 #define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2)
 typedef struct
 {
-  int stages; // number of stages
+  int stages; // number of stages of the planes in `of`
   int before; // number of stages of the chain's planes before the first plane in `of`
   struct
   {
@@ -96,7 +96,7 @@ struct plane_place
 // State of a work-item: the planes, rows and buffers that it works on.
 typedef struct
 {
-  int sizeU, sizeV;                 // voxels of the plane
+  int sizeU, sizeV;                 // number of voxels of the plane along u, v
   int width;                        // sizeU rounded up to whole vectors
   int shines, border, roundAxis;    // flags, see SweepInfo
   int periodicU, periodicV;         // flags, see SweepInfo

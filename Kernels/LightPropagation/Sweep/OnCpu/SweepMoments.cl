@@ -6,7 +6,7 @@
 // members, instead of one sum per member. A bundle has one frame or two; each value of a moment is read once for both.
 
 #define MOST_OF_FRAME (MEMBERS < 4 ? MEMBERS : 4)
-// Eight members are two full frames
+// Index of the first member of frame f; eight members are two frames of four.
 #define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f])
 
 // Loops over the functions k, from the second on, parity by parity; skips parities whose functions are zero in all of
@@ -37,8 +37,9 @@
     FUNCTIONS_OF(MACRO, end_2, end_3, 3) \
   }
 
-// Computes the source in the direction of each member, in row y, into slot `slot` of state->sources, Eq. (29b). Rows
-// are laid out as in the rings; the border of the rings' last row is also that of the first row here.
+// Computes the source in the direction of each member (numerics.md, Eq. (29b)), in row y, into slot `slot` of
+// state->sources. Rows are laid out as in the rings; the border of the rings' last row is also that of the first row
+// here.
 // @param frames  number of frames of the bundle, a compile-time constant
 static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
@@ -130,7 +131,7 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
   }
 }
 
-// Adds the members' path integrals to the moments of row y, Eq. (29b).
+// Adds the members' path integrals to the moments of row y (numerics.md, Eq. (29b)).
 // @param frames  number of frames of the bundle, a compile-time constant
 static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)

@@ -106,7 +106,7 @@ static face_planes planes_of_ray(const sweep_state* state, float planes)
   return found;
 }
 
-// Escaped power of the first cell of plane p on a side.
+// Pointer to the escaped power of the first cell of plane p on a side, W.
 static __global exact* cells_of_plane(const sweep_state* state, int side, int p, int c)
 {
   p = (p + state->facePlanes) % state->facePlanes; // wraps around a periodic axis

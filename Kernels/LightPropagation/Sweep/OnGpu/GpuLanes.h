@@ -30,7 +30,7 @@ struct LaneBatch
   bool around = false;      ///< whether the marching axis is periodic, so that rays wrap around
   std::size_t plan = 0;     ///< index of the lanes' plan, if rays wrap around
   std::size_t maps = 0;     ///< number of floats in the batch's maps
-  /// Number of floats in the sides of the batch's planes, if light is given or summed per cell of the faces
+  /// Number of floats for the rays at the sides of the batch's planes, if light is given or summed per cell of faces
   std::size_t sides = 0;
   bool hasArrays = false; ///< whether each lane writes to its own arrays, which are summed afterwards
 };

@@ -16,7 +16,7 @@ LaneArrays::LaneArrays(Device& device, const GpuLanes& lanes, const VolumeLayout
     if (count * parts > 0)
     {
       array = Buffer<float>(device, count * parts * values, what);
-      array.Fill(0.0f); // padding remains zero
+      array.Fill(0.0f); // the padding remains zero
     }
   };
   make(this->path, lanes.mostWithArrays, lanes.functionCount, "the light of each way");

@@ -37,7 +37,7 @@ public:
 private:
   LaneSlices(const SweepPlan& plan, const SweepLane& lane);
 
-  SweepPlan Plan; ///< plan with one unit, the lane
+  SweepPlan Plan; ///< plan of the lane's axis, with the lane as its only unit
   std::unique_ptr<SliceStream> Stream;
   SliceStream::Schedule Schedule;
 };

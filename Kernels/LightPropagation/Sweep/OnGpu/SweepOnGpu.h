@@ -105,7 +105,7 @@ private:
   /// Incident power of each ray, W, [ray][channel]: through the face across u, through the face across v, and where
   /// rays start
   Buffer<cl_float4> Entering;
-  Buffer<cl_float4> Nothing; ///< incident power of zero
+  Buffer<cl_float4> Nothing; ///< zeros, in the layout of Entering: no incident light
   LaneArrays OfLanes;
   LanePowers Powers;
   std::optional<LaneFaces> Faces;      ///< set if light is given or summed per cell of the faces

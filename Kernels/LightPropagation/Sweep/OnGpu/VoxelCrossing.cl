@@ -117,7 +117,7 @@ static float shines_more(const plane_state* state, const member_state* member, i
 #endif
 }
 
-// Power of the rays after a segment in voxel (u, v), Eq. (23), W.
+// Power of the rays after a segment in voxel (u, v), W (numerics.md, Eq. (23)).
 static colours behind(
   const plane_state* state, const member_state* member, int u, int v, colours before, segment_effect effect)
 {

@@ -155,8 +155,8 @@ struct Receiver
 /// of each.
 struct TaskGraph
 {
-  std::vector<std::vector<Receiver>> receivers; ///< receivers of each rank
-  std::vector<int> waitsFor;                    ///< number of senders to each rank
+  std::vector<std::vector<Receiver>> receivers; ///< per rank: ranks that receive its rays
+  std::vector<int> waitsFor;                    ///< per rank: number of ranks that send rays to it
   std::vector<int> behind;
 };
 

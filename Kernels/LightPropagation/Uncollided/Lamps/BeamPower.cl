@@ -147,7 +147,7 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middl
   const float2 width = (float2)(row->widthU, row->widthV) * spacing, edges = (float2)(low.x, low.x + width.x);
   const cone_slice bottom = slice_at(lamp, row, low.y), top = slice_at(lamp, row, low.y + width.y);
   if (is_in_cone(&bottom, edges.x) && is_in_cone(&bottom, edges.y) && is_in_cone(&top, edges.x) &&
-    is_in_cone(&top, edges.y)) // the cone is convex
+    is_in_cone(&top, edges.y)) // all corners of the beam are in the convex cone
   {
     return 1.0f;
   }

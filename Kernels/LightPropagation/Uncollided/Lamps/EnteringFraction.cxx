@@ -118,7 +118,7 @@ double OfSpot(const Grid& grid, const Light& spot, const glm::dvec3& place)
       seen +=
         AngleInCone(Vector(DirectionOf(spot)), half, glm::normalize(corners[i]), glm::normalize(corners[(i + 1) % 4]));
     }
-    seen = face % 2 ? -seen : seen; // as seen from outside
+    seen = face % 2 ? -seen : seen; // solid angle as seen from outside the box
     // Adds the cone if the face encloses the direction opposite to the axis
     angle += seen < -1e-9 * all ? seen + all : seen;
   }

@@ -59,8 +59,8 @@ static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, f
   add_units(flux + v * stride, convert_long_sat_rte(layers * tangent.y * lamp->spacing[v]));
 }
 
-// Advances a beam by one step: each part of its cross-section crosses its voxel and deposits the power lost, Eq. (34).
-// Updates the remaining power and its rounding compensation.
+// Advances a beam by one step: each part of its cross-section crosses its voxel and deposits the power lost
+// (numerics.md, Eq. (34)). Updates the remaining power and its rounding compensation.
 // @return power that has not reached the box yet
 static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, float2 tangent, float2 middle, float2 width,
   float2 way, float length, const __global float* sigma, __global long* path, ulong stride, BeamOnItsWay* beam,

@@ -32,7 +32,7 @@ constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they 
 /// Halo in voxels: a beam may extend one voxel beyond the block, and one more by rounding
 constexpr int Reach = 2;
 
-constexpr int PassesAtMost = 9; ///< maximum number of passes
+constexpr int PassesAtMost = 9; ///< maximum number of passes along periodic axes
 /// Number of passes after which the remaining light of a box that is periodic along all axes is distributed uniformly.
 constexpr int EvenFrom = 3;
 constexpr double LeftAtMost = 5e-5; ///< fraction of the power in transit at which passes end
@@ -141,11 +141,11 @@ private:
   const SweepVolume& Volume;
   const LampOnGrid Lamp;
   const Halo Stored;     ///< voxels whose sums this rank holds while beams are traced: its block and the halo
-  tyndall::Rounds Ranks; ///< sends beams from block to block
+  tyndall::Rounds Ranks; ///< exchange of beams between blocks
   Buffer<float> SigmaT;  ///< sigma_t of the stored voxels; empty on one rank, where that of the volume is used
   std::unique_ptr<LampSums> Sums;
   cl::Kernel Kernel;
-  LampShares Shares; ///< shares of all ranks, over all passes
+  LampShares Shares; ///< energy balance of the beams of all ranks, over all passes
 };
 
 LampBeams::LampBeams(Device& device, const Domain& domain, const SweepVolume& volume, const Light& light,
@@ -187,7 +187,7 @@ void LampBeams::FollowPoints(const Pass& pass, double factor, const Monitor& mon
 {
   const std::vector<LampPoint>& points = this->Lamp.PointsOf(pass);
   const double all = static_cast<double>(points.size());
-  LampShares found; // shares of this rank
+  LampShares found; // energy balance of this rank's beams
   for (std::size_t p = 0, next; p < points.size(); p = next)
   {
     const Rows rows = this->Lamp.Rows(pass, factor, p, next);
@@ -376,7 +376,7 @@ LampFactors LampBeams::AddToDeposit(double even)
       this->Sums->AddCellsTo(this->Volume, faceFirst, this->Lamp, factors.out);
     }
     this->Sums->SpreadEvenly(this->Volume, this->Lamp, factors.out * even, extinction);
-    this->TheDevice.Finish(); // the sums are released after this
+    this->TheDevice.Finish(); // before the sums are released
   });
   this->Shares.onTheWay += extinction > 0.0 ? 0.0 : even; // the power remains in transit if no voxel removes it
   return factors;

@@ -18,9 +18,9 @@ namespace tyndall
 /// vacuum, Eq. (34a). Deposits are summed in 64-bit fixed point, Eq. (35), so that the sum does not depend on the order
 /// of the beams. For a lamp inside the box all of its power is traced.
 ///
-/// On a periodic axis rays wrap around, in passes with fewer beams at larger distance, until 0.05% of the power is left
-/// (LampPyramids.h). A lamp outside the box then illuminates only the part of the box that it sees directly, once per
-/// period.
+/// On a periodic axis rays wrap around, in at most nine passes with fewer beams at larger distance, until 0.005% of the
+/// power is left (LampPyramids.h). A lamp outside the box then illuminates only the part of the box that it sees
+/// directly, once per period.
 ///
 /// On several ranks, a beam that leaves a block is sent to the rank of the block that it enters (numerics.md, section
 /// 4.9). A beam covers up to four voxels, some of which may belong to another rank: each rank holds sigma_t of its

@@ -133,7 +133,8 @@ public:
   /// @param followed  voxels of `stored` in which beams are traced
   LampInfo Describe(const VoxelBox& stored, const VoxelBox& followed) const;
 
-  /// Number of additional sums per voxel for the deposit of a rectangle in vacuum, Eq. (34a); 0 for other lamps.
+  /// Number of additional sums per voxel for the deposit of a rectangle in vacuum, 0 for other lamps (numerics.md, Eq.
+  /// (34a)).
   int SumsOfVacuum() const;
   RectangleInfo DescribeRectangle(const VoxelBox& own) const;
 

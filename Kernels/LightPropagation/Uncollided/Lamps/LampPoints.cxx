@@ -71,7 +71,7 @@ std::vector<std::pair<glm::dvec3, double>> RectangleArea::Points(int perEdge) co
   constexpr double shares[][most] = { { 1.0 }, { 0.5, 0.5 }, { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 },
     { 0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727 } };
   const double longer = std::sqrt(glm::length(this->half[0]) / glm::length(this->half[1]));
-  const auto along = [=](double stretch) { // 1e-9: rounding must not make rotated scenes differ
+  const auto along = [=](double stretch) { // 1e-9 prevents differences between rotated scenes by rounding
     return perEdge == 1 ? 1 : static_cast<int>(std::clamp(perEdge * stretch + 0.5 + 1e-9, 1.0, most + 0.5));
   };
   const int counts[] = { along(longer), along(1.0 / longer) };

@@ -22,7 +22,7 @@ constexpr double BeamsPerVoxel = 64.0; ///< approximate number of beams that cro
 /// @param far  number of layers from the lamp to where beams are `width` voxels wide
 int BeamsBetween(const std::array<double, 2>& tangents, double far, double width)
 {
-  // 1e-6: rounding must not add a beam
+  // 1e-6 prevents rounding errors from adding a beam.
   return static_cast<int>(std::ceil((tangents[1] - tangents[0]) * far / width - 1e-6));
 }
 

@@ -22,7 +22,7 @@ double Taken(
   for (std::size_t i = 0; i < volume.grid.VoxelCount(); ++i)
   {
     const double extinction = sigma[volume.sigma_t_first + i];
-    // Path integral from its fixed-point sum, Eq. (35)
+    // Path integral from its fixed-point sum (numerics.md, Eq. (35))
     const double path = static_cast<double>(sums[i]) / std::max(extinction * lamp.Diagonal(), 1.0);
     taken += extinction * path * gains[i];
   }
@@ -96,7 +96,7 @@ void LampSums::AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, cons
   cl::Kernel add = lamp.Kernel(this->TheDevice, "add_fixed_cells", kernel_source::LampSums, volume.deposit);
   With(add, this->OfCells, *volume.deposit.faceOut, cl_ulong(faceFirst), cl_ulong(cells), watts);
   this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells, volume.channels), cl::NullRange);
-  this->TheDevice.Finish(); // the caller may release the cells after this
+  this->TheDevice.Finish(); // before the caller releases the cells
 }
 
 void LampSums::SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const
