@@ -108,7 +108,7 @@ void CoarseDiffusion::FindMatrix(Channel& channel)
 cl::Kernel CoarseDiffusion::Kernel(const char* name) const
 {
   return this->TheDevice.Kernel(
-    name, kernel_source::CoarseDiffusion, MultigridSolver::RowOptions(this->TheDevice) + ExactOption(this->TheDevice));
+    name, kernel_source::CoarseDiffusion, RowOptions(this->TheDevice) + ExactOption(this->TheDevice));
 }
 
 /// Sum over the voxels of each cell, over all ranks, x fastest.
@@ -121,7 +121,7 @@ std::vector<double> CoarseDiffusion::SumByCells(
   this->TheDomain.Collective([&] {
     cl::Kernel kernel = this->Kernel("sum_cells");
     With(kernel, box, values, static_cast<float>(scale), static_cast<float>(more), this->CellSums, cl_ulong(first));
-    MultigridSolver::RunRows(this->TheDevice, kernel, box.cells);
+    RunRowsOf(this->TheDevice, kernel, box.cells);
     const std::vector<float> own = OfRows(box.cells, this->CellSums.Read());
     sums.assign(own.begin(), own.end());
   });

@@ -84,8 +84,8 @@ cl::Kernel DiffusionSystem::Kernel(const char* name) const
 
 cl::Kernel DiffusionSystem::RowsKernel(const char* name) const
 {
-  return this->TheDevice.Kernel(name, kernel_source::DiffusionRows,
-    this->Options() + MultigridSolver::RowOptions(this->TheDevice) + Define("SKIN", this->AnySkin));
+  return this->TheDevice.Kernel(
+    name, kernel_source::DiffusionRows, this->Options() + RowOptions(this->TheDevice) + Define("SKIN", this->AnySkin));
 }
 
 void DiffusionSystem::Run(cl::Kernel& kernel)
@@ -101,7 +101,7 @@ void DiffusionSystem::RunBorder(cl::Kernel& kernel)
 
 void DiffusionSystem::RunRows(cl::Kernel& kernel) const
 {
-  MultigridSolver::RunRows(this->TheDevice, kernel, this->Layout.rows);
+  RunRowsOf(this->TheDevice, kernel, this->Layout.rows);
 }
 
 template <class... More>
@@ -207,9 +207,9 @@ double DiffusionSystem::Absorbed() const
   cl::Kernel kernel = this->RowsKernel("diffusion_absorbed");
   DiffusionLayout own = this->Layout;
   own.rows = this->Solver.Rows();
-  const ExactValues sums(this->TheDevice, MultigridSolver::GroupsOf(this->TheDevice, own.rows), "sums");
+  const ExactValues sums(this->TheDevice, RowGroups(this->TheDevice, own.rows), "sums");
   With(kernel, own, *this->Inputs.sigma_a, this->Solution.Handle(), sums.Handle());
-  MultigridSolver::RunRows(this->TheDevice, kernel, own.rows);
+  RunRowsOf(this->TheDevice, kernel, own.rows);
   const std::vector<double> parts = sums.Read();
   return std::accumulate(parts.begin(), parts.end(), 0.0);
 }

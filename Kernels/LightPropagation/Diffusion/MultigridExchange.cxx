@@ -74,8 +74,8 @@ void MultigridExchange::FillGhosts(Buffer<float>& rows) const
                      const Buffer<float>& to) {
     if (places.Size() > 0)
     {
-      cl::Kernel kernel = this->TheDevice.Kernel(name, kernel_source::MultigridSolver,
-        MultigridSolver::RowOptions(this->TheDevice) + ExactOption(this->TheDevice));
+      cl::Kernel kernel = this->TheDevice.Kernel(
+        name, kernel_source::MultigridSolver, RowOptions(this->TheDevice) + ExactOption(this->TheDevice));
       With(kernel, from, places, to);
       this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(places.Size()), cl::NullRange);
     }

@@ -78,11 +78,11 @@ MultigridSolver::MultigridSolver(Device& device, const Domain& domain, const std
     layouts[0] = this->Exchange->Finest();
     layouts.resize(this->TheDomain.Rank() == 0 ? layouts.size() : 1);
   }
-  std::size_t groups = std::max<std::size_t>(1, GroupsOf(device, this->Touched.layout));
+  std::size_t groups = std::max<std::size_t>(1, RowGroups(device, this->Touched.layout));
   for (const MultigridLevel& layout : layouts)
   {
     this->Levels.push_back(this->MakeLevel(layout));
-    groups = std::max(groups, GroupsOf(device, layout));
+    groups = std::max(groups, RowGroups(device, layout));
   }
   for (std::size_t l = 1; l <= VisitedTwice && l + 1 < this->Levels.size(); ++l)
   {
@@ -107,12 +107,12 @@ MultigridSolver::Level MultigridSolver::MakeLevel(const MultigridLevel& layout) 
   return level;
 }
 
-std::string MultigridSolver::RowOptions(const Device& device)
+std::string RowOptions(const Device& device)
 {
   return Define("REAL_WIDTH", device.KernelWidth(4, RowVector)) + SummingOption(device);
 }
 
-std::size_t MultigridSolver::GroupsOf(const Device& device, const MultigridLevel& level)
+std::size_t RowGroups(const Device& device, const MultigridLevel& level)
 {
   const auto own = [&](int axis) { return static_cast<std::size_t>(level.end[axis] - level.first[axis]); };
   const std::size_t rows = own(1) * own(2);
@@ -123,9 +123,9 @@ std::size_t MultigridSolver::GroupsOf(const Device& device, const MultigridLevel
   return std::min<std::size_t>(PartsOf<std::size_t>(rows * own(0), SummingGroup(device)), GroupsAtMost);
 }
 
-void MultigridSolver::RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level)
+void RunRowsOf(Device& device, cl::Kernel& kernel, const MultigridLevel& level)
 {
-  if (const std::size_t groups = GroupsOf(device, level); groups > 0)
+  if (const std::size_t groups = RowGroups(device, level); groups > 0)
   {
     RunSummingGroups(device, kernel, groups);
   }
@@ -332,7 +332,7 @@ double MultigridSolver::SumAfter(const std::function<void()>& work) const
   this->TheDomain.Collective([&] {
     work();
     const std::vector<double> values = this->Sums.Read();
-    const std::size_t groups = GroupsOf(this->TheDevice, this->Rows());
+    const std::size_t groups = RowGroups(this->TheDevice, this->Rows());
     for (std::size_t i = 0; i < groups; ++i)
     {
       sum += values[i];

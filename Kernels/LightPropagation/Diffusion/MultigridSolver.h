@@ -14,6 +14,13 @@
 
 namespace tyndall
 {
+/// Options of kernels that process rows (MultigridRows.cl).
+std::string RowOptions(const Device& device);
+/// Runs a kernel that processes rows.
+void RunRowsOf(Device& device, cl::Kernel& kernel, const MultigridLevel& level);
+/// Number of work-groups of such a kernel, and thus of the partial sums that it writes.
+std::size_t RowGroups(const Device& device, const MultigridLevel& level);
+
 /// Solves the linear system of a diffusion matrix on the voxels of a domain,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
 /// which is symmetric, with positive conductances and losses, by conjugate gradients (Hestenes and Stiefel 1952) from a
@@ -68,13 +75,6 @@ public:
   /// Continues the last Solve(); matrix, right-hand side and values must not have been written since.
   int GoOn(ExactValues& values, double unit, double reduction, double leftAtMost);
 
-  /// Options of kernels that process rows (MultigridRows.cl).
-  static std::string RowOptions(const Device& device);
-  /// Runs such a kernel.
-  static void RunRows(Device& device, cl::Kernel& kernel, const MultigridLevel& level);
-  /// Number of work-groups of such a kernel, and thus of the partial sums that it writes.
-  static std::size_t GroupsOf(const Device& device, const MultigridLevel& level);
-
 private:
   struct Level
   {
@@ -88,7 +88,7 @@ private:
   void Finish(Level& level);
 
   cl::Kernel Kernel(const char* name) const;
-  void Run(cl::Kernel& kernel, const Level& level) { RunRows(this->TheDevice, kernel, level.layout); }
+  void Run(cl::Kernel& kernel, const Level& level) { RunRowsOf(this->TheDevice, kernel, level.layout); }
   Level MakeLevel(const MultigridLevel& layout) const;
   bool HasAllLevels() const { return !this->Exchange || this->TheDomain.Rank() == 0; }
   void CoarsenTo(Level& coarse, const Level& fine);
