@@ -9,37 +9,39 @@
 
 namespace tyndall
 {
-/// Maximum number of batches that PhotonMarcher keeps apart: Photon::batch is 0 to 63.
+/// Maximum number of photon batches whose light PhotonMarcher sums separately: Photon::batch is 0 to 63.
 constexpr int MarchedBatchesAtMost = 64;
 
 /// A photon packet: a share of a light's power with a position and a direction, not a quantum.
 struct Photon
 {
-  /// Where it enters the volume, or the position of its lamp inside the volume.
+  /// Point where the photon enters the volume or, for a lamp inside the volume, the position of the lamp.
   std::array<double, 3> position = {};
   std::array<float, 3> direction = { 0.0f, 0.0f, 1.0f }; ///< direction of travel, unit length
   std::array<float, 3> power = {};                       ///< RGB, W
-  /// Ratio of its power to the power it would have if the photons of its light were spread evenly: large where photons
-  /// are sparse.
+  /// Ratio of the photon's power to the power it would have if the photons of its light were spread evenly: large
+  /// where photons are sparse.
   float weight = 1.0f;
-  /// The independent batch that it belongs to, from 0; each batch carries a part of all the power.
+  /// Index of the photon's batch, from 0. Batches are independent samples, each of which carries a part of the power.
   std::int32_t batch = 0;
 };
 
 /// Settings of the path integrator and of the sums of deposits.
 struct MarchSettings
 {
-  /// Order of the integrator: 2, the leapfrog; 4, Yoshida's three leapfrogs, which pays where n^2 is smooth over
-  /// several voxels; 1, explicit Euler, to compare with.
+  /// Order of the path integrator: 2, one leapfrog per step; 4, Yoshida's three leapfrogs, more efficient where n^2
+  /// is smooth over several voxels; 1, explicit Euler, for comparison.
   int order = 2;
-  /// Length of a step, in voxels, where the index varies and the octree (if any) has single voxels; 0.05 to 1e4.
+  /// Length of a step of the path integrator, in voxels, where the index varies and the octree (if any) has single
+  /// voxels; 0.05 to 1e4.
   double stepSize = 1.0;
   bool meanDirection = true;
-  /// Also return photonCount and photonWeight, for up to 16777215 photons: one more number per voxel, in the same pass.
+  /// Whether photonCount and photonWeight are returned, for up to 16777215 photons. They need one more number per
+  /// voxel, summed in the same pass.
   bool counts = false;
-  /// Also return batchFluence: separate sums for each of up to MarchedBatchesAtMost batches, which need at least as
-  /// many copies of the sums. Private sums are distributed among compute units by whole copies: to keep all compute
-  /// units busy, use batches of equal size, as many as there are compute units or a multiple of that.
+  /// Whether batchFluence is returned: separate sums for each of up to MarchedBatchesAtMost batches, which need at
+  /// least as many copies of the sums. Private sums are distributed among compute units by entire copies: to keep all
+  /// compute units busy, use batches of equal size, as many as there are compute units or a multiple of that.
   bool batches = false;
   /// Number of scattering orders that photons are followed through. 1: up to their first collision (the uncollided
   /// flux, without randomness); m: through m - 1 scatterings; 0: until they are absorbed or have escaped.
@@ -49,21 +51,22 @@ struct MarchSettings
   /// the light) is estimated; 0: no standard error. Cannot be combined with counts or batches.
   int errorBatches = 0;
   /// Whether bricks of 8^3 voxels that hold no medium store only their mean light, in one record, and are crossed by
-  /// photons in one segment. In a mostly empty medium this takes a small part of the memory and of the time; in voxels
-  /// of bricks that hold any medium the light is the same, to rounding. Takes effect only if the index is constant
-  /// (empty space then focuses no light), at least three quarters of the bricks are empty, and photons are followed
-  /// through one order, without counts and batches; otherwise light is stored voxel by voxel.
+  /// photons in one segment. In a mostly empty medium this needs a small fraction of the memory and of the time; in
+  /// the voxels of bricks that hold any medium the light agrees to rounding. Takes effect only if the index is
+  /// constant (empty space then focuses no light), at least three quarters of the bricks are empty, and photons are
+  /// followed through one order, without counts and batches; otherwise light is stored voxel by voxel.
   bool byBricks = false;
-  /// Whether kernels leave out what the scene does not need; false: kernels always have three channels and the
-  /// integrator, to measure the saving.
+  /// Whether kernels are compiled without the channels and the integrator that the scene does not need. With false,
+  /// kernels always have three channels and the integrator, to measure the saving.
   bool leaveOut = true;
 
-  /// How concurrent additions to the same sums are kept from losing deposits. All give the same light, bit for bit.
+  /// Method that keeps concurrent additions to the same sum from losing deposits. All methods give the same light,
+  /// bit for bit.
   enum class Sums
   {
-    Fitting, ///< Private on a CPU of up to 8 cores and on devices without 64-bit atomics, else Shared
-    Shared,  ///< one copy, 64-bit fixed-point atomics; needs cl_khr_int64_base_atomics
-    Private, ///< a copy for each compute unit (as many as fit into memory), added up at the end
+    Fitting, ///< Private on a CPU of up to 8 cores and on devices without 64-bit atomics, Shared otherwise
+    Shared,  ///< one copy of the sums, 64-bit fixed-point atomics; needs cl_khr_int64_base_atomics
+    Private, ///< a copy of the sums for each compute unit (as many as fit into memory), added up at the end
   };
   Sums sums = Sums::Fitting;
 };
@@ -73,59 +76,60 @@ struct MarchSettings
 ///   combined with maximumOrders other than 1
 void Check(const MarchSettings& settings);
 
-/// The path of one photon: its corners, and the fraction of its power (all channels together) that is left at each; 1
-/// if it had none.
+/// The path of one photon.
 struct PhotonPath
 {
-  std::size_t photon = 0; ///< index of the photon
-  std::vector<std::array<double, 3>> points;
-  std::vector<float> left;
+  std::size_t photon = 0;                    ///< index of the photon among those that were marched
+  std::vector<std::array<double, 3>> points; ///< corners of the path
+  std::vector<float> left; ///< fraction of the photon's power (sum of channels) left at each corner; 1 if it had none
 };
 
 /// Light that photons deposited in a medium.
 struct PhotonLight
 {
-  /// With maximumOrders = 1, the uncollided light; fluenceDirect would be equal and is left empty. In its energy
-  /// balance `absorbed` includes first-scattered power, and `leftOver` is the power of photons given up before they
-  /// escaped (total reflection can trap them). With more orders, the light of all orders; fluenceDirect is its
-  /// uncollided part, `absorbed` is absorption alone, and `leftOver` also includes power that would be scattered once
-  /// more, less the net power added by Russian roulette.
+  /// Light of all orders. With maximumOrders = 1, the uncollided light alone: fluenceDirect would be equal and is
+  /// left empty, the energy balance counts first-scattered power as `absorbed`, and its `leftOver` is the power of
+  /// photons terminated before they escaped (total reflection can trap them). With more orders, fluenceDirect is the
+  /// uncollided light, `absorbed` is absorption alone, and `leftOver` also includes power that would be scattered
+  /// once more, less the net power added by Russian roulette.
   LightField light;
-  Rgb scattered = {};            ///< W, scattered for the first time
-  std::uint64_t scatterings = 0; ///< number of scattering events, if there is more than one order
-  Rgb exchanged = {};            ///< W, net power added by Russian roulette; its mean is 0
-  /// Three values per voxel: sum of power times direction over sum of power, of length at most 1. Empty if not
-  /// requested. Coarse in voxels so dark that their sum is a few units of fixed point, some 2^-62 of all power times
-  /// the longest path.
+  Rgb scattered = {};            ///< W, power scattered for the first time
+  std::uint64_t scatterings = 0; ///< number of scattering events of all photons, if there is more than one order
+  Rgb exchanged = {};            ///< W, net power added by Russian roulette; its expected value is 0
+  /// Mean direction of the light, three values per voxel: sum of power times direction over sum of power, of length
+  /// at most 1. Empty if not requested. Coarse in voxels so dark that their sum is a few units of fixed point, some
+  /// 2^-62 of all power times the longest path.
   std::vector<float> meanDirection;
-  /// Number of photons that crossed each voxel with power left; a photon counts again each time it re-enters. Empty if
-  /// not requested.
+  /// Number of photons that crossed each voxel with power above 0; a photon counts again each time it re-enters.
+  /// Empty if not requested.
   std::vector<float> photonCount;
-  /// Mean `weight` of these photons, 0 where there are none, accurate to 1e-4 of the largest. Empty if not requested.
+  /// Mean Photon::weight of the photons counted in photonCount, 0 in voxels without any, accurate to 1e-4 of the
+  /// largest. Empty if not requested.
   std::vector<float> photonWeight;
   int batches = 1; ///< number of batches: the largest Photon::batch plus one
-  /// Fluence estimated from each batch alone, as if it carried all the power, [voxel][batch][channel]: the mean over
-  /// batches is `fluence`. Empty if not requested.
+  /// Fluence estimated from each batch alone, as if the batch carried all the power, [voxel][batch][channel]. Its
+  /// mean over batches is `fluence`. Empty if not requested.
   std::vector<float> batchFluence;
-  std::size_t missed = 0;       ///< photons whose lines miss the volume; they do not count as entered
-  std::size_t deposits = 0;     ///< path segments deposited in voxels
-  std::size_t steps = 0;        ///< steps of the integrator
-  double secondsMarching = 0.0; ///< from sorted photons to sums on the device
-  double seconds = 0.0;         ///< from photons to light
+  std::size_t missed = 0;   ///< number of photons whose lines miss the volume; their power does not count as entered
+  std::size_t deposits = 0; ///< number of path segments deposited in voxels
+  std::size_t steps = 0;    ///< number of steps of the integrator
+  double secondsMarching = 0.0; ///< time from sorted photons to sums on the device
+  double seconds = 0.0;         ///< total time from photons to light
 };
 
-/// Light of pilot photons in coarse cells that fill the medium's box (Pfeuti 2009, section 3.2.2). Arrays have x
-/// fastest.
+/// Light of pilot photons in coarse cells that fill the medium's box (Pfeuti 2009, section 3.2.2). In all arrays x
+/// varies fastest.
 struct PilotLight
 {
-  /// The coarse cells; where they do not divide the voxels evenly, some have one voxel more than others.
+  /// Grid of the coarse cells. Where their number does not divide the number of voxels, some cells are one voxel
+  /// longer than others.
   Grid grid;
-  int channels = 1;           ///< channels of fluence
-  std::vector<float> fluence; ///< W / length^2, the mean over each cell's voxels
+  int channels = 1;           ///< number of channels of `fluence`
+  std::vector<float> fluence; ///< W / length^2, mean over the voxels of each cell, channels fastest
   std::vector<float> count;   ///< number of photons that crossed each cell, each photon once
-  /// Mean and standard deviation of the column and row from which a cell's photons start, 2 values per cell; 0 where a
-  /// cell has none.
+  /// Mean and standard deviation of the origins (column and row on the photon plane) of the photons that crossed each
+  /// cell, 2 values per cell; 0 in cells without photons.
   std::vector<float> originMean, originDeviation;
-  double seconds = 0.0;
+  double seconds = 0.0; ///< duration, s
 };
 }

@@ -16,11 +16,11 @@ namespace tyndall
 {
 namespace
 {
-/// Samples that estimate the fraction of a light's photons that reaches the volume.
+/// Number of samples used to estimate the fraction of a light's photons that reaches the volume.
 constexpr std::size_t TrySamples = 4096;
 constexpr std::size_t ReportEvery = 100000;
 
-/// A light's source, with the importance map of its photon density.
+/// A light's photon source, with the sampler of its square of the importance map, if it has one.
 struct SpreadSource
 {
   PhotonSource source;
@@ -57,11 +57,11 @@ std::vector<SpreadSource> SpreadSources(std::vector<PhotonSource> sources, const
   return spread;
 }
 
-/// Estimates of a light's properties from a few of its photons.
+/// Estimates of a light's properties from a few of its samples.
 struct Tried
 {
-  double power = 0.0; ///< W reaching the volume, channels summed
-  double hits = 0.0;  ///< fraction of its photons that reach the volume
+  double power = 0.0; ///< W, power that reaches the volume, sum of channels
+  double hits = 0.0;  ///< fraction of the samples whose photons reach the volume
 };
 
 Tried Try(const Grid& grid, const SpreadSource& light)
@@ -106,9 +106,9 @@ std::vector<std::size_t> Shares(const std::vector<Tried>& tried, std::size_t cou
   return shares;
 }
 
-/// The photon of a sample; empty if there is none.
-/// @param weight  importance weight
-/// @param part    fraction of its light's power that it carries in uniform sampling
+/// Photon of one sample, moved to the volume; empty if the sample emits none or misses the volume.
+/// @param weight  weight of the photon, Photon::weight
+/// @param part    fraction of its light's power that the photon carries in uniform sampling
 std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot, double weight, double part)
 {
   std::optional<Photon> photon = shot && Sum(shot->power) > 0.0 ? Land(grid, *shot) : std::optional<Photon>();
@@ -123,9 +123,10 @@ std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot
   return photon;
 }
 
-/// Checks that the photons' power is in the range of float: not 0, not infinite, and not so small that digits are lost.
-/// @param parts  number of parts; if there are several, only too large a power is an error: photons of other parts may
-///   be brighter
+/// Checks that the photons' powers are in the range of float: not 0, not infinite, and not so small that digits are
+/// lost.
+/// @param parts  number of parts of the emission; if there are several, only too large a power is an error, because
+///   photons of other parts may be brighter
 void CheckPowers(const EmittedPhotons& emitted, int parts)
 {
   float largest = 0.0f;
@@ -177,14 +178,14 @@ void Check(const EmissionSettings& settings)
     "Ask for fewer photons (PhotonCount).");
 }
 
-/// The range of samples of one light.
+/// Numbers of samples of one light, and the range of them that this part of the emission uses.
 struct Tries
 {
-  std::size_t all = 0;            ///< all samples of the light
-  std::size_t begin = 0, end = 0; ///< those in this part
+  std::size_t all = 0;            ///< number of all samples of the light
+  std::size_t begin = 0, end = 0; ///< range of samples in this part
 };
 
-/// The samples of each light.
+/// Returns the numbers of samples of each light.
 std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettings& settings)
 {
   const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);
@@ -194,7 +195,7 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
   {
     if (shares[s] > 0)
     {
-      // Every batch needs photons of every light, or it would not represent all the light.
+      // Every batch needs photons of every light; otherwise its light would not have the expected value of all light.
       tries[s].all = std::max(
         static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits)), static_cast<std::size_t>(settings.batches));
     }

@@ -18,7 +18,7 @@ double Cross(const glm::dvec2& a, const glm::dvec2& b)
   return a.x * b.y - a.y * b.x;
 }
 
-/// One side of the hull of sorted points (Andrew's monotone chain): the lower for `side` 1, the upper for -1.
+/// Lower (`side` 1) or upper (`side` -1) chain of the convex hull of sorted points (Andrew's monotone chain).
 std::vector<glm::dvec2> Chain(const std::vector<glm::dvec2>& sorted, double side)
 {
   std::vector<glm::dvec2> chain;
@@ -39,8 +39,8 @@ bool IsBefore(const glm::dvec2& a, const glm::dvec2& b)
   return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-/// Sorts points, and aligns those with nearly equal x exactly: rounding separates the corners of a box seen face-on,
-/// and the hull would take the sliver between them for a side.
+/// Sorts points by x, and makes nearly equal x exactly equal: rounding separates the corners of a box seen face-on,
+/// and the hull would count the sliver between them as an edge.
 std::vector<glm::dvec2> Sorted(std::vector<glm::dvec2> points)
 {
   std::sort(points.begin(), points.end(), IsBefore);
@@ -70,7 +70,8 @@ double HeightAt(const std::vector<glm::dvec2>& chain, double x, bool fromLeft)
   return chain.back().y;
 }
 
-/// Finds the step that contains the fraction u of the total, and the position within it.
+/// Returns the step of a cumulative table that contains the fraction u of the total; `part` is the position within
+/// it.
 std::size_t Choose(const std::vector<double>& cumulative, double u, double& part)
 {
   return static_cast<std::size_t>(FindStep(cumulative.data(), static_cast<int>(cumulative.size()) - 1, u, part));
@@ -86,8 +87,8 @@ glm::dvec3 Corner(const Grid& grid, int which)
   return corner;
 }
 
-/// A unit vector perpendicular to the direction, along a projected axis of the volume, so that a face seen face-on is
-/// mapped to a square grid.
+/// Unit vector perpendicular to the direction, along the projection of an axis of the volume, so that a face seen
+/// face-on is mapped to a square grid.
 glm::dvec3 AxisAcross(const glm::dvec3& direction)
 {
   const glm::dvec3 axis = std::abs(direction.x) < 0.9 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
@@ -190,7 +191,7 @@ SphericalRectangle::SphericalRectangle(const glm::dvec3& eye, const glm::dvec3& 
   this->B1 = n2.z;
   this->K = 2.0 * Pi - g2 - g3;
   this->Angle = g0 + g1 - this->K;
-  if (this->Angle < smallBelow) // would be a small difference of large angles
+  if (this->Angle < smallBelow) // the difference of large angles would cancel
   {
     const glm::dvec3 middle(0.5 * (this->X0 + this->X1), 0.5 * (this->Y0 + this->Y1), this->Z0);
     const double distance = glm::length(middle);
@@ -290,7 +291,8 @@ glm::dvec3 LampView::Direction(double u, double v) const
   {
     return glm::normalize(this->Faces->At(u, v) - this->Place);
   }
-  // Azimuth around the normal of a face that the lamp is on, from another such normal.
+  // Direction by polar angle from the normal of a face that the lamp is on, and azimuth from the normal of a second
+  // such face; from coordinate axes if there is none.
   std::array<int, 3> axes = { 2, 0, 1 };
   std::stable_partition(axes.begin(), axes.end(), [this](int axis) { return this->Inwards[axis] != 0; });
   const auto& [pole, first, second] = axes;

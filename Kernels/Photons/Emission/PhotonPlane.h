@@ -10,24 +10,26 @@
 
 namespace tyndall
 {
-/// A convex polygon with a continuous, area-preserving map from the unit square: uniform samples stay uniform.
+/// A convex polygon with a continuous, area-preserving map from the unit square: uniform samples of the square are
+/// uniform on the polygon.
 class ConvexPolygon
 {
 public:
-  /// The convex hull of the points.
+  /// Builds the convex hull of the points.
   explicit ConvexPolygon(std::vector<glm::dvec2> points);
 
   double Area() const { return this->Below.back(); }
   glm::dvec2 At(double u, double v) const;
 
 private:
-  /// Between two consecutive corners in x: lower and upper bounds at its left (0) and right (1) edges.
+  /// Trapezoid of the polygon between two consecutive corners in x, from x0 to x1. Its lower (low) and upper (high)
+  /// bounds in y are given at x0 (suffix 0) and x1 (suffix 1).
   struct Slice
   {
     double x0, x1, low0, low1, high0, high1;
   };
   std::vector<Slice> Slices;
-  std::vector<double> Below = { 0.0 }; ///< cumulative area up to the end of each slice
+  std::vector<double> Below = { 0.0 }; ///< cumulative area up to the end of each slice, with a leading 0
 };
 
 /// The photon plane of parallel light: perpendicular to its direction, bounded by the outline of the volume.
@@ -44,52 +46,53 @@ private:
   ConvexPolygon Outline;
 };
 
-/// A rectangle seen from a point, with a map from the unit square that preserves solid angle. Urena, Fajardo, King: An
-/// Area-Preserving Parametrization for Spherical Rectangles, EGSR 2013.
+/// A rectangle seen from a point (the eye), with a map from the unit square that preserves solid angle. Urena,
+/// Fajardo, King: An Area-Preserving Parametrization for Spherical Rectangles, EGSR 2013.
 class SphericalRectangle
 {
 public:
   /// @param corner                one corner of the rectangle
   /// @param firstEdge,secondEdge  edge vectors from that corner, at right angles
-  /// @param smallBelow            solid angle below which the map preserves area instead
+  /// @param smallBelow            solid angle, sr, below which the map preserves area instead
   SphericalRectangle(const glm::dvec3& eye, const glm::dvec3& corner, const glm::dvec3& firstEdge,
     const glm::dvec3& secondEdge, double smallBelow = 1e-6);
 
   double SolidAngle() const { return this->Angle; }
   glm::dvec3 At(double u, double v) const; ///< a point on the rectangle
 
-  /// Weight of a point returned by At, sr; its mean over the unit square is the solid angle. Constant unless the map
-  /// preserves area.
+  /// Weight, sr, of a point returned by At; its mean over the unit square is the solid angle. The weight is constant
+  /// unless the map preserves area.
   double SolidAngleBy(const glm::dvec3& point) const;
 
 private:
-  /// Solid angle of the whole rectangle, computed from its area as if all of it were at this distance.
+  /// Solid angle, sr, of the rectangle's area if all of it were at this distance from the eye.
   double AngleByArea(double distance) const;
 
-  glm::dvec3 Eye, X, Y, Z; ///< axes of the rectangle, Z towards the eye
+  glm::dvec3 Eye, X, Y, Z; ///< position of the eye; axes of the rectangle, Z towards the eye
   double X0, X1, Y0, Y1, Z0;
   double B0, B1, K;
   double Angle = 0.0;
-  bool Small = false; ///< so distant that the solid angle per area is constant, or seen nearly edge-on
+  bool Small = false; ///< whether the map preserves area: the rectangle is distant, or seen nearly edge-on
 };
 
-/// The faces of the volume visible from a point outside: up to three.
+/// Faces of the volume that are visible from a point outside it: up to three.
 class VisibleFaces
 {
 public:
   VisibleFaces(const Grid& grid, const glm::dvec3& eye);
 
   double SolidAngle() const { return this->Below.back(); }
-  glm::dvec3 At(double u, double v) const; ///< a point on these faces, uniform in solid angle
+  glm::dvec3 At(double u, double v) const; ///< a point on the visible faces, uniform in solid angle
 
 private:
   std::vector<SphericalRectangle> Faces;
-  std::vector<double> Below = { 0.0 }; ///< cumulative solid angle up to the end of each face
+  std::vector<double> Below = { 0.0 }; ///< cumulative solid angle, sr, up to the end of each face, with a leading 0
 };
 
-/// The directions from a lamp into the volume: the whole sphere inside it, half of that on a face, a quarter on an
-/// edge, an eighth at a corner; from outside, the solid angle of the visible faces. A lamp counts as on a face within
-/// the rounding of its position, a millionth of the volume's edge.
+/// The directions from a lamp into the volume. For a lamp inside the volume they are the full sphere, for one on a
+/// face a half, on an edge a quarter, at a corner an eighth of the sphere; for a lamp outside, the solid angle of the
+/// visible faces. A lamp counts as on a face if it is within a millionth of the volume's edge of it (rounding of its
+/// position).
 class LampView
 {
 public:
@@ -97,17 +100,18 @@ public:
 
   LampView(const Grid& grid, const glm::dvec3& lamp);
 
-  const glm::dvec3& Lamp() const { return this->Place; } ///< position, moved onto the face that the lamp is on
+  /// Position, moved onto the face if the lamp counts as on a face.
+  const glm::dvec3& Lamp() const { return this->Place; }
   bool Outside() const { return this->Faces.has_value(); }
   double SolidAngle() const;
-  glm::dvec3 Direction(double u, double v) const; ///< into the volume, unit length, uniform in solid angle
+  glm::dvec3 Direction(double u, double v) const; ///< a direction into the volume, unit length, uniform in solid angle
 
-  /// Whether a direction does not point outwards through a face that the lamp is on.
+  /// Whether a direction does not point out of the volume through a face that the lamp is on.
   bool Enters(const glm::dvec3& direction) const;
 
 private:
   glm::dvec3 Place;
-  /// Inward direction, -1 or 1, along axes where the lamp is on a face, else 0.
+  /// Inward direction, -1 or 1, along each axis across which the lamp is on a face; 0 along other axes.
   std::array<int, 3> Inwards = { 0, 0, 0 };
   std::optional<VisibleFaces> Faces;
 };

@@ -28,7 +28,9 @@ std::array<glm::dvec3, 2> Across(const glm::dvec3& n)
   return { glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::dvec3(b, sign + n.y * n.y * a, -n.y) };
 }
 
-/// @param versine  1 - cosine of the angle to the axis, as the cosine of a small angle loses its digits
+/// Unit vector at an angle to a unit axis.
+/// @param versine  1 - cosine of the angle; the cosine itself would lose the digits of a small angle
+/// @param turn     azimuth around the axis, in full turns
 glm::dvec3 Around(const glm::dvec3& axis, double versine, double turn)
 {
   const std::array<glm::dvec3, 2> across = Across(axis);
@@ -75,13 +77,15 @@ PhotonSource Spot(const Grid& grid, const Light& light)
           } };
 }
 
-/// Means of a photon's power, relative to its light's, and of its square.
+/// Mean of the ratio of a photon's power to its light's power, and mean of the square of this ratio.
 struct Moments
 {
   double mean = 0.0, square = 0.0;
 };
 
-/// @param shoot  maps a sample to a photon, or none
+/// Estimates the moments of a light's photons.
+/// @param power  W, power of the light
+/// @param shoot  maps a sample to a photon, or to none
 template <class Shoot>
 Moments MomentsOf(int samples, const Rgb& power, const Shoot& shoot)
 {
@@ -97,7 +101,7 @@ Moments MomentsOf(int samples, const Rgb& power, const Shoot& shoot)
   return moments;
 }
 
-/// A face of the volume, and a point on it.
+/// A face of the volume, with a map from the unit square to its points.
 struct FaceOfGrid
 {
   const Grid& grid;
@@ -121,7 +125,8 @@ struct FaceOfGrid
   }
 };
 
-/// Samples points on the rectangle, then directions to the faces that each sees.
+/// Photons of a rectangle: samples points on the rectangle, then directions to the faces of the volume that each
+/// point sees.
 PhotonSource RectangleByPlaces(const Grid& grid, const Light& light)
 {
   const glm::dvec3 middle = Vector(light.position);
@@ -141,9 +146,9 @@ PhotonSource RectangleByPlaces(const Grid& grid, const Light& light)
           } };
 }
 
-/// Photons of a rectangle that is large as seen from the volume, so that most of its points contribute next to nothing:
-/// samples points on the faces, then the solid angle of the rectangle as seen from there; and the part of the rectangle
-/// inside the volume.
+/// Photons of a rectangle that is large as seen from the volume, so that most of its points contribute next to
+/// nothing. Samples points on the faces of the volume, then directions in the solid angle of the rectangle as seen
+/// from each point; for the part of the rectangle inside the volume, points on that part.
 class RectangleByFaces
 {
 public:
@@ -182,7 +187,7 @@ public:
   }
 
 private:
-  static constexpr int Parts = 7; ///< six faces, and the part of the rectangle inside the volume
+  static constexpr int Parts = 7; ///< the six faces, and the part of the rectangle inside the volume
 
   std::optional<Shot> ShootFrom(int part, const PhotonSample& u) const
   {
@@ -223,8 +228,8 @@ private:
     return Shot{ view.Lamp(), direction, Times(this->Power, this->Within->Area()) };
   }
 
-  /// Corners of the part of the rectangle that LampView counts as inside the volume, relative to its centre, in
-  /// fractions of its edges.
+  /// Corners of the part of the rectangle that LampView counts as inside the volume, relative to the rectangle's
+  /// centre, in fractions of its edges.
   std::vector<glm::dvec2> InVolume() const
   {
     std::vector<glm::dvec2> corners = { { -0.5, -0.5 }, { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } };
@@ -242,11 +247,12 @@ private:
     return corners;
   }
 
-  /// Divides samples in proportion to each part's root mean square power, which minimises the variance of the sum.
+  /// Divides samples among the faces and the part inside in proportion to their root mean square power, which
+  /// minimises the variance of the sum.
   void SetShares()
   {
     constexpr int samples = 512;
-    constexpr double least = 0.01; // for parts that may contribute, although no sample did
+    constexpr double least = 0.01; // share of faces that may contribute, although no sample did
     std::array<double, Parts> shares = {};
     double sum = 0.0;
     for (int part = 0; part < Parts; ++part)
@@ -262,7 +268,7 @@ private:
     }
   }
 
-  /// Whether the face extends in front of the rectangle, and the rectangle in front of the face.
+  /// Whether part of the face is in front of the rectangle, and part of the rectangle in front of the face.
   bool SeesFace(int face) const
   {
     const FaceOfGrid at = { this->TheGrid, face / 2, face % 2 == 1 };
@@ -281,12 +287,13 @@ private:
   Rgb Power;
   glm::dvec3 Middle, Normal, First, Second;
   double Area;
-  std::optional<ConvexPolygon> Within;       ///< part inside the volume, in fractions of the rectangle's edges
-  std::array<double, Parts + 1> Shares = {}; ///< cumulative, with a leading zero
+  std::optional<ConvexPolygon> Within; ///< part of the rectangle inside the volume, in fractions of its edges
+  /// Cumulative shares of samples of the six faces and the part inside, with a leading zero.
+  std::array<double, Parts + 1> Shares = {};
 };
 
-/// Mean square of the photons' powers over their squared mean: 1 if all reach the volume with the same power, infinite
-/// if none does.
+/// Mean square of the photons' powers over the square of their mean: 1 if all photons reach the volume with the same
+/// power, infinite if none reaches it.
 double Unevenness(const Grid& grid, const PhotonSource& source, const Rgb& power)
 {
   constexpr int samples = 1024;
@@ -329,7 +336,7 @@ PhotonSource DiffuseFace(const Grid& grid, int face, const Rgb& radiance)
           } };
 }
 
-/// Samples directions of an environment by the power that each sends onto the volume.
+/// Photons of the environment and the sky: samples directions by the power that each direction sends onto the volume.
 class Sky
 {
 public:
@@ -381,7 +388,7 @@ private:
     return this->FaceOutline(0, seen) + this->FaceOutline(1, seen) + this->FaceOutline(2, seen);
   }
 
-  /// A point on one of the three faces that are lit from this direction.
+  /// A point on one of the three faces that light from the direction `seen` reaches, uniform over the projected area.
   glm::dvec3 OnOutline(const glm::dvec3& seen, const PhotonSample& u) const
   {
     double wanted = u[0] * this->Outline(seen);
@@ -395,7 +402,8 @@ private:
     return FaceOfGrid{ this->TheGrid, axis, seen[axis] > 0.0 }.At(part, u[1]);
   }
 
-  /// Weights of the pixels: radiance of the bilinear image times solid angle and projected area of the volume.
+  /// Sampling weights of the pixels: radiance of the bilinear image times solid angle times projected area of the
+  /// volume.
   std::vector<double> Weights() const
   {
     std::vector<double> weights(static_cast<std::size_t>(this->Width) * this->Height);

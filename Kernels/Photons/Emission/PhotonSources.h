@@ -12,28 +12,29 @@
 
 namespace tyndall
 {
-/// Four coordinates in [0, 1) from which one photon is computed.
+/// Four sample coordinates in [0, 1) from which one photon is computed.
 using PhotonSample = std::array<double, 4>;
 
-/// A photon as its light emits it.
+/// A photon as its light emits it, before it is moved to the volume.
 struct Shot
 {
   glm::dvec3 from, direction;
   Rgb power; ///< W, as if it were the only photon of its light
 };
 
-/// Maps sample points to photons of one light; rejects samples where the light emits nothing.
+/// Sampler of the photons of one light: maps sample points to photons, and rejects samples for which the light emits
+/// nothing.
 struct PhotonSource
 {
-  int light = 0; ///< number of the light, see EmittedPhotons
+  int light = 0; ///< number of the light, as in EmittedPhotons::lights
   std::function<std::optional<Shot>(const PhotonSample&)> shoot;
-  bool alike = false; ///< all of its photons reach the volume, with equal power
+  bool alike = false; ///< whether all photons of the light reach the volume with equal power
 };
 
-/// Sources for all lights of the illumination, sampled as documented at EmitPhotons. Boundary sources (faces) come
-/// last.
+/// Returns the sources of all lights of the illumination, sampled as documented at EmitPhotons. Boundary sources
+/// (faces) are last.
 std::vector<PhotonSource> PhotonSourcesOf(const Grid& grid, const Illumination& illumination);
 
-/// Moves a photon to where it enters the volume; empty if it misses.
+/// Moves a photon along its direction to the point where it enters the volume; empty if it misses the volume.
 std::optional<Photon> Land(const Grid& grid, const Shot& shot);
 }

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// splitmix64 (Steele, Lea, Flood 2014): every bit of the result depends on every bit of x.
+/// Hash of x by splitmix64 (Steele, Lea, Flood 2014): every bit of the result depends on every bit of x.
 std::uint64_t Mix(std::uint64_t x)
 {
   x += 0x9e3779b97f4a7c15u;
@@ -33,7 +33,7 @@ double RadicalInverse(std::size_t i, std::size_t base)
   return std::min(inverse, 1.0 - 0x1p-53);
 }
 
-/// A stride that visits all of 0 ... count - 1, modulo count, with successive values far apart.
+/// Stride that visits each of 0 ... count - 1 once, modulo count, with successive values far apart.
 std::size_t Scatter(std::size_t count)
 {
   std::size_t stride = std::max<std::size_t>(static_cast<std::size_t>(0.6180339887498949 * count), 1);
@@ -64,7 +64,7 @@ double SampleSequence::Random(std::size_t i, int dimension) const
   return Unit(Mix(Mix(this->Seed + 1) ^ Mix(4 * static_cast<std::uint64_t>(i) + dimension)));
 }
 
-/// A point in cell i; rows have heights in proportion to their number of cells.
+/// A point in cell i of a grid of Count cells; rows have heights in proportion to their number of cells.
 std::array<double, 2> SampleSequence::Cell(std::size_t i, double across, double along) const
 {
   const std::size_t row = ((i + 1) * this->Rows - 1) / this->Count;
@@ -116,12 +116,12 @@ int FindStep(const double* table, int count, double u, double& part)
 {
   const double wanted = u * table[count];
   int step = static_cast<int>(std::upper_bound(table + 1, table + count, wanted) - table) - 1;
-  while (step > 0 && table[step + 1] == table[step]) // if rounding raised `wanted` to the total
+  while (step > 0 && table[step + 1] == table[step]) // rounding raised `wanted` to the total
   {
     --step;
   }
   part = std::min(
-    // Keeps step + part below step + 1 after rounding.
+    // At most 1 - 2^-40, so that step + part stays below step + 1 after rounding.
     (wanted - table[step]) / (table[step + 1] - table[step]), 1.0 - 0x1p-40);
   return step;
 }

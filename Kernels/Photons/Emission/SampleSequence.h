@@ -7,23 +7,24 @@
 
 namespace tyndall
 {
-/// How the samples of photons are distributed (Pfeuti 2009, section 4.1).
+/// Method that distributes the samples of photons in the unit hypercube (Pfeuti 2009, section 4.1).
 enum class Sampler
 {
-  Hammersley = 0, ///< (i + 1/2) / count and radical inverses to the bases 2, 3, 5
-  Halton = 1,     ///< radical inverses to the bases 2, 3, 5, 7
-  Jittered = 2,   ///< a random point in each cell of a grid
-  Grid = 3,       ///< the middle of each cell
+  Hammersley = 0, ///< (i + 1/2) / count, and radical inverses of i to the bases 2, 3, 5
+  Halton = 1,     ///< radical inverses of i to the bases 2, 3, 5, 7
+  Jittered = 2,   ///< a random point in each cell of a square grid
+  Grid = 3,       ///< the centre of each cell of a square grid
   Random = 4,
 };
 
-/// `count` points in the unit hypercube [0, 1)^4, reproducible for a given seed.
+/// Sequence of `count` points in the unit hypercube [0, 1)^4, reproducible for a given seed.
 ///
-/// The cells of Grid and Jittered have equal areas for any count; dimensions 2 and 3 form a second grid, in another
-/// order. A nonzero seed shifts all points of Hammersley, Halton and Grid by the same vector, modulo 1.
+/// The cells of Grid and Jittered have equal areas for any count. Dimensions 0 and 1 form one grid, dimensions 2 and
+/// 3 a second, whose cells are visited in another order. A nonzero seed shifts all points of Hammersley, Halton and
+/// Grid by the same vector, modulo 1.
 ///
-/// Batches of one seed are independent sets: each batch above 0 has its own shift; odd batches exchange dimensions 0
-/// and 1, and Hammersley's bases 2 and 3, so that the errors of an even and an odd batch are unrelated.
+/// Batches with the same seed are independent sets: each batch above 0 uses another shift; odd batches exchange
+/// dimensions 0 and 1, and Hammersley's bases 2 and 3, so that the errors of an even and an odd batch are unrelated.
 class SampleSequence
 {
 public:
@@ -38,34 +39,35 @@ private:
   Sampler Kind;
   std::size_t Count;
   std::uint64_t Seed;
-  bool Turned; ///< dimensions 0 and 1 are exchanged
+  bool Turned; ///< whether dimensions 0 and 1 are exchanged
   std::size_t Rows;
-  std::size_t Stride; ///< step through the cells of the second grid
+  std::size_t Stride; ///< step from one cell of the second grid to the next
   std::array<double, 4> Shift = {};
 };
 
-/// Inverts a cumulative table: the step at which the fraction u of the total is reached. Never returns a step of zero
-/// height.
+/// Inverts a cumulative table: returns the index of the step in which the fraction u of the total is reached, never a
+/// step of zero height.
 /// @param table  count + 1 non-decreasing values, the first 0, the last above 0
-/// @param u      [0, 1)
-/// @param part   output: position within that step, [0, 1)
+/// @param u      fraction of the total, [0, 1)
+/// @param part   output: position of u * total within that step, [0, 1)
 int FindStep(const double* table, int count, double u, double& part);
 
-/// Maps the unit square to the cells of an image so that uniform points get its density: rows by their marginal
-/// distribution, then columns by the row's conditional distribution.
+/// Map from the unit square to the cells of an image that distributes uniform points by the image's density: rows by
+/// their marginal distribution, then columns by the row's conditional distribution.
 class DensityTable
 {
 public:
-  /// @param weights  of the cells, columns fastest
+  /// @param weights  width * height non-negative weights of the cells, columns fastest
   DensityTable(int width, int height, const std::vector<double>& weights);
 
-  /// A point in a cell.
+  /// A point in a cell of the image.
   struct Place
   {
     int column, row;
     double across, along; ///< position within the cell, [0, 1)
   };
-  /// @param u, v  coordinates that choose the column and the row, [0, 1); the total must be above 0
+  /// Maps the coordinates u (which chooses the column) and v (the row), in [0, 1), to a point. Total() must be above
+  /// 0.
   Place At(double u, double v) const;
 
   double Total() const { return this->Rows.back(); }
@@ -73,6 +75,7 @@ public:
 
 private:
   int Width, Height;
-  std::vector<double> Rows, Columns; ///< cumulative, each with a leading zero
+  /// Cumulative weights of rows, and of cells within each row, each with a leading zero.
+  std::vector<double> Rows, Columns;
 };
 }

@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// Iterations that redistribute the excess above the cap; each leaves fewer cells above it.
+/// Maximum number of iterations that redistribute the density above the cap; each leaves fewer cells above it.
 constexpr int RoundsOfSharing = 64;
 
 std::string LightName(int light)
@@ -49,13 +49,13 @@ void CheckSquare(const ImportanceMap& map, std::size_t square)
   }
 }
 
-/// Densities with mean 1, none above `most`.
+/// Scales densities to a mean of 1 and limits each to `most`, by distributing the excess among the other cells.
 std::vector<double> Capped(const float* density, std::size_t cells, double most)
 {
   std::vector<double> capped(density, density + cells);
   const double largest = *std::max_element(capped.begin(), capped.end());
   const auto total = [&] { return std::accumulate(capped.begin(), capped.end(), 0.0); };
-  std::for_each(capped.begin(), capped.end(), [&](double& d) { d /= largest; }); // so that no sum overflows
+  std::for_each(capped.begin(), capped.end(), [&](double& d) { d /= largest; }); // so that the sum does not overflow
   const double scale = cells / total();
   std::for_each(capped.begin(), capped.end(), [&](double& d) { d *= scale; });
   for (int round = 0; round < RoundsOfSharing; ++round)

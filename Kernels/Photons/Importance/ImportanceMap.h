@@ -7,33 +7,33 @@
 
 namespace tyndall
 {
-/// Number that stands for the environment and the sky among lights; the illumination's own lights are numbered from 0.
+/// Number of the environment and the sky among lights; lights of the illumination are numbered from 0.
 constexpr int EnvironmentLight = -1;
 
-/// Relative density of photon origins: for each light a square image over its photon plane or its equivalent (the first
-/// two coordinates of the samples from which its photons are computed).
+/// Relative density of photon origins: for each light a square image over its photon plane or, for lights without
+/// one, over the first two coordinates of the samples from which its photons are computed.
 struct ImportanceMap
 {
   int size = 0;               ///< cells along an edge of each square
-  std::vector<int> lights;    ///< number of the light of each square, see EmittedPhotons
-  std::vector<float> density; ///< size*size per light, columns fastest; > 0, in any unit
+  std::vector<int> lights;    ///< number of the light of each square, as in EmittedPhotons::lights
+  std::vector<float> density; ///< size*size values per light, columns fastest; > 0, in any unit
 
-  int SquareOf(int light) const; ///< index of a light's square; -1: it has none
+  int SquareOf(int light) const; ///< index of a light's square; -1 if it has none
   std::size_t Cells() const { return static_cast<std::size_t>(this->size) * static_cast<std::size_t>(this->size); }
 };
 
-/// @throws InvalidInput if a density is negative, 0 (the light that starts there would be missing) or not finite (names
-///   light, column and row), or if there is not one density per cell
+/// @throws InvalidInput if a density is negative, 0 (light that starts in its cell would be missing) or not finite
+///   (names light, column and row), or if there is not one density per cell
 void Check(const ImportanceMap& map);
 
-/// Importance sampling for one light's square of the map: warps the unit square onto itself so that uniform points get
-/// the map's density (Pfeuti 2009, section 3.2.3).
+/// Importance sampling for one light's square of the map: maps the unit square onto itself so that uniform points are
+/// distributed by the map's density (Pfeuti 2009, section 3.2.3).
 class ImportanceSampler
 {
 public:
-  /// @param density  size*size, not all zero
+  /// @param density  size*size relative densities, not all zero
   /// @param most     upper limit of the density relative to uniform sampling, at least 1: the excess of a cell is
-  ///   shared by the other cells in proportion
+  ///   distributed among the other cells in proportion to their densities
   ImportanceSampler(const float* density, int size, double most);
 
   /// A point in the unit square, and the probability density there.
@@ -43,7 +43,7 @@ public:
   };
   Place At(double u, double v) const;
 
-  double DensityOf(int column, int row) const; ///< probability density in a cell; its mean is 1
+  double DensityOf(int column, int row) const; ///< probability density in a cell; its mean over cells is 1
 
 private:
   int Size;

@@ -14,19 +14,19 @@ namespace tyndall
 {
 namespace
 {
-// Thresholds from the pilot's own statistics, all in proportion to the light (numerics.md, Eq. (96)).
+// Constants of the automatic thresholds, which are in proportion to the pilot photons' light (numerics.md, Eq. (96)).
 constexpr double SteepPart = 0.2; ///< fraction of lit cells that count as steep
 constexpr double SteepAtLeast =
   0.25; ///< difference between cells over the median luminance; smaller ones are noise, or extinction in fog
-constexpr double DimBelow = 0.5;  ///< relative to the median luminance
-constexpr double FewCells = 0.01; ///< fraction of lit cells; fewer chosen cells do not justify a map
-/// Standard deviation of the map of chosen cells, of mean 1, times the fourth root of their fraction of the lit cells:
-/// below this value, a map gains nothing. Fog alone, under a sun from any side, a lamp above or in it, thin or thick,
-/// has 0.2 to 0.46; glass in fog 0.53 to 1.
+constexpr double DimBelow = 0.5;  ///< luminance threshold relative to the median luminance
+constexpr double FewCells = 0.01; ///< smallest fraction of lit cells that must be chosen to justify a map
+/// Threshold below which a map gains nothing, for the standard deviation of the map of chosen cells, of mean 1, times
+/// the fourth root of their fraction of the lit cells. Measured: fog alone, under a sun from any direction, a lamp
+/// above or in it, thin or thick, 0.2 to 0.46; glass in fog 0.53 to 1.
 constexpr double EvenMap = 0.5;
 
-constexpr int LargestEdge = 1024; ///< maximum edge of the map, in cells
-constexpr int FilterReach = 2;    ///< half width of the Gaussian filter: 5x5
+constexpr int LargestEdge = 1024; ///< maximum number of map cells along an edge
+constexpr int FilterReach = 2;    ///< half width of the Gaussian filter, in cells: 5x5
 constexpr double FilterVariance = 2.0;
 
 void Check(const ImportanceSettings& settings)
@@ -47,7 +47,7 @@ void Check(const ImportanceSettings& settings)
       Text("%g", settings.luminanceThreshold) + " (luminance); they must not be negative.");
 }
 
-/// Luminance of each cell: mean of the channels.
+/// Luminance of each cell: mean fluence of the channels, W / length^2.
 std::vector<double> LuminanceOf(const PilotLight& light)
 {
   const std::size_t channels = static_cast<std::size_t>(light.channels);
@@ -59,7 +59,8 @@ std::vector<double> LuminanceOf(const PilotLight& light)
   return luminance;
 }
 
-/// Adds the light of one more lamp. Origins stay those of the first lamp that reaches a cell.
+/// Adds the pilot light of one lamp to the light of earlier lamps. Each cell keeps the origins of the first lamp that
+/// reaches it.
 void Add(const PilotLight& more, PilotLight& light)
 {
   if (light.count.empty())
@@ -91,7 +92,8 @@ void Add(const PilotLight& more, PilotLight& light)
   light.seconds += more.seconds;
 }
 
-/// Absolute difference between neighbouring cells, as a vector norm: central differences, one-sided at the faces.
+/// Norm of the vector of luminance differences between neighbouring cells: central differences, one-sided at the
+/// faces.
 std::vector<float> GradientOf(const std::vector<double>& luminance, const Grid& grid)
 {
   const std::array<std::size_t, 3> stride = grid.Strides();
@@ -112,7 +114,7 @@ std::vector<float> GradientOf(const std::vector<double>& luminance, const Grid& 
   return gradient;
 }
 
-/// The value below which the fraction `part` of the values lies.
+/// Quantile of the values: the value below which the fraction `part` of them lies.
 double Quantile(std::vector<double> values, double part)
 {
   if (values.empty())
@@ -137,14 +139,14 @@ void ChooseThresholds(const std::vector<double>& luminance, Importance& importan
     }
   }
   const double median = Quantile(lit, 0.5);
-  // Cells with few photons differ by chance: by one photon for each row that crosses a cell.
+  // The luminance of cells with few photons fluctuates: by one photon for each row of photons that crosses a cell.
   const double chance = 1.0 / std::sqrt(std::max(Quantile(counts, 0.5), 1.0));
   importance.gradientThreshold =
     std::max(Quantile(steepness, 1.0 - SteepPart), std::max(SteepAtLeast, chance) * median);
   importance.luminanceThreshold = DimBelow * median;
 }
 
-/// Chooses cells as in Listing B.1. Returns the fraction of lit cells that are chosen.
+/// Chooses cells as in Listing B.1 of Pfeuti 2009. Returns the fraction of lit cells that are chosen.
 double ChooseCells(const std::vector<double>& luminance, Importance& importance)
 {
   std::size_t lit = 0, chosen = 0;
@@ -164,7 +166,8 @@ double ChooseCells(const std::vector<double>& luminance, Importance& importance)
   return lit > 0 ? static_cast<double>(chosen) / static_cast<double>(lit) : 0.0;
 }
 
-/// Adds 1 to the cells of a map whose centres are in a circle, at least to the cell that contains its centre.
+/// Adds 1 to the map cells whose centres are in a circle, and in any case to the cell that contains the circle's
+/// centre.
 void Splat(double x, double y, double diameter, int size, std::vector<double>& map)
 {
   const double radius = 0.5 * diameter;
@@ -187,9 +190,9 @@ void Splat(double x, double y, double diameter, int size, std::vector<double>& m
   }
 }
 
-/// Diameter of a cell's circle. As published, it is the sum of the origins' standard deviations along both axes
-/// (Listing B.1), which leaves gaps between the circles of neighbours. Otherwise the circle spans the square with these
-/// deviations, including the spread of origins within their cells.
+/// Diameter, in map cells, of the circle drawn for a coarse cell. As published, it is the sum of the origins'
+/// standard deviations along both axes (Listing B.1), which leaves gaps between the circles of neighbours. Otherwise
+/// the circle spans the square with these deviations, including the spread of origins within their map cells.
 double DiameterOf(const float* deviation, bool asPublished)
 {
   if (asPublished)
@@ -200,8 +203,8 @@ double DiameterOf(const float* deviation, bool asPublished)
   return 2.0 * (whole(deviation[0]) + whole(deviation[1]));
 }
 
-/// Draws a circle around the mean origin of each chosen cell's photons; the map has mean 1. Empty if no chosen cell has
-/// photons of this light.
+/// Draws a circle around the mean origin of each chosen cell's photons into a map, and scales it to mean 1. Empty if
+/// no chosen cell has photons of this light.
 std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight& light, int size, bool asPublished)
 {
   std::vector<double> map(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0);
@@ -222,7 +225,7 @@ std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight
   return map;
 }
 
-/// 5x5 Gaussian filter of variance 2; beyond the edges the map's border values are repeated.
+/// Applies a 5x5 Gaussian filter of variance 2; beyond the edges the map's border values are repeated.
 std::vector<double> Smooth(const std::vector<double>& map, int size)
 {
   double weights[2 * FilterReach + 1], sum = 0.0;
@@ -249,8 +252,8 @@ std::vector<double> Smooth(const std::vector<double>& map, int size)
   return pass(pass(map, 1, row), row, 1);
 }
 
-/// Standard deviation from 1 of means over blocks, eight along an edge: at a finer scale, the gaps between the circles
-/// of neighbouring cells would dominate.
+/// Standard deviation from 1 of the map's means over blocks, eight along an edge: at a finer scale, the gaps between
+/// the circles of neighbouring cells would dominate.
 double DeviationOf(const std::vector<double>& map, int size)
 {
   const int blocks = std::min(size, 8);
@@ -269,7 +272,7 @@ double DeviationOf(const std::vector<double>& map, int size)
   return std::sqrt(squares / static_cast<double>(sums.size()));
 }
 
-/// The map of one light, mean 1; empty if a map gains nothing.
+/// The importance map of one light, mean 1; empty if a map gains nothing.
 /// @param part  fraction of lit cells that are chosen
 std::vector<double> MapOf(
   const Importance& importance, const PilotLight& light, double part, const ImportanceSettings& settings)

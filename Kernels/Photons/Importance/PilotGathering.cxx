@@ -17,7 +17,8 @@ namespace tyndall
 namespace
 {
 constexpr int LargestOrigin = 65535;
-/// In a cell's record: photons, sums of columns and rows, and sums of their squares.
+/// Number of integers about origins in a cell's record: number of photons, sums of their columns and rows, and sums
+/// of the squares of columns and rows.
 constexpr int OriginNumbers = 5;
 
 std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
@@ -33,14 +34,14 @@ std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
   return cells;
 }
 
-/// Number of voxels in cell `i` along an axis of `size` voxels: voxel v is in cell v * cells / size.
+/// Number of voxels in cell `i` of `cells` along an axis of `size` voxels: voxel v is in cell v * cells / size.
 double VoxelsIn(int i, int cells, int size)
 {
   const auto first = [&](std::int64_t cell) { return (cell * size + cells - 1) / cells; };
   return static_cast<double>(first(i + 1) - first(i));
 }
 
-/// Mean and standard deviation from a count, a sum and a sum of squares.
+/// Computes mean and standard deviation of values from their count, sum and sum of squares.
 void PutMoments(std::int64_t count, std::int64_t sum, std::int64_t squares, float& mean, float& deviation)
 {
   const double n = static_cast<double>(std::max<std::int64_t>(count, 1)), s = static_cast<double>(sum);
@@ -67,7 +68,7 @@ void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::arr
   }
 }
 
-/// Marks of photons for CELLS (PhotonMarch.cl): column and row of their origins.
+/// Marks of photons for the kernel option CELLS (PhotonMarch.cl): column and row of each photon's origin.
 std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed)
 {
   std::vector<cl_ulong> marks;
@@ -79,9 +80,9 @@ std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& orig
   return marks;
 }
 
-/// A PilotLight of zeros.
-/// @param cells  requested cells along each axis; reduced to the number of voxels if larger
-/// @throws InvalidInput if there are none
+/// Creates a PilotLight of zeros for a grid of voxels.
+/// @param cells  requested numbers of cells along each axis; reduced to the number of voxels if larger
+/// @throws InvalidInput if the number of cells along an axis is 0
 PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, int channels)
 {
   PilotLight light;
@@ -100,7 +101,7 @@ PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, i
   return light;
 }
 
-/// Sums of the copies of the cells' records.
+/// Sums the copies of the cells' records that are stored in a buffer; `size` is the number of integers in one copy.
 std::vector<std::int64_t> SumOfCopies(const Buffer<cl_long>& memory, std::size_t size)
 {
   const std::vector<cl_long> read = memory.Read();
@@ -113,7 +114,7 @@ std::vector<std::int64_t> SumOfCopies(const Buffer<cl_long>& memory, std::size_t
   return sums;
 }
 
-/// Converts such sums to light.
+/// Converts sums of cells' records to pilot light.
 /// @param unit  W length of one unit of power times path
 void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const PackedPhotons& packed, double unit,
   PilotLight& light)

@@ -10,15 +10,15 @@
 
 namespace tyndall
 {
-/// Gathers the light of pilot photons in coarse cells (PhotonMarcher::Gather). Each rank starts the photons whose
-/// origins lie in its block; their deposits, integers, are summed over ranks. The map from voxels to cells is kept
-/// between calls.
+/// Sums the light of pilot photons in coarse cells (PhotonMarcher::Gather). Each rank starts the photons whose
+/// origins lie in its subdomain; their deposits, integers, are summed over ranks. The map from voxels to cells is
+/// kept between calls.
 class PilotGathering
 {
 public:
   /// Keeps references to all arguments.
-  /// @param through  this rank's block; null if it has no voxels
-  /// @param traits   traits of all blocks together
+  /// @param through  the medium of this rank's subdomain; null if it has no voxels
+  /// @param traits   traits of the medium in the domain
   PilotGathering(
     const Domain& domain, const MarchMedium* through, const MarchTraits& traits, const MarchSettings& settings)
     : TheDomain(domain)
@@ -28,7 +28,10 @@ public:
   {
   }
 
-  /// Collective. @param photons, origins  the same on all ranks @return the light of the whole grid, on every rank
+  /// Collective.
+  /// @param photons, origins  pilot photons and their columns and rows on the photon plane, the same on all ranks
+  /// @param cells  number of coarse cells along each axis
+  /// @return the light of the domain, on every rank
   PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
     const std::array<int, 3>& cells, const Monitor& monitor);
 
@@ -37,7 +40,7 @@ private:
   const MarchMedium* Through;
   const MarchTraits& Traits;
   const MarchSettings& Settings;
-  std::array<int, 3> Cells = {}; ///< number of cells along each axis in CellOfVoxel
+  std::array<int, 3> Cells = {}; ///< numbers of cells along the axes for which CellOfVoxel was computed
   Buffer<cl_int> CellOfVoxel;
 };
 }
