@@ -20,62 +20,70 @@ namespace tyndall
 {
 struct MarchShares;
 
-/// The properties of the whole medium that decide how photons are marched; all blocks of a grid must share them.
+/// Properties of the medium in the domain that decide how photons are marched; the same on all ranks.
 struct MarchTraits : MediumTraits
 {
-  bool coloured = false; ///< whether coefficients are given with three components
-  IndexRange index;
+  bool coloured = false; ///< whether sigma_a or sigma_s is given with three components
+  IndexRange index;      ///< smallest and largest refractive index
 
   int Channels(const MarchSettings& settings) const; ///< number of extinction channels, 1 or 3
-  /// Number of channels of the light that these photons deposit.
+  /// Number of channels of the light that packed photons deposit, 1 or 3.
   int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
 };
-// Checks of the medium through which photons are marched; each rank has one block of it.
+// Checks of the medium through which photons are marched; each rank has one block (subdomain) of it.
 
-/// Checks the medium of this rank's block; a rank without voxels has none to check.
-/// @param levels  null if there is no octree
+/// Checks the medium of this rank's block; a rank without voxels checks nothing.
+/// @param levels  octree levels of the block's voxels; null if there is no octree
 /// @param octree  whether any rank has octree levels
-/// @return which of the medium's bricks are filled
+/// @return for each brick of the medium whether it holds any medium
 /// @throws InvalidInput if the block's input is not valid
 FilledBricks CheckMarchedMedium(
   const Domain& domain, const Medium& medium, const Field& ior, const std::uint8_t* levels, bool octree);
 
-/// Checks that all blocks agree on the partition, on whether there is a refractive index, and on the number of
-/// components of their coefficients. Collective.
-/// @throws InvalidInput  on every rank, if they differ
+/// Checks that all ranks agree on the partition, on whether there is a refractive index, and on the number of
+/// components of sigma_a and sigma_s. Collective.
+/// @throws InvalidInput  on every rank, if ranks differ
 void RequireSameMedium(const Domain& domain, const Medium& medium, const Field& ior);
 
-/// The range of the refractive index over all blocks. Collective.
+/// Range of the refractive index in the domain. Collective.
+/// @param own  range in this rank's block
 IndexRange IndexRangeOfAll(const Domain& domain, const IndexRange& own);
 
-/// Collective. @param filled  bricks of the rank's medium
+/// Traits of the medium in the domain. Collective.
+/// @param medium, ior  coefficients and refractive index of this rank's block
+/// @param filled  filled bricks of this rank's medium
 MarchTraits MarchTraitsOf(const Domain& domain, const Medium& medium, const Field& ior, const FilledBricks& filled);
 
-/// Memory layout by bricks, for the medium and for the sums of deposits: a filled brick has a record for each of its
-/// voxels, x fastest; an empty brick has a single record. Record 0 stands for everything outside the grid.
+/// Memory layout by bricks, for the medium and for the sums of deposits: a filled brick has one record per voxel, x
+/// fastest; an empty brick has a single record. Record 0 stands for all places outside the grid.
 class PhotonBricks
 {
 public:
-  PhotonBricks() = default; ///< no bricks: arrays are stored voxel by voxel
+  PhotonBricks() = default; ///< creates the layout without bricks: arrays are stored voxel by voxel
   PhotonBricks(Device& device, const FilledBricks& bricks, const Grid& grid);
 
-  bool AreThere() const { return this->RecordCount > 0; }
-  std::size_t Records() const { return this->RecordCount; }
-  std::size_t Count() const { return this->Begin.size(); }
-  /// First record of each filled brick; for an empty brick, its record number, negated (less than 0).
+  bool AreThere() const { return this->RecordCount > 0; }   ///< whether arrays are stored by bricks
+  std::size_t Records() const { return this->RecordCount; } ///< number of records
+  std::size_t Count() const { return this->Begin.size(); }  ///< number of bricks
+  /// Index of the first record of each filled brick; for an empty brick, its record's index, negated (less than 0).
   const Buffer<cl_int>& First() const { return this->OnDevice; }
 
-  struct Coefficients
+  struct Coefficients ///< coefficients of the medium by records
   {
-    /// [channels][records], times the voxel diagonal, as pack_extinction in PhotonMedium.cl computes it by voxels.
+    /// Optical thickness of a voxel's diagonal, [channels][records], as pack_extinction in PhotonMedium.cl computes
+    /// it by voxels.
     std::vector<float> extinction;
-    std::vector<float> sigmaA, sigmaS; ///< [records][components]
+    std::vector<float> sigmaA, sigmaS; ///< 1/length, [records][components]
   };
+  /// Packs the coefficients of a medium by records.
+  /// @param diagonal  length of a voxel's diagonal
+  /// @param channels  number of extinction channels
   /// @param aComponents, sComponents  components of sigma_a and sigma_s in the medium, or 0 to leave them out
   Coefficients Pack(const Medium& medium, double diagonal, int channels, int aComponents, int sComponents) const;
 
 private:
-  /// Calls act(first record, first voxel, count) for each row of voxels along x in filled bricks, on all cores.
+  /// Calls act(first record, first voxel, number of voxels) for each row of voxels along x in filled bricks, on all
+  /// cores.
   template <class Act>
   void ForFilled(const Act& act) const;
 
@@ -86,79 +94,87 @@ private:
   Buffer<cl_int> OnDevice;
 };
 
-/// The part of a grid through which one rank marches photons.
+/// The part of a grid through which one rank marches photons, and the voxels in which it knows the refractive index.
 struct MarchedPart
 {
-  Grid whole;
-  VoxelBox own;   ///< voxels of the medium
-  VoxelBox known; ///< voxels of the refractive index: own and a halo, by which photons in own are bent
+  Grid whole;   ///< the domain
+  VoxelBox own; ///< voxels of the rank's medium
+  /// Voxels in which the rank has the refractive index: `own` and a halo, on which paths in `own` depend.
+  VoxelBox known;
 };
 
 /// Maximum number of path segments of a photon; a segment ends at a voxel wall or where the velocity changes.
 int MarchEventLimit(const Grid& whole, const MarchSettings& settings);
 
-/// A refractive medium on its device in the layout of the marching kernels, with the parameters that they need.
+/// The medium of one rank on its device, in the layout of the marching kernels, with the parameters of these kernels.
 class MarchMedium
 {
 public:
-  /// Constructs the medium of a rank's block of a grid, or of the whole grid.
-  /// @param medium  coefficients in block.own, already checked
+  /// Uploads and packs the medium of a rank's block of the domain, or of the entire domain.
+  /// @param medium  coefficients in block.own, which have been checked
   /// @param ior     refractive index in block.known
-  /// @param traits  traits of all blocks together
-  /// @param filled  the medium's bricks; null: light is stored voxel by voxel, as it must be in a block of a larger
-  ///   grid
-  /// @param levels  octree levels in block.own; null: no octree. In a block of a larger grid, call SetNodes afterwards
+  /// @param traits  traits of the medium in the domain
+  /// @param filled  filled bricks of the medium; null: light is stored voxel by voxel, as is required in a block of a
+  ///   larger domain
+  /// @param levels  octree levels of the voxels in block.own; null: no octree. In a block of a larger domain,
+  ///   SetNodes must be called afterwards
   MarchMedium(Device& device, const Medium& medium, const Field& ior, const MarchSettings& settings,
     const MarchTraits& traits, const MarchedPart& block, const FilledBricks* filled = nullptr,
     const std::uint8_t* levels = nullptr);
 
-  /// For each voxel of the block, whether n varies in it, and the octree node that contains it (encoding:
-  /// PhotonSteps.cl).
+  /// Octree nodes of the block's voxels, one byte per voxel: whether n varies in the voxel, and the level of the node
+  /// that contains it (encoding: march_arrays in PhotonSteps.cl).
   /// @param levels  octree levels of the block's voxels
   std::vector<std::uint8_t> OwnNodes(const std::uint8_t* levels) const;
-  /// @param all  OwnNodes of all blocks: steps look at nodes beyond the block
+  /// Uploads the octree nodes of the domain, which steps evaluate beyond the block as well.
+  /// @param all  nodes of the domain's voxels, from OwnNodes of all ranks
   void SetNodes(const BrickedBytes& all);
 
-  MarchInfo Describe() const;
-  IndexGrid DescribeGrid() const;
-  /// Parameters of the conversion of these photons' sums to light.
-  /// @param weightUnit  photon weight per unit of the voxels' sums, if photons are counted
+  MarchInfo Describe() const;     ///< parameters of the marching kernels
+  IndexGrid DescribeGrid() const; ///< size of the grid for kernels
+  /// Parameters of the conversion of photons' sums to light.
+  /// @param weightUnit  photon weight per unit of the voxels' sums (StartingPhotons::weightUnit), if photons are
+  ///   counted
   LightSumsInfo DescribeSums(const PackedPhotons& packed, const MarchShares& shares, float weightUnit = 0.0f) const;
+  /// MarchEventLimit in the domain.
   int EventLimit() const { return MarchEventLimit(this->block.whole, this->settings); }
   double Diagonal() const; ///< length of a voxel's diagonal
-  /// Whether this is a block of a larger grid.
+  /// Whether this medium covers a block of a larger domain.
   bool IsBlock() const { return this->block.own.size != this->block.whole.size; }
-  /// Number of voxels including a padding of one voxel on every side.
+  /// Number of voxels of the grid with a padding of one voxel at each face.
   std::size_t PaddedCount() const { return Count(this->Padded(2)); }
-  /// Number of records of extinction and of sums: those of bricks, or the voxels of the padded grid.
+  /// Number of records of extinction and of deposits: those of bricks, or the voxels of the padded grid.
   std::size_t Records() const { return this->bricks.AreThere() ? this->bricks.Records() : this->PaddedCount(); }
 
-  /// Creates a kernel of PhotonMarch.cl for `channels` of light. `options`: those that do not follow from the medium.
+  /// Creates a kernel of PhotonMarch.cl for photons with `channels` of power.
+  /// @param directions  whether directions are recorded
+  /// @param options  definitions of macros that do not follow from the medium
   cl::Kernel MarchKernel(const char* name, int channels, bool directions, const std::string& options) const;
-  std::string Options() const; ///< options of all kernels of this medium
+  std::string Options() const; ///< macro definitions that all kernels of this medium share
   /// Creates a kernel of PhotonSums.cl.
   cl::Kernel SumsKernel(const char* name, int channels, const std::string& options) const;
 
-  /// The coarse cell of each voxel of the padded grid. @param cells  cells along each axis of the whole grid, at most
-  /// its voxels
+  /// Computes the index of the coarse cell of each voxel of the padded grid.
+  /// @param cells  number of cells along each axis of the domain, at most its voxels
   Buffer<cl_int> Cells(const std::array<int, 3>& cells) const;
 
   void Launch(const cl::Kernel& kernel, const cl::NDRange& range, const cl::NDRange& local = cl::NullRange) const;
 
   Device& device;
   Grid grid;
-  MarchedPart block; ///< position of `grid` in the whole grid
+  MarchedPart block; ///< position of `grid` in the domain
   MarchSettings settings;
   MarchTraits traits;
-  int channels; ///< of extinction, 1 or 3
-  bool bends, hasLevels;
-  bool nodesOfWhole = false; ///< whether SetNodes was called
-  PhotonBricks bricks;       ///< layout by bricks, if all arrays use it
+  int channels;              ///< number of extinction channels, 1 or 3
+  bool bends, hasLevels;     ///< whether paths bend (n varies); whether there is an octree
+  bool nodesOfWhole = false; ///< whether `nodes` covers the domain (SetNodes was called)
+  PhotonBricks bricks;       ///< layout of all arrays by bricks, if they use it
 
-  Buffer<float> sigmaA, sigmaS;
-  Buffer<float> sigma;        ///< layout: pack_extinction in PhotonMedium.cl, or PhotonBricks
-  Buffer<float> coefficients; ///< spline of n^2, SquaredIndex.cl
-  Buffer<cl_uchar> nodes;     ///< layout: pack_extinction in PhotonMedium.cl
+  Buffer<float> sigmaA, sigmaS; ///< 1/length, voxel by voxel or by records
+  /// Optical thickness of voxel diagonals; layout: pack_extinction in PhotonMedium.cl, or PhotonBricks.
+  Buffer<float> sigma;
+  Buffer<float> coefficients; ///< coefficients of the spline of n^2, SquaredIndex.cl
+  Buffer<cl_uchar> nodes;     ///< octree nodes; layout: pack_nodes in PhotonMedium.cl, or BrickedBytes after SetNodes
 
 private:
   using Size = std::array<std::size_t, 3>;

@@ -14,37 +14,39 @@
 
 namespace tyndall
 {
-/// How many copies of the sums there are, and which work-item adds to which copy. Work-item w serves copies w, w +
-/// workers, ...; copy c belongs to batch c % batches.
+/// Number of copies of the sums of deposits, and the work-items that add to each copy. Work-item w adds to copies w,
+/// w + workers, ...; copy c belongs to batch c % batches.
 struct MarchShares
 {
-  bool atomics = false;
-  /// Work-items that fetch photons from a common counter; 0: one work-item per packet, all of a batch add to one copy.
+  bool atomics = false; ///< whether deposits are added by 64-bit atomics
+  /// Number of work-items, which fetch photons from a common counter; 0: one work-item per packet, and all photons of
+  /// a batch add to one copy.
   int workers = 0;
   int copies = 1;
   int batches = 1;
 };
 
-/// Chooses the number of copies of the sums from the settings and the device's memory.
+/// Chooses the number of copies of the sums from the settings and the device's free memory.
 /// @param records  records in one copy of the sums
 /// @param numbers  64-bit numbers in a record
-/// @param held     bytes already allocated that the new sums will reuse
+/// @param held     bytes already allocated for sums, which the new sums will reuse
 /// @throws DeviceError if the settings ask for atomics that the device lacks, or the sums of all batches do not fit
 MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int numbers, int batches, std::size_t held);
 
-/// The buffer to which photons deposit, and its layout.
+/// The buffer to which photons deposit their light, and its layout.
 struct MarchSums
 {
   MarchShares shares;
-  std::size_t records = 0; ///< records in a copy: voxels of the padded grid, records of bricks, or coarse cells
-  int numbers = 1;         ///< numbers in a record
-  bool directions = false; ///< whether a record holds sums of power times direction
+  std::size_t records = 0; ///< records in one copy: voxels of the padded grid, records of bricks, or coarse cells
+  int numbers = 1;         ///< 64-bit numbers in a record
+  bool directions = false; ///< whether a record holds the sums of power times direction
   bool counts = false;     ///< whether a record counts the photons that crossed its voxel
-  /// Coarse cell of each voxel, for deposits to cells, which count photons; null: deposits to voxels.
+  /// Index of the coarse cell of each voxel, for deposits to coarse cells, which also count photons; null: deposits
+  /// to voxels.
   const Buffer<cl_int>* cells = nullptr;
-  const Buffer<cl_long>* sums = nullptr; ///< [copies][records][numbers]
+  const Buffer<cl_long>* sums = nullptr; ///< sums of deposits in fixed point, [copies][records][numbers]
 
-  /// Numbers in one copy.
+  /// Number of 64-bit numbers in one copy.
   std::size_t Stride() const { return this->records * static_cast<std::size_t>(this->numbers); }
 };
 
@@ -53,38 +55,38 @@ inline const int* WhereIs(const PhotonOnItsWay& photon)
   return photon.way.voxel;
 }
 
-/// Photons on a device, ordered by batch: those that start, or those that have arrived from other blocks.
+/// Photons on a device, ordered by batch: photons that start, or photons that arrived from other blocks.
 struct PhotonsOnDevice
 {
-  /// @param marks  counting mark of each packed photon (PhotonMarch.cl); empty if photons are not counted
+  /// @param marks  mark for counting of each packed photon (PhotonMarch.cl); empty if photons are not counted
   PhotonsOnDevice(Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marks = {});
   PhotonsOnDevice(Device& device, std::vector<PhotonOnItsWay> arrived, int batches, int channels);
 
   const cl::Buffer& Handle() const { return this->resumes ? this->arrived.Handle() : this->starting.Handle(); }
-  std::size_t LargestBatch() const; ///< number of photons
+  std::size_t LargestBatch() const; ///< number of photons in the largest batch
 
-  bool resumes; ///< whether they have arrived from other blocks
-  Buffer<float> starting;
-  Buffer<PhotonOnItsWay> arrived;
-  std::vector<int> begins; ///< index of the first photon of each batch, and one past the last photon
+  bool resumes;                   ///< whether the photons arrived from other blocks
+  Buffer<float> starting;         ///< photons that start, as PackedPhotons::values
+  Buffer<PhotonOnItsWay> arrived; ///< photons that arrived
+  std::vector<int> begins;        ///< index of the first photon of each batch, and one past the last photon
   Buffer<cl_int> batchBegin;
   Buffer<cl_ulong> marks;
-  Buffer<cl_int> ends; ///< PhotonEnd and remaining power of each photon
+  Buffer<cl_int> ends; ///< PhotonEnd and remaining power of each photon, which the kernel writes
 };
 
-/// A kernel of PhotonMarch.cl that adds to such sums.
+/// A kernel of PhotonMarch.cl that adds the deposits of photons to MarchSums.
 class MarchKernel
 {
 public:
-  /// @param options  besides those that follow from the medium and the sums
+  /// @param options  definitions of macros that do not follow from the medium and the sums
   MarchKernel(const MarchMedium& medium, const MarchSums& target, int channels, const std::string& options = {},
     const char* name = "march_photons");
 
-  /// Sets the arguments that all variants of the kernel have. @return their number
+  /// Sets the arguments that all variants of the kernel share. @return number of these arguments
   cl_uint Set(const PhotonsOnDevice& photons, MarchLaunch launch, const Buffer<cl_int>& counters);
-  /// The range for `photons` of each batch, and the size of work-groups.
+  /// Global range of work-items for `photons` in each batch.
   cl::NDRange Range(std::size_t photons) const;
-  cl::NDRange Group() const;
+  cl::NDRange Group() const; ///< size of work-groups
 
   cl::Kernel kernel;
 
@@ -94,13 +96,14 @@ private:
   Buffer<cl_int> None;
 };
 
-/// Size of the launches of a kernel that follows photons.
-/// @param photons  the largest number of photons in a batch
-/// @param first, whole  photons in the first launch; launches are multiples of `whole`
+/// Sizes of the launches of a kernel that follows photons.
+/// @param photons  number of photons in the largest batch
+/// @param first  photons in the first launch
+/// @param whole  each launch has a multiple of this number of photons
 Batches PhotonLaunches(
   const MarchMedium& medium, std::size_t photons, std::size_t first, std::size_t whole, int batches);
 
-/// Appends the first `count` photons in a buffer to `all`.
+/// Appends the first `count` photons of a buffer to `all`.
 template <class OnItsWay>
 void AppendPhotons(const Buffer<OnItsWay>& photons, int count, std::vector<OnItsWay>& all)
 {
@@ -109,12 +112,12 @@ void AppendPhotons(const Buffer<OnItsWay>& photons, int count, std::vector<OnIts
   photons.Read(all.data() + before, more);
 }
 
-/// Marches photons through a rank's part of a grid: to their ends or, in a block, until they leave it.
+/// Marches photons through a rank's block to their ends or, if there are other blocks, until they leave it.
 class MarchRun
 {
 public:
-  /// @param medium, target  must outlive this
-  /// @param channels  channels of power of the photons
+  /// @param medium, target  referenced, not copied
+  /// @param channels  number of power channels of the photons
   MarchRun(const MarchMedium& medium, const MarchSums& target, int channels)
     : Medium(medium)
     , Target(target)
@@ -123,15 +126,15 @@ public:
   {
   }
 
-  /// Result of a march.
+  /// Result of marching some photons.
   struct Outcome
   {
-    std::vector<cl_int> ends;         ///< PhotonEnd and powers of each photon (Tally)
-    std::vector<PhotonOnItsWay> gone; ///< photons that left for other blocks, in any order
+    std::vector<cl_int> ends;         ///< PhotonEnd and powers of each photon, the input of Tally
+    std::vector<PhotonOnItsWay> gone; ///< photons that entered other blocks, in any order
   };
-  /// Marches photons that start in this part.
-  /// @param marks  counting marks of the photons, or none
-  /// @throws Aborted: the sums then hold only a part of the photons
+  /// Marches photons that start in this block.
+  /// @param marks  mark for counting of each photon; empty if photons are not counted
+  /// @throws Aborted; the sums then hold only part of the photons' deposits
   Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
   /// Marches photons that arrived from other blocks. @throws Aborted
   Outcome Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor);
@@ -145,8 +148,9 @@ private:
   MarchKernel Kernel;
 };
 
-/// Traces the paths of photons through a medium as corners, joining the parts from all ranks' blocks. Collective.
-/// @param through  this rank's block; null if it has no voxels
+/// Traces the paths of photons through the domain as corners, and joins the parts traced in different blocks.
+/// Collective.
+/// @param through  medium of this rank's block; null if it has no voxels
 /// @param photons  the same on all ranks
 /// @param numbers  indices of the photons to trace
 /// @return the paths on rank 0, ascending by photon index; nothing on other ranks

@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels that march and scatter photons, and sum their deposits.
+// Constants and structures shared by C++ and the kernels that march and scatter photons and sum their deposits.
 #pragma once
 
 #include "Device/SharedTypes.h"
@@ -7,93 +7,96 @@
 SHARED_BEGIN
 enum
 {
-  EndWords = 3, ///< integers of a PhotonEnd, which precede its powers
-  /// Face of a photon that has not ended; from this value on, `face` is not a face of the volume.
+  EndWords = 3, ///< number of integers of a PhotonEnd, before its powers
+  /// PhotonEnd::face of a photon that was terminated before it left the volume. This value and larger ones are no
+  /// faces.
   StillGoing = 6,
-  Dark = 7,     ///< the photon has no power left
-  Elsewhere = 8 ///< the photon continues in another block of the grid
+  Dark = 7,     ///< PhotonEnd::face of a photon with power below MarchInfo::darkness
+  Elsewhere = 8 ///< PhotonEnd::face of a photon that continues in another block of the grid
 };
 
-/// Maximum look-ahead of the integrator along each axis, in half steps: more than twice what it needs where n is
+/// Maximum look-ahead of the integrator along each axis, in half steps: more than twice the look-ahead where n is
 /// smooth.
 enum
 {
-  LeapfrogLooksAhead = 3, ///< the leapfrog looks half a step ahead where n is smooth
-  YoshidaLooksAhead = 6   ///< Yoshida's integrator looks 1.35 steps ahead there
+  LeapfrogLooksAhead = 3, ///< of the leapfrog, which looks half a step ahead where n is smooth
+  YoshidaLooksAhead = 6   ///< of Yoshida's integrator, which looks 1.35 steps ahead where n is smooth
 };
 
 /// Level of the largest octree cube that a step of order 4 crosses. The integrator's look-ahead along an axis is at
-/// most the edge of that cube, 2^4 voxels, or the half steps above, whichever is longer.
+/// most the edge of that cube, 2^4 voxels, or YoshidaLooksAhead half steps, whichever is longer.
 enum
 {
   YoshidaLevel = 4
 };
 
-/// The medium, and the parameters of marching. Positions are in the whole grid; arrays cover one block of it.
+/// Parameters of marching through a medium. Positions are in voxels of the domain; arrays cover one block of it.
 typedef struct
 {
-  IndexGrid grid;    ///< size of the block: extinction and sums
-  IndexGrid whole;   ///< size of the whole grid
-  IndexGrid known;   ///< size of the region with a refractive index: the block and its halo
-  int first[3];      ///< first voxel of the block in the whole grid
-  int knownFirst[3]; ///< first voxel of `known` in the whole grid
-  float spacing[3];  ///< edges of a voxel over its diagonal
-  float stepSize;    ///< length of a step in voxels, where the octree has single voxels
-  float slowest;     ///< lower bound of the speed, voxels per time, from which the duration of a step is computed
-  float darkness;    ///< power below which a photon counts as extinguished
+  IndexGrid grid;    ///< size of the block, for extinction and sums of deposits
+  IndexGrid whole;   ///< size of the domain
+  IndexGrid known;   ///< size of the region in which the refractive index is known: the block and its halo
+  int first[3];      ///< first voxel of the block in the domain
+  int knownFirst[3]; ///< first voxel of `known` in the domain
+  float spacing[3];  ///< edges of a voxel, in units of its diagonal
+  float stepSize;    ///< length of a step, in voxels, where the octree has single voxels
+  float slowest;     ///< lower bound of the speed, in voxels per time, from which the duration of a step is computed
+  float darkness;    ///< power, in units, below which a photon is terminated as dark
   int eventLimit;    ///< maximum number of path segments (walls and velocity changes) of a photon
-  ulong copy;        ///< voxels of the padded grid
+  ulong copy;        ///< number of records of extinction: voxels of the padded grid, or records of bricks
 } MarchInfo;
 
-/// The photons of one launch of a kernel of PhotonMarch.cl, and where they deposit.
+/// Parameters of one launch of a kernel of PhotonMarch.cl.
 typedef struct
 {
-  ulong copyStride;    ///< numbers from copy to copy of the sums
-  int copies, batches; ///< of the sums, at least as many copies as batches; copy c belongs to batch c modulo batches
-  int first, count;    ///< photons within each batch
-  int resumes;         ///< 1: photons that are under way; 0: photons that start
-  int events;          ///< number of path segments in a turn
-  int last;            ///< 1: photons that have not ended are given up after this turn
-  int writes;          ///< 1: vertices of paths are written; 0: they are counted
+  ulong copyStride; ///< number of 64-bit numbers in one copy of the sums
+  /// Copies of the sums, and batches of photons, which are no more than copies; copy c belongs to batch c % batches.
+  int copies, batches;
+  int first, count; ///< first photon within each batch, and number of photons in each batch
+  int resumes; ///< 1: photons that arrived from another block or continue from an earlier turn; 0: photons that start
+  int events;  ///< maximum number of path segments per photon in this turn
+  int last;    ///< 1: photons that have not ended after this turn are terminated
+  int writes;  ///< 1: vertices of paths are written; 0: they are counted
 } MarchLaunch;
 
-/// What became of a photon. In kernels, the remaining power of each channel follows.
+/// Final state of a photon. In kernels, the remaining power of each channel follows.
 typedef struct
 {
-  int face;      ///< face through which it left, -x, +x, ... +z; or StillGoing, Dark, Elsewhere
-  int crossings; ///< path segments that were deposited
-  int steps;     ///< steps of the integrator
+  int face;      ///< face through which the photon left, -x, +x, ... +z; or StillGoing, Dark, Elsewhere
+  int crossings; ///< number of path segments that were deposited
+  int steps;     ///< number of steps of the integrator
 #ifdef __OPENCL_C_VERSION__
   float power[CHANNELS];
 #endif
 } PhotonEnd;
 
-/// State of a photon's path as it passes into another block: everything that the rest of the path depends on, so that
-/// it is the same, bit for bit, as on an undivided grid. In the kernels' units.
+/// State of a photon's path as it passes into another block, complete, so that the path continues bit for bit as on
+/// an undivided grid. Positions are in voxels of the domain, times as in photon_lanes (PhotonSteps.cl).
 typedef struct
 {
-  int voxel[3];   ///< the voxel of the whole grid that it enters
-  float wall[3];  ///< time at which it reaches the next wall along each axis
-  float now;      ///< time since the step began
-  float turn;     ///< time when the step ends
-  float settled;  ///< time before which a varying index does not start a new step
-  float step;     ///< duration of the current step
-  float start[3]; ///< position at which the step began
-  float velocity[3];
-  float momentum[3];
+  int voxel[3];      ///< voxel of the domain that the photon enters
+  float wall[3];     ///< time since the step began at which the photon reaches the next wall along each axis
+  float now;         ///< time since the step began
+  float turn;        ///< time since the step began at which the step ends
+  float settled;     ///< time before which a varying index does not start a new step
+  float step;        ///< duration of the current step
+  float start[3];    ///< position at which the step began
+  float velocity[3]; ///< voxels per time, of the current step
+  float momentum[3]; ///< T of numerics.md, Eq. (90), voxels per time
 } WayOnward;
 
-/// A photon that passes from one block of a grid into another. Only the channels in use are valid.
+/// A photon that passes from one block of the domain into another, with straight or bent path and without scattering.
+/// Only the power channels in use are valid.
 typedef struct
 {
-  ulong mark; ///< its mark, see PhotonMarch.cl
+  ulong mark; ///< mark of the photon, see PhotonMarch.cl
   WayOnward way;
-  int batch;     ///< its batch
-  int counted;   ///< coarse cell that counted it last
-  int crossings; ///< path segments that were deposited
-  int steps;     ///< steps of the integrator
-  float power[3];
-  float owed[3]; ///< compensation of rounding errors in `power` (Kahan)
+  int batch;      ///< index of the photon's batch
+  int counted;    ///< coarse cell that counted the photon last
+  int crossings;  ///< number of path segments that were deposited
+  int steps;      ///< number of steps of the integrator
+  float power[3]; ///< remaining power, in units
+  float owed[3];  ///< Kahan compensation of rounding errors in `power`
 } PhotonOnItsWay;
 
 enum
@@ -101,52 +104,52 @@ enum
   CountShift = 40 ///< bit position of photon counts, above the bits of weights
 };
 
-/// Parameters of the conversion of sums to light.
+/// Parameters of the conversion of photons' sums to light.
 typedef struct
 {
   IndexGrid grid;
-  float diagonal;             ///< length of a voxel's diagonal
-  float fluence;              ///< W / length^2 per unit of power along a voxel's diagonal, divided by 2^exponent
-  int exponent;               ///< kept apart, as the product may be below the range of float
-  float colour[3];            ///< colour of the single channel, if CHANNELS is 1
-  float weight;               ///< photon weight per unit of the sums
+  float diagonal;  ///< length of a voxel's diagonal
+  float fluence;   ///< W / length^2 per unit of power times voxel diagonal, divided by 2^exponent
+  int exponent;    ///< binary exponent of that factor, separate because the product may be below the range of float
+  float colour[3]; ///< colour of the single channel, relative to white, if CHANNELS is 1
+  float weight;    ///< photon weight per unit of the voxels' sums of weights
   int absorption, scattering; ///< components of sigma_a and sigma_s; 0: absent
-  int copies, batches;        ///< of the sums: copy c belongs to batch c modulo batches
+  int copies, batches;        ///< copies of the sums, and batches: copy c belongs to batch c % batches
 } LightSumsInfo;
 
-/// Parameters of a launch that follows photons beyond their first scattering.
+/// Parameters of a launch that follows photons through scatterings.
 typedef struct
 {
-  ulong seed;
-  ulong copyStride; ///< numbers from copy to copy of the sums
-  /// Maximum number of scatterings of a photon; it is given up where it would be scattered once more.
+  ulong seed;       ///< seed of the random numbers
+  ulong copyStride; ///< number of 64-bit numbers in one copy of the sums
+  /// Maximum number of scatterings of a photon; it is terminated at the next collision.
   int mostScatterings;
-  int first, count; ///< the photons of the launch
-  int resumes;      ///< 1: photons that have arrived from other blocks; 0: photons that start
+  int first, count; ///< first photon of the launch, and number of photons
+  int resumes;      ///< 1: photons that arrived from other blocks; 0: photons that start
 } ScatterInfo;
 
-/// What became of a photon; powers are in units.
+/// Final state of a photon that was followed through scatterings; powers are in units.
 typedef struct
 {
-  int face;              ///< as PhotonEnd::face
-  int scatterings;       ///< number of its scatterings
-  float power;           ///< power left when it ended
+  int face;              ///< face or other end, as PhotonEnd::face
+  int scatterings;       ///< number of scatterings of the photon
+  float power;           ///< power left at the end
   float absorbedAtFirst; ///< power absorbed before its first scattering
-  float exchanged;       ///< net power added to it by Russian roulette
+  float exchanged;       ///< net power added to the photon by Russian roulette
 } ScatterEnd;
 
-/// A photon that passes from one block of a grid into another, with all that its further path and scatterings depend
-/// on.
+/// A scattered photon that passes from one block of the domain into another, with the complete state on which its
+/// further path and scatterings depend.
 typedef struct
 {
-  ulong number; ///< key of its random numbers
+  ulong number; ///< index of the photon, which selects its sequence of random numbers
   WayOnward way;
-  uint blocks; ///< number of blocks of random numbers it has drawn
-  int drawn;   ///< unused numbers of the last block
-  int events;  ///< path segments since its last scattering; 0: it starts anew, in the direction `way.velocity`
-  int scatterings;
-  float depth;                             ///< optical depth to the next scattering
+  uint blocks; ///< number of blocks of random numbers that the photon has drawn
+  int drawn;   ///< number of unused random numbers in the last block
+  int events;  ///< path segments since the last scattering; 0: the photon starts anew, in the direction `way.velocity`
+  int scatterings;                         ///< number of scatterings of the photon
+  float depth;                             ///< scattering optical depth to the next collision
   float dim;                               ///< power below which Russian roulette is played
-  float power, absorbedAtFirst, exchanged; ///< as in ScatterEnd
+  float power, absorbedAtFirst, exchanged; ///< in units, as in ScatterEnd
 } ScatteredOnItsWay;
 SHARED_END

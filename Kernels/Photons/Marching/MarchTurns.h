@@ -8,31 +8,33 @@
 
 namespace tyndall
 {
-/// Device times of a march in turns.
+/// Device times of a march in turns, s.
 struct TurnTimes
 {
-  int turns = 0;
-  double marching = 0.0;  ///< s
-  double meanwhile = 0.0; ///< s, of the work queued by `meanwhile`
-  double together = 0.0;  ///< s, in which both were running
+  int turns = 0;          ///< number of turns
+  double marching = 0.0;  ///< time of the marching kernels
+  double meanwhile = 0.0; ///< time of the work queued by MarchTurns::meanwhile
+  double together = 0.0;  ///< time during which both were running
 };
 
-/// Callbacks for photons that march a few voxels per turn, so that the light deposited so far is used while they march
-/// on (Bernabei et al., section III-A).
+/// Callbacks of a march in turns: photons march a limited number of path segments per turn, and the light deposited
+/// so far is processed while the next turn is running (Bernabei et al., section III-A).
 struct MarchTurns
 {
-  /// Path segments of a photon per turn, from voxel wall to voxel wall; 0: one turn to its end.
+  /// Number of path segments of a photon per turn (from voxel wall to voxel wall); 0: one turn, to the photon's end.
   int stretches = 16;
-  /// Whether photons march on a command queue of their own, concurrently with `meanwhile`; false: one queue for both.
+  /// Whether photons march on a separate command queue, concurrently with `meanwhile`; false: one queue for both.
   bool sideBySide = true;
-  /// Called once, first. @param channels  number of channels of the fluence that `take` receives
+  /// Called once before the first turn.
+  /// @param photons  the packed photons
+  /// @param channels  number of channels of the fluence that `take` receives
   std::function<void(const PackedPhotons& photons, int channels)> begin;
   /// Queues the processing of the light of earlier turns, without waiting for it. Returns its first and last events.
   std::function<std::array<cl::Event, 2>(const cl::CommandQueue& queue)> meanwhile;
-  /// Queues the transfer of the light accumulated since the first turn.
+  /// Queues the transfer of the light accumulated since the march began.
   /// @param fluence  W / length^2, [voxel][channel]
   std::function<void(const cl::CommandQueue& queue, const Buffer<float>& fluence)> take;
-  TurnTimes times; ///< output
+  TurnTimes times; ///< output: device times of the march
 };
 
 /// Marches photons to their ends in turns.

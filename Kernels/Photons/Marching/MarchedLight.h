@@ -17,10 +17,10 @@ public:
   /// @param medium  must outlive this
   explicit MarchedLight(const MarchMedium& medium);
 
-  /// Zeroed sums for these photons.
-  /// @throws DeviceError if they do not fit
+  /// Zeroes the sums for these photons, and describes their layout.
+  /// @throws DeviceError if the sums do not fit into the device's memory
   MarchSums Prepare(const PackedPhotons& packed);
-  /// Like ShareSums, but the memory of existing sums counts as available.
+  /// Chooses the number of copies as ShareSums does; the memory of existing sums counts as available.
   MarchShares Share(int numbers, int batches) const;
   /// Discards the sums after an aborted march, which leaves them nonzero.
   void Forget() { this->Sums = Buffer<cl_long>(); }
@@ -28,9 +28,9 @@ public:
   /// Queues the conversion of the sums so far to fluence, [voxel][channel]. Does not change the sums.
   cl::Kernel Show(
     const PackedPhotons& packed, const MarchSums& target, const LightField& light, const Buffer<float>& fluence) const;
-  /// Converts the sums to the arrays of `result`, and to absorbed and scattered power, then zeroes them. result.light
-  /// states how many channels it is to have.
-  /// @param weightUnit  StartingPhotons::weightUnit, if photons are counted
+  /// Converts the sums to the arrays of `result` and to absorbed and scattered power, then zeroes the sums.
+  /// result.light.channels must be set to the number of channels wanted.
+  /// @param weightUnit  photon weight per unit (StartingPhotons::weightUnit), if photons are counted
   void Finish(const PackedPhotons& packed, const MarchSums& target, float weightUnit, PhotonLight& result) const;
 
 private:
@@ -42,17 +42,17 @@ private:
     const PackedPhotons& packed, const MarchSums& target, PhotonLight& result, const Buffer<cl_long>& taken) const;
 
   const MarchMedium& Medium;
-  Buffer<cl_long> Sums; ///< zero between two runs
+  Buffer<cl_long> Sums; ///< buffer of the sums, zero between two marches
 };
 
 /// Adds the final states of photons to the light's energy balance: the power that escaped through each face of the
-/// grid, and the unaccounted power. Powers are rounded to integers, so that their sums do not depend on the order of
-/// the photons. Photons that continue in another block are ignored.
-/// @param ends  PhotonEnd and powers of each photon
+/// domain, and the power left over. Powers are rounded to whole units, so that their sums do not depend on the order
+/// of the photons. Photons that continue in another block are ignored.
+/// @param ends  PhotonEnd and powers of each photon, in units
 void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result);
 
-/// Sum the tallies of this rank's photons over all ranks: AddUpTallies those of uncollided light, AddUpScattered those
-/// of scattered light. Collective.
+/// Replaces this rank's tallies of uncollided light (energy balance, powers, numbers) by their sums over all ranks.
+/// Collective.
 void AddUpTallies(const Domain& domain, PhotonLight& result);
 void AddUpScattered(const Domain& domain, PhotonLight& result);
 
