@@ -8,8 +8,9 @@
 
 #define NO_SLOPE 1e37f // time across a voxel along an axis with zero velocity
 
-// The records of voxels. `last`: BrickEdge - 1 in an empty brick, which a photon crosses as a whole; 0 in a single
-// voxel.
+// Finds the records of voxels of the sums and the extinction.
+//   last  number of voxels along an edge of the region that a photon crosses in one segment, less one: BrickEdge - 1
+//         in an empty brick, 0 in a single voxel
 static void find_records(const march_arrays* arrays, const integer* voxel, integer* record, integer* last)
 {
   const IndexGrid* grid = &arrays->info->grid;
@@ -28,7 +29,7 @@ static void find_records(const march_arrays* arrays, const integer* voxel, integ
   *last = empty & ~outside & within;
 }
 
-// First voxel and end along an axis of the region, voxel or brick, that a photon crosses in one segment.
+// First voxel, and end, along an axis of the region (a voxel or a brick) that a photon crosses in one segment.
 static integer lower_end(integer voxel, integer last)
 {
   return voxel & ~last;
@@ -38,7 +39,7 @@ static integer upper_end(integer voxel, integer last, int size)
   return min((voxel & ~last) + last + 1, (integer)size);
 }
 
-// Times at which the photons reach the walls ahead.
+// Computes the times at which the photons reach the next wall along each axis.
 static void find_walls(
   const march_arrays* arrays, const photon_lanes* lanes, const integer* voxel, integer last, real* wall)
 {
@@ -51,7 +52,7 @@ static void find_walls(
   }
 }
 
-// Starts all photons at p in `voxel`, with velocity u.
+// Starts all photons of a packet at positions p in `voxel`, with velocities u.
 static void set_off_in_bricks(
   const march_arrays* arrays, photon_lanes* lanes, const integer* voxel, const real* p, const real* u)
 {
@@ -75,8 +76,8 @@ static void set_off_in_bricks(
   }
 }
 
-// Moves photons through the walls that they reach at time `next`. Along the other axes, the voxel is computed from the
-// time; if rounding puts it outside the current region, the region's nearest voxel is used.
+// Moves photons through the walls that they reach at time `next`. Along axes without such a wall, the voxel is
+// computed from the position at that time, limited to the current region to guard against rounding.
 static void cross_in_bricks(const march_arrays* arrays, const photon_lanes* lanes, real next, integer* voxel,
   integer* last, real* wall, integer* record)
 {

@@ -1,5 +1,6 @@
-// The flight of a packet of photons between two changes of velocity: attenuation, deposits, walls, and what becomes of
-// photons at the end of a step. Part of PhotonMarch.cl, which says what the host defines.
+// Flight of a packet of photons between two changes of velocity: attenuation, deposits, crossing of walls, and
+// termination or change of velocity at the end of a step. Part of PhotonMarch.cl, which lists the macros that the
+// host defines.
 
 #pragma once
 #define MARKS (COUNTS || CELLS || (BLOCKS && PATHS))
@@ -11,37 +12,38 @@
 #include "Photons/Marching/PhotonSteps.cl"
 #include "Refraction/Index/SquaredIndex.cl"
 
-#define PHOTON_FLOATS (6 + CHANNELS) // position, unit direction, power in units
+#define PHOTON_FLOATS (6 + CHANNELS) // floats per photon: position, unit direction, power in units
 #if CELLS
-#define RECORD (CHANNELS + 5) // photons, sums of column, row and their squares
+// Integers per cell: deposits, number of photons, sums of column and row of their origins and of their squares.
+#define RECORD (CHANNELS + 5)
 #else
 #define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
 #endif
 #define TINY 1e-20f
 
-// The part of the state that changes between two velocity changes, in registers.
+// State of a packet that changes within a step, kept in registers; photon_lanes has the complete state.
 typedef struct
 {
-  integer at, alive, crossings;
-  real wall[3], now;
-  real sigma;
-  real power[CHANNELS];
-  real owed[CHANNELS]; // Kahan compensation: the power is `power + owed`
+  integer at, alive, crossings; // voxel (index of its extinction); -1 or 0; number of path segments
+  real wall[3], now;            // times since the step began: of the next walls, and now
+  real sigma;                   // optical thickness of the voxel's diagonal; sign bit set where the index varies
+  real power[CHANNELS];         // remaining power in units
+  real owed[CHANNELS];          // Kahan compensation: the exact power is `power + owed`
 #if COUNTS || CELLS
-  integer counted; // voxel or cell that counted the photon last
+  integer counted; // index of the voxel or coarse cell that counted the photon last
 #endif
 #if BRICKS
   integer voxel[3], last;
 #endif
 } photon_flight;
 
-// The deposit of one path segment.
+// Deposit of one path segment of each photon.
 typedef struct
 {
-  integer at; // record of the sums
-  real amount[CHANNELS];
+  integer at;            // record of the sums
+  real amount[CHANNELS]; // power times path integral of transmittance, in units
 #if COUNTS || CELLS
-  integer entered; // mask of the photons that entered this voxel or cell
+  integer entered; // mask of the photons that entered the voxel or coarse cell in this segment
 #endif
 } photon_gain;
 
@@ -84,7 +86,7 @@ static void take_off(const march_arrays* arrays, const photon_lanes* lanes, phot
   flight->sigma = gather(float, arrays->sigma, flight->at);
 }
 
-// Attenuates the photons over `length` (diagonals), and computes the deposit of each, `gained`.
+// Attenuates the photons over path lengths `length` (diagonals), and computes their deposits, `gained`.
 static void attenuate(const march_arrays* arrays, photon_flight* flight, real length, real* gained)
 {
   real left, lost, factor;
@@ -104,7 +106,8 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
       thick = truth(tau > (real)0.5f);
     }
     gained[c] = flight->power[c] * factor;
-    // Through many optically thin voxels, rounding errors have the same sign in each: compensated summation (Kahan).
+    // Through many optically thin voxels, rounding errors have the same sign in each voxel: compensated summation
+    // (Kahan).
     const real taken = flight->power[c] * lost - flight->owed[c];
     const real rest = thick ? flight->power[c] * left : flight->power[c] - taken;
     flight->owed[c] = thick ? (real)0.0f : (flight->power[c] - rest) - taken;
@@ -114,7 +117,7 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
 
 typedef long4 __attribute__((aligned(8))) long4_anywhere;
 
-// Adds the deposit of one photon, a[channel], to a voxel's record.
+// Adds the deposit of one photon, a[channel] in units, to a voxel's record.
 static void deposit(__global long* record, const float* a, float4 direction)
 {
 #if CHANNELS == 1 && DIRECTIONS && !ATOMICS
@@ -135,7 +138,7 @@ static void deposit(__global long* record, const float* a, float4 direction)
 }
 
 #if COUNTS || CELLS
-// Counts one photon in a voxel or cell if it entered it (entered: -1, else 0).
+// Counts one photon in the record of a voxel or cell that it entered (entered: -1, else 0).
 static void count_photon(__global long* record, ulong mark, int entered)
 {
 #if COUNTS
@@ -179,8 +182,8 @@ static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, c
 #undef DEPOSIT
 }
 
-// Memory access dominates the time of a march through a large grid. Prefetches records a few voxels ahead of the
-// photons on a straight line. Grids stored by bricks are small enough without.
+// Prefetches extinction and records of the sums a few voxels ahead of the photons, on a straight line: memory access
+// dominates the time of a march through a large grid. Grids stored by bricks are small enough not to need it.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
 #if REAL_WIDTH > 1 && !BRICKS
@@ -210,7 +213,7 @@ static void keep_owed(photon_lanes* lanes, const photon_flight* flight)
 #endif
 }
 
-// Appends photon k, which has entered a voxel of another block, to `gone`.
+// Appends photon k, which has entered a voxel of another block, to the photons that leave this block, `gone`.
 static void hand_on(const march_arrays* arrays, const photon_lanes* lanes, int k)
 {
   __global PhotonOnItsWay* photon = arrays->gone + atomic_add(arrays->gone_count, 1);
@@ -249,7 +252,8 @@ static void take_one_over(photon_lanes* lanes, int k, const __global PhotonOnIts
 #endif
 }
 
-// Loads photons `first` to `first + REAL_WIDTH`, but only those before `end`, of those that have arrived.
+// Loads a packet of photons that arrived from other blocks: `first` to `first + REAL_WIDTH`, but only those before
+// `end`.
 static void take_over(const march_arrays* arrays, const __global PhotonOnItsWay* arrived, int first, int end,
   photon_lanes* lanes, photon_flight* flight)
 {
@@ -279,7 +283,7 @@ static void take_over(const march_arrays* arrays, const __global PhotonOnItsWay*
     flight->power[c] = VECTOR(lanes->power[c]);
     flight->owed[c] = VECTOR(lanes->owed[c]);
   }
-#if CELLS // a cell may extend over several blocks
+#if CELLS // a coarse cell may extend over several blocks
   flight->counted = INTEGERS(lanes->counted);
 #elif COUNTS
   flight->counted = -1;
@@ -287,7 +291,7 @@ static void take_over(const march_arrays* arrays, const __global PhotonOnItsWay*
 }
 #endif
 
-// Computes the deposits of the photons over `length` in their voxels.
+// Computes the deposits of the photons in their voxels over path lengths `length`, and attenuates them.
 static void leave_light(const march_arrays* arrays, photon_flight* flight, real length, photon_gain* gain)
 {
   attenuate(arrays, flight, length, gain->amount);
@@ -297,7 +301,7 @@ static void leave_light(const march_arrays* arrays, photon_flight* flight, real 
   gain->at = flight->at;
 #endif
 #if COUNTS || CELLS
-  // Segments of photons that start on a wall, or have ended, have zero length.
+  // Photons that start on a wall, and terminated photons, have path segments of zero length, which are not counted.
   gain->entered = truth(gain->at != flight->counted) & truth(length > (real)0.0f);
   flight->counted = gain->entered ? gain->at : flight->counted;
 #endif
@@ -320,7 +324,7 @@ static void cross_walls(const march_arrays* arrays, const photon_lanes* lanes, p
   flight->sigma = gather(float, arrays->sigma, flight->at);
 }
 
-// The power of a photon's brightest channel.
+// Power of each photon's brightest channel, in units.
 static real brightest(const photon_flight* flight)
 {
   real most = flight->power[0];
@@ -332,7 +336,7 @@ static real brightest(const photon_flight* flight)
 }
 
 #if BENDS
-// The photons that start a new step here: their step has ended, or they have entered a region of varying index.
+// Mask of the photons that start a new step: their step has ended, or they have entered a region of varying index.
 static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
 {
   const real turn = VECTOR(lanes->turn);
@@ -341,7 +345,7 @@ static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
 }
 #endif
 
-// The photons that have ended, or start a new step.
+// Mask of the photons that are to be terminated (outside, or dark) or start a new step.
 static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
   integer special = truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);
@@ -351,8 +355,8 @@ static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, 
   return special & flight->alive;
 }
 
-// In a block: the photons that have reached the limit of path segments. There, unlike on an undivided grid, photons of
-// a packet may have different numbers of segments behind them.
+// Mask of the photons in a block that have reached the limit of path segments. On an undivided grid, `follow` applies
+// the limit, as all photons of a packet have the same number of segments.
 static integer halted(const march_arrays* arrays, const photon_flight* flight)
 {
 #if BLOCKS
@@ -374,7 +378,7 @@ static void end_photon(const photon_lanes* lanes, int k, int face, __global Phot
 }
 
 #if BENDS
-// Gives up the photons of a mask whose velocity is out of range after a change.
+// Terminates the photons of a mask whose speed is out of range after a change of velocity.
 static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, integer mask, int first)
 {
   const real pace = VECTOR(lanes->pace);
@@ -390,7 +394,8 @@ static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, intege
 }
 #endif
 
-// Ends the photons of a mask, or starts their next steps.
+// Terminates the photons of a mask that are outside, dark or at the limit of path segments, and starts the next steps
+// of the others.
 static void attend(
   const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {

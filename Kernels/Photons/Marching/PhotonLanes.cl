@@ -1,7 +1,7 @@
-// Packets of photons: REAL_WIDTH of them, one per vector lane.
+// Packets of photons: each packet has REAL_WIDTH photons, one per vector lane.
 //
-// Their state is in arrays, read and written for all lanes at once, or one by one if a photon needs separate treatment.
-// A mask is -1 in selected lanes and 0 in the others; `mask ? a : b` selects by lane.
+// The state of a packet is in arrays, read and written for all lanes at once, or lane by lane if a photon needs
+// separate treatment. A mask is -1 in selected lanes and 0 in the others; `mask ? a : b` selects by lane.
 
 #pragma once
 #include "Numerics/Numerics.cl"
@@ -15,11 +15,12 @@
 #define PUT_WHERE(mask, array, value) (*(real*)(array) = (mask) ? (value) : VECTOR(array))
 #define PUT_INTEGERS_WHERE(mask, array, value) (*(integer*)(array) = (mask) ? (value) : INTEGERS(array))
 
-// PoCL does not unroll these loops by itself, and arrays with a variable index are not kept in registers.
+// Loops over axes and channels are unrolled by pragma, as PoCL does not unroll them itself, and arrays with a
+// variable index are not kept in registers.
 #define FOR_AXES(a) _Pragma("unroll") for (int a = 0; a < 3; ++a)
 #define FOR_CHANNELS(c) _Pragma("unroll") for (int c = 0; c < CHANNELS; ++c)
 
-// Instead of fmin and fmax, which check for NaN.
+// Minimum and maximum without the checks for NaN of fmin and fmax.
 #define lesser(a, b) ((a) < (b) ? (a) : (b))
 #define greater(a, b) ((a) > (b) ? (a) : (b))
 
@@ -69,7 +70,7 @@ static int bits_of(integer mask)
   return pair.x | pair.y;
 }
 
-// Instead of any, which PoCL compiles to one branch per lane.
+// Whether a mask selects any lane. The built-in function any is not used, as PoCL compiles it to one branch per lane.
 static bool anywhere(integer mask)
 {
 #if REAL_WIDTH == 4

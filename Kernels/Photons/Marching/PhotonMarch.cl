@@ -1,8 +1,8 @@
-// Marches photons through a medium and deposits their light (Pfeuti 2009, section 3.1.5, but for the accumulation). The
-// host defines the macros of the included files, and
+// Kernels that march photons through a medium and deposit their light (Pfeuti 2009, section 3.1.5, except for the
+// accumulation). The host defines the macros of the included files, and
 //   CHANNELS         channels of light; MEDIUM_CHANNELS of sigma_t, 1 or CHANNELS
-//   WORKERS          0: one work-item per packet, all add to the same sums; else the number of work-items, which fetch
-//                    blocks of photons from a counter and add each to its own sums
+//   WORKERS          0: one work-item per packet, and all add to the same sums; else the number of work-items, which
+//                    fetch BLOCK photons at a time from a counter and each add to a separate copy of the sums
 //   COUNTS           1: voxels also count photons and sum their weights; a photon's mark is 1 << CountShift plus its
 //                    weight in units
 //   CELLS            1: deposits go to coarse cells, which also count photons and sum the columns and rows of their
@@ -11,13 +11,13 @@
 //   BRICKS           1: medium and sums are stored by bricks (PhotonBricks.cl), without COUNTS and CELLS
 //   TURNS            1: photons march in turns, and are stored between them; one batch, without PATHS and BLOCKS
 //
-// A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel with optical thickness s along
-// a diagonal, and b = max(s, 1), the sums gain (numerics.md, Eqs. (35), (97))
+// A step is followed from voxel wall to voxel wall (Amanatides and Woo 1987). In a voxel with optical thickness s
+// along a diagonal, and b = max(s, 1), the sums gain the deposit a (numerics.md, Eqs. (35), (97)):
 //   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power
-// Cells, whose voxels differ, gain power times path in diagonals.
+// Coarse cells, whose voxels differ in s, gain power times path length in diagonals (b = 1).
 //
-// A photon is counted when it enters a voxel (a cell), once for any number of segments in it, and again when it
-// re-enters.
+// A photon is counted when it enters a voxel (or coarse cell), once for any number of segments in it, and again when
+// it re-enters.
 
 #include "Photons/Marching/PhotonFlight.cl"
 
@@ -32,7 +32,7 @@ static float total_power(const photon_flight* flight)
   return sum;
 }
 
-// Whether the path continues straight into another block, so that it has no corner here.
+// Whether the path continues straight into another block, so that it has no corner at the end of this segment.
 static bool goes_on_elsewhere(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
 #if BLOCKS
@@ -42,7 +42,7 @@ static bool goes_on_elsewhere(const march_arrays* arrays, const photon_lanes* la
 #endif
 }
 
-// Adds the photon's position to its path.
+// Adds the photon's position and remaining power to the vertices of its path.
 static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight, int* count)
 {
   if (arrays->vertices)
@@ -55,12 +55,12 @@ static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, co
 }
 #endif
 
-// Follows a packet, some photons of which have not ended, over at most `events` path segments, or to their ends.
-// Returns whether some have not ended. With PATHS, `vertices` counts the vertices of the path.
+// Follows a packet with photons that have not ended, over at most `events` path segments per photon, or to their
+// ends. Returns whether some photons have not ended. With PATHS, `vertices` counts the vertices of the path.
 static bool follow(
   const march_arrays* arrays, photon_lanes* lanes, photon_flight* flight, int first, int events, int* vertices)
 {
-  // A deposit is added one segment later, while the extinction of the next one is fetched from memory.
+  // The deposit of a segment is added during the next segment, while the extinction for it is fetched from memory.
   photon_gain gain;
   bool owed = false;
   for (int event = 0; event < events; ++event)
@@ -112,7 +112,7 @@ static bool follow(
   return true;
 }
 
-// Gives up the photons that have not ended.
+// Terminates the photons of a packet that have not ended.
 static void give_up_all(const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, int first)
 {
   land(flight, lanes);
@@ -126,7 +126,8 @@ static void give_up_all(const march_arrays* arrays, photon_lanes* lanes, const p
 }
 
 #if BLOCKS
-// Loads photons that arrived from other blocks, as load_packet does those that start. With PATHS, counts their corners.
+// Loads a packet of photons that arrived from other blocks, and ends or turns those that need it. With PATHS, counts
+// their corners.
 static void resume_packet(const march_arrays* arrays, const __global PhotonOnItsWay* arrived, int first, int end,
   photon_lanes* lanes, photon_flight* flight, int* vertices)
 {
@@ -150,8 +151,9 @@ static void resume_packet(const march_arrays* arrays, const __global PhotonOnIts
 #endif
 
 // Follows photons `first` to `first + REAL_WIDTH`, but only those before `end`, to their ends or into another block.
-// With PATHS, returns the number of vertices of the path, with its start but not where it enters the block.
-//   photons  photons that start or, with `resumes`, PhotonOnItsWay
+// With PATHS, returns the number of vertices of the path, including its start but not the point where it enters the
+// block.
+//   photons  photons that start (PHOTON_FLOATS each) or, with `resumes`, PhotonOnItsWay
 static int march_packet(const march_arrays* arrays, const __global float* photons, int resumes, int first, int end)
 {
   photon_lanes lanes;
@@ -186,8 +188,8 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #endif
 
 #if PATHS
-// Traces parts of paths, one per work-item. Counts the vertices of part i, places[i], or, if launch.writes, writes them
-// to vertices + places[i]. Marks identify photons.
+// Traces the parts of paths that lie in this block, one per work-item. Counts the vertices of part i in places[i] or,
+// if launch.writes, writes them to vertices + places[i]. Marks identify photons.
 __kernel void trace_paths(
   MarchInfo info, MarchLaunch launch, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global int* cells, const __global float* photons, const __global ulong* marks,
@@ -207,7 +209,7 @@ __kernel void trace_paths(
 #else
 
 #if TURNS
-// State of a packet between two turns.
+// State of a packet of photons between two turns.
 typedef struct
 {
   photon_lanes lanes;
@@ -225,14 +227,14 @@ static int number_of(const photon_packet* packet)
   return number;
 }
 
-// Size of a photon_packet in bytes, for the host.
+// Writes the size of a photon_packet in bytes, for the host.
 __kernel void size_packet(__global int* bytes)
 {
   bytes[0] = sizeof(photon_packet);
 }
 
 // Marches a packet for one turn: over launch->events path segments from its current state.
-//   going  number of photons in the packet that have not ended; added to `left`, too
+//   going  number of photons in the packet that have not ended; also added to `left`
 static void take_turn(const march_arrays* arrays, const MarchLaunch* launch, const __global float* photons,
   __global photon_packet* packet, __global int* going, volatile __global int* left, int first, int end)
 {
@@ -270,11 +272,11 @@ static void take_turn(const march_arrays* arrays, const MarchLaunch* launch, con
 #define MARCH_PACKET(first, end) march_packet(&arrays, photons, launch.resumes, first, end)
 #endif
 
-// Marches photons launch.first to launch.first + launch.count within each batch: those that start or, with
-// launch.resumes, those that have arrived from another block.
+// Marches photons launch.first to launch.first + launch.count within each batch: photons that start or, with
+// launch.resumes, photons that arrived from another block.
 //   batch_begin  batch b begins at batch_begin[b] and ends where the next one begins
-//   counters     number of the next photon of each batch; then BLOCKS: the number of photons in `gone`, TURNS: the
-//                number of photons that have not ended
+//   counters     index of the next photon of each batch; then with BLOCKS the number of photons in `gone`, with TURNS
+//                the number of photons that have not ended
 __kernel void march_photons(
   MarchInfo info, MarchLaunch launch, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global int* cells, const __global float* photons, const __global ulong* marks,
@@ -295,8 +297,8 @@ __kernel void march_photons(
     const int begin = batch_begin[batch] + launch.first, left = min(launch.count, batch_begin[batch + 1] - begin);
     const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + copy * launch.copyStride, ends, 0, marks,
       cells GONE };
-    // Blocks keep neighbouring photons together, as these share cache lines. Which work-item takes a block does not
-    // affect the sums.
+    // Blocks of consecutive photons, which are neighbours in space and share cache lines, are marched by one
+    // work-item. The sums do not depend on which work-item fetches a block.
     for (int block = atomic_add(counters + batch, BLOCK); block < left; block = atomic_add(counters + batch, BLOCK))
     {
       for (int i = begin + block; i < begin + min(block + BLOCK, left); i += REAL_WIDTH)

@@ -1,4 +1,4 @@
-// Packs the medium for the marching kernels. The host defines
+// Kernels that pack the medium for the marching kernels. The host defines
 //   MEDIUM_CHANNELS, BENDS, LEVELS  as in PhotonMarch.cl
 //   A_CHANNELS, S_CHANNELS          components of sigma_a and sigma_s, 0: absent
 
@@ -10,8 +10,8 @@
 #define component(values, count, voxel, c) \
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
-// Whether n^2 varies within the reach of interpolation in a voxel. low, high: least and largest nearby coefficient of
-// each, in the padded layout of the coefficients.
+// Whether n^2 varies in a voxel, within the reach of interpolation.
+//   low, high  least and largest coefficient near each coefficient, in the padded layout of the coefficients
 static bool index_varies(
   const IndexGrid* known, const __global float* low, const __global float* high, int x, int y, int z)
 {
@@ -19,8 +19,11 @@ static bool index_varies(
   return high[i] - low[i] > FLAT * high[i];
 }
 
-// sigma  [MEDIUM_CHANNELS][padded] optical thickness of a voxel diagonal, OUTSIDE in the padding; sign bit set where
-// n^2 varies. x0, y0, z0: the grid's first voxel, in the region whose index is known
+// Packs the extinction of the voxels.
+//   x0, y0, z0  first voxel of the grid within the region `known`, where the index is known
+//   low, high   as in index_varies
+//   sigma       [MEDIUM_CHANNELS][padded] optical thickness of a voxel diagonal, OUTSIDE in the padding; sign bit set
+//               where n^2 varies
 __kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, int z0, float diagonal,
   const __global float* sigma_a, const __global float* sigma_s, const __global float* low, const __global float* high,
   __global float* sigma)
@@ -44,7 +47,8 @@ __kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, i
   }
 }
 
-// nodes  [padded known] 0: n^2 does not vary; else 1 + the voxel's octree level
+// Packs the octree nodes of the region in which the index is known.
+//   nodes  [padded known] 0: n^2 does not vary in the voxel; else 1 + the voxel's octree level
 __kernel void pack_nodes(IndexGrid known, const __global float* low, const __global float* high,
   const __global uchar* levels, __global uchar* nodes)
 {
@@ -56,8 +60,10 @@ __kernel void pack_nodes(IndexGrid known, const __global float* low, const __glo
   nodes[((size_t)z * (ny + 2) + y) * (nx + 2) + x] = varies ? 1 + (LEVELS ? levels[voxel] : 0) : 0;
 }
 
-// Writes the coarse cell of each voxel, [padded], out of cells[0] times cells[1] times cells[2]; 0 in the padding.
-// x0, y0, z0: first voxel of the block in the whole grid.
+// Computes the coarse cell of each voxel of a block.
+//   x0, y0, z0  first voxel of the block in the domain `whole`
+//   cells       number of coarse cells along each axis of the domain
+//   cell        [padded] index of the coarse cell, x fastest; 0 in the padding
 __kernel void assign_cells(IndexGrid grid, IndexGrid whole, int x0, int y0, int z0, IndexGrid cells, __global int* cell)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);

@@ -2,30 +2,29 @@
 //   REAL_WIDTH  photons per packet: 1 on a GPU, 4 to 16 on a CPU
 //   BENDS       1: the index varies; ORDER of the integrator is then 1, 2 or 4
 //   LEVELS      1: there are octree levels
-//   NODE_BRICKS 1: `nodes` covers the whole grid, in the layout of BrickedBytes
+//   NODE_BRICKS 1: the array `nodes` covers the domain, in the layout of BrickedBytes
 //   DIRECTIONS  1: directions are recorded
 //   MARKS       1: photons carry marks (PhotonMarch.cl)
-//   BRICKS      1: the medium is stored by bricks (PhotonBricks.cl); indices are those of records, and there are [copy]
-//               of them
-//   BLOCKS      1: photons march to the end of their block of the grid, without BRICKS
+//   BRICKS      1: the medium is stored by bricks (PhotonBricks.cl); indices are those of the `copy` records
+//   BLOCKS      1: the grid is a block of the domain, and photons march until they leave it; without BRICKS
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It is a sequence of steps,
-// straight lines of constant velocity; where the velocity changes, code and comments say that the photon turns:
-//   order 2  from kick to kick of the leapfrog, Eq. (91): this polygon is the path
-//   order 4  from end to end of steps, each of Yoshida's three leapfrogs
+// straight lines of constant velocity; comments and names call the change of velocity between steps a turn:
+//   order 2  steps from kick to kick of the leapfrog, Eq. (91): the polygon of steps is the path
+//   order 4  steps of Yoshida's integrator, each of three leapfrogs
 //   order 1  explicit Euler, Eq. (92), as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
 //
-// The integrator evaluates n^2 ahead of the photon, but no farther than the look-ahead limits in MarchShared.h: where a
-// jump of n makes a photon many times as fast as its step was meant for, it could otherwise look arbitrarily far, and a
-// block of a grid stores the index no farther than that (numerics.md, Eq. (99f)). Steps in an octree are longer: those
-// of order 2 do not evaluate the index ahead, and those of order 4 end where they leave a cube of 2^YoshidaLevel voxels
-// per edge, even in larger nodes.
+// The integrator evaluates n^2 ahead of the photon, but no farther than the look-ahead limits in MarchShared.h: where
+// a jump of n makes a photon much faster than its step was meant for, it could otherwise evaluate n^2 arbitrarily far
+// ahead, and a block of the domain stores the index only within that limit (numerics.md, Eq. (99f)). Steps in an
+// octree are longer: those of order 2 do not evaluate the index ahead, and those of order 4 end where they leave a
+// cube of 2^YoshidaLevel voxels per edge, even in larger nodes.
 //
-// Where n is constant within the reach of interpolation nothing is evaluated, and one step lasts until n varies again.
+// Where n is constant within the reach of interpolation nothing is evaluated, and one step lasts until n varies.
 //
-// Positions and velocities are in voxels, lengths in voxel diagonals.
+// Positions are in voxels of the domain, velocities in voxels per time, lengths in voxel diagonals.
 //
-// A photon whose velocity is NaN, zero or infinite (n^2 beyond float) is given up.
+// A photon whose velocity is NaN, zero or infinite (n^2 beyond float) is terminated.
 
 #pragma once
 #include "Numerics/Numerics.cl"
@@ -34,68 +33,70 @@
 #include "Refraction/Index/SquaredIndex.cl"
 
 #define NEVER 3e38f
-#define AHEAD 4             // prefetch distance, in voxels along the axis of fastest change
-#define OUTSIDE -3e38f      // sigma of the padding around the grid
-#define SLOWEST_PACE 1e-12f // diagonals per time; equals n, but for rounding and steps across jumps of n
+#define AHEAD 4        // prefetch distance, in voxels along the axis of fastest change
+#define OUTSIDE -3e38f // sigma of the padding around the grid
+// Minimum speed, in diagonals per time, of a photon; speed is n, but for rounding and steps across jumps of n.
+#define SLOWEST_PACE 1e-12f
 #define FASTEST_PACE 1e12f
 
-// All arrays that the kernel reads and writes.
+// Arguments of a marching kernel: the arrays that it reads and writes.
 typedef struct
 {
   const MarchInfo* info;
-  // [MEDIUM_CHANNELS][copy] optical thickness of a voxel diagonal; sign bit set: the index varies.
+  // Optical thickness of a voxel diagonal, [MEDIUM_CHANNELS][copy]; sign bit set: the index varies in the voxel.
   const __global float* sigma;
-  const __global float* coefficients; // of n^2
-  const __global uchar* nodes;        // [padded known] 0: the index is constant; 1: it varies, single voxel; 1 + k: it
-    // varies, octree node of 2^k voxels per edge; NODE_BRICKS: table of bricks, bricks
-  __global long* sums; // [copy][RECORD] fixed point
-  __global PhotonEnd* ends;
-  __global float4* vertices;   // of a path: position in voxels, remaining power; null: vertices are only counted
-  const __global ulong* marks; // marks of photons, with MARKS
-  // With CELLS: [copy] coarse cell of each voxel; with BRICKS: first records, MarchMedium.h.
+  const __global float* coefficients; // coefficients of the spline of n^2
+  // [padded known] 0: the index is constant in the voxel; 1: it varies, single voxel; 1 + k: it varies, octree node
+  // of 2^k voxels per edge. With NODE_BRICKS: table of bricks, then bricks.
+  const __global uchar* nodes;
+  __global long* sums;       // sums of deposits, [copy][RECORD] in fixed point
+  __global PhotonEnd* ends;  // final states of photons
+  __global float4* vertices; // vertices of a path: position in voxels, remaining power; null: vertices are only counted
+  const __global ulong* marks; // marks of photons (PhotonMarch.cl), with MARKS
+  // With CELLS: index of the coarse cell of each voxel, [copy]; with BRICKS: first records of bricks, MarchMedium.h.
   const __global int* cells;
 #if BLOCKS
-  __global PhotonOnItsWay* gone; // photons that enter other blocks, in any order
-  volatile __global int* gone_count;
-  int batch; // batch of the photons
+  __global PhotonOnItsWay* gone;     // photons that entered other blocks, in any order
+  volatile __global int* gone_count; // number of photons in `gone`
+  int batch;                         // index of the batch of the photons
 #endif
 } march_arrays;
 
-// The state of a packet of REAL_WIDTH photons.
+// State of a packet of REAL_WIDTH photons. Times are counted from the beginning of the step.
 typedef struct
 {
-  LANES(int, at);         // current voxel, index into the padded grid
-  LANES(int, alive);      // -1 or 0
-  LANES_3(int, stride);   // change of `at` to the next voxel along each axis
+  LANES(int, at);         // current voxel, as index into the padded grid
+  LANES(int, alive);      // -1: the photon has not ended; 0: it has
+  LANES_3(int, stride);   // change of `at` from a voxel to the next along each axis
   LANES(int, ahead);      // change of `at` to the prefetched voxel
-  LANES_3(float, wall);   // time of the next wall along each axis
-  LANES_3(float, across); // time from wall to wall along each axis
-  LANES(float, now);      // time since the step began
-  LANES(float, turn);     // time when the step ends; NEVER: constant n, until the index varies
+  LANES_3(float, wall);   // time at which the photon reaches the next wall along each axis
+  LANES_3(float, across); // duration from wall to wall along each axis
+  LANES(float, now);      // current time
+  LANES(float, turn);     // time at which the step ends; NEVER: n is constant, and the step lasts until n varies
   LANES(float, settled);  // time before which a varying index does not start a new step
-  LANES(float, pace);     // speed, diagonals per time
+  LANES(float, pace);     // speed, in diagonals per time
   LANES(float, step);     // duration of the current step
-  LANES(int, steps);      // steps taken
-  LANES(int, crossings);  // path segments that were deposited
-  float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
-  LANES_3(float, start);        // position where the step began
-  LANES_3(float, velocity);     // velocity in the step
-  LANES_3(float, momentum);     // T; v for Euler; with order 2 equal to the velocity
+  LANES(int, steps);      // number of steps of the integrator
+  LANES(int, crossings);  // number of path segments that were deposited
+  float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64))); // remaining power of each channel, in units
+  LANES_3(float, start);                                          // position at which the step began
+  LANES_3(float, velocity);                                       // velocity in the step, voxels per time
+  LANES_3(float, momentum);     // T of Eq. (90); with order 1 v of Eq. (92), with order 2 equal to the velocity
   float4 direction[REAL_WIDTH]; // (1, unit direction in space)
 #if MARKS
-  LANES(ulong, mark);
+  LANES(ulong, mark); // mark of the photon (PhotonMarch.cl)
 #endif
 #if BLOCKS
-  // Kahan compensation of photons that continue elsewhere.
+  // Kahan compensation of the power of photons that continue in another block.
   float owed[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
 #if CELLS
-  LANES(int, counted); // the coarse cell that counted such photons last
+  LANES(int, counted); // coarse cell that counted the photon last, for photons that continue in another block
 #endif
 #endif
 #if BRICKS
-  LANES_3(int, voxel);
-  LANES(int, last);        // voxels per edge of the region crossed in one segment, less one; PhotonBricks.cl
-  LANES_3(float, inverse); // time to cross a voxel, with the sign of the velocity
+  LANES_3(int, voxel); // current voxel of the domain
+  LANES(int, last);    // number of voxels along an edge of the region crossed in one segment, less one; PhotonBricks.cl
+  LANES_3(float, inverse); // time to cross a voxel along each axis, with the sign of the velocity
 #endif
 } photon_lanes;
 
@@ -111,7 +112,7 @@ static int3 voxel_of(const MarchInfo* info, int at)
   return (int3)(at - z * layer - y * row - 1, y - 1, z - 1) + vload3(0, info->first);
 }
 
-// The face of the whole grid through which photon k left, or Elsewhere if it only left the block.
+// Face of the domain through which photon k left, or Elsewhere if it only left the block.
 static int face_left(const MarchInfo* info, const photon_lanes* lanes, int k)
 {
 #if BRICKS
@@ -129,7 +130,8 @@ static int face_left(const MarchInfo* info, const photon_lanes* lanes, int k)
                         : Elsewhere;
 }
 
-// Index of a voxel in an array over a part of the grid, padded by `by` at either end of each axis.
+// Index of a voxel of the domain in an array over a region of it, padded by `by` voxels at both ends of each axis.
+//   part, first  size and first voxel of the region
 static integer place_in(const IndexGrid* part, const int* first, int by, const integer* voxel)
 {
   const int row = part->size[0] + 2 * by, layer = row * (part->size[1] + 2 * by);
@@ -141,8 +143,8 @@ static integer padded(const MarchInfo* info, const integer* voxel)
   return place_in(&info->grid, info->first, 1, voxel);
 }
 
-// The voxels that contain positions p, for photons in the mask; for a photon on a wall, where rounding would decide,
-// the voxel of `at`.
+// Finds the voxels that contain positions p, for photons in the mask. For a photon on a wall, where rounding would
+// decide, this is the voxel with index `at`.
 static void voxels_at(const MarchInfo* info, integer mask, const real* p, integer at, integer* voxel)
 {
   FOR_AXES(a)
@@ -173,14 +175,15 @@ static void voxels_at(const MarchInfo* info, integer mask, const real* p, intege
   }
 }
 
-// Time until a photon at p passes the wall `low` or `high`, whichever is ahead.
+// Time until a photon at p reaches the wall ahead of it: `high` if its velocity u is positive, `low` if negative.
+// `inverse` is 1 / u.
 static real time_to_wall(real p, real low, real high, real u, real inverse)
 {
   const real time = ((u > (real)0.0f ? high : low) - p) * inverse;
   return u == (real)0.0f ? (real)NEVER : greater(time, (real)0.0f);
 }
 
-// Sets the velocity of the photons in a mask to u; `inverse` is 1 / u.
+// Sets the velocity of the photons in a mask to u, and the quantities that depend on it; `inverse` is 1 / u.
 static void aim(const MarchInfo* info, photon_lanes* lanes, integer mask, const real* u, const real* inverse)
 {
   const int strides[3] = { 1, info->grid.size[0] + 2, (info->grid.size[0] + 2) * (info->grid.size[1] + 2) };
@@ -214,7 +217,7 @@ static void aim(const MarchInfo* info, photon_lanes* lanes, integer mask, const 
 #endif
 }
 
-// Begins steps of the photons in a mask at p in `voxel`, with velocity u; `inverse` is 1 / u.
+// Begins steps of the photons in a mask at positions p in `voxel`, with velocities u; `inverse` is 1 / u.
 static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask, const integer* voxel, const real* p,
   const real* u, const real* inverse)
 {
@@ -229,19 +232,19 @@ static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask
 }
 
 #if BENDS
-// Index of a voxel's coefficient.
+// Index of a voxel's spline coefficient.
 static integer coefficient_of(const MarchInfo* info, const integer* voxel)
 {
   return place_in(&info->known, info->knownFirst, 2, voxel);
 }
 
-// n^2 and its gradient at positions p of the photons in a mask.
+// Computes n^2 and its gradient (per voxel) at positions p of the photons in a mask.
 static void squared_index_at(const march_arrays* arrays, integer mask, const real* p, real* squared, real* gradient)
 {
   const IndexGrid* known = &arrays->info->known;
   const int row = known->size[0] + 4, layer = row * (known->size[1] + 4);
   const int strides[3] = { 1, row, layer };
-  LANES(int, first); // index of the first coefficient
+  LANES(int, first); // index of the first of the coefficients that the spline combines
   LANES_3(float, fraction);
   LANES(float, values);
   LANES_3(float, slopes);
@@ -273,19 +276,20 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
   }
 }
 
-// Limits a displacement, in voxels, to the integrator's look-ahead.
+// Limits a displacement along an axis, in voxels, to the integrator's look-ahead.
 static real looked_ahead(const MarchInfo* info, real way)
 {
   if (LEVELS && ORDER == 2)
   {
-    return way; // up to a node's wall; all nodes are known
+    return way; // at most to the wall of a node, and all nodes are known
   }
   const float steps = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
   const float most = LEVELS ? greater(steps, (float)(1 << YoshidaLevel)) : steps;
   return lesser(greater(way, (real)-most), (real)most);
 }
 
-// The voxels of arbitrary positions; beyond the region with a known index, those of the padding.
+// Finds the voxels of arbitrary positions; for positions beyond the region in which the index is known, voxels of its
+// padding.
 static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxel)
 {
   FOR_AXES(a)
@@ -296,7 +300,7 @@ static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxe
   }
 }
 
-#define NODE_BRICK 8 // voxels of an edge, BrickedBytes::Edge
+#define NODE_BRICK 8 // voxels along an edge of a brick of nodes, BrickedBytes::Edge
 
 static int node_of_whole(const march_arrays* arrays, int3 voxel)
 {
@@ -312,13 +316,14 @@ static int node_of_whole(const march_arrays* arrays, int3 voxel)
   return brick >= 0 ? brick : arrays->nodes[(ulong)bricks.x * bricks.y * bricks.z * sizeof(int) + uneven];
 }
 
-// Nodes (encoding: march_arrays) of the voxels of the photons in a mask; 0 outside the mask.
+// Octree nodes (encoding: march_arrays) of the voxels of the photons in a mask; 0 outside the mask.
 static integer nodes_of(const march_arrays* arrays, integer mask, const integer* voxel)
 {
   if (!NODE_BRICKS)
   {
     const MarchInfo* info = arrays->info;
-    const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel); // outside the mask: the padding
+    // The padding for photons outside the mask.
+    const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel);
     return to_integer(gather(uchar, arrays->nodes, at));
   }
   LANES(int, node);
@@ -335,19 +340,22 @@ static integer nodes_of(const march_arrays* arrays, integer mask, const integer*
   return INTEGERS(node);
 }
 
-// Duration of the next steps of the photons in a mask, from p in `voxel`; 0 where the index does not vary.
+// Duration of the next steps of the photons in a mask, from positions p in `voxel` with velocities u; 0 where the
+// index does not vary.
 static real times_of_steps(
   const march_arrays* arrays, integer mask, const integer* voxel, const real* p, const real* u, const real* inverse)
 {
   const MarchInfo* info = arrays->info;
   const integer node = nodes_of(arrays, mask, voxel);
-  // A kick at a jump of n within the step may leave a photon almost without velocity.
+  // The speed is bounded from below, as a kick at a jump of n within the step may leave a photon almost without
+  // velocity.
   const real shortest =
     (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);
   real time = shortest;
   if (LEVELS && anywhere(truth(node > 1)))
   {
-    // Until the photon leaves the octree's node, or a cube within it, and slightly enters the next one.
+    // The step lasts until the photon leaves the octree's node, or a cube within it, and slightly enters the next
+    // one.
     const integer above = max(node, 1) - 1, level = ORDER == 4 ? min(above, YoshidaLevel) : above;
     real out = NEVER;
     FOR_AXES(a)
@@ -362,7 +370,7 @@ static real times_of_steps(
   return node == 0 ? (real)0.0f : time;
 }
 
-// dT/dt at p: half the gradient of n^2, both in units of voxels.
+// Computes dT/dt at positions p, half the gradient of n^2 of Eq. (90), in voxels.
 static void pull(const march_arrays* arrays, integer mask, const real* p, real* change)
 {
   real squared;
@@ -374,8 +382,8 @@ static void pull(const march_arrays* arrays, integer mask, const real* p, real* 
 }
 
 #if ORDER == 1
-// Takes a step of explicit Euler from p: sets velocities u, returns the duration, which equals path length in
-// diagonals.
+// Makes a step of explicit Euler from positions p: sets velocities u, and returns the duration, which equals path
+// length in diagonals.
 static real take_step(
   const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
 {
@@ -396,7 +404,8 @@ static real take_step(
   return step;
 }
 #elif ORDER == 4
-// Takes a step of Yoshida's integrator from p: sets the mean velocity u of the step, returns its duration.
+// Makes a step of Yoshida's integrator from positions p: sets the mean velocities u of the step, and returns its
+// duration.
 static real take_step(
   const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
 {
@@ -435,7 +444,7 @@ static real take_step(
 }
 #endif
 
-// Starts new steps for the photons in a mask, which have entered a region of varying index or ended their step.
+// Starts new steps of the photons in a mask, which have entered a region of varying index or ended their step.
 static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer mask)
 {
   const MarchInfo* info = arrays->info;
@@ -449,8 +458,8 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
   }
   voxels_at(info, mask, p, INTEGERS(lanes->at), voxel);
 #if ORDER == 2
-  // Photons that enter a region of varying index drift for half a step; the others are kicked, then drift for the
-  // halves of two steps.
+  // Photons that enter a region of varying index drift for half a step. Photons at the end of a step are kicked, then
+  // drift for half the old step and half the new one.
   const integer kicked = mask & truth(VECTOR(lanes->turn) <= now);
   const real step = VECTOR(lanes->step);
   real change[3], end[3], seen[3];
@@ -489,7 +498,7 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
 }
 #endif
 
-// Parks an ended photon in the padding, where it deposits nothing.
+// Parks lane k, whose photon has ended, in the padding, where it deposits nothing.
 static void rest(photon_lanes* lanes, int k)
 {
   lanes->alive[k] = 0;
@@ -512,7 +521,7 @@ static void rest(photon_lanes* lanes, int k)
   lanes->turn[k] = NEVER;
 }
 
-// The voxels in which photons start from p (voxels).
+// Finds the voxels in which photons start from positions p (voxels).
 static void voxels_of_starts(const MarchInfo* info, const real* p, integer* voxel)
 {
   FOR_AXES(a)
@@ -521,7 +530,7 @@ static void voxels_of_starts(const MarchInfo* info, const real* p, integer* voxe
   }
 }
 
-// Starts photons at p (voxels) in unit directions u.
+// Starts photons at positions p (voxels) in unit directions u.
 static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, real* u)
 {
   const MarchInfo* info = arrays->info;
@@ -540,7 +549,7 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
   PUT(lanes->settled, (real)0.0f);
   PUT(lanes->step, (real)0.0f);
 #if BENDS
-  // Where the index does not vary, every coefficient equals n^2.
+  // Photons start with speed n. Where the index does not vary, every coefficient equals n^2.
   const integer varies = truth(as_integer(gather(float, arrays->sigma, INTEGERS(lanes->at))) < 0);
   real squared, gradient[3];
   squared_index_at(arrays, varies, p, &squared, gradient);
@@ -568,11 +577,11 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
 }
 
 #if BLOCKS
-// Photons that pass from one block of the grid into another. All coordinates are those of the whole grid, so a path
-// continues as it would on an undivided grid. An arriving photon is on the entry wall of its new voxel, and has not yet
-// been processed there (end, or change of velocity).
+// Transfer of photons from one block of the domain into another. All coordinates are those of the domain, so a path
+// continues as on an undivided grid. An arriving photon is on the entry wall of its new voxel, and has not yet been
+// terminated or turned in that voxel if it needs to be.
 
-// Stores the path state of photon k, which has entered a voxel of another block.
+// Stores the path state of photon k, which has entered a voxel of another block, in `way`.
 static void hand_way_on(const march_arrays* arrays, const photon_lanes* lanes, int k, __global WayOnward* way)
 {
   vstore3(voxel_of(arrays->info, lanes->at[k]), 0, way->voxel);
@@ -608,7 +617,7 @@ static void take_way_over(photon_lanes* lanes, int k, const __global WayOnward* 
   lanes->step[k] = way->step;
 }
 
-// Resumes the paths of all photons in the packet, whose states have been loaded, in these voxels.
+// Resumes the paths of all photons of a packet in the given voxels, after their states were loaded by take_way_over.
 static void go_on_in(const march_arrays* arrays, photon_lanes* lanes, const integer* voxel)
 {
   real u[3], inverse[3];

@@ -1,4 +1,4 @@
-// Converts the sums of photons' deposits to light. The host defines
+// Kernels that convert the sums of photons' deposits to light. The host defines
 //   CHANNELS, DIRECTIONS, COUNTS  as in PhotonMarch.cl
 //   CARRIES                 1: fractions of a unit of a voxel's absorbed power are carried to the next voxel
 //                           of the row. Needed if units are large: half a unit per voxel would be lost otherwise
@@ -13,7 +13,8 @@
 #define component(values, count, voxel, c) \
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
-// Writes the fluence of one channel, from its power times path in diagonals, to the output channels that it stands for.
+// Writes the fluence of one channel to the output channels that it stands for.
+//   path  sum of the channel's power times path in diagonals, in units
 static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c, float path)
 {
   if (CHANNELS == COLOURS)
@@ -27,8 +28,8 @@ static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c,
   }
 }
 
-// Units of power in a voxel's sum that are due to one coefficient, sigma_a or sigma_s, as a part of extinction. In an
-// optically thick voxel, the sum is the power that the photons lost.
+// Power, in units, that is absorbed or scattered in a voxel: the share of one coefficient, sigma_a or sigma_s, in the
+// voxel's sum. In an optically thick voxel, the sum is the power that the photons lost.
 static long taken_by(const LightSumsInfo* info, float sum, float coefficient, float extinction, float* carried)
 {
   const float thickness = info->diagonal * extinction;
@@ -41,7 +42,7 @@ static long taken_by(const LightSumsInfo* info, float sum, float coefficient, fl
   return (long)all;
 }
 
-// Adds up a batch's copies of a voxel's record, and zeroes them. Returns false if all were zero.
+// Adds up the copies of a voxel's record that belong to one batch, and zeroes them. Returns false if all were zero.
 static bool take_batch(const LightSumsInfo* info, __global long* record, ulong copyStride, int batch, long* sum)
 {
   for (int c = 0; c < RECORD; ++c)
@@ -71,7 +72,8 @@ static bool take_batch(const LightSumsInfo* info, __global long* record, ulong c
 }
 
 #if DIRECTIONS
-// Directions from a few units of power are coarse, as fractions are lost, and could be longer than the power.
+// Writes the mean direction of the light. Fractions of units are lost, so directions from a few units of power are
+// coarse; their length is limited to 1.
 static void put_direction(__global float* mean_direction, const long* sum, float total)
 {
   const float3 flow = (float3)(sum[CHANNELS], sum[CHANNELS + 1], sum[CHANNELS + 2]);
@@ -84,7 +86,7 @@ static void put_direction(__global float* mean_direction, const long* sum, float
 }
 #endif
 
-// Power, in units, that is absorbed and scattered, of each channel; `carried` are fractions of a unit.
+// Absorbed ([0]) and scattered ([1]) power of each channel, in whole units; `carried` are fractions of a unit.
 typedef struct
 {
   long units[2][CHANNELS];
@@ -102,7 +104,7 @@ static taken_power nothing_taken()
   return taken;
 }
 
-// Stores such powers: [absorbed, scattered][CHANNELS].
+// Stores absorbed and scattered powers: [absorbed, scattered][CHANNELS] units.
 static void store_taken(const taken_power* taken, __global long* to)
 {
   for (int c = 0; c < 2 * CHANNELS; ++c)
@@ -112,14 +114,15 @@ static void store_taken(const taken_power* taken, __global long* to)
   }
 }
 
-// Extinction of the medium itself: the photons' copy is limited to a finite range. At least 1 per voxel diagonal.
+// Optical thickness of a voxel's diagonal, at least 1, from the medium's extinction (1/length): the copy for photons
+// is limited to a finite range.
 static float thickness_of(const LightSumsInfo* info, float extinction)
 {
   return fmax(info->diagonal * extinction, 1.0f);
 }
 
-// Converts the sums of a record, which stands for a number of `voxels`, to the light of one voxel.
-//   record  index of the coefficients
+// Converts the sums of one record, which stands for a number of `voxels`, to the light of one voxel.
+//   record  index of the record's coefficients
 static void finish_record(const LightSumsInfo* info, const __global float* sigma_a, const __global float* sigma_s,
   size_t record, const long* sum, float voxels, __global float* fluence, __global float* mean_direction,
   taken_power* taken)
@@ -130,7 +133,8 @@ static void finish_record(const LightSumsInfo* info, const __global float* sigma
     const float a = component(sigma_a, info->absorption, record, c),
                 s = component(sigma_s, info->scattering, record, c);
     total += sum[c];
-    put_fluence(info, fluence, c, (float)sum[c] / (thickness_of(info, a + s) * voxels)); // power times diagonals
+    // Power times path in diagonals, the sum over b of numerics.md, Eq. (98).
+    put_fluence(info, fluence, c, (float)sum[c] / (thickness_of(info, a + s) * voxels));
     taken->units[0][c] += taken_by(info, sum[c], a, a + s, &taken->carried[0][c]);
     taken->units[1][c] += taken_by(info, sum[c], s, a + s, &taken->carried[1][c]);
   }
@@ -139,11 +143,12 @@ static void finish_record(const LightSumsInfo* info, const __global float* sigma
 #endif
 }
 
-// Adds up and zeroes the copies of the sums, one row of voxels per work-item, and converts them to light.
-//   fluence         COLOURS per voxel
-//   mean_direction  3 per voxel: sum of power times direction over sum of power, no longer than 1; 0 in dark voxels
-//   photon_count    one per voxel; photon_weight: mean weight, 0 if there are no photons
-//   batch_fluence   [voxel][batch][COLOURS] of each batch, as if it carried all the power
+// Converts the sums to light, one row of voxels per work-item: adds up the copies and zeroes them.
+//   fluence         COLOURS values per voxel
+//   mean_direction  3 values per voxel: sum of power times direction over sum of power, no longer than 1; 0 in dark
+//                   voxels
+//   photon_count    one value per voxel; photon_weight: mean weight of the counted photons, 0 if there are none
+//   batch_fluence   [voxel][batch][COLOURS] fluence of each batch, as if it carried all the power
 //   taken           [row][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
   __global long* sums, ulong copyStride, __global float* fluence, __global float* mean_direction,
@@ -207,10 +212,11 @@ static void leave_dark(__global float* fluence, __global float* mean_direction, 
 #endif
 }
 
-// As finish_light, one brick per work-item, for sums stored by bricks (MarchMedium.h). One batch, and no counts.
-//   sigma_a, sigma_s  one per record
-//   fluence, mean_direction  one per voxel; in an empty brick only the lowest voxel is written, with the mean over the
-//                            brick, until fill_empty
+// Converts the sums to light as finish_light does, but for sums stored by bricks (MarchMedium.h), one brick per
+// work-item. One batch, and no counts.
+//   sigma_a, sigma_s  of each record
+//   fluence, mean_direction  of each voxel; in an empty brick only the lowest voxel is written, with the mean over
+//                            the brick, which fill_empty then copies
 //   taken             [brick][absorbed, scattered][CHANNELS] units of power
 __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, const __global float* sigma_a,
   const __global float* sigma_s, __global long* sums, ulong copyStride, __global float* fluence,
@@ -237,7 +243,7 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
         const size_t voxel = low + z * strideZ + y * strideY + x;
         const size_t record = first < 0 ? -first : first + (z * BrickEdge + y) * BrickEdge + x;
         long sum[RECORD];
-        if (!take_batch(&info, sums + record * RECORD, copyStride, 0, sum)) // most voxels: photons are few
+        if (!take_batch(&info, sums + record * RECORD, copyStride, 0, sum)) // most voxels are dark, as photons are few
         {
           leave_dark(fluence, mean_direction, voxel);
           continue;
@@ -256,8 +262,8 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
 #endif
 #endif
 
-// Stores to an aligned address, bypassing the caches: the array is far larger, and need not be read before it is
-// written.
+// Stores values to an aligned address, bypassing the caches: the array is far larger than caches, and its memory need
+// not be read before it is written.
 static void store_past_caches(float4 values, __global float* to)
 {
 #ifdef STORE_PAST_CACHES
@@ -267,7 +273,7 @@ static void store_past_caches(float4 values, __global float* to)
 #endif
 }
 
-// Stores one value, or three, in each voxel from `begin` to `end`.
+// Stores the same one or three components in each voxel from `begin` to `end`.
 static void fill_voxels(__global float* values, size_t begin, size_t end, float3 value, int components)
 {
   __global float* const to = values + begin * components;
@@ -326,8 +332,8 @@ __kernel void fill_empty(
 }
 #endif
 
-// Converts the sums so far to fluence, as finish_light does, but without changing them. One row of voxels per
-// work-item.
+// Converts the sums accumulated so far to fluence, as finish_light does, but without changing the sums. One row of
+// voxels per work-item.
 __kernel void show_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
   const __global long* sums, ulong copyStride, __global float* fluence)
 {
