@@ -20,16 +20,16 @@ namespace tyndall
 namespace
 {
 constexpr const char* MultiplyAdds = " -cl-mad-enable";
-constexpr int RoundsAtMost = 64;   ///< maximum path length of a photon, in sums of the volume's edges
-constexpr float DarkUnits = 1e-3f; ///< power too small to show in any sum
-/// Fraction of bricks; if more are filled, a layout by bricks saves little.
+constexpr int RoundsAtMost = 64;   ///< maximum length of a path, in multiples of the sum of the domain's edges
+constexpr float DarkUnits = 1e-3f; ///< power, in units, too small to show in any sum; MarchInfo::darkness
+/// Maximum fraction of filled bricks for a layout by bricks; with more filled bricks, it saves little.
 constexpr double FilledAtMost = 0.25;
 
-// As in PhotonMedium.cl.
+// Values of sigma in PhotonMedium.cl: outside the grid, and the upper limit inside.
 constexpr float OutsideOfGrid = -3e38f;
 constexpr float ThickestVoxel = 1e30f;
 
-/// Number of components to upload: 0 if a coefficient is zero everywhere.
+/// Number of components of a coefficient to upload: 0 if it is zero everywhere.
 int ComponentsOf(const Field& field, bool needed)
 {
   return field.values && needed ? field.components : 0;
@@ -40,7 +40,7 @@ IndexGrid SizeOf(const std::array<int, 3>& size)
   return { { size[0], size[1], size[2] } };
 }
 
-/// The layout by bricks; empty if light is stored voxel by voxel.
+/// Creates the layout by bricks; empty if light is stored voxel by voxel.
 PhotonBricks BricksOf(Device& device, const Grid& grid, const FilledBricks& filled, const MarchSettings& settings,
   bool bends, bool scatters)
 {
@@ -165,7 +165,7 @@ PhotonBricks::Coefficients PhotonBricks::Pack(
     packed.extinction[c * this->RecordCount] = OutsideOfGrid;
   }
   const auto over = static_cast<float>(diagonal);
-  // Copies a whole row at a time: rows of a brick are far apart in memory.
+  // Copies coefficients row by row, as the rows of a brick are far apart in the medium's arrays.
   this->ForFilled([&](std::size_t record, std::size_t voxel, std::size_t count) {
     std::copy_n(medium.sigma_a.values + voxel * ofA, count * ofA, packed.sigmaA.data() + record * ofA);
     std::copy_n(medium.sigma_s.values + voxel * ofS, count * ofS, packed.sigmaS.data() + record * ofS);
@@ -291,7 +291,7 @@ void MarchMedium::PackVoxels(const Medium& medium, const Field& ior, const std::
   With(pack, this->DescribeGrid(), SizeOf(this->block.known.size), before(0), before(1), before(2),
     static_cast<float>(this->Diagonal()), this->sigmaA, this->sigmaS, low, high, this->sigma);
   this->Launch(pack, Range(this->Padded(2)));
-  this->device.Finish(); // before local buffers are released
+  this->device.Finish(); // before the local buffers `low` and `high` are released
 }
 
 void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high, const std::uint8_t* levels)
@@ -304,7 +304,7 @@ void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high,
   cl::Kernel pack = this->MediumKernel("pack_nodes");
   With(pack, SizeOf(this->block.known.size), low, high, given, this->nodes);
   this->Launch(pack, Range(padded));
-  this->device.Finish(); // before the levels are released
+  this->device.Finish(); // before the local buffer of levels is released
 }
 
 void MarchMedium::FindRanges(Buffer<float>& low, Buffer<float>& high) const

@@ -12,13 +12,16 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum number of compute units for private sums: with more, adding up the copies costs more than atomics.
+/// Maximum number of compute units of a CPU for private sums: with more, adding up the copies costs more than
+/// atomics.
 constexpr int PrivateSumsAtMost = 8;
-constexpr int MarchBlock = 512; ///< number of neighbouring photons that one work-item takes at a time
-/// Path segments in the first launch with straight rays; two cores follow them in less than the time of a launch.
+/// Number of consecutive photons that a work-item fetches at a time; they are neighbours in space.
+constexpr int MarchBlock = 512;
+/// Number of path segments in the first launch with straight rays; two cores follow them in less time than a launch
+/// takes.
 constexpr double EventsPerLaunch = 4e7;
-constexpr double FirstBent = 16384; ///< photons in the first launch with curved rays
-/// Photons per launch in a block of a grid: 30 MiB for those that leave it.
+constexpr double FirstBent = 16384; ///< number of photons in the first launch with curved rays
+/// Maximum number of photons per launch in a block of the domain: the buffer for photons that leave it has 30 MiB.
 constexpr std::size_t MarchedBetweenBlocks = 262144;
 
 bool HasAtomics(const Device& device)
@@ -38,8 +41,8 @@ bool NeedAtomics(const Device& device, MarchSettings::Sums sums)
   return sums == MarchSettings::Sums::Shared || (sums == MarchSettings::Sums::Fitting && atomics && !few);
 }
 
-/// Photons in the first launch. With straight rays, the cost of a launch follows from the number of voxels; with curved
-/// rays, it is measured in the first launch.
+/// Number of photons in the first launch. With straight rays, the cost of a launch follows from the number of voxels;
+/// with curved rays, it is measured in the first launch.
 double FirstLaunch(const MarchMedium& medium)
 {
   const double edges = (medium.grid.size[0] + medium.grid.size[1] + medium.grid.size[2]) / 3.0;
@@ -54,7 +57,7 @@ const std::vector<PhotonOnItsWay>& SortByBatch(std::vector<PhotonOnItsWay>& phot
   return photons;
 }
 
-/// Indices of the first photon of each batch, and one past the last photon.
+/// Index of the first photon of each batch, and one past the last photon, of photons sorted by batch.
 std::vector<int> BeginsOf(const std::vector<PhotonOnItsWay>& photons, int batches)
 {
   std::vector<int> begins(static_cast<std::size_t>(batches) + 1, 0);
@@ -79,7 +82,7 @@ MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int number
   const bool mayShare = medium.settings.sums == MarchSettings::Sums::Fitting && HasAtomics(device);
   if (mayShare && fitting() < static_cast<std::size_t>(std::max(device.ComputeUnits(), batches)))
   {
-    shares.atomics = true; // slower additions, but on all cores
+    shares.atomics = true; // additions by atomics are slower, but all cores can be used
   }
   const std::size_t fit = fitting();
   if (batches > 1 && fit < static_cast<std::size_t>(batches))
@@ -168,7 +171,7 @@ cl::NDRange MarchKernel::Group() const
   return this->Target.shares.workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(this->Medium.device, 2);
 }
 
-// Few launches are best: at the end of each, work-items idle.
+// Launches are few and long, because work-items idle at the end of each launch.
 Batches PhotonLaunches(
   const MarchMedium& medium, std::size_t photons, std::size_t first, std::size_t whole, int batches)
 {
@@ -203,7 +206,7 @@ MarchRun::Outcome MarchRun::March(const PhotonsOnDevice& photons, const Monitor&
   Device& device = this->Medium.device;
   const MarchShares& shares = this->Target.shares;
   const std::size_t batches = Count(shares.batches);
-  const int sharing = (shares.workers + shares.batches - 1) / shares.batches; // workers that share a batch
+  const int sharing = (shares.workers + shares.batches - 1) / shares.batches; // number of work-items that share a batch
   const Batches launches = PhotonLaunches(this->Medium, photons.LargestBatch(),
     static_cast<std::size_t>(FirstLaunch(this->Medium) / shares.batches),
     Count(MarchBlock) * Count(std::max(sharing, 1)), shares.batches);

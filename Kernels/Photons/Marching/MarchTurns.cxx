@@ -13,7 +13,7 @@ namespace
 {
 struct Span
 {
-  double begin = 0.0, end = 0.0; ///< s
+  double begin = 0.0, end = 0.0; ///< s, device time
 };
 
 Span SpanOf(const cl::Event& first, const cl::Event& last)
@@ -22,13 +22,13 @@ Span SpanOf(const cl::Event& first, const cl::Event& last)
     1e-9 * static_cast<double>(last.getProfilingInfo<CL_PROFILING_COMMAND_END>()) };
 }
 
-/// The length of each turn; the last one takes photons to their ends.
+/// Number of path segments in each turn; the last turn follows photons to their ends.
 class TurnSchedule
 {
 public:
-  /// @param each  path segments per turn, as MarchTurns has them
+  /// @param each   path segments per turn, MarchTurns::stretches
   /// @param limit  maximum number of path segments of a photon
-  /// @param all  number of photons
+  /// @param all    number of photons
   TurnSchedule(int each, int limit, std::size_t all)
     : Each(each)
     , Limit(limit)
@@ -36,8 +36,8 @@ public:
   {
   }
 
-  /// Begins the next turn. @param left  photons that have not ended; if they are fewer than a hundredth of all, this
-  /// turn is the last one
+  /// Begins the next turn. It is the last one if fewer than a hundredth of all photons are left.
+  /// @param left  number of photons that have not ended
   void Next(std::size_t left)
   {
     constexpr std::size_t few = 100;
@@ -46,16 +46,16 @@ public:
     this->Before += this->stretches;
   }
 
-  int stretches = 0; ///< path segments in this turn
-  bool last = false;
+  int stretches = 0; ///< number of path segments in the current turn
+  bool last = false; ///< whether the current turn is the last
 
 private:
   int Each, Limit;
   std::size_t All;
-  std::int64_t Before = 0; ///< path segments of earlier turns
+  std::int64_t Before = 0; ///< path segments of all turns begun so far
 };
 
-/// State of the photons between turns, and their kernel.
+/// State of the photons on the device between turns, and the kernel that marches them.
 class TurnsOfPhotons
 {
 public:
@@ -69,7 +69,8 @@ public:
   {
   }
 
-  /// Queues a turn.
+  /// Queues the march of one turn. Returns its event.
+  /// @param first  whether photons start in this turn
   cl::Event Turn(const cl::CommandQueue& queue, bool first, const TurnSchedule& turn)
   {
     queue.enqueueFillBuffer(this->Counters.Handle(), cl_int(0), 0, 2 * sizeof(cl_int));
@@ -86,7 +87,7 @@ public:
     queue.flush();
     return marched;
   }
-  /// Waits for the queue, then returns the number of photons that have not ended.
+  /// Waits for the queue, and returns the number of photons that have not ended.
   std::size_t StillGoing(const cl::CommandQueue& queue) const
   {
     cl_int left = 0;
@@ -127,14 +128,14 @@ void MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const 
   const cl::CommandQueue mine = medium.device.AnotherQueue();
   const cl::CommandQueue theirs = turns.sideBySide ? medium.device.AnotherQueue() : mine;
   TurnsOfPhotons all(medium, photons, target, packed.channels);
-  medium.device.Finish(); // work on the device's own queue
+  medium.device.Finish(); // finish work queued on the device's own queue
   TurnSchedule turn(turns.stretches, medium.EventLimit(), packed.Count());
   std::size_t left = packed.Count();
   for (; left > 0; ++times.turns)
   {
     turn.Next(left);
     const std::vector<cl::Event> marched = { all.Turn(mine, times.turns == 0, turn) };
-    const bool besides = times.turns > 0; // the first turn has no light to process
+    const bool besides = times.turns > 0; // in the first turn, there is no light to process yet
     const std::array<cl::Event, 2> meanwhile = besides ? turns.meanwhile(theirs) : std::array<cl::Event, 2>();
     theirs.enqueueBarrierWithWaitList(&marched);
     turns.take(theirs, show(theirs));

@@ -20,7 +20,7 @@ namespace tyndall
 {
 namespace
 {
-/// Expands the tallies of a single channel to the three that it stands for.
+/// Multiplies tallies of a single channel by the colour that the channel stands for.
 void Colour(const Rgb& colour, PhotonLight& result)
 {
   EnergyBalance& balance = result.light.balance;
@@ -208,7 +208,7 @@ void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonL
     {
       cl_float units;
       std::memcpy(&units, ends.data() + i * words + EndWords + c, sizeof(units));
-      // Dark photons have almost no power left.
+      // Power of dark photons, almost 0, is added to the power of photons that were terminated.
       out[std::min<int>(end.face, StillGoing)][c] += WholeUnits(units);
     }
   }
@@ -334,7 +334,7 @@ std::vector<float> Floats(const std::vector<double>& values)
   return { values.begin(), values.end() };
 }
 
-/// Repeats each value three times.
+/// Repeats each value three times, once per channel.
 void Widen(std::vector<double>& values)
 {
   std::vector<double> three;
@@ -346,12 +346,13 @@ void Widen(std::vector<double>& values)
 }
 }
 
-// Random choice rather than a fixed stride: low-discrepancy samples depend on the digits of their indices (every
-// sixteenth index has the same last four binary digits, which are Hammersley's leading ones), and all photons of a
-// batch would come from one part of the light.
+// One photon of each group of `batches` consecutive photons is chosen at random rather than by a fixed stride:
+// low-discrepancy samples depend on the digits of their indices (every sixteenth index has the same last four binary
+// digits, which are Hammersley's leading ones), so that with a stride all photons of a batch would start in one part
+// of the light.
 PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
 {
-  std::mt19937 random; // the same sequence for every batch
+  std::mt19937 random; // default seed, so that every batch draws the same numbers
   PhotonNumbers numbers;
   for (std::size_t row = 0; row < photons; row += batches)
   {
@@ -367,7 +368,7 @@ PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t
 void MarchedBatches::Add(PhotonLight&& part)
 {
   ++this->Count;
-  // By chance all photons of this batch have one colour.
+  // The batch may have fewer channels than the earlier ones, if all of its photons happen to have one colour.
   if (this->Count > 1 && part.light.channels < this->All.light.channels)
   {
     Spread(part.light, White);
@@ -430,7 +431,7 @@ PhotonLight MarchedBatches::Sum() &&
   const double count = this->Count;
   for (std::size_t i = 0; i < this->Fluence.size(); ++i)
   {
-    // Each batch is a part of the light: the variance of the sum is that of `count` such parts.
+    // Each batch carries a part of the power: the variance of the sum is that of `count` independent parts.
     const double scatter = this->Squares[i] - this->Fluence[i] * this->Fluence[i] / count;
     light.fluenceError.push_back(static_cast<float>(std::sqrt(std::max(scatter, 0.0) * count / (count - 1.0))));
   }

@@ -23,9 +23,10 @@ namespace tyndall
 {
 namespace
 {
-/// Halo of the refractive index that the paths of photons in a block depend on, in voxels (numerics.md, Eq. (99f)):
-/// three for the support of the spline, and the integrator's look-ahead. Beyond the halo, the index counts as constant.
-/// @param octree  whether steps are those of an octree
+/// Width in voxels of the halo of the refractive index on which paths in a block depend (numerics.md, Eq. (99f)):
+/// three for the support of the spline, and the integrator's look-ahead. Beyond the halo, the index counts as
+/// constant.
+/// @param octree  whether steps follow the nodes of an octree
 int ReachOfIndex(const MarchSettings& settings, bool octree)
 {
   constexpr int OfSpline = 3;
@@ -35,7 +36,7 @@ int ReachOfIndex(const MarchSettings& settings, bool octree)
   }
   const double steps = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
   const double ahead = octree && settings.order == 4 ? std::max(steps, 1.0 * (1 << YoshidaLevel)) : steps;
-  return OfSpline + 1 + static_cast<int>(ahead); // one more for positions on a voxel's upper wall
+  return OfSpline + 1 + static_cast<int>(ahead); // one more for positions on the upper wall of a voxel
 }
 
 void RequireSame(const Domain& domain, const MarchSettings& settings)
@@ -46,7 +47,7 @@ void RequireSame(const Domain& domain, const MarchSettings& settings)
       1.0 * settings.errorBatches, 1.0 * settings.batches });
 }
 
-/// Whether some rank has only a part of the grid, so that photons pass from block to block. The same on all ranks.
+/// Whether the domain is divided among ranks, so that photons pass from block to block. The same on all ranks.
 bool IsDivided(const Domain& domain)
 {
   const std::vector<VoxelBox>& blocks = domain.Partition().blocks;
@@ -57,7 +58,7 @@ bool IsDivided(const Domain& domain)
 
 void Check(const MarchSettings& settings)
 {
-  constexpr double ShortestStep = 0.05; // voxels; for shorter steps, rounding of positions matters
+  constexpr double ShortestStep = 0.05; // in voxels; with shorter steps, rounding of positions matters
   constexpr double LongestStep = 1e4;
   Require(settings.order == 1 || settings.order == 2 || settings.order == 4,
     "The integrator's order is " + std::to_string(settings.order) + "; there are 1, 2 and 4.");
@@ -84,15 +85,16 @@ public:
   Implementation(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
     const MarchSettings& settings, const std::uint8_t* levels);
 
-  /// @param turns  null: photons march to their ends at once
+  /// @param turns  callbacks for a march in turns; null: photons are marched to their ends at once
   PhotonLight March(const std::vector<Photon>& share, MarchTurns* turns, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const;
+  /// Checks that light is stored voxel by voxel.
   /// @throws InvalidInput if light is stored by bricks
   void RequireVoxels(const char* what) const;
 
   const Domain TheDomain;
   const MarchSettings Settings;
-  RoundsTraffic Handed; ///< messages of the last march
+  RoundsTraffic Handed; ///< messages that this rank sent in the last march
   std::unique_ptr<PilotGathering> Pilots;
 
 private:
@@ -113,13 +115,14 @@ private:
   ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor) const;
 
   Device& TheDevice;
-  const bool Divided;                            ///< whether the grid is divided among ranks
-  MarchTraits Traits;                            ///< of all ranks together
-  std::unique_ptr<BrickedBytes> Nodes;           ///< octree nodes of a divided grid; null: no octree
-  std::unique_ptr<MarchMedium> Through;          ///< null if the rank has no voxels
-  std::unique_ptr<MarchedLight> Light;           ///< null if the rank has no voxels
-  std::unique_ptr<ScatteredChannels> Scattering; ///< null if photons are followed to their first collision only
-  std::unique_ptr<Rounds> TheRounds;             ///< present during a march
+  const bool Divided;                   ///< whether the domain is divided among ranks
+  MarchTraits Traits;                   ///< traits of the medium in the domain
+  std::unique_ptr<BrickedBytes> Nodes;  ///< octree nodes of a divided domain; null: no octree
+  std::unique_ptr<MarchMedium> Through; ///< medium of this rank's block; null if the rank has no voxels
+  std::unique_ptr<MarchedLight> Light;  ///< sums of uncollided light; null if the rank has no voxels
+  /// Scattering of all channels; null if photons are followed to their first collision only.
+  std::unique_ptr<ScatteredChannels> Scattering;
+  std::unique_ptr<Rounds> TheRounds; ///< exchange of photons between blocks; null outside a march
 };
 
 PhotonMarcher::Implementation::Implementation(Device& device, const Domain& domain, const Medium& medium,
@@ -158,7 +161,7 @@ PhotonMarcher::Implementation::Implementation(Device& device, const Domain& doma
     if (this->Through)
     {
       this->Light = std::make_unique<MarchedLight>(*this->Through);
-      this->Light->Share(1, 1); // throws if the device lacks something
+      this->Light->Share(1, 1); // throws if the device has no atomics or too little memory for the sums
     }
   });
   if (settings.maximumOrders != 1 && this->Traits.scatters)
@@ -168,15 +171,15 @@ PhotonMarcher::Implementation::Implementation(Device& device, const Domain& doma
   this->Pilots = std::make_unique<PilotGathering>(this->TheDomain, this->Through.get(), this->Traits, this->Settings);
 }
 
-/// The voxels in which a rank needs the index.
+/// Voxels in which a rank needs the index: its block, and a halo of `reach` voxels.
 VoxelBox PhotonMarcher::Implementation::KnownOf(const VoxelBox& block, int reach) const
 {
   return block.VoxelCount() > 0 ? Grown(block, reach, this->TheDomain.Whole()) : block;
 }
 
-/// The index in these voxels, gathered from all ranks; null values if nothing depends on it.
+/// Refractive index in this rank's block and its halo, gathered from all ranks; null values if nothing depends on it.
 /// @param reach  halo in voxels; 0: nothing depends on the index
-/// @param values  storage for it, if the grid is divided
+/// @param values  storage of the gathered index, if the domain is divided
 Field PhotonMarcher::Implementation::IndexAround(const Field& ior, int reach, std::vector<float>& values) const
 {
   const Domain& domain = this->TheDomain;
@@ -198,7 +201,7 @@ Field PhotonMarcher::Implementation::IndexAround(const Field& ior, int reach, st
   return { values.empty() ? nullptr : values.data(), 1 };
 }
 
-/// Distributes the nodes of all ranks' octree levels to every rank.
+/// Collects the octree nodes of the domain on every rank. Collective.
 void PhotonMarcher::Implementation::ShareNodes(const std::uint8_t* levels)
 {
   const Domain& domain = this->TheDomain;
@@ -276,7 +279,7 @@ void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, con
   Tally(starting.packed, onDevice.ends.Read(), result);
 }
 
-/// Follows photons to their first collision.
+/// Follows photons to their first collision, and converts their deposits to light. Collective.
 void PhotonMarcher::Implementation::FollowUncollided(
   const StartingPhotons& starting, MarchTurns* turns, PhotonLight& result, const Monitor& monitor)
 {
@@ -311,7 +314,9 @@ void PhotonMarcher::Implementation::FollowUncollided(
   AddUpTallies(this->TheDomain, result);
 }
 
-/// This rank's part of one channel's scattered light and tallies.
+/// Follows photons through scatterings. Returns one channel's scattered light in this rank's block, and its tallies.
+/// Collective.
+/// @param in  medium and phase function of the channel; null if this rank has no voxels
 ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(
   const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor) const
 {
@@ -331,7 +336,7 @@ ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(
   return found;
 }
 
-/// Adds the light of orders above the first.
+/// Adds the light of scattering orders above the first. Collective.
 void PhotonMarcher::Implementation::AddScattered(
   const PackedPhotons& packed, PhotonLight& result, const Monitor& monitor) const
 {
@@ -345,11 +350,13 @@ void PhotonMarcher::Implementation::AddScattered(
   }
   else if (this->Settings.maximumOrders != 1)
   {
-    result.light.fluenceDirect = result.light.fluence; // as nothing scatters
+    result.light.fluenceDirect = result.light.fluence; // nothing scatters
   }
 }
 
-/// @param numbers  indices of the photons among all
+/// Marches a subset of all photons. Collective.
+/// @param share    photons of the subset on this rank
+/// @param numbers  index of each photon of `share` among all photons
 PhotonLight PhotonMarcher::Implementation::MarchThese(
   const std::vector<Photon>& share, const PhotonNumbers& numbers, MarchTurns* turns, const Monitor& monitor)
 {

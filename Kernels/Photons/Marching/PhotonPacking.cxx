@@ -16,7 +16,8 @@ namespace tyndall
 {
 namespace
 {
-/// Log2 of the tiles along an axis, by which photons are sorted: a voxel or two of a grid of 128^3.
+/// Base-2 logarithm of the number of tiles along an axis, by which photons are sorted; a tile is one to two voxels
+/// wide in a grid of 128^3 voxels.
 constexpr int TileBits = 8;
 constexpr double SameColour = 1e-6;
 
@@ -62,11 +63,11 @@ void CheckPhotons(const std::vector<Photon>& photons, bool batches)
   }
 }
 
-/// Positions and directions, in voxels, of photons that meet the grid.
+/// A photon's line inside the grid: position and direction in voxels.
 struct Ray
 {
   std::array<float, 3> position, direction;
-  std::uint32_t tile; ///< index on a space-filling curve that keeps neighbours together (Morton)
+  std::uint32_t tile; ///< index of its tile on a space-filling curve (Morton), which keeps neighbours together
 };
 
 /// Inserts two zero bits after each bit of x.
@@ -90,7 +91,8 @@ Ray RayOf(const Grid& grid, const Photon& photon, const std::array<double, 3>& p
     const double omega = photon.direction[a] / length;
     ray.position[a] = static_cast<float>(position[a]);
     ray.direction[a] = static_cast<float>(omega);
-    // Photons are sorted by the midpoints of their paths: those of a lamp in the volume all start at one point.
+    // Photons are sorted by the points half a diagonal of the grid along their lines, because all photons of a lamp
+    // in the volume start at one point.
     const double middle = (position[a] + omega * reach + reach) / (grid.size[a] + 2.0 * reach);
     const int tiles = 1 << TileBits;
     ray.tile |= Spread(std::min(std::max(static_cast<int>(middle * tiles), 0), tiles - 1)) << a;
@@ -98,7 +100,7 @@ Ray RayOf(const Grid& grid, const Photon& photon, const std::array<double, 3>& p
   return ray;
 }
 
-/// Indices of the rays sorted by tile, stable within a tile. Radix sort, by halves of the bits.
+/// Indices of the rays sorted by tile, stable within a tile: radix sort in two passes, each by half of the bits.
 std::vector<std::uint32_t> Order(const std::vector<Ray>& rays)
 {
   constexpr int Bits = 3 * TileBits / 2;
@@ -122,8 +124,8 @@ std::vector<std::uint32_t> Order(const std::vector<Ray>& rays)
   return order;
 }
 
-/// Groups photons by batch, in their present order; `begin` receives the index of each batch's first photon, and the
-/// end.
+/// Groups photons by batch, in their present order within each batch.
+/// @param begin  output: index of each batch's first photon, and one past the last photon
 std::vector<std::uint32_t> ByBatch(const std::vector<std::uint32_t>& order, const std::vector<Photon>& photons,
   const std::vector<std::size_t>& numbers, int batches, std::vector<int>& begin)
 {
@@ -148,18 +150,18 @@ Rgb PowerOf(const Photon& photon)
   return { photon.power[0], photon.power[1], photon.power[2] };
 }
 
-/// The unit of power, of which the brightest photon has at most 2^31: sums of whole units do not depend on the order of
-/// addition.
+/// Unit of power, W, of which the brightest photon has at most 2^31: sums of whole units do not depend on the order
+/// of addition.
 double UnitOfPower(double brightest)
 {
   return brightest > 0.0 ? std::exp2(std::ceil(std::log2(brightest)) - 31.0) : 1.0;
 }
 
-/// Photons that meet the grid.
+/// Photons whose lines meet the grid, moved into it.
 struct IncomingPhotons
 {
   std::vector<Ray> rays;
-  std::vector<std::size_t> numbers; ///< index of each among the photons given
+  std::vector<std::size_t> numbers; ///< index of each photon among the photons given
 };
 
 IncomingPhotons ClipToVolume(const Grid& grid, const std::vector<Photon>& photons)
@@ -184,7 +186,7 @@ IncomingPhotons ClipToVolume(const Grid& grid, const std::vector<Photon>& photon
   return met;
 }
 
-/// Writes the photons to `packed` in this order, and sums the entered power.
+/// Writes the photons to `packed` in the given order, and sums the entered power.
 void FillInOrder(PackedPhotons& packed, const std::vector<Photon>& photons, const IncomingPhotons& met,
   const std::vector<std::uint32_t>& order)
 {
@@ -213,14 +215,14 @@ void FillInOrder(PackedPhotons& packed, const std::vector<Photon>& photons, cons
   }
 }
 
-/// The properties of all photons together that decide how each is packed.
+/// Totals over the photons of all ranks that decide how each photon is packed.
 struct PhotonTotals
 {
-  double brightest = 0.0;      ///< W, of the brightest photon, channels summed
-  std::int64_t powerUnits = 0; ///< total power, each photon rounded up to units of UnitOfPower
-  Rgb firstColour = {};        ///< of the first photon that has any power; black if none has
+  double brightest = 0.0;      ///< W, power of the brightest photon, sum of channels
+  std::int64_t powerUnits = 0; ///< total power, with each photon's power rounded up to units of UnitOfPower
+  Rgb firstColour = {};        ///< power of the first photon that has any; black if none has
   bool oneColour = true;       ///< whether all photons have that colour
-  int batches = 1;             ///< number of batches that are kept apart
+  int batches = 1;             ///< number of batches that are summed separately
 };
 
 double BrightestOf(const std::vector<Photon>& photons)
@@ -233,7 +235,8 @@ double BrightestOf(const std::vector<Photon>& photons)
   return brightest;
 }
 
-/// Total power of the photons, each rounded up to units of at most 2^-30 of the brightest of all photons.
+/// Total power of the photons in units of UnitOfPower, with each photon's power rounded up.
+/// @param brightest  W, power of the brightest photon of all ranks
 std::int64_t PowerUnitsOf(const std::vector<Photon>& photons, double brightest)
 {
   const double unit = UnitOfPower(brightest);
@@ -263,7 +266,7 @@ bool HaveColour(const std::vector<Photon>& photons, const Rgb& first)
   return common.IsOne();
 }
 
-/// A packing without photons.
+/// Creates a packing without photons: channels, colour, unit of power and number of batches.
 PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsAtMost)
 {
   PackedPhotons packed;
@@ -284,7 +287,7 @@ PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsA
   return packed;
 }
 
-/// Adds photons to such a packing.
+/// Fills a packing with this rank's photons.
 void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid)
 {
   const IncomingPhotons met = ClipToVolume(grid, photons);
@@ -301,7 +304,7 @@ void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, cons
   FillInOrder(packed, photons, met, order);
 }
 
-/// Integers are sent as two doubles, a high and a low half, whose sums are exact.
+/// Base in which an integer is split into two doubles, a high and a low half, for a sum over ranks without rounding.
 constexpr double Half = 0x1p31;
 
 }
@@ -341,7 +344,7 @@ int BatchesOf(const std::vector<Photon>& photons)
 
 namespace
 {
-/// The colour on the first rank that has one.
+/// The first photon's colour on the first rank that has one; black if none has. Collective.
 Rgb FirstOfAll(const Domain& domain, const Rgb& own)
 {
   std::vector<double> colours(3 * static_cast<std::size_t>(domain.Comm().Ranks()), 0.0);
@@ -380,15 +383,15 @@ void AddUpEntered(const Domain& domain, PackedPhotons& packed)
   }
 }
 
-/// A photon in the format in which it is sent.
+/// A photon in the format in which it is sent to the rank where it starts.
 struct SentPhoton
 {
-  float values[9] = {}; ///< as in PackedPhotons
+  float values[9] = {}; ///< position, direction and power, as in PackedPhotons::values
   int batch = 0;
   cl_ulong number = 0, mark = 0;
 };
 
-/// Sorts photons by the block in which each starts.
+/// Sorts photons by the rank in whose block each starts.
 std::vector<std::vector<SentPhoton>> ByBlocks(
   const BlockPartition& partition, const PackedPhotons& packed, const std::vector<cl_ulong>& marks)
 {
@@ -425,7 +428,7 @@ std::vector<int> EveryRank(const Communicator& communicator)
   return ranks;
 }
 
-/// Joins the received photons, batch by batch.
+/// Replaces the photons of a packing by the photons received from all ranks, sorted by batch.
 void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, StartingPhotons& starting)
 {
   PackedPhotons& packed = starting.packed;
@@ -455,14 +458,14 @@ void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, Star
   packed.batchBegin.back() = static_cast<int>(packed.numbers.size());
 }
 
-/// Marks the photons for counting: a count of one, and the weight of each.
-/// @param largest, count  largest weight and number of the photons of all ranks
+/// Computes the marks of photons for counting: a count of one, and the photon's weight in units.
+/// @param largest, count  largest weight, and number, of the photons of all ranks
 /// @throws InvalidInput if there are more photons than voxels can count
 void MarkForCounting(const std::vector<Photon>& share, float largest, std::size_t count, StartingPhotons& starting)
 {
-  // A voxel's count of photons is stored in the bits above the sum of their weights, in the same 64 bits.
+  // A voxel counts photons in the upper bits of a 64-bit number, above the sum of their weights.
   constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
-  constexpr double WeightUnits = 65536.0; // in the largest weight
+  constexpr double WeightUnits = 65536.0; // units of weight in the largest weight
   Require(count <= CountedAtMost,
     "There are " + std::to_string(count) + " photons; voxels can count up to " + std::to_string(CountedAtMost) +
       ". March fewer at a time, or without counts.");
@@ -483,7 +486,7 @@ bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::arra
   for (int a = 0; a < 3; ++a)
   {
     const double size = grid.size[a];
-    const double slack = 1e-6 * size; // a position on a face may have been rounded
+    const double slack = 1e-6 * size; // a position on a face may be rounded to the outside
     if (direction[a] == 0.0)
     {
       if (position[a] < -slack || position[a] > size + slack)
@@ -516,7 +519,7 @@ PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour
   {
     one.values.insert(one.values.end(), from, from + 6);
     one.values.push_back(static_cast<float>(from[6 + channel] * (colour / larger)));
-    // Not rounded to units: photons of equal power would all be rounded in the same direction.
+    // Powers are not rounded to whole units: photons of equal power would all be rounded in the same direction.
     one.entered[0] += one.unit * one.values.back();
   }
   return one;
@@ -571,7 +574,7 @@ StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon
   });
   if (domain.IsSerial())
   {
-    return starting; // photons are already where they start
+    return starting; // all photons start on this rank
   }
   Join(communicator.Exchange<SentPhoton>(
          EveryRank(communicator), [&] { return ByBlocks(domain.Partition(), starting.packed, starting.marks); }),

@@ -13,12 +13,12 @@ namespace tyndall
 {
 namespace
 {
-/// A vertex of a path: where its photon starts, changes direction and ends.
+/// A vertex of a path: the photon starts, changes direction or ends there.
 struct PathVertex
 {
-  cl_ulong photon = 0;  ///< mark that identifies the photon
-  cl_ulong round = 0;   ///< in which this part of the path was traced
-  cl_float4 place = {}; ///< position in voxels, remaining power
+  cl_ulong photon = 0;  ///< mark of the photon, its index
+  cl_ulong round = 0;   ///< round in which this part of the path was traced
+  cl_float4 place = {}; ///< position in voxels, and remaining power
 
   bool operator<(const PathVertex& other) const
   {
@@ -26,11 +26,11 @@ struct PathVertex
   }
 };
 
-/// Traces the paths of photons through a rank's block of a grid.
+/// Traces the paths of photons through a rank's block.
 class PathRun
 {
 public:
-  /// @param medium  must outlive this
+  /// @param medium  medium of the block, referenced, not copied
   PathRun(const MarchMedium& medium, int channels)
     : Medium(medium)
     , Channels(channels)
@@ -40,7 +40,7 @@ public:
   {
   }
 
-  /// Traces photons that start here, or have arrived from other blocks. @return those that continue in other blocks
+  /// Traces photons that start in this block. @return photons that continue in other blocks
   std::vector<PhotonOnItsWay> Start(const PackedPhotons& photons)
   {
     const std::vector<cl_ulong> marks(photons.numbers.begin(), photons.numbers.end());
@@ -56,7 +56,7 @@ public:
     return this->Trace(PhotonsOnDevice(this->Medium.device, arrived, 1, this->Channels), marks);
   }
 
-  std::vector<PathVertex> vertices; ///< of all paths so far, each part in order
+  std::vector<PathVertex> vertices; ///< vertices of all paths so far, in order within each part of a path
 
 private:
   std::vector<PhotonOnItsWay> Trace(const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks);
@@ -67,7 +67,7 @@ private:
   cl_ulong Round = 0;
 };
 
-/// Runs the kernel twice: it counts vertices, then writes them.
+/// Traces photons through the block by running the kernel twice: it counts vertices, then writes them.
 std::vector<PhotonOnItsWay> PathRun::Trace(const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks)
 {
   ++this->Round;
@@ -118,8 +118,8 @@ std::vector<PhotonOnItsWay> PathRun::Trace(const PhotonsOnDevice& photons, const
   return into;
 }
 
-/// The vertices of all paths in this rank's block. Collective.
-/// @param packed  the same on all ranks
+/// Traces all paths through this rank's block, and returns their vertices. Collective.
+/// @param packed  photons whose paths are traced, the same on all ranks
 std::vector<PathVertex> TraceVertices(const Domain& domain, const MarchMedium* through, const PackedPhotons& packed)
 {
   std::unique_ptr<PathRun> block;
@@ -137,8 +137,8 @@ std::vector<PathVertex> TraceVertices(const Domain& domain, const MarchMedium* t
   return block ? std::move(block->vertices) : std::vector<PathVertex>();
 }
 
-/// The path of packed photon i.
-/// @param all  vertices of all paths, sorted
+/// Builds the path of packed photon i from its vertices.
+/// @param all  vertices of all paths, sorted by photon and round
 PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<PathVertex>& all)
 {
   const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;

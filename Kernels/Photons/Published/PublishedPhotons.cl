@@ -1,12 +1,13 @@
-// Photon marching as published: Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item per photon; explicit
-// Euler (Eq. 2.10, 2.11). The line of each step is rasterised, and every voxel on it gains the photon's power,
-// regardless of the path length in it. Colour (RGBe, Ward 1991) and mean direction (10 bits per component) share 64
-// bits, replaced by compare-and-swap with ten tries. A photon marches to the end of its block of the grid: a line that
-// continues in another block is rasterised further there. The host defines
+// Kernels of photon marching as published by Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item per
+// photon; explicit Euler (Eq. 2.10, 2.11). The line of each step is rasterised, and every voxel on it gains the
+// photon's power, regardless of the path length in it. Colour (RGBE, Ward 1991) and mean direction (10 bits per
+// component) of a voxel's light share 64 bits, replaced by compare-and-swap with at most TRIES attempts. A photon
+// marches until it leaves its block of the domain: a line that continues in another block is rasterised further
+// there. The host defines
 //   BENDS   1: the index varies
 //   LEVELS  1: there are octree levels
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: absent
-//   TRIES   attempts of compare-and-swap
+//   TRIES   maximum number of compare-and-swap attempts
 
 #include "Numerics/Numerics.cl"
 #include "Photons/Published/PublishedPhotonsShared.h"
@@ -50,8 +51,8 @@ static float luminance(float3 colour)
   return dot(colour, (float3)(0.2126f, 0.7152f, 0.0722f));
 }
 
-// Reads, unpacks, changes, packs and writes a voxel, unless another work-item has written meanwhile. Returns whether it
-// succeeded.
+// Adds a deposit to a voxel's packed light: reads, unpacks, changes, packs and writes it by compare-and-swap, with at
+// most TRIES attempts. Returns whether an attempt succeeded.
 static bool deposit_packed(__global ulong* voxel, float3 power, float3 direction)
 {
   for (int i = 0; i < TRIES; ++i)
@@ -80,7 +81,7 @@ static bool is_within(int3 voxel, int3 size)
   return all(voxel >= 0) && all(voxel < size);
 }
 
-// Index into an array over a box, of the box's voxel that is nearest to `voxel`.
+// Index, in an array over a box, of the box's voxel that is nearest to `voxel`.
 static int index_in(const IndexGrid* box, int3 voxel)
 {
   const int3 inside = clamp(voxel, (int3)(0), voxels_of(box->size) - 1);
@@ -93,7 +94,7 @@ static int index_of(const PublishedMarchInfo* info, int3 voxel)
 }
 
 #if BENDS
-// Gradient of n (x, y, z; per voxel) and n (w), interpolated linearly between voxel centres.
+// Gradient of n per voxel (x, y, z), and n (w), at position p: interpolated linearly between voxel centres.
 static float4 index_at(const PublishedMarchInfo* info, const __global float4* index, float3 p)
 {
   const float3 q = p - 0.5f, base = floor(q), f = q - base;
@@ -109,8 +110,8 @@ static float4 index_at(const PublishedMarchInfo* info, const __global float4* in
 }
 #endif
 
-// Computes the index and its central differences, one-sided where the whole grid ends. At the border of `known` within
-// the grid they are wrong, but not read: photons of the block read only one voxel around it.
+// Computes the index and its central differences, one-sided at the faces of the domain. At other faces of `known` the
+// differences are wrong but not used, as photons of the block need only one voxel around it.
 __kernel void published_index(PublishedMarchInfo info, const __global float* ior, __global float4* index)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
@@ -137,8 +138,8 @@ static float3 extinction(const __global float* sigma_a, const __global float* si
     component(sigma_a, A_CHANNELS, v, 2) + component(sigma_s, S_CHANNELS, v, 2));
 }
 
-// Length of a step, in the dataset's unit, from p along `u` (voxels per length): one voxel, or to the border of the
-// octree's node and slightly beyond.
+// Length of a step from p along `u` (voxels per length), in the dataset's unit: one voxel or, in a larger octree
+// node, to the node's border and slightly beyond.
 static float step_length(const PublishedMarchInfo* info, const __global uchar* levels, float3 p, float3 u)
 {
   const float voxel = rsqrt(dot(u, u));
@@ -157,7 +158,7 @@ static float step_length(const PublishedMarchInfo* info, const __global uchar* l
 
 typedef struct
 {
-  float3 position, velocity, power; // voxels; n times direction; W in units
+  float3 position, velocity, power; // voxels; n times direction; units
 } published_photon;
 
 static published_photon photon_at(const __global PublishedPlace* place)
@@ -180,10 +181,10 @@ static void deposit(const PublishedMarchInfo* info, int3 voxel, float3 power, fl
   vstore3(vload3(0, photon->deposited) + power, 0, photon->deposited);
 }
 
-// Deposits to the voxels whose centres, along the axis of largest change, lie between the two ends of a step, in the
-// order of the path, starting with voxel number `done`. For a photon that has just arrived, that first voxel is `next`,
-// even if this device rounds differently from the one that sent it. Returns false if the next voxel belongs to another
-// block; `next` is then that voxel.
+// Deposits light in the voxels whose centres, along the axis of largest change, lie between the ends a and b of a
+// step, in the order of the path, starting with number photon->done. For a photon that has just arrived, the first
+// voxel is `next`, even if this device rounds differently from the device that sent it. Returns false if the line
+// continues in another block; `next` is then its first voxel there.
 static bool rasterize(const PublishedMarchInfo* info, const published_photon* a, const published_photon* b,
   __global ulong* packed, __global PublishedPhoton* photon, bool arrives, int3* next)
 {
@@ -307,7 +308,10 @@ __kernel void march_published(PublishedMarchInfo info, const __global float4* in
   vstore3(next, 0, photon->voxel);
 }
 
-// fluence  3 per voxel, W / length^2;  direction  3 per voxel
+// Unpacks the light of voxels.
+//   fluence_of_unit  fluence, W / length^2, of one unit of power in a voxel
+//   fluence    3 values per voxel, W / length^2
+//   direction  3 values per voxel, mean direction
 __kernel void unpack_light(
   float fluence_of_unit, const __global ulong* packed, __global float* fluence, __global float* direction)
 {
@@ -318,7 +322,7 @@ __kernel void unpack_light(
   vstore3(mean, v, direction);
 }
 
-// Applies the 3x3x3 Gaussian filter along one axis, with weights 1/4, 1/2, 1/4.
+// Applies one axis of the 3x3x3 Gaussian filter, with weights 1/4, 1/2, 1/4.
 __kernel void smooth_along(int axis, IndexGrid box, const __global float* from, __global float* to)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));

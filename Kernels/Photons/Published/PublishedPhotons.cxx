@@ -29,13 +29,13 @@ inline const int* WhereIs(const PublishedPhoton& photon)
 
 namespace
 {
-/// Maximum distance in voxels between successive deposits of a step: its line goes from voxel to voxel or, if it runs
-/// along an edge, by rounding past one.
+/// Maximum distance in voxels between successive deposits of a step: the next voxel is a neighbour or, if the line
+/// runs along an edge, by rounding the one after it.
 constexpr int VoxelsPassed = 2;
 
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;
 
-/// Settings for packing the photons: three channels, and a step limit as for steps of one voxel.
+/// Settings for packing the photons: three channels, and the step limit of steps of one voxel.
 MarchSettings PackingSettings()
 {
   MarchSettings settings;
@@ -43,14 +43,16 @@ MarchSettings PackingSettings()
   return settings;
 }
 
-/// Power of a typical photon, W, rounded to a power of two: in this unit, colours are far from the limits of RGBe.
+/// Mean power of a photon and channel, W, rounded to a power of two: in this unit, colours are far from the limits of
+/// RGBE.
+/// @param photons  number of photons
 double TypicalPower(const Rgb& entered, std::size_t photons)
 {
   const double mean = Sum(entered) / (3.0 * static_cast<double>(std::max<std::size_t>(photons, 1)));
   return mean > 0.0 ? std::exp2(std::round(std::log2(mean))) : 1.0;
 }
 
-/// Photons at their start.
+/// Photons in the format of the published scheme, before their first step.
 /// @param larger  ratio of the new unit of power to the present one
 std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double larger)
 {
@@ -69,7 +71,7 @@ std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double large
   return photons;
 }
 
-/// Adds the fate of an ended photon to the tallies.
+/// Adds the final state of a photon to the tallies. @param unit  W per unit of power
 void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, PackingLoss& loss)
 {
   result.deposits += static_cast<std::size_t>(photon.deposits);
@@ -89,7 +91,7 @@ void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, Pack
   }
 }
 
-/// Sums the losses over all ranks.
+/// Replaces this rank's losses by their sums over all ranks. Collective.
 void AddUp(const Domain& domain, PackingLoss& loss)
 {
   std::vector<double> values(loss.deposited.begin(), loss.deposited.end());
@@ -103,18 +105,18 @@ void AddUp(const Domain& domain, PackingLoss& loss)
   loss.givenUp = static_cast<std::size_t>(values[7]);
 }
 
-/// A block of a medium on its device, and the light of photons marched through it by the published scheme.
+/// A rank's block of a medium on its device, and the light of photons marched through it by the published scheme.
 class PublishedMarch
 {
 public:
-  /// Halo of the refractive index in voxels: one for interpolation, and one for differences.
+  /// Width in voxels of the halo of the refractive index: one for interpolation, and one for differences.
   static constexpr int Reach = 2;
 
-  /// @param medium  coefficients in the block's voxels; must outlive this
+  /// @param medium  coefficients in the block's voxels; referenced, not copied
   /// @param ior     refractive index in `part.known`, the block and a halo of Reach voxels; null: rays are straight
-  /// @param levels  levels of the whole grid's octree in the block's voxels; null: no octree
+  /// @param levels  octree levels of the block's voxels, of the domain's octree; null: no octree
   /// @param stepLimit  maximum number of steps of a photon
-  /// @param tries   compare-and-swap attempts before a deposit is given up
+  /// @param tries   maximum number of compare-and-swap attempts for a deposit
   PublishedMarch(Device& device, const Medium& medium, const float* ior, const std::uint8_t* levels,
     const MarchedPart& part, int stepLimit, int tries)
     : TheDevice(device)
@@ -133,8 +135,9 @@ public:
     device.Finish();
   }
 
-  /// Marches photons as far as the block goes, and updates the position, face and counts of each.
-  /// @param photons  those that start in the block or enter it. @throws Aborted
+  /// Marches photons to their ends or out of the block, and updates the position, face and counts of each.
+  /// @param photons  photons that start in the block or enter it
+  /// @throws Aborted
   void March(std::vector<PublishedPhoton>& photons, const Monitor& monitor)
   {
     cl::Kernel march = this->Kernel("march_published");
@@ -149,7 +152,7 @@ public:
     }
   }
 
-  /// Reads fluence and mean direction, three values per voxel. @param unit  W of one unit of power
+  /// Unpacks fluence and mean direction into `result`, three values per voxel. @param unit  W per unit of power
   void Unpack(double unit, PhotonLight& result)
   {
     const double volume = this->TheMedium.grid.VoxelVolume();
@@ -162,8 +165,8 @@ public:
     result.meanDirection = direction.Read();
   }
 
-  /// Applies the 3x3x3 Gaussian filter of the published scheme to values in a box, 3 per voxel; beyond the box, values
-  /// of the nearest voxel are used.
+  /// Applies the 3x3x3 Gaussian filter of the published scheme to values in a box, 3 per voxel; beyond the box, the
+  /// value of the nearest voxel is used.
   std::vector<float> Smoothed(const VoxelBox& box, const std::vector<float>& values)
   {
     Buffer<float> from(this->TheDevice, values, "light"), to(this->TheDevice, values.size(), "smoothed light");
@@ -226,7 +229,7 @@ private:
       cl::Kernel kernel = this->Kernel("published_index");
       With(kernel, this->Info, n, index);
       this->Launch(kernel, RangeOf(part.known.size));
-      this->TheDevice.Finish(); // before n is released
+      this->TheDevice.Finish(); // before the buffer n is released
     }
     return index;
   }
@@ -236,13 +239,13 @@ private:
   const std::size_t Voxels;
   const std::string Options;
   const PublishedMarchInfo Info;
-  Buffer<cl_float4> Index; ///< n and its gradient; empty if rays are straight
+  Buffer<cl_float4> Index; ///< n and its gradient in the voxels of `known`; empty if rays are straight
   Buffer<float> SigmaA, SigmaS;
   Buffer<cl_uchar> Nodes;
-  Buffer<cl_ulong> Packed; ///< packed light
+  Buffer<cl_ulong> Packed; ///< light of each voxel, packed into 64 bits
 };
 
-/// One rank's part of a march.
+/// Published marching of this rank's photons, in its block of the domain.
 class PublishedOfBlock
 {
 public:
@@ -331,7 +334,7 @@ private:
       MarchEventLimit(this->TheDomain.Whole(), PackingSettings()), PackingSettings());
   }
 
-  /// Follows photons to their ends. @param unit  W of one unit of power during the march
+  /// Follows photons to their ends. Collective. @param unit  W per unit of power during the march
   RoundsTraffic Follow(
     const PackedPhotons& packed, double unit, PhotonLight& result, PackingLoss& loss, const Monitor& monitor)
   {
@@ -353,7 +356,8 @@ private:
     return rounds.Traffic();
   }
 
-  /// Reads the light of the block, not smoothed, into `result`.
+  /// Unpacks the light of the block, not smoothed, into `result`, and sums it over the block's voxels in `loss`.
+  /// Collective.
   void Gain(double unit, PhotonLight& result, PackingLoss& loss)
   {
     this->TheDomain.Collective([&] {
@@ -392,7 +396,8 @@ private:
     });
   }
 
-  /// Weighted sum of the block's fluence. @param weight  weight of a voxel and channel
+  /// Sum over voxels and channels of the block's fluence times a weight.
+  /// @param weight  function of voxel and channel
   template <class Weight>
   static Rgb Total(const PhotonLight& result, const Weight& weight)
   {
@@ -409,7 +414,7 @@ private:
   const Domain& TheDomain;
   const Medium& TheMedium;
   const PublishedSettings& Settings;
-  std::unique_ptr<PublishedMarch> Through; ///< null if the rank has no voxels
+  std::unique_ptr<PublishedMarch> Through; ///< medium and light of the block; null if the rank has no voxels
 };
 }
 

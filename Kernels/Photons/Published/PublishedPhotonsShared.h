@@ -1,46 +1,46 @@
-// Shared by C++ and the kernels of PublishedPhotons.cl.
+// Structures shared by C++ and the kernels of PublishedPhotons.cl.
 #pragma once
 
 #include "Refraction/Index/IndexShared.h"
 
 SHARED_BEGIN
-/// A block of a grid. Positions are those of the whole grid, in voxels.
+/// Parameters of marching through a rank's block of the domain. Positions are in voxels of the domain.
 typedef struct
 {
-  IndexGrid whole;
+  IndexGrid whole;   ///< size of the domain
   IndexGrid own;     ///< size of the block: coefficients, octree levels and light
-  IndexGrid known;   ///< size of the region with a refractive index: the block and two voxels around it
-  int first[3];      ///< first voxel of the block in the whole grid
-  int knownFirst[3]; ///< first voxel of `known` in the whole grid
-  float spacing[3];
-  int stepLimit;
+  IndexGrid known;   ///< size of the region in which the refractive index is known: the block and two voxels around it
+  int first[3];      ///< first voxel of the block in the domain
+  int knownFirst[3]; ///< first voxel of `known` in the domain
+  float spacing[3];  ///< edges of a voxel, length
+  int stepLimit;     ///< maximum number of steps of a photon
 } PublishedMarchInfo;
 
-/// Values of PublishedPhoton::face above the six faces of the volume.
+/// Values of PublishedPhoton::face that are not faces of the volume.
 enum
 {
-  PublishedGivenUp = 6,  ///< not ended after stepLimit steps
-  PublishedElsewhere = 7 ///< it continues in another block
+  PublishedGivenUp = 6,  ///< the photon was terminated after stepLimit steps
+  PublishedElsewhere = 7 ///< the photon continues in another block
 };
 
-/// One end of a step.
+/// State of a photon at one end of a step.
 typedef struct
 {
-  float position[3];
-  float velocity[3]; ///< n times direction; the direction alone before the first step
-  float power[3];    ///< in units
+  float position[3]; ///< voxels of the domain
+  float velocity[3]; ///< n times direction; the unit direction alone before the first step
+  float power[3];    ///< power in units, by channel
 } PublishedPlace;
 
-/// A photon between steps, or between blocks: all state that its further path depends on.
+/// A photon between steps, or between blocks, with the complete state on which its further path depends.
 typedef struct
 {
-  int voxel[3];            ///< voxel in which it continues, if that is in another block
-  int face;                ///< face through which it left, or one of the values above
-  int steps;               ///< number of steps begun; 0: it has not started
-  int done;                ///< number of voxels along the last step that have received their deposits
+  int voxel[3];            ///< voxel of the domain in which the photon continues, if it is in another block
+  int face;                ///< face through which the photon left, or PublishedGivenUp, PublishedElsewhere
+  int steps;               ///< number of steps begun; 0: the photon has not started
+  int done;                ///< number of voxels along the last step to which the photon has deposited
   int deposits;            ///< number of deposits in voxels
-  int givenUp;             ///< number of deposits given up after all tries
+  int givenUp;             ///< number of deposits that were lost after all attempts
   PublishedPlace from, to; ///< ends of the last step
-  float deposited[3];      ///< sum of all its deposits
+  float deposited[3];      ///< power of all its deposits in units, by channel
 } PublishedPhoton;
 SHARED_END

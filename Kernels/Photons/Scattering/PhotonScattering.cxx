@@ -15,10 +15,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Block = 16;         ///< number of photons that a work-item takes at a time
-constexpr int TableParts = 65536; ///< equal steps of probability in a table of cosines
+constexpr int Block = 16;         ///< number of consecutive photons that a work-item fetches at a time
+constexpr int TableParts = 65536; ///< number of equal steps of probability in a table of cosines
 
-/// Values of PHASE in ScatterPhotons.cl.
+/// Methods of sampling the scattering angle; values of the macro PHASE of ScatterPhotons.cl.
 enum PhaseSampling
 {
   Evenly = 0,
@@ -43,7 +43,7 @@ PhaseSampling PhaseOf(const Medium& medium)
   }
 }
 
-/// Parameter of the phase function, one or one per voxel; or its table of cosines.
+/// Parameter of the phase function, one value or one per voxel; or its table of cosines.
 std::vector<float> PhaseValues(const Medium& medium)
 {
   const PhaseSampling phase = PhaseOf(medium);
@@ -61,7 +61,7 @@ std::vector<float> PhaseValues(const Medium& medium)
   return values;
 }
 
-/// sigma_s and sigma_a times the voxel diagonal in the padded grid; 0 in the padding.
+/// sigma_s and sigma_a times the voxel diagonal, two values per voxel of the padded grid; 0 in the padding.
 std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 {
   const std::array<int, 3>& size = medium.grid.size;
@@ -86,7 +86,7 @@ std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 
 double ScatteringStepPart(const Field& ior, const std::array<int, 3>& size)
 {
-  constexpr double Seen = 0.5, Least = 0.1; // of the largest jump between neighbours, over the lesser n^2, by a step
+  constexpr double Seen = 0.5, Least = 0.1; // constants of numerics.md, Eq. (99d)
   double jump = 0.0;
   const std::array<std::size_t, 3> stride = { 1, static_cast<std::size_t>(size[0]),
     static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) };
@@ -213,7 +213,7 @@ ScatteredPhotons ScatteringRun::Finish()
   return std::move(this->Found);
 }
 
-/// Converts the sums to light.
+/// Converts the sums of deposits to fluence and net flux in `Found`.
 void ScatteringRun::TakeLight()
 {
   const MarchMedium& through = this->In.through;
@@ -246,7 +246,7 @@ void ScatteringRun::TakeLight()
   }
 }
 
-/// Photons that continue elsewhere are not counted yet.
+/// Adds the final states of photons to the tallies. Photons that continue in another block are not counted yet.
 void ScatteringRun::TakeEnds(const std::vector<ScatterEnd>& ends)
 {
   const double unit = this->Packed.unit;
@@ -272,7 +272,7 @@ void ScatteringRun::TakeEnds(const std::vector<ScatterEnd>& ends)
 
 namespace
 {
-/// One channel of a medium, with its own arrays.
+/// One channel of a medium, with arrays of one component.
 struct OneChannelMedium
 {
   OneChannelMedium(const Medium& medium, int channel)
@@ -297,7 +297,7 @@ struct OneChannelMedium
   Medium seen;
 };
 
-/// Adds the light of one run, times a colour, to all channels or to the only one.
+/// Adds the light and tallies of one run, times a colour, to all channels of `light`, or to its only one.
 void AddRun(const ScatteredPhotons& found, const Rgb& colour, PhotonLight& light)
 {
   const auto channels = static_cast<std::size_t>(light.light.channels);
@@ -350,7 +350,8 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
   }
 }
 
-/// Contribution of one unit of a run's light to each channel.
+/// Factor of a run's light in each channel.
+/// @param oneRun  whether there is one run for all channels
 Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int run)
 {
   Rgb colour = {};
@@ -388,7 +389,7 @@ void ScatteredChannels::AddTo(
     double all = 0.0, direct = 0.0;
     for (std::size_t c = 0; c < channels; ++c)
     {
-      const double counts = channels == 1 ? 3.0 : 1.0; // one channel stands for three
+      const double counts = channels == 1 ? 3.0 : 1.0; // a single channel stands for three
       all += counts * light.light.fluence[i / 3 * channels + c];
       direct += counts * light.light.fluenceDirect[i / 3 * channels + c];
     }

@@ -1,15 +1,15 @@
-// Follows photons through scattering along curved rays (numerics.md, section 12.5), one at a time, in one channel. The
-// host defines the macros of PhotonSteps.cl, with REAL_WIDTH 1, DIRECTIONS 1, CHANNELS 1, and
-//   WORKERS   as in PhotonMarch.cl; ATOMICS: whether sums are shared
-//   BLOCK     number of neighbouring photons that a work-item takes at a time
-//   GATHERS   1: sums include the light's flow (net flux) besides its power
+// Kernels that follow photons through scattering along curved rays (numerics.md, section 12.5), one photon at a time,
+// in one channel. The host defines the macros of PhotonSteps.cl, with REAL_WIDTH 1, DIRECTIONS 1, CHANNELS 1, and
+//   WORKERS   as in PhotonMarch.cl; ATOMICS: whether work-items share sums
+//   BLOCK     number of consecutive photons that a work-item fetches at a time
+//   GATHERS   1: sums include the net flux besides the power
 //   PHASE     phase function: 0 isotropic, 1 Henyey-Greenstein, 2 Schlick, 3 table of cosines
-//   VARIES    1: the parameter of 1 and 2 is given by voxel
+//   VARIES    1: the parameter of phase functions 1 and 2 is given by voxel
 //   COSINES   number of cosines in the table, less one
 //
 // The optical depth to the next scattering is sampled and consumed along the path. Absorption is subtracted from the
-// photon's power; from the first scattering on, the remaining power times path length is deposited: an unbiased
-// estimate of the fluence of scattered light, for voxels of any optical thickness.
+// photon's power. From the first scattering on, remaining power times path length is deposited, an unbiased estimate
+// of the fluence of scattered light for voxels of any optical thickness.
 
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Philox.cl"
@@ -18,17 +18,18 @@
 #define RECORD (1 + 3 * GATHERS)
 #define PHOTON_FLOATS 7
 #define TINY 1e-20f
-// Fraction of the initial power below which Russian roulette doubles this threshold or ends the photon.
+// Fraction of a photon's initial power below which Russian roulette is played: the power becomes twice this
+// threshold, or 0.
 #define DIM 0.05f
 
-// Scattering properties of the medium.
+// Scattering properties of the medium in one channel.
 typedef struct
 {
-  const __global float2* optical; // [padded] sigma_s and sigma_a times a voxel diagonal
-  // Phase function parameter, one or [voxel]; or cosines at equal steps of probability.
+  const __global float2* optical; // sigma_s and sigma_a times a voxel diagonal, [padded]
+  // Parameter of the phase function, one value or [voxel]; or table of cosines at equal steps of probability.
   const __global float* phase;
 #if BLOCKS
-  __global ScatteredOnItsWay* gone; // photons that enter other blocks, in any order
+  __global ScatteredOnItsWay* gone; // photons that entered other blocks, in any order
   volatile __global int* gone_count;
 #endif
 } scattering;
@@ -51,13 +52,14 @@ static float cosine_of(const scattering* medium, ulong voxel, float u)
   {
     return (s + g) / above;
   }
-  // Inverse cumulative distribution, in a form without cancellation.
+  // Inverse cumulative distribution of Henyey and Greenstein, in a form without cancellation (numerics.md, Eq.
+  // (99c)).
   const float sum = s + 0.5f * g * (s * s + 3.0f) + g * g * (s + 0.5f * g * (s * s - 1.0f));
   return sum / (above * above);
 }
 
-// Rotates a direction by an angle with the given cosine, around a random azimuth, turn in [0, 1) (Duff et al. 2017: a
-// frame without a branch).
+// Rotates the direction `way` by an angle with the given cosine, and by the azimuth `turn`, in [0, 1) full turns
+// (frame without a branch: Duff et al. 2017).
 static float3 turned(float3 way, float cosine, float turn)
 {
   const float sine = sqrt(fmax(0.0f, 1.0f - cosine * cosine));
@@ -93,25 +95,25 @@ static void begin(const march_arrays* arrays, photon_lanes* lanes, float3 place,
   set_off(arrays, lanes, p, u);
 }
 
-// Whether a photon's speed is within the range that can be followed.
+// Whether a photon's speed is in the range in which it can be followed.
 static bool moves(const photon_lanes* lanes)
 {
   return lanes->pace[0] > SLOWEST_PACE && lanes->pace[0] < FASTEST_PACE;
 }
 
-// State of a photon between two scatterings, besides its path.
+// State of a photon between two scatterings, in addition to its path.
 typedef struct
 {
-  ScatterEnd end; // record of its end, so far
+  ScatterEnd end; // final state of the photon, up to now
   random_numbers random;
-  float dim;   // power below which Russian roulette is played
-  float depth; // optical depth to the next scattering
-  int events;  // path segments since its last scattering
+  float dim;   // power in units below which Russian roulette is played
+  float depth; // scattering optical depth to the next scattering
+  int events;  // number of path segments since the last scattering
 } scattered_flight;
 
 #if BLOCKS
-// Whether a scattered photon is, by rounding, in another block's voxel. If so, stores position and direction as its
-// path state; it starts there.
+// Whether the position `place` of a scattering is, by rounding, in a voxel of another block. If so, stores position
+// and new direction as the photon's path state, with which it starts anew in that block.
 static bool sets_off_elsewhere(const march_arrays* arrays, photon_lanes* lanes, float3 place, float3 direction)
 {
   const MarchInfo* info = arrays->info;
@@ -169,7 +171,7 @@ static void take_over(const march_arrays* arrays, const ScatterInfo* how, const 
 }
 #endif
 
-// Scatters the photon after a further `way` diagonals.
+// Scatters the photon at a point `way` diagonals ahead of its position.
 static void scatter(
   const march_arrays* arrays, const scattering* medium, photon_lanes* lanes, float way, scattered_flight* flight)
 {
@@ -190,7 +192,8 @@ static void scatter(
   begin(arrays, lanes, place, direction);
 }
 
-// Russian roulette: a photon of low power gains power or ends; its expected power is unchanged.
+// Russian roulette: the power of a photon of low power is increased, or the photon ends; its expected power is
+// unchanged.
 static void roulette(scattered_flight* flight)
 {
   ScatterEnd* end = &flight->end;
@@ -203,7 +206,7 @@ static void roulette(scattered_flight* flight)
   }
 }
 
-// Moves the photon to its next wall or change of velocity.
+// Moves the photon to its next voxel wall or change of velocity, at time `next`.
 static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
 {
   FOR_AXES(a)
@@ -215,7 +218,8 @@ static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
   lanes->now[0] = next;
 }
 
-// Handles the photon's arrival at the present position: it has left the grid or block, or starts a new step.
+// Processes the photon at the wall or change of velocity that it has reached: ends it if it has left the grid or
+// block, and starts a new step if one is due.
 static void arrive(const march_arrays* arrays, photon_lanes* lanes, ScatterEnd* end)
 {
   const float there = arrays->sigma[lanes->at[0]], now = lanes->now[0];
@@ -231,8 +235,8 @@ static void arrive(const march_arrays* arrays, photon_lanes* lanes, ScatterEnd* 
 #endif
 }
 
-// Deposits and attenuates over a path segment of `way` diagonals.
-//   sigma  scattering and absorption there, times a diagonal
+// Deposits and attenuates the photon's power over a path segment of `way` diagonals.
+//   sigma  optical thickness of the voxel's diagonal, by scattering and by absorption
 static void leave_stretch(
   const march_arrays* arrays, const photon_lanes* lanes, float2 sigma, float way, ScatterEnd* end)
 {
@@ -251,7 +255,7 @@ static void leave_stretch(
   end->power = tau > 0.5f ? end->power * remains : end->power - end->power * lost;
 }
 
-// Follows the photon to its next wall or change of velocity, or to a scattering before that.
+// Follows the photon to its next voxel wall or change of velocity, or to a scattering before that.
 static void go_on(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how, photon_lanes* lanes,
   scattered_flight* flight)
 {
@@ -286,7 +290,7 @@ static void go_on(const march_arrays* arrays, const scattering* medium, const Sc
   }
 }
 
-// Starts a photon; `number` is the key of its random numbers.
+// Starts a photon with the given index `number`, which selects its sequence of random numbers.
 static void set_out(const march_arrays* arrays, const ScatterInfo* how, const __global float* photon, ulong number,
   photon_lanes* lanes, scattered_flight* flight)
 {
@@ -314,9 +318,9 @@ static void follow(const march_arrays* arrays, const scattering* medium, const S
   }
 }
 
-// Follows photon i of those that start or, with how->resumes, of those that have arrived from other blocks.
+// Follows photon i of the photons that start or, with how->resumes, of those that arrived from other blocks.
 //   photons  position (voxels), unit direction, power (units) of photons that start; else ScatteredOnItsWay
-//   numbers  keys of the random numbers of photons that start
+//   numbers  indices of the photons that start
 static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
   const __global float* photons, const __global ulong* numbers, int i)
 {
@@ -351,8 +355,8 @@ static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, c
   return flight.end;
 }
 
-// Follows photons how.first to how.first + how.count to their ends, or into other blocks.
-//   counters  number of the next photon; then, with BLOCKS, the number of photons in `gone`
+// Follows photons how.first to how.first + how.count to their ends or into other blocks.
+//   counters  index of the next photon; then, with BLOCKS, the number of photons in `gone`
 __kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global float* sigma,
   const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
   const __global float* phase, const __global float* photons, const __global ulong* numbers, __global ScatterEnd* ends,
@@ -370,7 +374,7 @@ __kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global fl
 #endif
 #if WORKERS > 0
   const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * how.copyStride };
-  // Which work-item takes a block does not affect the sums.
+  // The sums do not depend on which work-item fetches a block of photons.
   for (int block = atomic_add(counters, BLOCK); block < how.count; block = atomic_add(counters, BLOCK))
   {
     for (int i = how.first + block; i < how.first + min(block + BLOCK, how.count); ++i)
