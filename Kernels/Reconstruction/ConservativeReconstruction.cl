@@ -1,19 +1,20 @@
-// Kernels of the conservative estimator. The host gives
+// Kernels of the conservative estimator (numerics.md, section 13.2). The host defines
 //   BATCHES     number of independent batches, at least 2
-//   CHANNELS    channels of the light, 1 or 3
-//   DIRECTIONS  1: there are mean directions
+//   CHANNELS    number of channels of the light, 1 or 3
+//   DIRECTIONS  1: the light has mean directions
 //   WOVEN       1: the grid's light is [voxel][batch][channel] with two batches; 0: [batch][voxel][channel]
 //   FINEST      1: the finer level is the grid itself, in the host's layout; 0: rows of a level
 //
-// Fields of a pyramid level: the light of each batch (sum of channels), then the smoothed quantities: the light's
-// channels and its flux (light times mean direction).
+// Fields of a pyramid level: the light of each batch (sum of channels), then the smoothed quantities, which are the
+// mean light's channels and its flux (light times mean direction). The detail of a level is the level less the
+// interpolated level above.
 
 #include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.cl"
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
-// Fields of a level of the result: the smoothed quantities, the source level, and the squared error.
+// Fields of a result: the smoothed quantities, the source level, and the squared error.
 #define BLENDED CARRIED
 #define SQUARED (BLENDED + 1)
 #define RESULTS (CARRIED + BesideResults)
@@ -24,7 +25,7 @@ typedef struct
   pair carried[CARRIED];
 } light_pair;
 
-// Loads the channels of both batches for two vectors of voxels.
+// Loads the light of both batches for two vectors of voxels, stored as [voxel][batch][channel].
 #if WOVEN && CHANNELS == 1
 inline void load_batches(const __global float* batches, size_t voxel, pair* light)
 {
@@ -45,7 +46,7 @@ inline void load_batches(const __global float* batches, size_t voxel, pair_of_th
 }
 #endif
 
-// Loads two vectors of voxels of the grid, multiplied by `scale`.
+// Loads two vectors of voxels of the grid, with light multiplied by `scale`.
 inline light_pair load_voxels(
   const __global float* batches, const __global float* directions, int4 size, size_t voxel, float scale)
 {
@@ -144,7 +145,7 @@ inline void add_voxels(pair* sum, const __global float* batches, const __global 
 #define last_of(p) ((p).y)
 #endif
 
-// Computes level 1 from the grid's voxels: all fields in one pass, by weights 1 3 3 1 along each axis.
+// Computes level 1 from the grid's voxels: all fields in one pass, with weights 1 3 3 1 along each axis.
 __kernel void voxels_down(const __global float* batches, const __global float* directions, int4 fine_size,
   __global float* coarse, int4 size, float scale)
 {
@@ -189,7 +190,7 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
   }
 }
 
-// Loads pairs of cells of a row: with FINEST from the grid's voxels, else from rows.
+// Loads a pair of vectors of cells of a row: with FINEST from the grid's voxels, else from the rows of a level.
 inline light_pair load_light(
   const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
 {
@@ -213,8 +214,8 @@ inline light_pair load_light(
   return light;
 }
 
-// Measures how far the details of the batches agree, in cells of 2 x 2 x 2 (numerics.md, Eq. (101)): field 0 is the
-// variance of their mean d by noise, sum (d_b - d)^2 / (B (B - 1)); field 1 is d^2.
+// Measures noise and light in the details of a level, by cells of 2 x 2 x 2 (numerics.md, Eq. (101)). Field 0 is the
+// noise, the variance of the batches' mean detail d: sum (d_b - d)^2 / (B (B - 1)). Field 1 is d^2.
 __kernel void measure_details(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, int4 size, __global float* measured)
 {
@@ -270,7 +271,7 @@ __kernel void measure_details(const __global float* fine, const __global float* 
   }
 }
 
-// Binomial smoothing by 1 4 6 4 1, here along y and z; the kernels that read the result smooth along x.
+// Smooths fields by binomial weights 1 4 6 4 1 along y and z; the kernels that read the output smooth along x.
 __kernel void smooth_across(const __global float* from, int4 size, __global float* to, int first, int fields)
 {
   const float weights[5] = { 0.0625f, 0.25f, 0.375f, 0.25f, 0.0625f };
@@ -311,7 +312,7 @@ inline real smoothed(const __global float* row, int x)
 }
 
 // Computes the Wiener gain of the details (numerics.md, Eq. (102)). Twice the noise is subtracted, so that random
-// excess is not mistaken for light.
+// fluctuations are not mistaken for light.
 __kernel void find_gains(const __global float* measured, int4 size, __global float* gains)
 {
   const int y = ROW_Y, z = ROW_Z;
@@ -331,7 +332,7 @@ __kernel void find_gains(const __global float* measured, int4 size, __global flo
   }
 }
 
-// Squared error of the details (numerics.md, Eq. (104)): noise that was kept, light that was mistaken for noise (times
+// Adds up the squared error (numerics.md, Eq. (104)): noise that was kept, light that was mistaken for noise (times
 // `honesty`), and the error of the levels above.
 __kernel void add_errors(
   const __global float* removed, int4 size, float honesty, const __global float* results, __global float* gains)
@@ -350,7 +351,8 @@ __kernel void add_errors(
   }
 }
 
-// Result of the top level: its light without any gain. Its noise is smoothed before it enters the error (begin_errors).
+// Computes the result of the top level, its light with a gain of 1. Its noise is smoothed before begin_errors stores
+// it as the squared error.
 __kernel void begin_results(
   const __global float* level, int4 size, __global float* results, float top, __global float* noise)
 {
@@ -402,8 +404,8 @@ __kernel void begin_errors(const __global float* noise, int4 size, __global floa
 }
 
 #if DIRECTIONS
-// Factor that converts a flux to the mean direction of light `total`: limits its length to 1; 0 where there is no
-// light.
+// Factor that converts a flux (x, y, z) to the mean direction of light `total`, of length at most 1; 0 where there is
+// no light.
 inline real direction_of(real total, real x, real y, real z)
 {
   const real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
@@ -416,7 +418,7 @@ inline real direction_of(real total, real x, real y, real z)
 }
 #endif
 
-// Stores the light and mean direction of two vectors of voxels, from the smoothed quantities.
+// Stores the light and mean direction of two vectors of voxels, computed from their smoothed quantities.
 inline __attribute__((always_inline)) void store_voxels(
   const children* smooth, float unit, size_t voxel, __global float* fluence, __global float* mean_direction)
 {
@@ -444,12 +446,13 @@ inline __attribute__((always_inline)) void store_voxels(
 #endif
 }
 
-// Computes the result of a level: the interpolated result of the level above plus the gain times this level's details.
-//   fine, fine_size, directions, scale   this level's light
-//   coarse, results, gains               of the level above, `size`
-//   to          rows of RESULTS fields of this level; with FINEST the fluence of the grid's voxels
-//   number      number of this level
-//   mean_direction, blended     with FINEST: further output arrays over the grid's voxels
+// Computes the result of a level: the interpolated result of the level above plus the gain times the details of this
+// level.
+//   fine, fine_size, directions, scale   light of this level
+//   coarse, results, gains               light, result and gains of the level above, of `size`
+//   to          output: rows of RESULTS fields of this level; with FINEST the fluence of the grid's voxels
+//   number      number of this level, from 0
+//   mean_direction, blended     output with FINEST: mean directions and source levels of the grid's voxels
 __kernel void blend_level(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, const __global float* results, const __global float* gains, int4 size, float number,
   __global float* to, __global float* mean_direction, __global float* blended)
@@ -458,7 +461,7 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   const size_t field = field_of(size);
   const float unit = 1.0f / scale;
   const size_t fine_field = field_of(fine_size);
-  for (int k = 0; k < 4; ++k) // outer loop, because hardware prefetches a few rows, but not four of every quantity
+  for (int k = 0; k < 4; ++k) // outer loop, as hardware prefetches a few rows, but not four of every quantity
   {
     const rows_about rows = rows_for_children(size, y, z, k);
     const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);
@@ -507,8 +510,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   }
 }
 
-// Last pass: scales each channel of the light to conserve its total, and computes the error; channels share the error
-// in proportion to their light.
+// Scales each channel of the light to conserve its total, and computes the standard errors: channels share the error
+// of their sum in proportion to their light.
 __kernel void finish_light(const __global float* gains, int4 size, float4 conserve, float unit, __global float* fluence,
   __global float* errors, int4 fine_size)
 {

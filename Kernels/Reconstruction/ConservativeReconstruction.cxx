@@ -17,16 +17,18 @@ namespace tyndall
 {
 namespace
 {
-/// Device memory of a pyramid level, from level 1 on.
+/// Device memory of one pyramid level, for levels from 1 on.
 struct ConservativeLevel
 {
-  LightRows light;            ///< light of each batch, then the smoothed quantities
-  LightRows results;          ///< smoothed quantities, source level, squared error
-  LightRows gains;            ///< gains for the details of the level below
-  LightRows measured, across; ///< intermediate results for the gains
+  LightRows light;   ///< light of each batch, then the smoothed quantities
+  LightRows results; ///< result of the level: smoothed quantities, source level, squared error
+  LightRows gains;   ///< gains of the details of the next finer level, and their errors
+  /// Intermediate results for the gains: details by measure_details, and smoothed along y and z.
+  LightRows measured, across;
 };
 
-/// The light of the grid's voxels: the host's own array, or a copy batch by batch with rows of whole vectors.
+/// Light of all batches in the grid's voxels on the device: the host's own array, or a copy batch by batch with rows
+/// of a multiple of two vectors.
 class BatchedLight
 {
 public:
@@ -39,28 +41,30 @@ private:
   Buffer<float> Apart;
 };
 
-/// Passes of the conservative estimator over the levels of a pyramid (numerics.md, Eqs. (101) to (104)): up with Build,
-/// Begin at the top, and down with Refine. They run in two parts: over the levels of this rank's box up to the shared
-/// level, and over those of the whole grid from there on.
+/// Passes of the conservative estimator over the levels of a pyramid (numerics.md, Eqs. (101) to (104)): Build
+/// upwards, Begin at the top, Refine downwards. One object covers the levels of this rank's box up to the shared
+/// level, another one the levels of the domain from the shared level on.
 class ConservativePasses
 {
 public:
-  /// All arguments must outlive this object.
-  /// @param light   light of the box; without arrays: of the whole grid
-  /// @param result  its arrays must have the light's size
-  /// @param first, top  lowest and highest level of this part
+  /// All arguments are referenced and must outlive this object.
+  /// @param light   light of the box; without arrays for the levels of the domain, of which it has the grid
+  /// @param result  arrays must have the size of the light's
+  /// @param first, top  lowest and highest level of this object
   ConservativePasses(
     const Reconstruction& task, const NoisyLight& light, ReconstructedLight& result, int first, int top);
 
-  void Build();                                        ///< all levels, from the voxels or from Light of the first level
-  void Begin();                                        ///< computes the result of the top level
-  void Refine(int from, int downTo);                   ///< results of these levels, from those of the level above
-  void FetchFluence() const { this->Fluence.Fetch(); } ///< copies the voxels' light to the host, before it is scaled
+  void Build();                      ///< computes the light of all levels, from the voxels or from LightOf(first)
+  void Begin();                      ///< computes the result of the top level
+  void Refine(int from, int downTo); ///< computes results of levels `from` down to `downTo`, each from the level above
+  /// Copies the light of the voxels to the host, before it is scaled.
+  void FetchFluence() const { this->Fluence.Fetch(); }
+  /// Scales the light by a factor per channel, and computes the errors.
   void Finish(const std::array<float, 3>& factors);
 
-  /// Light of a level, to be read, or to be set instead of being computed.
+  /// Light of a level, to be read, or to be set instead of computed.
   LightRows& LightOf(int level) { return this->At(level).light; }
-  LightRows& ResultsOf(int level) { return this->At(level).results; }
+  LightRows& ResultsOf(int level) { return this->At(level).results; } ///< result of a level, to be read or set
 
 private:
   void FindGains(int level);
@@ -83,16 +87,16 @@ private:
   cl_int4 Voxels;
   BatchedLight Light;
   WholeRows Direction, Fluence, MeanDirection, MipLevel, Error;
-  int First, Top; ///< lowest and highest level in Levels
-  bool FromVoxels;
+  int First, Top;  ///< level numbers of Levels.front() and Levels.back()
+  bool FromVoxels; ///< whether level 1 is computed from the voxels
   std::vector<ConservativeLevel> Levels;
 };
 
-/// Part of the light taken for noise that the error counts (numerics.md, Eq. (104), which says how it was fitted).
+/// Fraction of the removed light that counts as error (0.4 in numerics.md, Eq. (104), where its fit is described).
 constexpr float Honesty = 0.4f;
 
-constexpr std::size_t VoxelsOfFirstLaunch = std::size_t(1)
-  << 22; // voxels in the first launch, until its run time is known
+/// Number of voxels in the first launch, until its run time is known.
+constexpr std::size_t VoxelsOfFirstLaunch = std::size_t(1) << 22;
 
 ConservativeLevel MakeLevel(const Reconstruction& task, const std::array<int, 3>& size, int width)
 {
@@ -105,8 +109,8 @@ ConservativeLevel MakeLevel(const Reconstruction& task, const std::array<int, 3>
     LightRows(device, size, 2, width, what) };
 }
 
-/// Whether kernels read the light of batches in the host's layout: for two batches with rows of whole vectors. With
-/// more batches they would have to gather single values.
+/// Whether kernels read the light of batches in the host's layout [voxel][batch][channel]: for two batches with rows
+/// of a multiple of two vectors. With more batches they would have to gather single values.
 bool AreWoven(const NoisyLight& light, int width)
 {
   return light.batches == 2 && WholeVectors(light.grid.size[0], width) == light.grid.size[0];
@@ -119,7 +123,7 @@ std::string Options(const Reconstruction& task, int width)
     Define("CHANNELS", light.channels) + Define("DIRECTIONS", task.directions);
 }
 
-/// A power of two that scales the light to about 1, so that its square neither overflows nor underflows.
+/// Power of two that scales the light to about 1, so that squares neither overflow nor underflow.
 float ScaleOf(float largest)
 {
   return std::ldexp(1.0f, -std::clamp(largest > 0.0f ? std::ilogb(largest) : 0, -126, 126));
@@ -175,7 +179,8 @@ cl::Kernel ConservativePasses::Kernel(const char* name, bool finest) const
   return this->Kernels.Kernel(name, kernel_source::ConservativeReconstruction, Define("FINEST", finest));
 }
 
-/// Enqueues a kernel that reads level `below`, for the cells of the level above it.
+/// Enqueues a kernel that reads level `below`, with one work-item per row (or cell) of the level above it.
+/// @param from, to  progress to report at the kernel's beginning and end, if it reads the voxels
 void ConservativePasses::RunAbove(int below, const cl::Kernel& kernel, double from, double to)
 {
   const std::array<int, 3>& cells = this->At(below + 1).light.Cells();
@@ -232,7 +237,7 @@ void ConservativePasses::Begin()
   this->Kernels.Run(errors, top.light.Cells());
 }
 
-/// Computes the gains of a level's details, and their error.
+/// Computes the gains of a level's details, and the error of these details.
 void ConservativePasses::FindGains(int level)
 {
   ConservativeLevel& above = this->At(level + 1);

@@ -1,17 +1,19 @@
-// Chooses a pyramid level for each voxel and samples the light there; one work-item per row (or voxel). The host gives
+// Chooses a pyramid level for each voxel and interpolates the light there; one work-item per row (or voxel). The host
+// defines
 //   PUBLISHED        1: the published estimator
-//   CONSTANT_RADIUS  1: the same level everywhere; if both are 0, the nearest-photons estimator
-//   CHANNELS, DIRECTIONS  channels of the light, and whether there are mean directions; the fields of its pyramid are
-//                         its channels, then the mean direction
-//   TOP         the highest level
+//   CONSTANT_RADIUS  1: the same level everywhere; with both 0, the nearest-photons estimator
+//   CHANNELS, DIRECTIONS  number of channels of the light, and whether it has mean directions; the fields of its
+//                         pyramid are the channels, then the mean direction
+//   TOP         highest level
 //
-// Adjacent voxels of a row lie between the same cells of a level. Levels are therefore processed in turn, and each
-// voxel keeps the value of its chosen level: no gather is needed.
+// Levels are processed one by one for a vector of voxels, and each voxel keeps the value of its chosen level.
+// Adjacent voxels of a row lie between the same cells of a level, so that no gather is needed.
 
 #include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.cl"
 
-// The four rows of a level between which a row of voxels lies, y fastest, and the interpolation weights along y and z.
+// The four rows of a level between which a row of voxels lies, y fastest, and the interpolation weights along y and
+// z.
 typedef struct
 {
   size_t at[4];
@@ -44,7 +46,7 @@ inline real between(real low, real high, real part)
   return multiply_add(part, high - low, low);
 }
 
-// REAL_WIDTH cells of a level from x on, interpolated along y and z.
+// Interpolates REAL_WIDTH cells of a level, from x on, along y and z.
 inline real cells_across(const __global float* values, const rows_between* rows, int x)
 {
   const real low = between(load_real(x, values + rows->at[0]), load_real(x, values + rows->at[1]), (real)rows->y);
@@ -52,8 +54,8 @@ inline real cells_across(const __global float* values, const rows_between* rows,
   return between(low, high, (real)rows->z);
 }
 
-// Trilinear interpolation of a level at REAL_WIDTH voxels from x on: getInterpolatedValue of listing B.3. `level` is a
-// compile-time constant.
+// Trilinear interpolation of a level at REAL_WIDTH voxels, from x on (getInterpolatedValue of listing B.3). `level`
+// is a compile-time constant.
 inline real sample(const __global float* values, const rows_between* rows, int level, int x)
 {
   if (level == 0)
@@ -115,13 +117,13 @@ inline void take(real* taken, const real* channels, integer where)
   }
 }
 
-// Finds the lowest level with at least `least` photons (the top level if none has), and samples `wanted` there: the
-// light (its channels) or the photons' weight.
+// Finds the lowest level with at least `least` photons (the top level if none has), and interpolates `wanted` there:
+// the light (its channels) or, for the published estimator, the photons' weight.
 inline real populated(const __global float* counts, const rows_between* rows_of_counts, float least,
   const __global float* wanted, const rows_between* rows, int x, real* found)
 {
   real level = 0.0f;
-  integer open = -1; // all
+  integer open = -1; // mask of the voxels whose level is not found yet
 #pragma unroll
   for (int l = 0; l <= TOP; ++l)
   {
@@ -149,8 +151,8 @@ inline real populated(const __global float* counts, const rows_between* rows_of_
   return level;
 }
 
-// Goes up as long as the difference of successive levels does not grow (listing B.3), but not above `highest`; `taken`
-// receives the light of the level.
+// Returns the level up to which the difference of successive levels does not grow (listing B.3), at most `highest`;
+// `taken` receives the light of that level.
 inline real by_surround(const __global float* light, const rows_between* rows, real highest, int x, real* taken)
 {
   real level = 0.0f;
@@ -211,7 +213,12 @@ inline void store_direction(
   store_reals_of_three(way[0] * cut, way[1] * cut, way[2] * cut, voxel, direction);
 }
 
-//   voxels   voxels of the grid along x, y, z, and the pitch of its rows
+// Kernel of all estimators that use one level per voxel.
+//   light, counts, weights     pyramids of light, photon counts and photon weights
+//   where, where_counts        layouts of these pyramids
+//   parameter                  published: increment of photon weight per level; else minimum number of photons
+//   fluence, direction, chosen output: light, mean direction and level of each voxel
+//   voxels                     voxels of the grid along x, y, z, and the pitch of its rows
 __kernel void choose_level(const __global float* light, const __global PyramidLevels* where,
   const __global float* counts, const __global float* weights, const __global PyramidLevels* where_counts,
   float parameter, __global float* fluence, __global float* direction, __global float* chosen, int4 voxels)

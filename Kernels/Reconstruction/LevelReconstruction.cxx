@@ -17,25 +17,28 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-constexpr std::size_t FirstPart = std::size_t(1) << 18; // voxels in the first launch, until its run time is known
+// Number of voxels in the first launch, until its run time is known.
+constexpr std::size_t FirstPart = std::size_t(1) << 18;
 
-/// How the pyramids of light, counts and weights are built.
+/// Method by which each pyramid is built: of light, of photon counts, of photon weights.
 constexpr LightPyramid::Down Downs[] = { LightPyramid::Down::Gauss, LightPyramid::Down::Sum,
   LightPyramid::Down::MeanOfLit };
 
-/// Computes the light of each voxel from one level of its pyramid (all estimators except the conservative one).
+/// Passes that compute the light of each voxel from one level of its pyramid (all estimators except the conservative
+/// one).
 class LevelPasses
 {
 public:
-  /// @param task, result  must outlive this object; the result's arrays have the size of the box
+  /// @param task, result  referenced; the result's arrays must have the size of the box
   LevelPasses(const Reconstruction& task, ReconstructedLight& result);
 
   void Build(); ///< builds the pyramids up to the shared level
-  /// Cells of a pyramid's shared level: those of this rank's box, and those of the whole grid.
+  /// Cells of the shared level of a pyramid over this rank's box.
   std::vector<float> Shared(std::size_t pyramid) const { return this->Pyramids[pyramid].Read(this->Part.shared); }
+  /// Computes the levels above the shared level, from its cells in the domain.
   void BuildAbove(std::size_t pyramid, const std::vector<float>& cells);
 
-  void Choose(double weightStep); ///< light, levels and directions of the result
+  void Choose(double weightStep); ///< computes light, levels and directions of the result
 
 private:
   void Fill(std::size_t pyramid, const float* values, int components, int first, const char* what);
@@ -47,12 +50,13 @@ private:
   const std::array<int, 3>& Size;
   RowKernels Kernels;
   const PartOfPyramid Part;
-  std::vector<LightPyramid> Pyramids; ///< those of FieldsOfPyramids
+  /// Pyramids of light, photon counts and photon weights, as many as FieldsOfPyramids.
+  std::vector<LightPyramid> Pyramids;
 };
 
-/// The increment of photon weight per level. If it is not given, the mean weight of lit voxels, reduced by the rounding
-/// of weights in the march, so that equal weights all reach the first increment. Collective.
-/// @param own  weights of the block's voxels
+/// Increment of photon weight per level. If it is not given, it is the mean weight of lit voxels, reduced by the
+/// rounding of weights in the march, so that equal weights all reach the first increment. Collective.
+/// @param own  photon weights in the voxels of this rank's block
 double WeightStepOf(const Reconstruction& task, const float* own)
 {
   double total = 0.0, lit = 0.0;
@@ -68,7 +72,7 @@ double WeightStepOf(const Reconstruction& task, const float* own)
   return task.settings.weightStep > 0.0 ? task.settings.weightStep : total > 0.0 ? 0.999 * total / lit : 1.0;
 }
 
-/// Number of fields of each pyramid that an estimator uses: light and directions, photon counts, photon weights.
+/// Number of fields of each pyramid that an estimator needs: light and directions, photon counts, photon weights.
 std::vector<int> FieldsOfPyramids(const Reconstruction& task)
 {
   std::vector<int> fields = { task.Fields() };
@@ -149,7 +153,7 @@ void LevelPasses::Choose(double weightStep)
   const WholeRows direction(this->Kernels, result.meanDirection, this->Size, 3, "mean directions");
   const WholeRows chosen(this->Kernels, result.mipLevel, this->Size, 1, "levels");
 
-  // Arguments that an estimator does not use may be any buffer.
+  // Buffers that the estimator does not use are replaced by any pyramid.
   const LightPyramid& light = this->Pyramids.front();
   const LightPyramid& heavy = this->Pyramids.back();
   const LightPyramid& photons = this->Pyramids[std::min<std::size_t>(1, this->Pyramids.size() - 1)];
@@ -163,7 +167,7 @@ void LevelPasses::Choose(double weightStep)
   direction.Fetch();
 }
 
-/// Computes the pyramids from the shared level on.
+/// Computes the levels of all pyramids above the shared level. Collective.
 void CompletePyramids(const Reconstruction& task, std::optional<LevelPasses>& passes)
 {
   const std::vector<int> fields = FieldsOfPyramids(task);

@@ -1,9 +1,9 @@
-// Computes a level of a light pyramid from the next finer one, one work-item per row (or cell).
+// Kernels that compute a level of a light pyramid from the next finer level, one work-item per row (or cell).
 
 #include "Reconstruction/LightRows.cl"
 
-// Copies voxels of 1 or 3 components from the host's layout, with rows of `pitch` voxels, to the rows of a level, from
-// field `first` on.
+// Copies voxels of 1 or 3 components from the host's layout, with rows of `pitch` voxels, to a level, from field
+// `first` on.
 __kernel void split_voxels(
   const __global float* voxels, int components, int pitch, __global float* level, int4 size, int first)
 {
@@ -31,8 +31,8 @@ __kernel void split_voxels(
   }
 }
 
-// Filters 4 x 4 x 4 finer cells with a separable kernel: along each axis, the weight of the two inner cells is `near`,
-// that of the two outer cells `far`.
+// Filters 4 x 4 x 4 finer cells with a separable kernel, of weight `near` for the two inner and `far` for the two
+// outer cells along each axis.
 __kernel void smooth_down(
   const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields, float near, float far)
 {
@@ -64,7 +64,7 @@ __kernel void smooth_down(
   }
 }
 
-// Joins 2 x 2 x 2 finer cells to their sum or, with `mean`, to the mean of those that are not 0 (listing B.2).
+// Computes the sum of 2 x 2 x 2 finer cells or, with `mean`, the mean of those that are not 0 (listing B.2).
 __kernel void join_down(
   const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields, int mean)
 {
@@ -109,8 +109,8 @@ __kernel void join_down(
   }
 }
 
-// Copies rows of `count` voxels, from_row voxels apart, to rows of to_row voxels; padding repeats the last voxel. The
-// layout changes from [voxel][batch][channel] to [batch][voxel][channel].
+// Copies rows of `count` voxels, from_row voxels apart, to rows that are to_row voxels apart; padding repeats the
+// last voxel. The layout changes from [voxel][batch][channel] to [batch][voxel][channel].
 __kernel void copy_rows(
   const __global float* from, int count, int from_row, __global float* to, int to_row, int batches, int channels)
 {

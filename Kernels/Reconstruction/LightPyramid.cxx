@@ -15,9 +15,9 @@ int RowWidth(const Device& device, const Grid& grid)
 
 namespace
 {
-/// Same as layer_of and field_of in LightRows.cl. Rows at the same place of all layers and quantities are used
-/// together; with strides that are multiples of 4 kB they would map to the same few cache sets. So a layer ends with 3
-/// and a quantity with 41 unused lines of 64 bytes.
+/// Pitch of layers in floats, equal to layer_of in LightRows.cl. Rows at the same position of all layers and
+/// quantities are used together; with pitches that are multiples of 4 kB they would map to the same few cache sets.
+/// So a layer ends with 3 and a quantity (FieldStride) with 41 unused lines of 64 bytes.
 std::size_t LayerStride(const std::array<int, 3>& size, int stride)
 {
   const std::size_t layer = Count(size[1]) * Count(stride);
@@ -177,7 +177,7 @@ void WholeRows::Copy(const cl::Buffer& from, int fromRow, const cl::Buffer& to, 
 
 namespace
 {
-constexpr std::size_t Alignment = 1024; // in floats: subbuffers may begin at multiples of this on every device
+constexpr std::size_t Alignment = 1024; // floats; subbuffers may begin at multiples of this number on every device
 }
 
 LightPyramid::LightPyramid(
@@ -245,7 +245,7 @@ void LightPyramid::BuildAbove(Down down, const std::vector<float>& cells)
   {
     this->Copy(ofAll.Parts[level], this->Parts[shared + level], ofAll.BytesOf(level));
   }
-  this->Kernels.On().Finish(); // before the buffers are released
+  this->Kernels.On().Finish(); // before local buffers are released
 }
 
 void LightPyramid::Fill(const WholeRows& voxels, int components, int first)
@@ -258,7 +258,8 @@ void LightPyramid::Fill(const WholeRows& voxels, int components, int first)
 
 void LightPyramid::Build(Down down)
 {
-  // exp(-x^2 / (2 * 4)) at 0.5 and 1.5, normalised so that the four weights add up to 1 (Pfeuti 2009, section 3.2.4)
+  // Weights exp(-x^2 / (2 * 4)) at x = 0.5 and 1.5, normalised so that the four weights add up to 1 (Pfeuti 2009,
+  // section 3.2.4).
   constexpr cl_float near = 0.281088549f, far = 0.218911451f;
   cl::Kernel kernel =
     this->Kernels.Kernel(down == Down::Gauss ? "smooth_down" : "join_down", kernel_source::LightPyramid);

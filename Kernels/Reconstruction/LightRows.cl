@@ -1,11 +1,11 @@
-// Row layout and vector access for every kernel of the reconstruction, with REAL_WIDTH 8 (CPUs) or 1.
+// Row layout and vector access for all kernels of the reconstruction, with REAL_WIDTH 8 (CPUs) or 1.
 //
-// A level of a pyramid holds `fields` volumes of rows, one per quantity. A row has GUARD values before and after it
-// that repeat its end values, as does the padding that extends it to a multiple of 2 REAL_WIDTH: loads along x need no
-// bounds checks. `size` is cells along x, y, z, then the pitch of rows in floats.
+// A level of a pyramid consists of `fields` volumes of rows, one volume per quantity. A row has GUARD values before
+// and after it that repeat its end values, as does the padding that extends it to a multiple of 2 REAL_WIDTH: loads
+// along x need no bounds checks. The int4 `size` of a level is cells along x, y, z, then the pitch of rows in floats.
 //
-// Voxel arrays in the host's layout interleave their components and have no guards; their size.w is the pitch of rows
-// in voxels, a multiple of 2 REAL_WIDTH.
+// Voxel arrays in the host's layout interleave their components and have no guards; the w component of their `size`
+// is the pitch of rows in voxels, a multiple of 2 REAL_WIDTH.
 
 #pragma once
 #include "Numerics/Numerics.cl"
@@ -21,7 +21,7 @@ typedef pair __attribute__((aligned(4))) pair_anywhere;
 #define load_pair(index, pointer) (*(const __global pair_anywhere*)((pointer) + (index)))
 #define store_pair(value, index, pointer) (*(__global pair_anywhere*)((pointer) + (index)) = (value))
 
-// A work-item per row on CPUs, a work-item per vector of cells on GPUs.
+// Loop over the cells of a row: one work-item per row on CPUs, one per cell on GPUs.
 #if REAL_WIDTH > 1
 #define ROW_Y get_global_id(0)
 #define ROW_Z get_global_id(1)
@@ -32,7 +32,7 @@ typedef pair __attribute__((aligned(4))) pair_anywhere;
 #define FOR_CELLS(x, count) for (int x = get_global_id(0), end_ = x + 1; x < end_; ++x)
 #endif
 
-// Interleaves the values of even and odd places.
+// Interleaves the values of even and of odd cells.
 inline pair woven(real even, real odd)
 {
 #if REAL_WIDTH == 8
@@ -43,7 +43,7 @@ inline pair woven(real even, real odd)
 #endif
 }
 
-// Loads voxels of three interleaved components from `values`, split into components, and stores them.
+// Vectors of voxels with three components, which are interleaved in memory and separate here.
 typedef struct
 {
   real x, y, z;
@@ -54,9 +54,9 @@ typedef struct
 } pair_of_three;
 
 #if REAL_WIDTH == 8
-// Selects lanes 0, 3, 6 of the first, 1, 4, 7 of the second, and 2, 5 of the third vector. In three vectors of eight
-// voxels each component occupies every lane once, so this selection and one permutation sort them; written as a single
-// shuffle, they compile to sixteen moves.
+// Selects lanes 0, 3, 6 of the first, 1, 4, 7 of the second, and 2, 5 of the third vector. In three vectors of
+// interleaved voxels each component occupies every lane once, so this selection and one permutation separate the
+// components; written as a single shuffle, they compile to sixteen moves.
 inline float8 lanes_of(float8 a, float8 b, float8 c)
 {
   const int8 second = (int8)(0, -1, 0, 0, -1, 0, 0, -1), third = (int8)(0, 0, -1, 0, 0, -1, 0, 0);
@@ -96,7 +96,7 @@ inline void store_reals_of_three(real x, real y, real z, size_t voxel, __global 
 #endif
 }
 
-// Loads 2 REAL_WIDTH voxels of three components.
+// Loads 2 REAL_WIDTH voxels of three components from an array of interleaved components.
 inline pair_of_three load_three(size_t voxel, const __global float* values)
 {
   const real_of_three low = load_reals_of_three(voxel, values), high = load_reals_of_three(voxel + REAL_WIDTH, values);
@@ -122,7 +122,7 @@ inline void store_three(pair x, pair y, pair z, size_t voxel, __global float* va
 #define any_of(condition) any(condition)
 #endif
 
-// Not fmax, which tests for NaN.
+// x if positive, else 0; fmax is not used, as it tests for NaN.
 #define positive_part(x) ((x) > 0.0f ? (x) : 0.0f)
 
 inline int within(int i, int count)
@@ -130,8 +130,8 @@ inline int within(int i, int count)
   return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-// Pitch in floats of a layer of rows, and of a quantity. Not multiples of 4 kB, with which layers would evict each
-// other from the cache: see LightPyramid.cxx.
+// Pitches in floats of a layer of rows (layer_of) and of a quantity's volume (field_of). Neither is a multiple of 4
+// kB, with which layers would evict each other from the cache (LightPyramid.cxx).
 inline size_t layer_of(int4 size)
 {
   const size_t layer = (size_t)size.y * size.w;
@@ -143,13 +143,14 @@ inline size_t field_of(int4 size)
   return field < 1024 ? field : field + 656;
 }
 
-// Offset of the first value of a row from the beginning of its level. y and z outside the level are clamped.
+// Offset of a row's first value from the beginning of its level. Rows y and z outside the level are clamped.
 inline size_t row_of(int4 size, int field, int y, int z)
 {
   return field * field_of(size) + within(z, size.z) * layer_of(size) + (size_t)within(y, size.y) * size.w + GUARD;
 }
 
-// Repeats a row's end values, if they are among the `width` cells that were written from x on.
+// Writes a row's guards and padding, if its first or last cell is among the `width` cells that were written from x
+// on.
 inline void repeat_ends(__global float* row, int x, int width, int count)
 {
   if (x == 0)
@@ -173,8 +174,8 @@ inline real nearer(real near, real far)
   return multiply_add((real)0.25f, far, (real)0.75f * near);
 }
 
-// A cell has eight children, in four rows of pairs; row k is at y = k % 2, z = k / 2. Offsets, in field 0 of the cell's
-// level, of the four rows between which row k of the children of row (y, z) is interpolated.
+// Offsets, in field 0 of a cell's level, of the four rows from which row k of the cell's children is interpolated. A
+// cell at (y, z) has eight children, in four rows of pairs; row k is at y = k % 2, z = k / 2.
 typedef struct
 {
   size_t here, beside, behind, opposite;
@@ -199,8 +200,8 @@ inline real cells_for_children(const __global float* field, const rows_about* ro
     nearer(load_real(rows->behind + x, field), load_real(rows->opposite + x, field)));
 }
 
-// Trilinear interpolation from REAL_WIDTH cells from x on to one row of their children. One row at a time, because all
-// eight children of several quantities do not fit into a CPU's registers.
+// Trilinear interpolation from REAL_WIDTH cells, from x on, to row k of their children (rows_for_children). Rows are
+// interpolated one at a time, as all eight children of several quantities do not fit into a CPU's registers.
 inline children interpolate(const __global float* field, const rows_about* rows, int x)
 {
   const real middle = cells_for_children(field, rows, x);

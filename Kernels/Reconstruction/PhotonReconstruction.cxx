@@ -26,28 +26,30 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-/// Number of pyramid levels that each rank computes from its own box.
+/// Number of pyramid levels that each rank computes from its box.
 constexpr int LevelsOfBox = 2;
 
-/// Width in voxels of the halo that these levels need. Conservative: per level one cell of the level above for
-/// interpolation, four for gains and errors, two for details and the levels they are computed from. Other estimators:
-/// light lies between cells of a level, one more on either side, each of which depends on two cells below and on four
-/// in all.
+/// Width in voxels of the halo that a rank needs for the pyramid levels of its box. Conservative: per level one cell
+/// of the level above for interpolation, four for gains and errors, two for details and the levels from which they
+/// are computed. Other estimators: the two cells of a level between which a voxel lies along each axis, each of which
+/// is computed from four cells of the next finer level.
 int MarginOf(Estimator estimator)
 {
   return estimator == Estimator::Conservative ? 32 : 16;
 }
 
-/// Boxes begin at multiples of this number of voxels; for the other estimators 8, the width of a vector.
+/// Alignment of boxes: they begin at multiples of this number of voxels. For estimators other than the conservative
+/// one it is 8, the width of a vector.
 int EdgeOf(Estimator estimator, int shared)
 {
   return estimator == Estimator::Conservative ? 1 << shared : 8;
 }
 
-/// Number of levels above a grid, at most `levels`.
+/// Number of pyramid levels above a grid, at most `levels` and at least 1.
 int LevelsOf(const Grid& grid, int levels)
 {
-  return std::max(std::min(levels, PyramidLayout(grid.size).Top()), 1); // above a single voxel: itself
+  // The level above a single voxel is the voxel itself.
+  return std::max(std::min(levels, PyramidLayout(grid.size).Top()), 1);
 }
 
 int TopOf(const ReconstructionSettings& settings, int levels)
@@ -63,18 +65,20 @@ void Add(std::array<double, 3>& sum, const std::array<double, 3>& more)
   }
 }
 
-/// Summary of an array's values.
+/// Summary of the values of an array.
 struct ArrayRange
 {
-  bool fit = true; ///< every value lies within the required range
-  float largest = 0.0f;
-  std::array<double, 3> total = {}; ///< of each component; only [0] if there is one
+  bool fit = true;                  ///< whether every value lies within the required range
+  float largest = 0.0f;             ///< largest value
+  std::array<double, 3> total = {}; ///< total of each component; only [0] if there is one
 };
 
-/// Accumulates several sums in parallel, because a single sum waits for each of its additions.
+/// Computes the summary of an array. Several sums are accumulated in parallel, because a single sum waits for each of
+/// its additions.
+/// @param low, high  required range of the values
 ArrayRange RangeOf(const float* values, std::size_t count, std::size_t components, float low, float high)
 {
-  constexpr std::size_t Lanes = 12; // a multiple of each number of components
+  constexpr std::size_t Lanes = 12; // a multiple of each possible number of components
   double sums[Lanes] = {};
   float largest[Lanes] = {};
   int unfit[Lanes] = {};
@@ -129,8 +133,9 @@ ArrayRange RangeInThreads(const float* values, std::size_t count, int components
   return all;
 }
 
+/// Checks the values of an array of the block, and returns their summary.
 /// @param width  values per voxel: the components of one batch or of several
-/// @throws InvalidInput for an invalid value; names the voxel of the whole grid
+/// @throws InvalidInput if a value is out of range; names its voxel of the domain
 ArrayRange CheckedRange(const Domain& domain, const float* values, int width, int components, const char* name,
   float low = 0.0f, float high = std::numeric_limits<float>::max())
 {
@@ -153,7 +158,7 @@ ArrayRange CheckedRange(const Domain& domain, const float* values, int width, in
   return range;
 }
 
-/// The total of each channel over a part of a box.
+/// Total of each channel over a part of a box.
 std::array<double, 3> TotalOf(const float* values, const VoxelBox& box, const VoxelBox& part, int channels)
 {
   Grid grid;
@@ -230,7 +235,7 @@ NoisyLight Reconstruction::Gathered(const NoisyLight& given)
 
 void Reconstruction::Check(const NoisyLight& given)
 {
-  constexpr float LongestDirection = 1.001f; // rounding may make a unit vector's component a little longer than 1
+  constexpr float LongestDirection = 1.001f; // rounding may make a component of a unit vector a little longer than 1
   ArrayRange range;
   this->OnVoxels([&] {
     range = this->IsConservative()
@@ -316,7 +321,7 @@ void RequireArray(const float* values, Estimator estimator, const char* what, co
   }
 }
 
-/// @throws InvalidInput where a setting is out of its range
+/// @throws InvalidInput if a setting is out of range
 void Check(const ReconstructionSettings& settings)
 {
   const auto require = [](bool fits, const std::string& what, double value, const std::string& range) {
@@ -366,7 +371,8 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
   }
 }
 
-/// Approximate memory for intermediate arrays and the result.
+/// Checks that the host's memory suffices, approximately, for the result and, if the device is a CPU, for
+/// intermediate arrays.
 void RequireMemory(const Device& device, const NoisyLight& light, bool conservative, std::size_t voxels)
 {
   const double direction = light.meanDirection ? 3.0 : 0.0;
@@ -377,7 +383,7 @@ void RequireMemory(const Device& device, const NoisyLight& light, bool conservat
     "Reconstructing light on " + std::to_string(voxels) + " voxels", "Use a coarser grid or fewer batches.");
 }
 
-/// Sets channels and batches on ranks without voxels to the values of the other ranks; returns whether there are mean
+/// Sets channels and batches on ranks without voxels to the values of the other ranks. Returns whether there are mean
 /// directions. Collective.
 /// @throws InvalidInput if ranks disagree
 bool AgreeOnKind(const Domain& domain, NoisyLight& light)
@@ -390,7 +396,8 @@ bool AgreeOnKind(const Domain& domain, NoisyLight& light)
   return domain.Any(has && light.meanDirection);
 }
 
-/// Whether light of three channels has the same colour everywhere, so that its channels share their noise. Collective.
+/// Whether light of three channels has the same colour everywhere, so that its channels have the same noise.
+/// Collective.
 bool IsOneColour(const Domain& domain, const NoisyLight& light)
 {
   constexpr float part = 1e-4f;
@@ -424,7 +431,7 @@ bool IsOneColour(const Domain& domain, const NoisyLight& light)
 }
 
 /// Reconstructs each channel separately as grey light, with its own gains and errors; directions and levels remain
-/// those of the sum. Collective.
+/// those of the sum of channels. Collective.
 void ReconstructChannels(Device& device, const Domain& domain, const NoisyLight& light,
   const ReconstructionSettings& settings, const Monitor& monitor, ReconstructedLight& result)
 {
