@@ -1,10 +1,13 @@
-// Smoothing and gradient of the refractive index. The host defines RADIUS, of the filter in voxels.
+// Kernels that smooth the refractive index and compute its gradient. The host defines RADIUS, half the width of the
+// filter in voxels.
 
 #include "Numerics/Numerics.cl"
 
-// Weighted mean over the 2 RADIUS + 1 voxels along an axis; beyond the grid its last voxel is repeated.
-//   weights   of the voxels at distances 1, 2, ..., RADIUS
-// Written with differences, so that a constant n is reproduced to the last bit.
+// Mean of n over the 2 RADIUS + 1 voxels along an axis with the given weights; beyond the grid its last voxel is
+// repeated.
+//   n         n[0] is the voxel with index `place` along the axis, of `length` voxels `stride` apart
+//   weights   weights of the voxels at distances 1, 2, ..., RADIUS
+// The sum is of differences, so that a constant n is reproduced to the last bit.
 inline float smoothed(__global const float* n, int place, int length, long stride, __constant const float* weights)
 {
   const float here = n[0];
@@ -19,7 +22,8 @@ inline float smoothed(__global const float* n, int place, int length, long strid
   return here + sum;
 }
 
-// The same for a vector of neighbouring voxels along x; if `axis` is x, the filter must not reach beyond the grid.
+// As `smoothed`, for a vector of neighbouring voxels along x; if the axis is x, the filter must not reach beyond the
+// grid.
 inline real smoothed_together(
   __global const float* n, int place, int length, long stride, __constant const float* weights)
 {
@@ -35,7 +39,7 @@ inline real smoothed_together(
   return here + sum;
 }
 
-// Each work-item smooths REAL_WIDTH voxels along x.
+// Smooths n along one axis; each work-item smooths REAL_WIDTH voxels along x.
 __kernel void smooth_index(
   int4 size, int axis, __constant const float* weights, __global const float* n, __global float* result)
 {
@@ -62,8 +66,8 @@ __kernel void smooth_index(
   }
 }
 
-// Central differences, 1/length; one-sided in the grid's outermost voxels.
-//   firstLayer   first of the layers along z whose gradient is computed, and written from the beginning of `gradient`
+// Gradient of n by central differences, 1/length; one-sided in the grid's outermost voxels.
+//   firstLayer   first layer along z whose gradient is computed; `gradient` begins with this layer
 __kernel void index_gradient(
   int4 size, int firstLayer, int layers, float4 spacing, __global const float* n, __global float* gradient)
 {

@@ -18,14 +18,15 @@ namespace tyndall
 {
 namespace
 {
-constexpr float Rounding = 1e-6f; ///< relative
+constexpr float Rounding = 1e-6f; ///< relative difference of n that counts as rounding
 constexpr float Least = static_cast<float>(LeastIndex);
 constexpr float Largest = static_cast<float>(LargestIndex);
 constexpr int LargestFilter = 65;
-/// Bytes of the gradient that the device holds at a time.
+/// Maximum number of bytes of the gradient that the device holds at a time.
 constexpr std::size_t LayerBytes = std::size_t(32) << 20;
 
-/// Weights of the voxels at distances 1, 2, ...; twice their sum plus the weight of the central voxel is 1.
+/// Weights of the Gaussian filter for voxels at distances 1, 2, ...; twice their sum plus the weight of the central
+/// voxel is 1.
 std::vector<float> GaussianWeights(int filterSize)
 {
   const double deviation = filterSize / 6.0;
@@ -82,7 +83,7 @@ void CheckLevels(const std::uint8_t* levels, const Grid& grid, const Grid& whole
 {
   const int top = PyramidLayout(whole.size).Top();
   const std::size_t count = levels ? grid.VoxelCount() : 0;
-  int highest = 0; // separate from the search for the voxel: compilers vectorise this loop
+  int highest = 0; // separate from the search for the voxel, so that compilers vectorise this loop
   for (std::size_t i = 0; i < count; ++i)
   {
     highest = std::max<int>(highest, levels[i]);

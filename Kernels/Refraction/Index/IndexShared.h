@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels that read the squared refractive index.
+// Size of a grid, shared by C++ and the kernels that read the squared refractive index.
 #pragma once
 
 #include "Device/SharedTypes.h"

@@ -59,7 +59,7 @@ void CheckPerturbation(const Perturbation& perturbation, const std::vector<Solid
   }
 }
 
-/// Checks that 1/edge^2 is representable: areas and volumes of voxels are in single precision.
+/// Checks that 1/edge^2 of a voxel is representable in float, in which its areas and volumes are computed.
 void CheckSpacing(const Grid& grid)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -89,9 +89,10 @@ void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<S
   CheckPerturbation(settings.perturbation, solids);
 }
 
-/// @param size          size of the box that is voxelised
-/// @param coefficients  numbers per voxel: sigma_a, sigma_s and, if it varies, g
-/// @param indexVaries   whether there is an index to smooth and differentiate
+/// Checks that the memory of the machine and of the device is sufficient.
+/// @param size          number of voxels along each axis of the box that is voxelised
+/// @param coefficients  numbers per voxel for sigma_a, sigma_s and, if it varies, g
+/// @param indexVaries   whether n varies, so that it is smoothed and differentiated
 void CheckMemory(const Device& device, const RefractiveMediumSettings& settings, const std::array<int, 3>& size,
   int coefficients, bool indexVaries)
 {
@@ -120,7 +121,7 @@ bool IsGrey(const Material& material)
 }
 
 /// Whether scattering materials differ in their mean cosines.
-/// @param g  output: their common mean cosine, if they do not differ; unchanged if nothing scatters
+/// @param g  output: common mean cosine, if the materials do not differ; unchanged if nothing scatters
 bool MeanCosineVaries(const std::vector<const Material*>& materials, double& g)
 {
   const Material* first = nullptr;
@@ -179,7 +180,7 @@ void CheckPointsOf(const Solid& solid)
   }
 }
 
-/// Describes meshes without extent, for a message.
+/// Describes the solids whose meshes have no extent, for a message.
 std::string WithoutExtent(const std::vector<Solid>& solids)
 {
   std::string text;
@@ -193,13 +194,13 @@ std::string WithoutExtent(const std::vector<Solid>& solids)
   return text;
 }
 
-/// Properties of a medium that follow from its materials alone.
+/// Properties of a medium that follow from its materials alone, without the geometry.
 struct Composition
 {
-  bool grey = true;
-  bool variedG = false; ///< whether scattering materials differ in their mean cosines
-  bool evenIndex = true;
-  double g = 0.0; ///< common mean cosine, if they do not
+  bool grey = true;      ///< whether no material has colour
+  bool variedG = false;  ///< whether scattering materials differ in their mean cosines
+  bool evenIndex = true; ///< whether n is the same in all solids and outside
+  double g = 0.0;        ///< common mean cosine of the scattering materials, if they do not differ
 };
 
 Composition CompositionOf(const std::vector<Solid>& solids, const RefractiveMediumSettings& settings)
@@ -226,15 +227,15 @@ MaterialInfo MaterialOf(const Material& material)
   return info;
 }
 
-constexpr std::size_t WorkGroup = 256; ///< of the kernels of Materials.cl
+constexpr std::size_t WorkGroup = 256; ///< size of work-groups of the kernels of Materials.cl
 
-/// Mixes the materials in each voxel of a box of the grid, slab by slab.
+/// Computes the mean of the materials in each voxel of a box of the grid, slab by slab.
 class MaterialMixer
 {
 public:
-  /// Keeps references to all arguments.
+  /// Keeps references to all arguments except `box`.
   /// @param variedG  whether the scattering materials differ in their mean cosines
-  /// @param index    output: n in the box's voxels, not smoothed
+  /// @param index    output: n in the box's voxels, before smoothing
   /// @param result   output: occupancy, coefficients and g of the box's voxels
   MaterialMixer(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
     const VoxelBox& box, bool variedG, Buffer<float>& index, RefractiveMedium& result)
@@ -259,7 +260,7 @@ public:
     index.Fill(0.0f);
   }
 
-  /// Adds the samples inside one mesh in one slab; a callback for CountSamplesInside.
+  /// Adds the material of one solid to the voxels of one slab; the callback of CountSamplesInside.
   void Take(const SamplesInside& inside)
   {
     if (inside.mesh + 1 == this->Solids.size())
@@ -352,18 +353,18 @@ private:
   const bool VariedG;
   Buffer<float>& Index;
   RefractiveMedium& Result;
-  Buffer<float> Covered, SigmaA, SigmaS, G; ///< buffers of one slab
+  Buffer<float> Covered, SigmaA, SigmaS, G; ///< covered fraction, coefficients and g of one slab
   cl::Kernel AddObject, AddOutside;
 };
 
-/// A part of the grid with the halo that its values depend on: the reach of the filter, one voxel for the gradient, and
-/// one because counts in the outermost voxels of a box are not exact.
+/// A part of the grid with the halo on which its values depend: the reach of the filter, one voxel for the gradient,
+/// and one because counts in the outermost voxels of a box are not exact.
 VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& settings, bool evenIndex)
 {
   return Grown(part, evenIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);
 }
 
-/// Crops arrays of a box to those of a part of it.
+/// Crops the arrays of a medium from a box to a part of it.
 void Keep(const VoxelBox& part, const VoxelBox& box, RefractiveMedium& medium)
 {
   if (part.VoxelCount() == box.VoxelCount())
@@ -389,7 +390,7 @@ double SumOfPart(const std::vector<float>& occupancy, const PartOfBox& part)
   return std::accumulate(summed.begin(), summed.end(), 0.0);
 }
 
-/// Voxelises a part that has voxels.
+/// Voxelises a part of the box that has voxels.
 void Fill(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
   const PartOfBox& part, const Composition& composition, const Monitor& monitor, VoxelizedPart& result)
 {

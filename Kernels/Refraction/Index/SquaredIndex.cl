@@ -1,15 +1,15 @@
-// The squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels.
+// Squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels.
 //
 // n^2 is a tricubic B-spline with the coefficients of numerics.md, Eq. (88): its gradient is continuous and exactly
-// that of the spline, as a symplectic integrator needs. A coefficient may exceed the range of its voxels by at most an
-// eighth, so that the spline is positive wherever n^2 is. Beyond the grid n^2 is extrapolated linearly, but never below
-// a quarter of its border value. The coefficient of voxel (i, j, k) is at index (i + 2, j + 2, k + 2) of an array that
-// is four longer along each axis.
+// that of the spline, as a symplectic integrator requires. A coefficient may exceed the range of its stencil by at
+// most an eighth, so that the spline is positive where n^2 is. Beyond the grid n^2 is extrapolated linearly, but
+// never below a quarter of its value at the border. The coefficient of voxel (i, j, k) is at index (i + 2, j + 2, k +
+// 2) of an array that is longer by four than the grid along each axis.
 
 #pragma once
 #include "Refraction/Index/IndexShared.h"
 
-// n^2 of a voxel on the grid or beyond, where it is extrapolated from the two last voxels of the row.
+// n^2 of a voxel inside the grid, or beyond it, where it is extrapolated from the last two voxels of the row.
 static float squared_index_of(const IndexGrid* grid, const __global float* ior, int i, int j, int k)
 {
   const bool inside = i >= 0 && i < grid->size[0] && j >= 0 && j < grid->size[1] && k >= 0 && k < grid->size[2];
@@ -39,9 +39,9 @@ static float squared_index_of(const IndexGrid* grid, const __global float* ior, 
   return fmax(value, least);
 }
 
-#define OVERSHOOT 0.125f // largest overshoot of a coefficient beyond the range of its voxels, relative
+#define OVERSHOOT 0.125f // maximum excess of a coefficient over the range of its stencil, relative
 
-// Instead of fmin and fmax, which check for NaN.
+// Minimum and maximum without the checks for NaN of fmin and fmax.
 static float lesser_of(float a, float b)
 {
   return a < b ? a : b;
@@ -52,7 +52,8 @@ static float greater_of(float a, float b)
   return a > b ? a : b;
 }
 
-// squares  output: n^2 of each voxel and of three more at either end of each axis
+// Computes n^2 in the grid and three voxels beyond it.
+//   squares  output: n^2 of each voxel, and of three more at both ends of each axis
 __kernel void extend_squared_index(IndexGrid grid, const __global float* ior, __global float* squares)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
@@ -64,7 +65,7 @@ __kernel void squared_index_coefficients(IndexGrid grid, const __global float* s
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int row = grid.size[0] + 6, layer = row * (grid.size[1] + 6);
   const __global float* here = squares + ((z + 1) * layer + (y + 1) * row + x + 1);
-  // Scalars rather than arrays, which PoCL does not keep in registers.
+  // Scalars are used rather than arrays, which PoCL does not keep in registers.
   const float f = here[0], x0 = here[-1], x1 = here[1], y0 = here[-row], y1 = here[row], z0 = here[-layer],
               z1 = here[layer];
   const float low = lesser_of(f, lesser_of(lesser_of(lesser_of(x0, x1), lesser_of(y0, y1)), lesser_of(z0, z1)));
@@ -74,7 +75,8 @@ __kernel void squared_index_coefficients(IndexGrid grid, const __global float* s
   coefficients[(z * (grid.size[1] + 4) + y) * (grid.size[0] + 4) + x] = held;
 }
 
-// Least and largest coefficient within two of each along one axis; ignores what is beyond the array's ends.
+// Computes the least and largest of the coefficients within two of each coefficient along one axis, except near the
+// array's ends. `stride` is the distance of coefficients along the axis.
 __kernel void widen_range(
   int stride, const __global float* low, const __global float* high, __global float* low_out, __global float* high_out)
 {
@@ -86,8 +88,8 @@ __kernel void widen_range(
     greater_of(greater_of(greater_of(h[-2 * stride], h[-stride]), greater_of(h[stride], h[2 * stride])), h[0]);
 }
 
-// The four B-spline basis functions, for the first to the fourth coefficient, and their slopes, at distance f from the
-// second coefficient.
+// Values of the four cubic B-spline basis functions, for the first to the fourth coefficient, at distance f, in [0,
+// 1], from the second coefficient.
 static float4 spline_values(float f)
 {
   const float4 squares = (float4)(0.5f, -1.0f, 0.5f, 0.0f) + f * (float4)(-1.0f / 6.0f, 0.5f, -0.5f, 1.0f / 6.0f);
@@ -102,7 +104,7 @@ static float4 spline_slopes(float f)
 
 typedef float4 __attribute__((aligned(4))) float4_anywhere;
 
-// The four component sums of a, b, c and d.
+// Sums of the components of a, of b, of c and of d.
 static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
 {
   const float4 ab = (float4)(a.x, b.x, a.y, b.y) + (float4)(a.z, b.z, a.w, b.w);
@@ -110,14 +112,14 @@ static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
   return (float4)(ab.lo, cd.lo) + (float4)(ab.hi, cd.hi);
 }
 
-// n^2 (w) and its gradient (x, y, z) in the central cell of the 4^3 coefficients that start at `first`, at position f
-// in [0, 1] between the second and the third along each axis. Sums over layers first, then over rows, so that most
-// operations have sixteen components.
+// n^2 (w) and its gradient (x, y, z), from the 4^3 coefficients that start at `first`, at position f in [0, 1]
+// between the second and the third coefficient along each axis. Sums are over layers first, then over rows, so that
+// most operations have sixteen components.
 static float4 squared_index_among(const __global float* first, int row, int layer, float3 f)
 {
   const float4 z = spline_values(f.z), z_slope = spline_slopes(f.z);
-  const float middle =
-    first[layer + row + 1]; // only differences from it are summed, so that its rounding does not cause a gradient
+  // Sums are of differences from `middle`, so that its rounding does not cause a gradient.
+  const float middle = first[layer + row + 1];
   float16 value = 0.0f, along_z = 0.0f;
 #define ROW(k, j) (*(const __global float4_anywhere*)(first + (k)*layer + (j)*row))
 #define ADD_LAYER(k, s)                                                               \
@@ -141,7 +143,7 @@ static float4 squared_index_among(const __global float* first, int row, int laye
   return (float4)(sums.xyz, middle + sums.w);
 }
 
-// n^2 (w) and its gradient (x, y, z) at voxel coordinates `p`.
+// n^2 (w) and its gradient (x, y, z) at position p, in voxels.
 static float4 squared_index(const IndexGrid* grid, const __global float* coefficients, float3 p)
 {
   const int row = grid->size[0] + 4, layer = row * (grid->size[1] + 4);

@@ -1,22 +1,22 @@
-// Builds the octree of a quantity (Pfeuti 2009, listings 3.2 and 3.3): the least and largest value of each node, from
-// the voxels up, and the levels, from the top down. One work-item per node.
+// Kernels that build the octree of a quantity (Pfeuti 2009, listings 3.2 and 3.3): the least and largest value in
+// each node, from the voxels up, and the levels, from the top down. One work-item per node.
 
 inline size_t index_of(int4 node, int4 size)
 {
   return ((size_t)node.z * size.y + node.y) * size.x + node.x;
 }
 
-// Ranges. A child beyond the grid's end is replaced by its neighbour inside.
+// Ranges (least and largest value) of nodes. Children beyond the grid's end are replaced by the last ones inside.
 //
-//   children_size  children per axis
-//   nodes          levels from 1 up, (min, max) of each node
-//   first          index of the first node of the level that is written
-//   size           nodes of that level per axis
+//   children_size  number of children along each axis
+//   nodes          (min, max) of each node, in levels from 1 up
+//   first          index of the first node of the level that is computed
+//   size           number of nodes of that level along each axis
 
 typedef struct
 {
-  size_t at[4];  // children at (0, 0), (1, 0), (0, 1), (1, 1) along y and z
-  size_t across; // offset to the second child along x
+  size_t at[4];  // indices of the first children at (0, 0), (1, 0), (0, 1), (1, 1) along y and z
+  size_t across; // offset from the first to the second child along x
 } children;
 
 inline children children_of(int4 node, int4 children_size)
@@ -35,7 +35,7 @@ inline children children_of(int4 node, int4 children_size)
   return c;
 }
 
-// Instead of fmin and fmax, which check for NaN.
+// Minimum and maximum without the checks for NaN of fmin and fmax.
 inline float smaller(float a, float b)
 {
   return a < b ? a : b;
@@ -69,6 +69,7 @@ __kernel void min_max_of_voxels(
   nodes[first + index_of(node, size)] = range;
 }
 
+// Computes the ranges of one level's nodes from the level below.
 //   below  index of the first node of the level below
 __kernel void min_max_of_nodes(__global float2* nodes, ulong below, int4 children_size, ulong first, int4 size)
 {
@@ -86,13 +87,14 @@ __kernel void min_max_of_nodes(__global float2* nodes, ulong below, int4 childre
   nodes[first + index_of(node, size)] = range;
 }
 
-// Levels. A node's level is that of the largest undivided node that contains it, itself included; 0 if there is none.
+// Computes the levels of nodes: the level of the largest undivided node that contains the node or is the node; 0 if
+// there is none.
 //
 //   ranges        (min, max) of the nodes of all levels
-//   first, size   this level's first node, and its nodes per axis
-//   above, above_size  the same for the level that nodes inherit from; unused at the top
+//   first, size   index of the first node of the level that is computed, and number of its nodes along each axis
+//   above, above_size  the same for the level from which nodes inherit; not used at the top
 //   from, shift   node (i, j, k) inherits from node (from + (i, j, k)) >> shift
-//   tolerance     a node stays undivided if max - min is at most this
+//   tolerance     a node stays undivided if max - min is at most this value
 __kernel void levels_of_nodes(const __global float2* ranges, __global uchar* levels, ulong first, int4 size,
   ulong above, int4 above_size, int4 from, int shift, int level, int top, float tolerance)
 {
@@ -112,9 +114,9 @@ inline void give(__global uchar* levels, size_t voxel, uchar level, int restrict
   levels[voxel] = restrict_it ? min(level, levels[voxel]) : level;
 }
 
-// One work-item per node of level 1.
-//   nodes    levels of the pyramid's nodes, from level 1 up
-//   levels   levels of the voxels: overwritten, or with `restrict_them` reduced
+// Copies the levels of the nodes of level 1 to their voxels, one work-item per node.
+//   nodes    levels of the nodes of level 1, the first ones of the pyramid
+//   levels   levels of the voxels: overwritten, or with `restrict_them` reduced to the nodes' levels
 __kernel void levels_of_voxels(
   const __global uchar* nodes, int4 nodes_size, __global uchar* levels, int4 size, int restrict_them)
 {
@@ -125,7 +127,7 @@ __kernel void levels_of_voxels(
   }
   const uchar level = nodes[index_of(node, nodes_size)];
   const int4 voxel = 2 * node;
-  // Beyond the grid's end, the neighbour inside is used.
+  // Voxels beyond the grid's end are replaced by the last ones inside.
   const size_t x = voxel.x + 1 < size.x ? 1 : 0;
   const size_t y = voxel.y + 1 < size.y ? size.x : 0;
   const size_t z = voxel.z + 1 < size.z ? (size_t)size.x * size.y : 0;

@@ -24,7 +24,8 @@ namespace tyndall
 {
 namespace
 {
-/// Number of levels that a rank builds in its own block, widened to whole nodes of the last of them, 8 voxels per edge.
+/// Number of levels that a rank builds in its block, which is extended to entire nodes of the last of these levels, 8
+/// voxels per edge.
 constexpr int LevelsOfBlock = 3;
 
 std::array<int, 3> Plus(const std::array<int, 3>& a, const std::array<int, 3>& b)
@@ -32,7 +33,7 @@ std::array<int, 3> Plus(const std::array<int, 3>& a, const std::array<int, 3>& b
   return { a[0] + b[0], a[1] + b[1], a[2] + b[2] };
 }
 
-/// The float for which float <= AsBound(bound) is equivalent to float <= bound.
+/// Largest float that is at most the bound: for any float x, x <= AsBound(bound) is equivalent to x <= bound.
 float AsBound(double bound)
 {
   const float nearest = static_cast<float>(bound);
@@ -48,7 +49,8 @@ void Check(const OctreeSettings& settings)
     "ExtinctionTolerance is " + Text("%g", settings.extinctionTolerance) + "; it must be finite and not negative.");
 }
 
-/// @throws InvalidInput if the index is missing, or not finite and above 0 in a voxel; names the first
+/// Checks the refractive index.
+/// @throws InvalidInput if the index is missing, or not finite and above 0 in a voxel; names the first such voxel
 void CheckIndex(const Field& index, const Domain& domain)
 {
   Require(index.values && index.components == 1, "The refractive index must be given, with one component a voxel.");
@@ -79,7 +81,7 @@ void CheckIndex(const Field& index, const Domain& domain)
   }
 }
 
-/// Largest differences of the index, and of sigma_t, in the nodes of each level, as floats by AsBound.
+/// Maximum differences of the index in the nodes of each level, as floats by AsBound.
 std::vector<float> IndexTolerances(int levels, double tolerance)
 {
   return std::vector<float>(static_cast<std::size_t>(levels), AsBound(tolerance));
@@ -96,14 +98,14 @@ std::vector<float> ExtinctionTolerances(const Grid& grid, int levels, double tol
   return tolerances;
 }
 
-/// Number of channels of extinction that restrict nodes: 0 if extinction is not included.
+/// Number of channels of extinction that restrict the octree's nodes: 0 if extinction is not included.
 int ExtinctionChannels(const Medium& medium, const OctreeSettings& settings)
 {
   const bool coloured = medium.sigma_a.components == 3 || medium.sigma_s.components == 3;
   return !settings.includeExtinction ? 0 : coloured ? 3 : 1;
 }
 
-/// sigma_t = sigma_a + sigma_s in one channel.
+/// Extinction, sigma_t = sigma_a + sigma_s, 1/length, of each voxel in one channel.
 std::vector<float> Extinction(const Medium& medium, int channel, std::size_t voxels)
 {
   std::vector<float> extinction(voxels);
@@ -114,7 +116,7 @@ std::vector<float> Extinction(const Medium& medium, int channel, std::size_t vox
   return extinction;
 }
 
-/// Whether a quantity is the same in all voxels of the domain. Collective.
+/// Whether a quantity has the same value in all voxels of the domain. Collective.
 bool IsConstant(const Domain& domain, const float* values)
 {
   const std::size_t count = domain.Own().VoxelCount();
@@ -125,15 +127,17 @@ bool IsConstant(const Domain& domain, const float* values)
   return domain.Max(largest) == -domain.Max(-least);
 }
 
-/// Min-max pyramids over a domain, and the levels computed from their top down (Pfeuti 2009, section 3.1.3).
+/// Pyramids of minima and maxima over a domain, and the octree levels computed from their top down (Pfeuti 2009,
+/// section 3.1.3).
 ///
 /// A voxel's level is the largest k for which its node, the cube of 2^k voxels per edge that begins at multiples of
-/// 2^k, has max - min <= tolerance in every pyramid; 0, a single voxel, if there is none. A grid whose size is not a
-/// power of two is treated as if its last voxel were repeated, so that a node's range is that of its voxels.
+/// 2^k, has max - min <= tolerance for every quantity; 0, a single voxel, if there is none. A grid whose size is not
+/// a power of two is treated as if its last voxel were repeated, so that the range of a node is that of its voxels
+/// inside the grid.
 class OctreePyramid
 {
 public:
-  /// @param domain  must have more than one voxel
+  /// @param domain  domain of more than one voxel
   OctreePyramid(Device& device, const Domain& domain)
     : TheDevice(device)
     , TheDomain(domain)
@@ -158,8 +162,8 @@ public:
   }
 
   /// Divides nodes in which one more quantity varies by more than its tolerance. Collective.
-  /// @param values      one per voxel of the block
-  /// @param tolerances  tolerance for each level; must not grow with the level. [0] is not used
+  /// @param values      the quantity, one value per voxel of the block
+  /// @param tolerances  tolerance for each level, which must not increase with the level; [0] is not used
   void Restrict(const float* values, const char* what, const std::vector<float>& tolerances)
   {
     std::vector<float> storage, cells;
@@ -177,7 +181,7 @@ public:
     this->Restricted = true;
   }
 
-  /// Levels of the block's voxels; call after Restrict. Collective.
+  /// Levels of the block's voxels, after all calls of Restrict. Collective.
   std::vector<std::uint8_t> Result() const
   {
     std::vector<std::uint8_t> levels;
@@ -187,13 +191,13 @@ public:
   }
 
 private:
-  /// The nodes of one level: up to the shared level those of this rank's box, then, from the shared level on, of the
-  /// whole grid.
+  /// The nodes of one level of the pyramid. Up to the shared level they are those of this rank's box; then follow,
+  /// from the shared level on, those of the domain.
   struct NodesOfLevel
   {
-    int level;
-    std::array<int, 3> size;
-    std::size_t first; ///< index of the first node in the buffers, which do not hold the voxels of level 0
+    int level;               ///< number of the level, 0 for voxels
+    std::array<int, 3> size; ///< number of nodes along each axis
+    std::size_t first; ///< index of the first node in Ranges and Nodes, which do not contain the voxels of level 0
   };
 
   void Add(int level, const std::array<int, 3>& size)
@@ -201,9 +205,9 @@ private:
     this->Pyramid.push_back({ level, size, this->NodeCount });
     this->NodeCount += level > 0 ? Count(size[0]) * Count(size[1]) * Count(size[2]) : 0;
   }
-  /// The shared level: in this rank's box, and in the whole grid.
+  /// Nodes of the shared level in this rank's box.
   const NodesOfLevel& OwnShared() const { return this->Pyramid[static_cast<std::size_t>(this->Blocks.Shared())]; }
-  const NodesOfLevel& AllShared() const { return (&this->OwnShared())[1]; }
+  const NodesOfLevel& AllShared() const { return (&this->OwnShared())[1]; } ///< nodes of the shared level in the domain
 
   template <class Step>
   void OnVoxels(const Step& step) const
@@ -281,13 +285,13 @@ private:
 
   Device& TheDevice;
   const Domain& TheDomain;
-  PyramidLayout Layout; ///< of the whole grid
-  PyramidBlocks Blocks;
-  std::vector<NodesOfLevel> Pyramid; ///< from the voxels up
-  std::size_t NodeCount = 0;
-  Buffer<cl_float2> Ranges;
+  PyramidLayout Layout;              ///< levels of the domain
+  PyramidBlocks Blocks;              ///< decomposition of the pyramid among ranks
+  std::vector<NodesOfLevel> Pyramid; ///< levels of the pyramid, from the voxels up
+  std::size_t NodeCount = 0;         ///< number of nodes of all levels above 0
+  Buffer<cl_float2> Ranges;          ///< (min, max) of each node for the quantity that is processed
   Buffer<cl_uchar> Nodes, Levels;
-  bool Restricted = false;
+  bool Restricted = false; ///< whether `Levels` are set by an earlier quantity
 };
 }
 
@@ -313,9 +317,10 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
   const int levels = PyramidLayout(domain.Whole().size).LevelCount();
   Octree octree;
   octree.topLevel = levels - 1;
-  std::shared_ptr<Device> found; // opened for the first quantity that is not constant
+  std::shared_ptr<Device> found; // device, opened for the first quantity that is not constant
   std::optional<OctreePyramid> pyramid;
-  /// @return whether the quantity restricts nodes; false if it is constant, or the grid is one voxel
+  /// Restricts the octree by one quantity.
+  /// @return whether the quantity restricts nodes; false if it is constant, or the domain is one voxel
   const auto restrict = [&](const float* values, const char* what, const std::vector<float>& tolerances) {
     if (IsConstant(domain, values))
     {

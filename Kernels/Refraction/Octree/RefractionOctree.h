@@ -10,48 +10,50 @@
 
 namespace tyndall
 {
-/// Criteria by which a node of the octree is kept undivided.
+/// Conditions under which a node of the octree stays undivided.
 struct OctreeSettings
 {
-  double tolerance = 0.01;          ///< Pfeuti's epsilon: largest difference of the refractive index, in [0, 1]
-  bool includeExtinction = false;   ///< whether extinction has to be nearly constant in a node, too
-  double extinctionTolerance = 0.1; ///< largest difference of optical thickness, >= 0; see Octree
+  double tolerance = 0.01; ///< maximum difference of the refractive index in a node (Pfeuti's epsilon), in [0, 1]
+  bool includeExtinction = false;   ///< whether the extinction must be nearly constant in a node as well
+  double extinctionTolerance = 0.1; ///< maximum difference of optical thickness across a node, >= 0; see Octree
 };
 
-/// Groups of voxels with nearly equal refractive index (Pfeuti 2009, section 3.1.3).
+/// Octree of voxels with nearly equal refractive index (Pfeuti 2009, section 3.1.3).
 ///
-/// Level k of a voxel means: the voxel lies in a node, the cube of 2^k voxels per edge whose lowest voxel has indices
-/// that are multiples of 2^k; all voxels of that node have level k; and
-///  - max(n) - min(n) <= tolerance over the node's voxels, if k > 0;
-///  - with includeExtinction, for every channel of sigma_t = sigma_a + sigma_s, (max(sigma_t) - min(sigma_t)) times the
-///    node's diagonal <= extinctionTolerance, if k > 0: any sigma_t of the node, taken for a straight path through it,
-///    gives the path's optical thickness with at most that error.
-/// No larger node would satisfy these conditions (numerics.md, Eq. (93); the paper's listing has < for <=).
+/// A voxel has level k if it lies in a node of level k, the cube of 2^k voxels per edge whose lowest voxel has
+/// indices that are multiples of 2^k, and all voxels of that node have level k. The conditions on a node of level k >
+/// 0 are
+///  - max(n) - min(n) <= tolerance over the node's voxels;
+///  - with includeExtinction, for every channel of sigma_t = sigma_a + sigma_s, (max(sigma_t) - min(sigma_t)) times
+///    the node's diagonal <= extinctionTolerance: any sigma_t of the node, used for a straight path through it, gives
+///    the path's optical thickness with at most that error.
+/// No larger node would satisfy these conditions (numerics.md, Eq. (93); Pfeuti's listing has < for <=).
 ///
-/// A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may
-/// extend beyond it, up to the top level, the smallest k whose node holds the whole grid. Ranges are compared in float.
+/// A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces
+/// may extend beyond it, up to the top level, the smallest k for which a node holds the entire grid. Ranges are
+/// compared in float.
 struct Octree
 {
   std::vector<std::uint8_t>
-    levels;             ///< one per voxel of the block, x fastest; 0: a single voxel, k: a node of 2^k voxels per edge
-  int topLevel = 0;     ///< ceil(log2(longest edge in voxels))
-  double seconds = 0.0; ///< duration of BuildOctree
-  std::string device;   ///< name of the device used; empty if none was needed
+    levels; ///< level of each voxel of the block, x fastest; 0: a single voxel, k: a node of 2^k voxels per edge
+  int topLevel = 0;                 ///< highest possible level, ceil(log2(longest edge in voxels))
+  double seconds = 0.0;             ///< duration of BuildOctree, s
+  std::string device;               ///< name of the device used; empty if none was needed
   std::vector<std::string> leftOut; ///< steps skipped because the scene did not need them
 };
 
-/// Builds the octree. Collective. Each rank builds three levels in its own block; the higher levels, which have a 512th
-/// of the grid's voxels, are built on every rank from the ranges of all (numerics.md, section 11.4). The levels do not
-/// depend on the blocks.
-/// @param domain  the grid; `Domain(grid)` for a serial build
-/// @param medium  medium in the rank's block, on the grid domain.OwnGrid(); its coefficients are used if extinction is
-///   included
-/// @param index   refractive index n in the rank's block, one component; finite and above 0
-/// @param device  part of the device's name, as for Device::Find; no device is opened if everything is constant, as the
-///   octree is then a single node
+/// Builds the octree. Collective. Each rank builds three levels in its block; the higher levels, which have a 512th
+/// of the grid's voxels, are built on every rank from the ranges of all blocks (numerics.md, section 11.5). The
+/// levels do not depend on the partition.
+/// @param domain  the grid and its partition; `Domain(grid)` for a serial build
+/// @param medium  medium in this rank's block, on the grid domain.OwnGrid(); its coefficients are used if extinction
+///   is included
+/// @param index   refractive index n in this rank's block, one component; finite and above 0
+/// @param device  part of the device's name, as for Device::Find; no device is opened if n and extinction are
+///   constant, as the octree is then a single node
 /// @throws InvalidInput if a setting, the grid, n (names the first such voxel) or a coefficient is invalid
-/// @throws DeviceError if there is no such device, or its memory does not suffice: about 7 bytes per voxel of a large
-///   cube
+/// @throws DeviceError if there is no such device, or its memory is not sufficient: about 7 bytes per voxel of a
+///   large cube
 Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& index, const OctreeSettings& settings,
   const std::string& device = {}, const Monitor& monitor = {});
 }

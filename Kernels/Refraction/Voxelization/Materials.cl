@@ -1,13 +1,14 @@
-// From counts of samples to the properties of a medium: each voxel gets the mean of the materials in it.
+// Kernels that compute the properties of a medium from counts of samples: each voxel gets the mean of the materials
+// in it.
 //
 // The host defines
-//   CHANNELS  1 or 3, components of sigma_a and sigma_s
+//   CHANNELS  number of components of sigma_a and sigma_s, 1 or 3
 //   NOISE     1 if materials are perturbed
 //   VARIED_G  1 if scattering materials differ in their mean cosines
 
 #include "Refraction/Voxelization/VoxelizationShared.h"
 
-// Gradient noise of Perlin (Improving noise, SIGGRAPH 2002) with a hash in place of his table, so that a seed chooses
+// Gradient noise of Perlin (Improving noise, SIGGRAPH 2002) with a hash instead of his table, so that a seed selects
 // one of 2^32 patterns.
 
 inline uint scrambled(uint bits)
@@ -20,7 +21,8 @@ inline uint scrambled(uint bits)
   return bits;
 }
 
-// Dot product of `away` with one of the twelve directions to the midpoints of a cube's edges, chosen by a hash.
+// Dot product of `away` with one of the twelve directions to the midpoints of a cube's edges; a hash of corner and
+// seed selects the direction.
 inline float gradient_at(int3 corner, uint seed, float3 away)
 {
   const uint hash = scrambled((uint)corner.x + scrambled((uint)corner.y + scrambled((uint)corner.z + seed)));
@@ -30,8 +32,8 @@ inline float gradient_at(int3 corner, uint seed, float3 away)
   return ((kind & 1) ? -first : first) + ((kind & 2) ? -second : second);
 }
 
-// Gradient noise in [-1, 1], twice continuously differentiable, 0 at integer coordinates; features have a size of about
-// 1.
+// Gradient noise in [-1, 1], twice continuously differentiable, 0 at integer coordinates, with features of a size of
+// about 1.
 inline float gradient_noise(float3 position, uint seed)
 {
   const float3 low = floor(position);
@@ -53,10 +55,10 @@ inline float gradient_noise(float3 position, uint seed)
   return clamp(mix(value[0], value[1], fade.z), -1.0f, 1.0f);
 }
 
-// One work-item per voxel (index i in the slab), one row of work-items per run of the slab.
+// The kernels have one work-item per voxel (index i in the slab), and one row of work-items per run of the slab.
 
-// Adds a material with a given volume fraction to a voxel. The mean cosine is weighted by sigma_s (numerics.md, Eq.
-// (3e)) and updated with every material, so that a voxel of a single material gets exactly its g.
+// Adds a material to a voxel by its volume fraction `part`. The mean cosine is weighted by sigma_s (numerics.md, Eq.
+// (3e)) and updated with every material, so that a voxel of a single material gets exactly the material's g.
 inline void add_material(float part, const MaterialInfo* material, ulong i, ulong voxel, __global float* ior,
   __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
@@ -75,10 +77,10 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
   }
 }
 
-// Adds one material to a slab's voxels. A voxel of a single material gets exactly its values.
-//   inside    samples of each voxel inside the material, including fractions: 0 to `samples`
-//   covered   samples inside any material so far
-//   ior       n in the whole box; the other arrays cover the slab
+// Adds one material to the voxels of a slab. A voxel of a single material gets exactly the material's values.
+//   inside    count of each voxel inside the material in units, including fractions of samples: 0 to slab.samples
+//   covered   sum of the counts of all materials added so far
+//   ior       n in the entire box; the other arrays cover the slab
 __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const ushort* inside, __global float* covered,
   __global float* ior, __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
@@ -104,7 +106,8 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const u
   add_material(number / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s, g);
 }
 
-// Adds the outside material to what no mesh covers; `covered` becomes the covered fraction of the voxel.
+// Adds the outside material to the fraction of each voxel that no mesh covers; `covered` becomes the covered fraction
+// of the voxel.
 __kernel void add_outside(MaterialSlab slab, MaterialInfo material, __global float* covered, __global float* ior,
   __global float* sigma_a, __global float* sigma_s, __global float* g)
 {

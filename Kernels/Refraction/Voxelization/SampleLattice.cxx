@@ -11,11 +11,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Longest = 1 << 20; ///< units: a sum of three products of three coordinates then fits 63 bits
+/// Maximum length in units: a sum of three products of three coordinates then fits 63 bits.
+constexpr double Longest = 1 << 20;
 constexpr int TileColumns = 64;
 constexpr int TileRows = 16;
 
-/// Index of the first sample at or above a coordinate, whatever its sign; samples are at (index + 1/2) pitch.
+/// Index of the first sample at or above a coordinate, which may be negative; samples are at (index + 1/2) pitch.
 int FirstSampleFrom(int coordinate, int pitch)
 {
   const int above = coordinate - pitch / 2 + pitch - 1;
@@ -27,7 +28,8 @@ struct Interval
   double low, high;
 };
 
-/// The interval of `across` that a triangle covers between two values of `up`, slightly widened for rounding.
+/// Interval of the coordinate `across` that a triangle covers between two values of `up`, slightly widened for
+/// rounding.
 Interval AcrossBetween(
   const std::array<const SampleLattice::Point*, 3>& corners, const SampleColumns& columns, double low, double high)
 {
@@ -150,7 +152,7 @@ LatticeMesh::LatticeMesh(Device& device, const SampleLattice& lattice, const Tri
 std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int firstRow, int endRow) const
 {
   SampleBox rows;
-  rows.first[columns.axis] = 0; // crossings beyond the columns' ends count as at the ends
+  rows.first[columns.axis] = 0; // crossings beyond the ends of columns count as at the ends
   rows.end[columns.axis] = 0;
   rows.first[columns.across] = 0;
   rows.end[columns.across] = columns.count[0];
@@ -175,7 +177,7 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, const Sam
     {
       continue;
     }
-    // A sample at the upper end is decided as if it were slightly further up: outside.
+    // A sample at the upper end is treated as if it were moved slightly further up, outside the triangle.
     const auto range = [&](int axis, int limitLow, int limitHigh) {
       const auto [low, high] = std::minmax({ (*corners[0])[axis], (*corners[1])[axis], (*corners[2])[axis] });
       return std::array<int, 2>{ std::max(FirstSampleFrom(low, pitch), limitLow),
@@ -190,7 +192,7 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, const Sam
     };
     if (row[0] >= row[1] || column[0] >= column[1])
     {
-      continue; // lies between columns, or outside
+      continue; // the triangle lies between columns, or outside the box
     }
     if (small)
     {

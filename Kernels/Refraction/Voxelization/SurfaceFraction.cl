@@ -1,23 +1,25 @@
-// Position of the surface between two samples: a voxel's occupancy to a fraction of a sample.
+// Kernels that compute the occupancy of voxels to a fraction of a sample, from the position of the surface between
+// samples (numerics.md, section 11.1).
 //
-// Along columns of samples, the crossing of a surface is known exactly; the samples show which of them is the last one
-// before it. The interval between the crossing and the border of that sample's fine voxel is added to the voxel that
-// contains it, or subtracted. This removes the terraces of a plane across the columns, but not of one along them. So it
-// is done for columns along x, y and z, with each crossing weighted by how much the surface faces the columns; the
-// three weights of a surface add up to 1.
+// Along columns of samples, the crossing of a surface is known exactly, and the samples show which of them is the
+// last one before it. The interval between the crossing and the border of that sample's fine voxel is added to the
+// voxel that contains the interval, or subtracted. This removes the terraces of a plane across the columns, but not
+// of a plane along them. Therefore it is done for columns along x, y and z, with each crossing weighted by how much
+// the surface faces the columns, Eq. (87); the three weights of a surface add up to 1.
 //
 // Sums are in integers, and each term changes its sign if the mesh is mirrored: a rotated or mirrored mesh gives
 // exactly the rotated or mirrored voxels.
 //
-// The host defines, besides the macros of Voxelization.cl, AXIS, along which columns run, and BIT_AXIS, along which
-// those of `bits` run. As arguments these would cost 15% more time.
+// In addition to the macros of Voxelization.cl, the host defines AXIS, the axis of the columns in which crossings are
+// measured, and BIT_AXIS, the axis of the columns of `bits`. As arguments they would cost 15% more time.
 
 #include "Refraction/Voxelization/Voxelization.cl"
 
 #define SAMPLES_OF_VOXEL (SAMPLES * SAMPLES * SAMPLES)
-// Units of corrections in a sample; 80 surfaces through a voxel fit an int at 16 samples per edge, more at fewer.
+// Units of corrections per sample; corrections of 80 surfaces through a voxel fit an int at 16 samples per edge, of
+// more surfaces at fewer samples.
 #define UNITS 65536
-// Units of the output counts in a sample: see UnitsOfSample.
+// Units of the output counts per sample, equal to UnitsOfSample in C++.
 #define UNITS_OF_COUNT (65535 / SAMPLES_OF_VOXEL)
 #define LEAST_WEIGHT (1.0f / 1024.0f)
 
@@ -34,9 +36,9 @@ inline int3 place(int along, int across, int up, int axis)
   return FROM_COLUMNS(by_columns, axis);
 }
 
-// Weight of a surface for columns along `along`: the fourth power of its normal's component, relative to the sum of all
-// three fourth powers (numerics.md, Eq. (87)). Terms are summed in the order of their size, so that rotating the
-// surface does not change a bit.
+// Weight of a surface for columns along `along`: the fourth power of its normal's component, relative to the sum of
+// the fourth powers of all components (numerics.md, Eq. (87)). Terms are summed in the order of their size, so that
+// rotating the surface does not change a bit.
 inline float weight_along(long3 normal)
 {
   float3 n = fabs(convert_float3(normal));
@@ -48,17 +50,18 @@ inline float weight_along(long3 normal)
   return ALONG(n) / ((least + middle) + 1.0f);
 }
 
-// Whether a crossing is hidden: an adjacent sample belongs to a later mesh.
+// Whether a crossing is hidden: the sample before or after it belongs to a later mesh.
 inline int is_hidden(__global const uint* claimed, const SampleRows* rows, int3 before, int3 after, int first, int last)
 {
   return (!first && is_set(claimed, rows, before)) || (!last && is_set(claimed, rows, after));
 }
 
-// Returns 1 if a line along the column leaves the mesh at a crossing, -1 if it enters. The parity of samples decides if
-// the samples before and after differ. If they are equal, two or more crossings lie between them, a sliver too thin for
-// samples, and the orientation of the triangle decides.
-//   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation; 0 if that is unknown
-//   first, last  whether the column begins after the crossing, or ends before it
+// Returns 1 if a line along the column leaves the mesh at a crossing, -1 if it enters. If exactly one of the samples
+// before and after the crossing is inside the mesh, this decides. Otherwise two or more crossings lie between the
+// samples, a sliver too thin for them, and the orientation of the triangle decides.
+//   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation; 0 if the orientation is unknown
+//   first, last  whether the column begins after the crossing, so that there is no sample before it, or ends before
+//                it
 inline int side_of(
   __global const uint* bits, const SampleRows* rows, int3 before, int3 after, int first, int last, int turned)
 {
@@ -67,25 +70,27 @@ inline int side_of(
   return inBefore == inAfter ? turned : inBefore ? 1 : -1;
 }
 
-// A mesh's samples in a slab: `bits` of this mesh, and `claimed` by later ones; `taken`, see refine_counts. claimed and
-// taken are only read with several meshes.
+// Samples of a mesh in a slab: `bits` inside this mesh, `claimed` inside later meshes; `taken` as in refine_counts.
+// claimed and taken are read only if there are several meshes.
 typedef struct
 {
   const SampleRows* rows;
   __global const uint* bits;
   __global const uint* claimed;
   __global const ushort2* taken;
-  int samples; // samples in a column
+  int samples; // number of samples in a column
 } mesh_samples;
 
-// The correction, in UNITS per sample, of the voxel (x, index in the slab; -1: none) that a crossing lies in: (x, y).
-//   excess      of the sheet in this column, as in sheet
-//   scale       UNITS of correction per distance; turned: 1, -1 or 0, side of the sheet on which the mesh is
+// Correction of a voxel by one crossing: (index of the voxel in the slab, or -1 if it is outside; correction in UNITS
+// per sample).
+//   excess      `excess` of the sheet in this column, see sheet
+//   scale       UNITS of correction per distance
+//   turned      as in side_of
 inline int2 correction_at(
   const mesh_samples* mesh, const sheet* s, long excess, int across, int up, float scale, int turned)
 {
   const int number = samples_before(excess, s->step, mesh->samples);
-  // From the sample after the crossing back to the crossing.
+  // Distance from the sample after the crossing back to the crossing, <= 0.
   const long rest = excess - s->tie - number * s->step;
   const long twice = 2 * rest + s->step; // twice the distance from the border between both samples
   const int cell = number - (twice < 0 ? 1 : 0);
@@ -103,18 +108,18 @@ inline int2 correction_at(
   const int index = (voxel.z * voxels.y + voxel.y) * voxels.x + voxel.x;
   const int3 before = place(number - 1, across, up, AXIS), after = place(number, across, up, AXIS);
   const int first = number == 0, last = number == mesh->samples;
-  // Hidden crossings still count in voxels that later meshes fill completely.
+  // Hidden crossings still count in voxels all of whose samples belong to later meshes.
   const int counts = !mesh->rows->several || mesh->taken[index].x == SAMPLES_OF_VOXEL ||
     !is_hidden(mesh->claimed, mesh->rows, before, after, first, last);
   const int side = counts ? side_of(mesh->bits, mesh->rows, before, after, first, last, turned) : 0;
   return (int2)(index, side * convert_int_rte(scale * (float)twice));
 }
 
-// Sums the corrections of a slab's voxels.
+// Sums the corrections of a slab's voxels by the crossings of one mesh.
 //   tiles          as in mark_crossings
 //   samples, bits, claimed, taken  as in mesh_samples
-//   orientation    1, -1 or 0, see OrientedMesh
-//   corrections    output, one per voxel of the slab, x fastest, in UNITS per sample
+//   orientation    1, -1 or 0, OrientedMesh::orientation
+//   corrections    output, one value per voxel of the slab, x fastest, in UNITS per sample
 __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
   __global const int* triangles, int pitch, int samples, SampleRows rows, __global const uint* bits,
   __global const uint* claimed, __global const ushort2* taken, int orientation, __global int* corrections)
@@ -135,7 +140,7 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
   const mesh_samples mesh = { &rows, bits, claimed, taken, samples };
   const float scale = weight * (0.5f * UNITS) / (float)s.step;
   const int tileColumns = tile.w >> 16, tileRows = tile.w & 0xffff;
-  int2 sum = (int2)(-1, 0); // voxel of the last crossing, and its pending correction
+  int2 sum = (int2)(-1, 0); // voxel of the last crossings, and its pending correction
   for (int j = 0; j < tileRows; ++j)
   {
     long v0 = s.e0.value, v1 = s.e1.value, v2 = s.e2.value, excess = s.excess;
@@ -167,7 +172,7 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
   }
 }
 
-// Number of a voxel's samples inside the mesh, including those claimed by later meshes.
+// Number of a voxel's samples inside the mesh, including those that belong to later meshes.
 inline int samples_in_voxel(__global const uint* bits, const SampleRows* rows, int3 voxel)
 {
   int number = 0;
@@ -179,20 +184,20 @@ inline int samples_in_voxel(__global const uint* bits, const SampleRows* rows, i
   return number;
 }
 
-// Quotient rounded to the nearest integer, halves away from 0.
+// Quotient rounded to the nearest integer, with halves rounded away from 0.
 inline long divided(long number, long by)
 {
   return (number + (number < 0 ? -by : by) / 2) / by;
 }
 
-// Converts counts of samples to units of 1 / UNITS_OF_COUNT, including the corrections.
+// Converts counts of samples to units of 1 / UNITS_OF_COUNT of a sample, including the corrections.
 //
-// With several meshes, fractions that the borders of later meshes take from the rest of the voxel, or leave to it, are
-// distributed: a mesh gets a share in proportion to its part of the samples that are left. If none are left, the space
-// of later meshes is taken from this mesh as far as their samples are its own: a mesh that contains them gets the rest,
-// and so does one that touches them.
-//   taken    samples and units of later meshes; read only if there are several meshes
-//   counts   counts of the slab's voxels, updated
+// With several meshes, the fractions of a sample by which the borders of later meshes reduce or enlarge the rest of
+// the voxel are distributed: a mesh gets a share in proportion to its fraction of the samples that are left. If no
+// samples are left, the mesh gets the units of its samples in the voxel, claimed ones included, less the fraction of
+// the later meshes' units that these samples are of all samples of the voxel.
+//   taken    samples and units of later meshes in each voxel; read only if there are several meshes
+//   counts   counts of the slab's voxels: samples on input, units on output
 __kernel void refine_counts(SampleRows rows, __global const int* corrections, __global ushort2* taken,
   __global const uint* bits, __global ushort* counts)
 {
@@ -227,7 +232,7 @@ __kernel void refine_counts(SampleRows rows, __global const int* corrections, __
   counts[id] = (ushort)clamp(units, 0L, room);
 }
 
-// Adds samples to the claimed ones.
+// Adds the samples inside a mesh to the samples claimed by later meshes.
 __kernel void claim_samples(ulong first, int words, __global const uint* bits, __global uint* claimed)
 {
   const int id = get_global_id(0);

@@ -51,7 +51,7 @@ std::uint64_t Hash(const Point& point)
   std::uint64_t hash = 0;
   for (double coordinate : point)
   {
-    const double positiveZero = coordinate + 0.0; // -0.0 and 0.0 are the same place
+    const double positiveZero = coordinate + 0.0; // -0.0 and 0.0 are the same coordinate
     std::uint64_t bits;
     std::memcpy(&bits, &positiveZero, sizeof(bits));
     hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
@@ -60,7 +60,7 @@ std::uint64_t Hash(const Point& point)
   return hash;
 }
 
-/// For each point, the lowest index of a coincident point.
+/// For each point, the lowest index of a point that coincides with it.
 std::vector<int> MergedPoints(const std::vector<Point>& points)
 {
   std::size_t slots = 16;
@@ -86,17 +86,17 @@ std::vector<int> MergedPoints(const std::vector<Point>& points)
   return merged;
 }
 
-/// One use of an edge by a triangle.
+/// Use of an edge by one triangle; EdgeUses lists it with the end of the lower index.
 struct EdgeUse
 {
-  int higher;   ///< index of the edge's other end
-  bool upwards; ///< whether the triangle runs from the end with the lower index to the other
+  int higher;   ///< index of the edge's end with the higher index
+  bool upwards; ///< whether the triangle runs from the lower to the higher index
 };
 
-/// The uses of edges, sorted by the lower index of their ends.
+/// Uses of all edges, sorted by the lower index of their ends.
 struct EdgeUses
 {
-  std::vector<std::size_t> begin; ///< start of each point's uses, and the end of the last
+  std::vector<std::size_t> begin; ///< index of each point's first use, and one past the last use
   std::vector<EdgeUse> uses;
 };
 
@@ -168,8 +168,8 @@ void CountEdges(const TriangleMesh& mesh, EdgeUses& edges, MeshTopology& topolog
   }
 }
 
-/// Computes areas and the enclosed volume, relative to one of the mesh's own points, so that a mesh far from the origin
-/// loses no digits.
+/// Computes areas of triangles and the enclosed volume, relative to a point of the mesh, so that a mesh far from the
+/// origin loses no digits.
 void MeasureTriangles(const TriangleMesh& mesh, MeshTopology& topology)
 {
   const Point centre = mesh.points[static_cast<std::size_t>(mesh.triangles[0][0])];
@@ -225,7 +225,7 @@ std::string Counted(std::size_t count, const char* thing)
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// The warning for a mesh that intersects itself.
+/// Text of the warning for a mesh that intersects itself.
 std::string OfWindings(const WindingNumbers& windings, const Grid& grid, int samples)
 {
   const int ofVoxel = samples * samples * samples;

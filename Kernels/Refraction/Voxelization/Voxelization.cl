@@ -1,6 +1,6 @@
-// Finds the samples of a fine grid that lie inside a closed mesh (Eisemann and Decoret 2008; Pfeuti 2009, section
-// 3.1.2): a column of samples is a row of words, one bit per sample, and every triangle toggles all samples of its
-// columns that lie before it.
+// Kernels that find the samples of a fine grid that lie inside a closed mesh (Eisemann and Decoret 2008; Pfeuti 2009,
+// section 3.1.2): a column of samples is a row of words, one bit per sample, and every triangle toggles all samples
+// of its columns that lie before it.
 //
 // In practice a triangle toggles only the last sample before its crossing; a final scan of each column then toggles all
 // samples before each crossing, for all triangles at once.
@@ -10,12 +10,13 @@
 // column therefore never meets an edge or a corner, and the set of samples inside does not depend on the axis of the
 // columns.
 //
-// The host defines SAMPLES, samples per edge of a voxel; WINDING, 1 to count crossings with their sign instead.
+// The host defines SAMPLES, the number of samples per edge of a voxel, and WINDING, 1 to count crossings with their
+// sign instead.
 
 #pragma once
 #include "Refraction/Voxelization/VoxelizationShared.h"
 
-// Reorder a point to the axes of columns along axis 0 to 2, (along, across, up), and back.
+// Permutations of a point's coordinates to (along, across, up) for columns along axis 0 to 2, and back.
 #define BY_COLUMNS(p, axis) ((axis) == 0 ? (p) : (axis) == 1 ? (p).yxz : (p).zxy)
 #define FROM_COLUMNS(p, axis) ((axis) == 0 ? (p) : (axis) == 1 ? (p).yxz : (p).yzx)
 #define ALONG(p) ((p).x)
@@ -23,22 +24,22 @@
 #define UP(p) ((p).z)
 
 #if WINDING
-// Winding number of the mesh at each sample: a byte sums the crossings between it and the next sample, +1 if a line
-// along the column leaves the mesh there, -1 if it enters.
+// With WINDING, marks are signed bytes per sample: the sum of the crossings between the sample and the next one, +1
+// if a line along the column leaves the mesh there, -1 if it enters.
 #define CELLS 4
 #define BITS 4
 #else
-// Voxels per word, and bits used in it: a voxel's samples are never split between two words.
+// Number of voxels per word, and of bits used in it: the samples of a voxel are never split between two words.
 #define CELLS (32 / SAMPLES)
 #define BITS (CELLS * SAMPLES)
 #endif
 #define ALL_BITS ((uint)((1UL << BITS) - 1UL))
 #define ONE_CELL ((uint)((1UL << SAMPLES) - 1UL))
 
-// An edge of a triangle, projected along the columns: its edge function, >= 0 on the inner side.
+// Edge function of a triangle's edge, projected along the columns: >= 0 on the inner side.
 typedef struct
 {
-  long value, across, up; // edge function, and its increments to the next column and to the next row
+  long value, across, up; // value in a column, and its increments to the next column and to the next row
 } edge;
 
 inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
@@ -47,15 +48,15 @@ inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
   const long above = (long)ACROSS(to) - ACROSS(from);
   edge e;
   e.value = above * (up - UP(from)) + right * (across - ACROSS(from));
-  // A column on the edge: decided by where its sample was moved to.
+  // For a column on the edge, the infinitesimal move of its samples decides.
   e.value -= right > 0 || (right == 0 && above > 0) ? 0 : 1;
   e.across = right * pitch;
   e.up = above * pitch;
   return e;
 }
 
-// Number of samples before a plane, of samples 0, 1, ..., each `step` above the one before: those with number * step <
-// excess. Limited to the column.
+// Number of samples before a plane, among samples 0, 1, ... of a column: those with number * step < excess, at most
+// `samples`.
 inline int samples_before(long excess, long step, int samples)
 {
   if (excess <= 0)
@@ -66,7 +67,7 @@ inline int samples_before(long excess, long step, int samples)
   {
     return samples;
   }
-  // Rounding in float has an error below one, as there are fewer than 2^20 samples.
+  // The quotient in float is off by less than one, as there are fewer than 2^20 samples.
   const long wanted = excess - 1;
   long number = (long)((float)wanted / (float)step);
   const long rest = wanted - number * step;
@@ -75,7 +76,7 @@ inline int samples_before(long excess, long step, int samples)
 }
 
 #if !WINDING
-// A random number per sample, the weight with which its crossing is summed.
+// Pseudo-random number of a sample, the weight with which a crossing at the sample is summed.
 inline uint weight_of(int sample)
 {
   uint h = (uint)sample * 0x9e3779b1u + 0x7f4a7c15u;
@@ -104,20 +105,20 @@ inline void mark_crossing(
 #endif
 }
 
-// A triangle over the columns of a tile: the columns inside its edges, and where its plane crosses them. Coordinates
-// are (along, across, up).
+// A triangle over the columns of a tile: the edges that bound the columns it crosses, and the position of its plane
+// along them. Coordinates are (along, across, up).
 typedef struct
 {
-  edge e0, e1, e2;             // edge functions in the first column of a row
-  long3 normal;                // normal of the plane, made to point along the columns
-  int leaving;                 // 1 if it did originally: a line along a column leaves the mesh; -1 if the line enters
-  long step;                   // increment of `excess` from sample to sample
-  long excess;                 // distance of the column's first sample before the plane, plus `tie`
-  int tie;                     // 1 if a sample on the plane counts as before it
+  edge e0, e1, e2; // edge functions in the first column of a row
+  long3 normal;    // normal of the plane, reversed if necessary to point along the columns
+  int leaving;     // 1: a line along a column leaves the mesh at the triangle; -1: it enters
+  long step;       // increment of `excess` from sample to sample
+  long excess;     // distance, times ALONG(normal), of the column's first sample before the plane, plus `tie`
+  int tie;         // 1 if a sample on the plane counts as before it, else 0
   long excessAcross, excessUp; // decrements of `excess` to the next column and to the next row
 } sheet;
 
-// Prepares a triangle for the columns of a tile. Returns 0 if it crosses none.
+// Prepares a triangle for the columns of a tile. Returns 0 if the triangle crosses no column.
 inline int start_sheet(
   sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int axis, int pitch)
 {
@@ -141,7 +142,7 @@ inline int start_sheet(
   const int towards = facing.x != 0 ? facing.x > 0 : facing.y != 0 ? facing.y > 0 : facing.z > 0;
   s->tie = towards ? 0 : 1;
 
-  // The edges, ordered counterclockwise in (across, up).
+  // Edges are ordered counterclockwise in (across, up).
   if (ACROSS(ab) * UP(ac) - UP(ab) * ACROSS(ac) < 0)
   {
     const int3 other = b;
@@ -170,13 +171,14 @@ inline void next_row(sheet* s)
   s->excess -= s->excessUp;
 }
 
-// Marks the crossings of triangles with the columns of their tiles.
-//   tiles          one per work-item: triangle, first column and row, (columns << 16) | rows
+// Marks the crossings of triangles with the columns of their tiles, one tile per work-item.
+//   tiles          triangle, first column, first row, (number of columns << 16) | number of rows
 //   axis           axis of the columns
-//   from_above     1: samples after a crossing are toggled instead; not used with WINDING
+//   from_above     1: a crossing toggles the samples after it instead of those before it; not used with WINDING
 //   pitch          distance of samples, in units of the lattice
-//   samples        samples per column
-//   sums           signed sum of the weights of each column's crossings, see fill_columns; not used with WINDING
+//   samples        number of samples per column
+//   sums           output: signed sum of the weights of each column's crossings, see fill_columns; not used with
+//                  WINDING
 __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
   __global const int* triangles, int axis, int pitch, int samples, int from_above, SampleRows rows,
   __global uint* marks, __global uint* sums)
@@ -226,8 +228,8 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
 
 #if WINDING
 
-// Winding numbers of one column's samples: output is the smallest, the largest, the number of samples whose winding
-// number times `sign` is neither 0 nor 1, and the first such sample.
+// Summarises the winding numbers, times `sign`, of each column's samples in `found`: the smallest, the largest, the
+// number of samples whose winding number is neither 0 nor 1, and the index of the first such sample.
 __kernel void find_windings(
   int columnCount, int words, int samples, int sign, __global const uint* marks, __global int4* found)
 {
@@ -240,7 +242,7 @@ __kernel void find_windings(
   int4 of_column = (int4)(0, 0, 0, samples);
   for (int w = words - 1; w >= 0; --w)
   {
-    // The bytes were summed as one integer: a negative byte has borrowed from the next one.
+    // The bytes were summed as one integer: a negative byte has borrowed from the next byte.
     int rest = (int)marks[(ulong)id * words + w];
     int counts[4];
     for (int k = 0; k < 4; ++k)
@@ -266,18 +268,18 @@ __kernel void find_windings(
 
 #else
 
-// Converts the marks of each column to bits, 1 inside the mesh, and finds the columns with a sample whose winding
-// number is neither 0 nor 1.
+// Converts the marks of each column to bits, 1 for samples inside the mesh, and finds columns with a sample whose
+// winding number is neither 0 nor 1.
 //
-// If all winding numbers in a column are 0 or 1, lines along the column alternately leave and enter the mesh; the
-// signed weights of the crossings then add up to the weights of the remaining marks with alternating signs. Weights are
-// random: otherwise the sums differ, with an exception of one in 2^32.
-//   columns   columns per row
+// If all winding numbers in a column are 0 or 1, lines along the column alternately leave and enter the mesh; the sum
+// of the signed weights of the crossings then equals the sum of the weights of the remaining marks with alternating
+// signs. Otherwise the two sums differ, except in one case of 2^32, as weights are random.
+//   columns   number of columns per row
 //   from_above  as in mark_crossings
-//   sums      from mark_crossings
-//   sign      1; -1 if the mesh is inside out; 0 to skip the search
-//   odd       from firstOdd on, a flag for each row of voxels of the grid: set if it has such a column
-//   firstRow  first row of the columns
+//   sums      output of mark_crossings
+//   sign      1; -1 if the mesh is inside out; 0 to skip the search for such columns
+//   odd       flags, from firstOdd on one per row of voxels of the grid: set if the row has such a column
+//   firstRow  index of the first row of columns
 __kernel void fill_columns(int columnCount, int columns, int words, int from_above, __global uint* marks,
   __global const uint* sums, int sign, __global int* odd, int firstOdd, int firstRow)
 {
@@ -332,10 +334,10 @@ __kernel void fill_columns(int columnCount, int columns, int words, int from_abo
   }
 }
 
-// Counts the samples of each voxel that are inside, and not claimed by a later mesh. One work-item per column of
+// Counts the samples of each voxel that are inside the mesh and belong to no later mesh. One work-item per column of
 // voxels.
-//   claimed   in the layout of `bits`: samples of later meshes; those of this one are added. Read only if how.claims
-//   counts    counts of the slab's voxels, times how.units
+//   claimed   samples of later meshes, in the layout of `bits`; the mesh's samples are added. Used only if how.claims
+//   counts    output: counts of the slab's voxels, times how.units
 __kernel void count_samples(
   SampleCounts how, __global const uint* bits, __global uint* claimed, __global ushort* counts)
 {

@@ -18,11 +18,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t CrossingGroup = 64;                   ///< work-group size
-constexpr int SamplesOfWord = 4;                            ///< of winding numbers: one byte per sample
-constexpr std::size_t WindingBytes = std::size_t(16) << 20; ///< of crossings held at a time for winding numbers
+constexpr std::size_t CrossingGroup = 64; ///< size of work-groups
+constexpr int SamplesOfWord = 4;          ///< number of samples per word for winding numbers: one byte per sample
+/// Maximum bytes of crossings held at a time for winding numbers.
+constexpr std::size_t WindingBytes = std::size_t(16) << 20;
 
-/// Compiler options of Voxelization.cl.
+/// Definitions of macros for Voxelization.cl.
 std::string CrossingOptions(int samplesOfVoxel, bool winding)
 {
   return Define("SAMPLES", samplesOfVoxel) + Define("WINDING", winding);
@@ -35,7 +36,7 @@ void RunCrossings(Device& device, const cl::Kernel& kernel, std::size_t items)
     kernel, cl::NullRange, cl::NDRange(RoundUp(items, CrossingGroup)), cl::NDRange(CrossingGroup));
 }
 
-/// Tiles of a mesh's triangles on the device; their memory is kept between uses.
+/// Tiles of a mesh's triangles on the device; the buffer is kept between uses.
 class TilesOnDevice
 {
 public:
@@ -53,12 +54,12 @@ private:
   Buffer<cl_uint4> Tiles;
 };
 
-/// Marks the crossings of meshes with some rows of columns in a buffer (mark_crossings of Voxelization.cl).
+/// Marks the crossings of meshes with some rows of columns in a buffer (kernel mark_crossings of Voxelization.cl).
 class CrossingMarker
 {
 public:
-  /// @param words      32-bit words per column
-  /// @param fromAbove  mark the samples after a crossing instead of those before it
+  /// @param words      number of 32-bit words per column
+  /// @param fromAbove  whether a crossing toggles the samples after it instead of those before it
   CrossingMarker(Device& device, const SampleColumns& columns, int words, bool fromAbove, const std::string& options)
     : TheDevice(device)
     , Columns(columns)
@@ -68,9 +69,9 @@ public:
   {
   }
 
-  /// Queues the kernel.
-  /// @param marks  `words` for each column of the rows
-  /// @param sums   one for each column of the rows; empty if winding numbers are computed
+  /// Queues the kernel for the columns of rows firstRow to endRow.
+  /// @param marks  output: `words` for each column of the rows
+  /// @param sums   output: one value for each column of the rows; empty if winding numbers are computed
   void Mark(const LatticeMesh& mesh, int firstRow, int endRow, Buffer<cl_uint>& marks, Buffer<cl_uint>& sums)
   {
     marks.Fill(0);
@@ -96,7 +97,7 @@ private:
   TilesOnDevice Tiles;
 };
 
-/// Combines the results of find_windings (Voxelization.cl) for all columns.
+/// Combines the winding numbers of all columns that find_windings (Voxelization.cl) has found.
 class WindingSum
 {
 public:
@@ -136,10 +137,10 @@ private:
   const SampleColumns& Columns;
 };
 
-/// Computes winding numbers at the samples in some rows of voxels of a box of the grid.
-/// @param mesh      on the lattice that starts at the box's first voxel, as do the columns
-/// @param rows      one per row of voxels along columns.up: nonzero to examine the row
-/// @param inverted  whether the corners run clockwise as seen from outside
+/// Finds the winding numbers of a mesh at the samples in some rows of voxels of a box of the grid.
+/// @param mesh      mesh on the lattice that starts at the box's first voxel, as do the columns
+/// @param rows      flag of each row of voxels along columns.up: nonzero to examine the row
+/// @param inverted  whether the corners of triangles run clockwise as seen from outside
 WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& box, const LatticeMesh& mesh,
   const SampleColumns& columns, const std::vector<cl_int>& rows, bool inverted, const Monitor& monitor)
 {
@@ -179,11 +180,12 @@ WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& bo
   return sum.Windings;
 }
 
-/// Rows of voxels along an axis, and the rows of a mesh's samples that they need.
+/// Rows of voxels along an axis, and the rows of samples that are needed for them.
 struct SampleSlab
 {
-  int firstVoxel, endVoxel; ///< along columns.up
-  /// Rows of samples: those of the voxels, and one more on either side where the grid has it.
+  int firstVoxel, endVoxel; ///< range of rows of voxels along columns.up
+  /// Range of rows of samples: those of the voxels and, for fractions of samples, one more on either side where the
+  /// grid has one.
   int firstRow, endRow;
 };
 
@@ -193,13 +195,15 @@ SampleColumns Along(int axis, const Grid& grid, const SampleColumns& like)
 }
 
 /// Refines counts of samples in voxels to a fraction of a sample, from the exact position of the surface between two
-/// samples (numerics.md, section 11.1). Occupancy from samples alone has terraces where a surface is nearly parallel to
-/// layers of voxels; these are wider than the smoothing of the index, and bend light.
+/// samples (numerics.md, section 11.1). Occupancy from samples alone has terraces where a surface is nearly parallel
+/// to layers of voxels; these are wider than the smoothing of the index, and bend light.
 class SurfaceFraction
 {
 public:
-  /// @param columns  columns of the samples' bits, `words` words of 32 bits per column
-  /// @param voxels   maximum number of voxels in a slab: takes 4 bytes each, and 4 more if there are several meshes
+  /// @param columns  columns of the samples' bits, of `words` 32-bit words each
+  /// @param voxels   maximum number of voxels in a slab, which take 4 bytes each, and 4 more if there are several
+  ///   meshes
+  /// @param several  whether there are several meshes
   SurfaceFraction(
     Device& device, const Grid& grid, const SampleColumns& columns, int words, std::size_t voxels, bool several)
     : TheDevice(device)
@@ -224,7 +228,7 @@ public:
     this->ClaimSamples = kernel("claim_samples", 0);
   }
 
-  /// Call before the last mesh of a slab.
+  /// Prepares for a slab; to be called before its last mesh, which is the first to be measured.
   void Begin()
   {
     if (this->Several)
@@ -233,10 +237,11 @@ public:
     }
   }
 
-  /// Queues the measurement of the difference between a mesh's volume and its count of samples.
-  /// @param orientation  see OrientedMesh
-  /// @param bits         samples inside the mesh, in the slab's rows
-  /// @param claimed      samples inside later meshes, in the same rows; empty if there is only one mesh
+  /// Queues the measurement of the difference between the volume of a mesh in the slab's voxels and its count of
+  /// samples.
+  /// @param orientation  OrientedMesh::orientation of the mesh
+  /// @param bits         samples inside the mesh, in the slab's rows of samples
+  /// @param claimed      samples inside later meshes, in the same rows of samples; empty if there is only one mesh
   void Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab, const Buffer<cl_uint>& bits,
     const Buffer<cl_uint>& claimed)
   {
@@ -264,8 +269,9 @@ public:
     }
   }
 
-  /// Queues the conversion of the slab's counts from whole samples to units of 1 / UnitsOfSample, including the
-  /// measurement for the last mesh. Also marks as claimed the samples in the slab's rows that lie outside its voxels.
+  /// Queues the conversion of the slab's counts of the last measured mesh from whole samples to units
+  /// (UnitsOfSample), with the measured difference. Also marks as claimed those of the mesh's samples in the slab's
+  /// rows that lie outside its voxels.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts)
   {
     const SampleRows rows = this->RowsOf(slab);
@@ -300,23 +306,24 @@ private:
   }
 
   Device& TheDevice;
-  std::array<int, 3> Size; ///< size of the grid
-  SampleColumns Bits;
+  std::array<int, 3> Size; ///< number of voxels of the grid along each axis
+  SampleColumns Bits;      ///< columns of the samples' bits
   int Words;
-  bool Several;
-  std::array<SampleColumns, 3> Columns; ///< along x, y and z
+  bool Several;                         ///< whether there are several meshes
+  std::array<SampleColumns, 3> Columns; ///< columns of samples along x, y and z
   std::array<cl::Kernel, 3> MeasureAlong;
   cl::Kernel RefineCounts, ClaimSamples;
   std::array<TilesOnDevice, 3> Tiles;
+  /// Difference between volume and count of each voxel of the slab, in UNITS of SurfaceFraction.cl.
   Buffer<cl_int> Corrections;
-  Buffer<cl_ushort2> Taken;
+  Buffer<cl_ushort2> Taken; ///< samples and units of later meshes in each voxel of the slab
 };
 
 constexpr int LargestSampleCount = 16;
-/// Maximum number of voxels in a slab, unless one row has more.
+/// Maximum number of voxels in a slab, unless one row of voxels has more.
 constexpr std::size_t SlabVoxels = std::size_t(4) << 20;
 
-/// Number of 32-bit words in a column.
+/// Number of 32-bit words in a column of samples along an axis.
 int WordsOf(const Grid& grid, int axis, int voxelsOfWord)
 {
   return PartsOf(grid.size[axis], voxelsOfWord);
@@ -337,7 +344,7 @@ std::size_t VoxelsOfRow(const SampleColumns& columns, const Grid& grid)
   return grid.VoxelCount() / grid.size[columns.up];
 }
 
-/// Number of rows of voxels whose columns of samples take about `bytes`.
+/// Number of rows of voxels in a slab whose columns of samples take about `bytes`.
 int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::size_t bytes)
 {
   const std::size_t row = static_cast<std::size_t>(columns.count[0]) * columns.samplesOfVoxel * words * sizeof(cl_uint);
@@ -345,7 +352,7 @@ int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::s
   return static_cast<int>(std::clamp<std::size_t>(rows, 1, static_cast<std::size_t>(grid.size[columns.up])));
 }
 
-/// Counts the samples of each voxel inside each mesh, slab by slab.
+/// Counts the samples of each voxel of a box inside each of several meshes, slab by slab.
 class Voxelization
 {
 public:
@@ -376,7 +383,7 @@ public:
       (this->Rows * this->Columns.samplesOfVoxel + 2 * RowsAround(settings));
     this->Bits = Buffer<cl_uint>(device, columns * this->Words, "a slab of the fine grid");
     this->Sums = Buffer<cl_uint>(device, columns, "sums of crossings");
-    // With a single mesh nothing is ever claimed, and the kernel receives an empty buffer.
+    // With a single mesh no samples are claimed, and the kernel receives an empty buffer.
     this->Claimed = Buffer<cl_uint>(device, meshes.size() > 1 ? columns * this->Words : 0, "samples of later meshes");
     this->Counts = Buffer<cl_ushort>(device, voxels, "a slab of the voxels' samples inside");
     if (settings.fractions)
@@ -412,10 +419,11 @@ public:
   }
 
 private:
-  /// Rows of samples needed on either side of a slab.
+  /// Number of rows of samples that are needed on either side of a slab.
   static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
 
-  /// @param rows  one per row of the own voxels: nonzero if it may have odd samples
+  /// Winding numbers of a mesh at the samples of the own voxels.
+  /// @param rows  flag of each row of own voxels: nonzero if the row may have odd samples
   WindingNumbers WindingsOf(const OrientedMesh& mesh, const std::vector<cl_int>& rows, const Monitor& monitor) const
   {
     const VoxelBox& own = this->Counted.own;
@@ -496,11 +504,11 @@ private:
   Device& TheDevice;
   const Grid& Whole;
   const CountedVoxels Counted;
-  const Grid TheGrid; ///< the box whose samples are counted
+  const Grid TheGrid; ///< the box whose samples are counted, as a grid
   SampleLattice Lattice;
   SampleColumns Columns;
-  int Words;
-  int Rows; ///< rows of voxels in a slab
+  int Words; ///< number of 32-bit words per column of samples
+  int Rows;  ///< number of rows of voxels in a slab
   cl_int FromAbove;
   CrossingMarker Marker;
   cl::Kernel Fill, Count;
@@ -508,8 +516,9 @@ private:
   std::vector<LatticeMesh> Meshes;
   Buffer<cl_uint> Bits, Sums, Claimed;
   Buffer<cl_ushort> Counts;
-  std::optional<SurfaceFraction> Fractions; ///< present if the settings ask for fractions
-  Buffer<cl_int> Odd;                       ///< for each mesh's rows of voxels: nonzero where FindWindings is to look
+  std::optional<SurfaceFraction> Fractions; ///< present if the settings request fractions of samples
+  /// For each mesh, a flag per row of voxels: nonzero where FindWindings has to look for odd samples.
+  Buffer<cl_int> Odd;
 };
 }
 

@@ -13,98 +13,102 @@
 
 namespace tyndall
 {
-/// Samples at which the winding number of a mesh is neither 0 nor 1: the mesh intersects itself, or has parts inside
-/// out or within each other.
+/// Winding numbers of a mesh at samples. A sample is odd if its winding number is neither 0 nor 1: the mesh
+/// intersects itself, or has parts inside out or within each other.
 struct WindingNumbers
 {
-  std::size_t oddSamples = 0;  ///< number of such samples
-  int lowest = 0, highest = 1; ///< range of their winding numbers, and of 0 and 1
-  /// Position of the first such sample, in the order z, y, x for columns along x.
+  std::size_t oddSamples = 0;  ///< number of odd samples
+  int lowest = 0, highest = 1; ///< smallest and largest of all winding numbers, 0 and 1
+  /// Position of the first odd sample, in the order z, y, x (x fastest) for columns along x.
   std::array<double, 3> firstOddSample = { 0, 0, 0 };
-  std::array<int, 3> firstOddNumber = { 0, 0, 0 }; ///< its index along each axis of the whole grid
+  std::array<int, 3> firstOddNumber = { 0, 0, 0 }; ///< index of the first odd sample along each axis of the domain
 
-  /// Adds the results for other samples, with columns along x.
+  /// Adds the winding numbers at other samples, which were found with columns along x.
   void Add(const WindingNumbers& others);
 };
 
 struct VoxelizationSettings
 {
-  int samples = 4; ///< fine voxels per edge of a voxel, 1 to 16
+  int samples = 4; ///< number of samples (fine voxels) per edge of a voxel, 1 to 16
 
-  /// Whether counts include fractions of samples, from the position of the surface between samples. Otherwise occupancy
-  /// comes in steps of 1 / samples^3, as published.
+  /// Whether counts include fractions of samples, computed from the position of the surface between samples. If
+  /// false, occupancy is a multiple of 1 / samples^3, as published.
   bool fractions = true;
 
-  /// Axis of the columns, 0, 1 or 2; a crossing toggles the samples before it or, with fromAbove, those after it. The
-  /// result is the same to the last bit.
+  /// Axis of the columns of samples, 0, 1 or 2. The result does not depend on it, to the last bit.
   int columnAxis = 0;
-  bool fromAbove = false;
+  bool fromAbove = false; ///< whether a crossing toggles the samples after it instead of those before it; same result
 
-  /// Maximum memory of the fine grid, one bit per sample, held at a time: a slab of voxels, of at least one layer.
+  /// Maximum memory, in bytes, of the part of the fine grid (one bit per sample) that is held at a time: a slab of
+  /// voxels, of at least one layer.
   std::size_t slabBytes = std::size_t(16) << 20;
 };
 
-/// Number of units of a count per sample.
+/// Number of units in which one sample is counted: counts of a voxel, with fractions of samples, fit 16 bits.
 constexpr int UnitsOfSample(int samples)
 {
   return 65535 / (samples * samples * samples);
 }
 
-/// @throws InvalidInput
+/// Checks the settings.
+/// @throws InvalidInput if a setting is out of range
 void Check(const VoxelizationSettings& settings);
 
 /// A closed mesh and the orientation of its triangles.
 struct OrientedMesh
 {
-  /// Closed, if necessary after rounding to the lattice; see Examine. Triangles without area have no effect.
+  /// The mesh, closed, if necessary after rounding to the lattice (CheckClosed). Triangles without area have no
+  /// effect.
   const TriangleMesh* mesh = nullptr;
-  int orientation = 1; ///< 1: counterclockwise seen from outside; -1: clockwise; 0: its triangles disagree
+  int orientation = 1; ///< 1: counterclockwise as seen from outside; -1: clockwise; 0: triangles disagree
 };
 
-/// Samples inside one of several meshes, in the voxels of a slab.
+/// Counts of the samples inside one of several meshes, for the voxels of a slab.
 struct SamplesInside
 {
   std::size_t mesh; ///< index of the mesh
-  /// One per voxel, 0 to samples^3 UnitsOfSample(samples), x fastest. Overwritten for the next mesh.
+  /// Count of each voxel of the slab in units, 0 to samples^3 UnitsOfSample(samples), x fastest. Overwritten for the
+  /// next mesh.
   const Buffer<cl_ushort>& counts;
 
-  /// The slab consists of `runs` runs of `length` consecutive voxels of the box: the first run begins at voxel `first`,
-  /// each next one `stride` voxels later.
+  /// Position of the slab's voxels in the box: `runs` runs of `length` consecutive voxels; the first run begins at
+  /// voxel `first`, each further one `stride` voxels later.
   std::size_t first, length, stride, runs;
   std::size_t VoxelCount() const { return this->length * this->runs; }
 };
 
-/// The voxels of a grid that are voxelised.
+/// The voxels of a grid that are voxelised on one rank.
 struct CountedVoxels
 {
   VoxelBox box; ///< voxels whose samples are counted
-  VoxelBox own; ///< voxels in `box` that winding numbers refer to
+  VoxelBox own; ///< voxels in `box` in which winding numbers are examined
 
   static CountedVoxels All(const Grid& grid) { return { { {}, grid.size }, { {}, grid.size } }; }
 };
 
-/// Counts the samples of each voxel that lie inside each of several closed meshes. Where meshes overlap, samples belong
-/// to the last of them.
+/// Counts the samples of each voxel that lie inside each of several closed meshes. Where meshes overlap, samples
+/// belong to the last of them.
 ///
 /// Bit-slice voxelisation of Eisemann and Decoret (Single-pass GPU solid voxelization for real-time applications,
 /// Graphics Interface 2008; Pfeuti 2009, section 3.1.2): a column of samples is a row of bits, and every triangle
-/// toggles the bits before it. Samples are the centres of fine voxels. Points of the mesh are rounded to a lattice of a
-/// millionth of the box (SampleLattice); from there on everything is exact: a crossing of a column with an edge or a
-/// corner is counted once, a closed mesh never leaks, and whether a sample is inside does not depend on the direction
-/// of its column. Then fractions of samples are added or subtracted, from where the surface crosses columns along x, y
-/// and z (SurfaceFraction); a voxel that the surface does not touch is all inside or all outside.
+/// toggles the bits before its crossing. Samples are the centres of fine voxels. Points of the mesh are rounded to a
+/// lattice of a millionth of the box (SampleLattice); all further arithmetic is exact: a crossing of a column with an
+/// edge or a corner is counted once, a closed mesh never leaks, and whether a sample is inside does not depend on the
+/// direction of its column. Then fractions of samples are added or subtracted, from the positions where the surface
+/// crosses columns along x, y and z (SurfaceFraction); a voxel that the surface does not touch is entirely inside or
+/// outside.
 ///
-/// Results for a voxel do not depend on which box of the grid is requested, to the last bit, with one exception: in the
-/// outermost voxels of a box that ends within the grid, the side of features thinner than a sample is decided without
-/// the sample beyond the box.
+/// Results for a voxel do not depend, to the last bit, on the box of the grid that is requested, with one exception:
+/// in the outermost voxels of a box that ends within the grid, whether a crossing enters or leaves the mesh is
+/// decided without the sample beyond the box, which matters for features thinner than a sample.
 ///
-/// @param take  receives the results slab by slab, and within a slab mesh by mesh from the last to the first, so that
-///   device memory does not grow with the size of the grid or the number of meshes
-/// @return for each mesh, whether its winding number is 0 or 1 at all samples. Where it is not, the samples inside are
-///   those with an odd winding number. Unknown if the orientation is 0: the numbers are then those of a closed, well
-///   oriented mesh
+/// @param take  callback that receives the counts slab by slab, and within a slab mesh by mesh from the last to the
+///   first, so that device memory does not grow with the size of the grid or the number of meshes
+/// @return the winding numbers of each mesh at the samples of counted.own. Where they are neither 0 nor 1, samples
+///   with an odd winding number count as inside. If the orientation of a mesh is 0, its winding numbers are unknown
+///   and returned as those of a closed, consistently oriented mesh
 /// @throws InvalidInput   if a setting or a mesh's size is invalid
-/// @throws DeviceError    if the meshes and a slab do not fit the device
+/// @throws DeviceError    if the meshes and a slab do not fit into the device's memory
 std::vector<WindingNumbers> CountSamplesInside(Device& device, const Grid& grid, const CountedVoxels& counted,
   const std::vector<OrientedMesh>& meshes, const VoxelizationSettings& settings,
   const std::function<void(const SamplesInside&)>& take, const Monitor& monitor = {});
