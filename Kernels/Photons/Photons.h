@@ -12,13 +12,13 @@ namespace tyndall
 /// Maximum number of photon batches whose light PhotonMarcher sums separately: Photon::batch is 0 to 63.
 constexpr int MarchedBatchesAtMost = 64;
 
-/// A photon packet: a share of a light's power with a position and a direction, not a quantum.
+/// A photon packet: a fraction of a light's power with a position and a direction, not a quantum.
 struct Photon
 {
   /// Point where the photon enters the volume or, for a lamp inside the volume, the position of the lamp.
   std::array<double, 3> position = {};
   std::array<float, 3> direction = { 0.0f, 0.0f, 1.0f }; ///< direction of travel, unit length
-  std::array<float, 3> power = {};                       ///< RGB, W
+  std::array<float, 3> power = {};                       ///< power of each channel (RGB), W
   /// Ratio of the photon's power to the power it would have if the photons of its light were spread evenly: large
   /// where photons are sparse.
   float weight = 1.0f;
@@ -84,7 +84,7 @@ struct PhotonPath
   std::vector<float> left; ///< fraction of the photon's power (sum of channels) left at each corner; 1 if it had none
 };
 
-/// Light that photons deposited in a medium.
+/// Light that photons deposited in a medium, with its energy balance and statistics.
 struct PhotonLight
 {
   /// Light of all orders. With maximumOrders = 1, the uncollided light alone: fluenceDirect would be equal and is

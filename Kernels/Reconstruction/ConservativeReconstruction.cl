@@ -246,7 +246,7 @@ __kernel void measure_details(const __global float* fine, const __global float* 
           {
             first[i] = detail[i];
           }
-          else // relative to the first batch, to avoid cancellation
+          else // details are summed relative to the first batch's, to avoid cancellation
           {
             const real other = detail[i] - first[i];
             sum[i] += other;
@@ -410,7 +410,7 @@ inline real direction_of(real total, real x, real y, real z)
 {
   const real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
   const real square = (x * cut) * (x * cut) + (y * cut) * (y * cut) + (z * cut) * (z * cut);
-  if (any_of(square > 1.0f)) // rare
+  if (any_of(square > 1.0f)) // rarely true
   {
     return select(cut, cut / sqrt(square), square > 1.0f);
   }

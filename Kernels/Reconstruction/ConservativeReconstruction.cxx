@@ -20,7 +20,7 @@ namespace
 /// Device memory of one pyramid level, for levels from 1 on.
 struct ConservativeLevel
 {
-  LightRows light;   ///< light of each batch, then the smoothed quantities
+  LightRows light;   ///< fields of the light: each batch, then the smoothed quantities
   LightRows results; ///< result of the level: smoothed quantities, source level, squared error
   LightRows gains;   ///< gains of the details of the next finer level, and their errors
   /// Intermediate results for the gains: details by measure_details, and smoothed along y and z.

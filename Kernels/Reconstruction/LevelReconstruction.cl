@@ -63,7 +63,7 @@ inline real sample(const __global float* values, const rows_between* rows, int l
     return load_real(x, values + rows->at[0]);
   }
   x += rows->first;
-  const int first = (x - (1 << level) / 2) >> level; // cell to the left of the first voxel
+  const int first = (x - (1 << level) / 2) >> level; // index of the cell to the left of the first voxel
 #if REAL_WIDTH == 8
   const float8 cells = cells_across(values, rows, first);
   if (level == 1)
@@ -206,7 +206,7 @@ inline void store_direction(
   }
   const real square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
   real cut = 1.0f;
-  if (any_of(square > 1.0f)) // rare
+  if (any_of(square > 1.0f)) // rarely true
   {
     cut = select(cut, 1.0f / sqrt(square), square > 1.0f);
   }

@@ -32,7 +32,7 @@ public:
   /// @param task, result  referenced; the result's arrays must have the size of the box
   LevelPasses(const Reconstruction& task, ReconstructedLight& result);
 
-  void Build(); ///< builds the pyramids up to the shared level
+  void Build(); ///< computes the levels of all pyramids from the voxels up to the shared level
   /// Cells of the shared level of a pyramid over this rank's box.
   std::vector<float> Shared(std::size_t pyramid) const { return this->Pyramids[pyramid].Read(this->Part.shared); }
   /// Computes the levels above the shared level, from its cells in the domain.

@@ -91,7 +91,7 @@ public:
 
   const cl::Buffer& Handle() const { return this->Wide.Size() > 0 ? this->Wide.Handle() : this->Own.Handle(); }
 
-  /// Waits for the device, so that the host's array holds what kernels wrote.
+  /// Waits for the device, and makes the host's array hold what kernels wrote.
   void Fetch() const;
 
 private:

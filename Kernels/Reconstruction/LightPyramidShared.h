@@ -25,7 +25,7 @@ enum
   GainField = 0,    ///< fraction of the details that is kept, Eq. (102) of numerics.md
   RemovedField = 1, ///< removed light squared: (1 - gain)^2 (total - noise), Eq. (104)
   KeptField = 2,    ///< squared noise that is kept: gain^2 noise, Eq. (104)
-  ErrorField = 3,   ///< squared error of the finer level's cells
+  ErrorField = 3,   ///< squared error of the cells of the next finer level
   GainFields = 4
 };
 

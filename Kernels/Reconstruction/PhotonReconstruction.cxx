@@ -340,6 +340,7 @@ void Check(const ReconstructionSettings& settings)
     settings.weightStep, "a number of 0 (found from the photons) or more");
 }
 
+/// Checks that the light has all inputs of the estimator.
 /// @throws InvalidInput if an input of the estimator is missing; names it
 void CheckPresence(const NoisyLight& light, Estimator estimator)
 {

@@ -26,6 +26,7 @@ struct SpreadSource
   PhotonSource source;
   std::optional<ImportanceSampler> sampler;
 
+  /// Maps a sample to a photon; none if the light emits nothing there.
   /// @param weight  output: ratio of the photon's power to its power in uniform sampling
   std::optional<Shot> Shoot(PhotonSample sample, double& weight) const
   {

@@ -42,7 +42,7 @@ struct EmittedPhotons
   /// sky, -2 for the faces.
   std::vector<int> lights;
   Rgb power = {};       ///< W, total power of these photons
-  double seconds = 0.0; ///< duration of the emission
+  double seconds = 0.0; ///< duration of the emission, s
 };
 
 /// Samples the photons emitted by all lights (Pfeuti 2009, section 3.1.4; numerics.md, Eq. (94)), in double precision
@@ -68,7 +68,7 @@ struct EmittedPhotons
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor = {});
 
-/// Pilot photons of one light.
+/// Pilot photons of one light, from which its importance map is computed.
 struct PilotPhotons
 {
   int light = 0;               ///< number of the light, as in EmittedPhotons::lights
@@ -77,9 +77,9 @@ struct PilotPhotons
   std::vector<std::array<int, 2>> origins;
 };
 
-/// Pilot photons of every light, the environment and the sky, but not of the faces: one at a random place in each cell
-/// of a square grid on the photon plane (Pfeuti 2009, section 3.2.2).
-/// @param edge  cells along an edge of the grid, at least 1
+/// Emits the pilot photons of every light, the environment and the sky, but not of the faces: one at a random
+/// position in each cell of a square grid on the photon plane (Pfeuti 2009, section 3.2.2).
+/// @param edge  number of cells along an edge of the grid, at least 1
 /// @throws InvalidInput if the illumination is not valid
 std::vector<PilotPhotons> EmitPilots(
   const Grid& grid, const Illumination& illumination, int edge, std::uint64_t seed = 0);

@@ -135,7 +135,8 @@ glm::dvec2 ConvexPolygon::At(double u, double v) const
   const Slice& slice = this->Slices[Choose(this->Below, u, part)];
   const double w0 = slice.high0 - slice.low0;
   const double w1 = slice.high1 - slice.low1;
-  // Area up to fraction t: w0 t + (w1 - w0) t^2 / 2 = part (w0 + w1) / 2, solved for t without cancellation.
+  // Inverse of the area of the slice up to fraction t of its width: w0 t + (w1 - w0) t^2 / 2 = part (w0 + w1) / 2,
+  // solved for t without cancellation.
   const double wanted = part * (w0 + w1);
   const double root = std::sqrt(std::max(w0 * w0 + (w1 - w0) * wanted, 0.0));
   const double t = w0 + root > 0.0 ? std::min(wanted / (w0 + root), 1.0) : part;

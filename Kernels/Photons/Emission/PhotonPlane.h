@@ -32,7 +32,8 @@ private:
   std::vector<double> Below = { 0.0 }; ///< cumulative area up to the end of each slice, with a leading 0
 };
 
-/// The photon plane of parallel light: perpendicular to its direction, bounded by the outline of the volume.
+/// The photon plane of parallel light: the plane perpendicular to the light's direction, bounded by the outline of
+/// the volume.
 class PhotonPlane
 {
 public:

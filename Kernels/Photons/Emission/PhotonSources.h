@@ -19,7 +19,7 @@ using PhotonSample = std::array<double, 4>;
 struct Shot
 {
   glm::dvec3 from, direction;
-  Rgb power; ///< W, as if it were the only photon of its light
+  Rgb power; ///< W, power of the photon if it were the only photon of its light
 };
 
 /// Sampler of the photons of one light: maps sample points to photons, and rejects samples for which the light emits

@@ -32,7 +32,7 @@ struct Importance
   PilotLight pilot;            ///< light of all lights; origins are those of the first light that reaches each cell
   std::vector<float> gradient; ///< W / length^2, difference of fluence between neighbouring cells, one value per cell
   std::vector<float> chosen;   ///< 1 for cells to sample densely, else 0
-  double gradientThreshold = 0.0, luminanceThreshold = 0.0; ///< the thresholds used
+  double gradientThreshold = 0.0, luminanceThreshold = 0.0; ///< W / length^2, thresholds used
   /// Whether the light is too even for importance sampling to help: the map is 1 everywhere, and photons should be
   /// distributed uniformly.
   bool even = false;

@@ -49,6 +49,7 @@ void PutMoments(std::int64_t count, std::int64_t sum, std::int64_t squares, floa
   deviation = static_cast<float>(std::sqrt(std::max((static_cast<double>(squares) - s * s / n) / n, 0.0)));
 }
 
+/// Checks the origins of pilot photons.
 /// @throws InvalidInput if the numbers of origins and photons differ, or an origin is out of range
 void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins)
 {

@@ -212,7 +212,7 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& io
   }
   else if (this->IsBlock() && this->hasLevels)
   {
-    const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0); // replaced by SetNodes
+    const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0); // placeholder, replaced by SetNodes
     this->PackVoxels(medium, ior, single.data());
   }
   else

@@ -136,7 +136,8 @@ public:
   /// @param marks  mark for counting of each photon; empty if photons are not counted
   /// @throws Aborted; the sums then hold only part of the photons' deposits
   Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
-  /// Marches photons that arrived from other blocks. @throws Aborted
+  /// Marches photons that arrived from other blocks to their ends or until they leave this block.
+  /// @throws Aborted
   Outcome Resume(std::vector<PhotonOnItsWay> arrived, const Monitor& monitor);
 
 private:

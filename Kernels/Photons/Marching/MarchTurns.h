@@ -14,7 +14,7 @@ struct TurnTimes
   int turns = 0;          ///< number of turns
   double marching = 0.0;  ///< time of the marching kernels
   double meanwhile = 0.0; ///< time of the work queued by MarchTurns::meanwhile
-  double together = 0.0;  ///< time during which both were running
+  double together = 0.0;  ///< time during which march and `meanwhile` were running concurrently
 };
 
 /// Callbacks of a march in turns: photons march a limited number of path segments per turn, and the light deposited
@@ -37,8 +37,8 @@ struct MarchTurns
   TurnTimes times; ///< output: device times of the march
 };
 
-/// Marches photons to their ends in turns.
-/// @param show  queues the conversion of the sums so far to fluence
+/// Marches photons to their ends in turns (MarchTurns).
+/// @param show  queues the conversion of the sums accumulated so far to fluence
 /// @throws DeviceError if packets of photons do not fit; Aborted: the sums then hold only a part of the paths
 void MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
   const MarchSums& target, MarchTurns& turns,

@@ -10,11 +10,11 @@
 
 namespace tyndall
 {
-/// The sums of photons' deposits in a medium, and their conversion to light.
+/// Sums of photons' deposits in a medium on its device, and their conversion to light.
 class MarchedLight
 {
 public:
-  /// @param medium  must outlive this
+  /// @param medium  referenced, not copied
   explicit MarchedLight(const MarchMedium& medium);
 
   /// Zeroes the sums for these photons, and describes their layout.
@@ -25,7 +25,7 @@ public:
   /// Discards the sums after an aborted march, which leaves them nonzero.
   void Forget() { this->Sums = Buffer<cl_long>(); }
 
-  /// Queues the conversion of the sums so far to fluence, [voxel][channel]. Does not change the sums.
+  /// Queues the conversion of the sums accumulated so far to fluence, [voxel][channel], without changing the sums.
   cl::Kernel Show(
     const PackedPhotons& packed, const MarchSums& target, const LightField& light, const Buffer<float>& fluence) const;
   /// Converts the sums to the arrays of `result` and to absorbed and scattered power, then zeroes the sums.
@@ -54,9 +54,12 @@ void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonL
 /// Replaces this rank's tallies of uncollided light (energy balance, powers, numbers) by their sums over all ranks.
 /// Collective.
 void AddUpTallies(const Domain& domain, PhotonLight& result);
+/// Replaces this rank's tallies of scattered light (energy balance, powers, number of scatterings) by their sums over
+/// all ranks. Collective.
 void AddUpScattered(const Domain& domain, PhotonLight& result);
 
-/// Expands arrays and tallies of packed.channels channels to the channels of the light, or to one if `colours` is 1.
+/// Expands arrays and tallies of packed.channels channels to the channels of the light, or reduces them to one
+/// channel if `colours` is 1.
 void PutIntoColours(const PackedPhotons& packed, int colours, PhotonLight& result);
 
 void SayWhatIsLeftOut(const MarchMedium& medium, const PackedPhotons& packed, LightField& light);
@@ -71,7 +74,7 @@ class MarchedBatches
 {
 public:
   void Add(PhotonLight&& part);
-  /// The light of all batches, with fluenceError. With one batch or none, the light as it is, without an error.
+  /// Returns the light of all batches, with fluenceError; with one batch or none, the light without an error.
   PhotonLight Sum() &&;
 
 private:

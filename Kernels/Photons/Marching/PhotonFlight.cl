@@ -40,7 +40,7 @@ typedef struct
 // Deposit of one path segment of each photon.
 typedef struct
 {
-  integer at;            // record of the sums
+  integer at;            // index of the record of the sums
   real amount[CHANNELS]; // power times path integral of transmittance, in units
 #if COUNTS || CELLS
   integer entered; // mask of the photons that entered the voxel or coarse cell in this segment
@@ -188,7 +188,7 @@ static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, int
 {
 #if REAL_WIDTH > 1 && !BRICKS
   const integer there = at + INTEGERS(lanes->ahead);
-#if CELLS // cells are few, and their sums are already in caches
+#if CELLS // coarse cells are few, and their sums are already in caches
 #define ASK_FOR_RECORD(lane) PREFETCH(arrays->cells + (long)there lane, 0, 3);
 #else
 #define ASK_FOR_RECORD(lane) PREFETCH(arrays->sums + (long)there lane * RECORD, 1, 3);

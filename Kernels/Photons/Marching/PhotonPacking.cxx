@@ -54,6 +54,7 @@ void CheckPhoton(const Photon& photon, std::size_t number, bool batches)
   }
 }
 
+/// Checks all photons of a rank.
 /// @throws InvalidInput for the first photon that is not valid
 void CheckPhotons(const std::vector<Photon>& photons, bool batches)
 {
@@ -221,7 +222,7 @@ struct PhotonTotals
   double brightest = 0.0;      ///< W, power of the brightest photon, sum of channels
   std::int64_t powerUnits = 0; ///< total power, with each photon's power rounded up to units of UnitOfPower
   Rgb firstColour = {};        ///< power of the first photon that has any; black if none has
-  bool oneColour = true;       ///< whether all photons have that colour
+  bool oneColour = true;       ///< whether all photons have the colour `firstColour`
   int batches = 1;             ///< number of batches that are summed separately
 };
 

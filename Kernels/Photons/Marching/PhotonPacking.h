@@ -16,7 +16,7 @@ namespace tyndall
 struct PackedPhotons
 {
   int channels = 1; ///< 1 if all photons have the same colour and one power channel suffices, else 3
-  bool grey = true; ///< whether all photons are grey
+  bool grey = true; ///< whether the powers of all photons are grey
   /// Colour of the single channel, with mean 1; (1, 1, 1) for white photons and for three channels.
   Rgb colour = { 1.0, 1.0, 1.0 };
   double unit = 1.0;                ///< W per unit of power, a power of two

@@ -68,7 +68,7 @@ typedef struct
   LANES(int, at);         // current voxel, as index into the padded grid
   LANES(int, alive);      // -1: the photon has not ended; 0: it has
   LANES_3(int, stride);   // change of `at` from a voxel to the next along each axis
-  LANES(int, ahead);      // change of `at` to the prefetched voxel
+  LANES(int, ahead);      // change of `at` to the voxel that is prefetched
   LANES_3(float, wall);   // time at which the photon reaches the next wall along each axis
   LANES_3(float, across); // duration from wall to wall along each axis
   LANES(float, now);      // current time
@@ -82,7 +82,7 @@ typedef struct
   LANES_3(float, start);                                          // position at which the step began
   LANES_3(float, velocity);                                       // velocity in the step, voxels per time
   LANES_3(float, momentum);     // T of Eq. (90); with order 1 v of Eq. (92), with order 2 equal to the velocity
-  float4 direction[REAL_WIDTH]; // (1, unit direction in space)
+  float4 direction[REAL_WIDTH]; // 1, and the unit direction in space (y, z, w)
 #if MARKS
   LANES(ulong, mark); // mark of the photon (PhotonMarch.cl)
 #endif

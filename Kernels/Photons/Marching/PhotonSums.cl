@@ -59,7 +59,7 @@ static bool take_batch(const LightSumsInfo* info, __global long* record, ulong c
       sum[c] += here[c];
       bits |= here[c];
     }
-    if (bits != 0) // typically half of the memory need not be written
+    if (bits != 0) // records without deposits, typically half of the memory, need not be written
     {
       any = true;
       for (int c = 0; c < RECORD; ++c)

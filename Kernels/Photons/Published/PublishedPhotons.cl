@@ -30,7 +30,7 @@ static uint to_rgbe(float3 colour)
   }
   int exponent;
   const float scale = frexp(most, &exponent) * 256.0f / most;
-  const uint3 mantissa = convert_uint3(min(colour * scale, 255.0f)); // truncated, as in Ward's scheme
+  const uint3 mantissa = convert_uint3(min(colour * scale, 255.0f)); // truncated, as in Ward's RGBE format
   return mantissa.x | mantissa.y << 8 | mantissa.z << 16 | (uint)(exponent + 128) << 24;
 }
 

@@ -8,7 +8,7 @@ SHARED_BEGIN
 typedef struct
 {
   IndexGrid whole;   ///< size of the domain
-  IndexGrid own;     ///< size of the block: coefficients, octree levels and light
+  IndexGrid own;     ///< size of the block, in which coefficients, octree levels and light are stored
   IndexGrid known;   ///< size of the region in which the refractive index is known: the block and two voxels around it
   int first[3];      ///< first voxel of the block in the domain
   int knownFirst[3]; ///< first voxel of `known` in the domain

@@ -60,7 +60,7 @@ struct RefractiveMediumSettings
 struct RefractiveMedium
 {
   std::vector<float> occupancy;   ///< fraction of the voxel's volume inside any solid, [0, 1]
-  std::vector<float> ior;         ///< n, smoothed; empty if n is the same everywhere
+  std::vector<float> ior;         ///< refractive index n, smoothed; empty if n is the same everywhere
   std::vector<float> iorGradient; ///< gradient of n, 1/length, 3 values per voxel; empty if ior is empty
   std::vector<float> sigma_a;     ///< absorption coefficient, 1/length, `components` values per voxel
   std::vector<float> sigma_s;     ///< scattering coefficient, 1/length, `components` values per voxel
@@ -70,9 +70,9 @@ struct RefractiveMedium
   /// scattering materials have the same g.
   std::vector<float> gByVoxel;
   std::vector<std::string> leftOut;  ///< reasons why arrays are empty, for the user
-  std::vector<std::string> warnings; ///< irregularities of the meshes, for the user
+  std::vector<std::string> warnings; ///< irregularities of the meshes, one sentence each, for the user
   std::string device;                ///< name of the device
-  double seconds = 0.0;              ///< total duration
+  double seconds = 0.0;              ///< total duration, s
 };
 
 /// The smallest box of cubic voxels, centred on the solids, with a margin on each side of `margin` times the longest

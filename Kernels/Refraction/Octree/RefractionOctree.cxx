@@ -40,6 +40,7 @@ float AsBound(double bound)
   return nearest > bound ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
 }
 
+/// Checks the settings of the octree.
 /// @throws InvalidInput if a setting is out of range
 void Check(const OctreeSettings& settings)
 {

@@ -33,7 +33,7 @@ struct MeshTopology
 
   /// Number of edges with an odd number of triangles; if it is not 0, the mesh has no inside.
   std::size_t boundaryEdges = 0;
-  Edge firstBoundaryEdge = {}; ///< the boundary edge whose corners have the lowest indices
+  Edge firstBoundaryEdge = {}; ///< boundary edge whose corners have the lowest indices
   /// Number of edges whose two triangles disagree about which side of the mesh is outside.
   std::size_t disagreeingEdges = 0;
   Edge firstDisagreeingEdge = {};          ///< disagreeing edge whose corners have the lowest indices

@@ -17,10 +17,10 @@ typedef struct
 
 typedef struct
 {
-  float4 absorption, scattering; ///< red, green, blue, 1/length
+  float4 absorption, scattering; ///< coefficients of red, green and blue, 1/length
   float n;                       ///< refractive index
-  float indexNoise;              ///< amplitude of the perturbation of n
-  float scatteringNoise;         ///< amplitude of the relative perturbation of sigma_s
+  float indexNoise;              ///< amplitude of the noise added to n
+  float scatteringNoise;         ///< amplitude of the noise by which sigma_s varies, relative to sigma_s
   float frequency;               ///< 1 / size of the noise's features, 1/length
   uint seed;                     ///< seed of the noise
   float g;                       ///< mean cosine of the phase function
