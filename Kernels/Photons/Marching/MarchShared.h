@@ -19,8 +19,8 @@ enum
 /// smooth.
 enum
 {
-  LeapfrogLooksAhead = 3, ///< of the leapfrog, which looks half a step ahead where n is smooth
-  YoshidaLooksAhead = 6   ///< of Yoshida's integrator, which looks 1.35 steps ahead where n is smooth
+  LeapfrogLooksAhead = 3, ///< limit of the leapfrog, which looks half a step ahead where n is smooth
+  YoshidaLooksAhead = 6   ///< limit of Yoshida's integrator, which looks 1.35 steps ahead where n is smooth
 };
 
 /// Level of the largest octree cube that a step of order 4 crosses. The integrator's look-ahead along an axis is at

@@ -78,9 +78,10 @@ typedef struct
   LANES(float, step);     // duration of the current step
   LANES(int, steps);      // number of steps of the integrator
   LANES(int, crossings);  // number of path segments that were deposited
-  float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64))); // remaining power of each channel, in units
-  LANES_3(float, start);                                          // position at which the step began
-  LANES_3(float, velocity);                                       // velocity in the step, voxels per time
+  // Remaining power of each channel, in units.
+  float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
+  LANES_3(float, start);        // position at which the step began
+  LANES_3(float, velocity);     // velocity in the step, voxels per time
   LANES_3(float, momentum);     // T of Eq. (90); with order 1 v of Eq. (92), with order 2 equal to the velocity
   float4 direction[REAL_WIDTH]; // 1, and the unit direction in space (y, z, w)
 #if MARKS
