@@ -119,10 +119,10 @@ TEST_F(QualityOfLight, GrowsFromLevelToLevel)
     double last = 1.0;
     for (const Quality quality : Levels)
     {
-      const double error = RelativeRmse(
-        FluenceOf(this->GetDevice(), scene,
-          AtQuality(Domain(scene.medium.grid), quality, PropagationSettings(), scene.medium, scene.light)),
-        light);
+      const double error =
+        RelativeRmse(FluenceOf(this->GetDevice(), scene,
+                       AtQuality(Domain(scene.medium.grid), quality, PropagationSettings(), scene.medium, scene.light)),
+          light);
       EXPECT_LT(error, last) << "quality " << static_cast<int>(quality) << ", thickest " << thickest;
       this->RecordProperty(
         "thickest " + std::to_string(thickest) + " level " + std::to_string(static_cast<int>(quality)),

@@ -100,8 +100,9 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   if (this->Box)
   {
     const bool shines = this->Parts.Lights.SweepCarriesBoundarySource();
-    this->Result.leftByCell = this->Box->LeftWithoutPattern(
-      shines ? this->Parts.Lights.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{}, this->Parts.Problem.TheMedium());
+    this->Result.leftByCell =
+      this->Box->LeftWithoutPattern(shines ? this->Parts.Lights.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{},
+        this->Parts.Problem.TheMedium());
   }
   return std::move(this->Result);
 }
