@@ -1,4 +1,5 @@
-// The intersection of a ray with the emitting box, in a scene whose axes may be permuted and reflected. Options:
+// Intersection of rays with the emitting box, and the radiance along them, in a scene whose axes may be permuted and
+// reflected. Options:
 //   CHANNELS  1, or 3 that share sigma_t
 
 #pragma once
@@ -6,25 +7,25 @@
 #include "LightPropagation/Emission/EmissionRaysShared.h"
 #include "Numerics/Numerics.cl"
 
-// A receiver: a voxel, or a face of a voxel.
+// A voxel, or a face of a voxel, for which light is gathered.
 typedef struct
 {
   int at[3];
-  int across;  // axis of the receiving face; 3: the voxel itself
-  int up;      // 1: the upper face along that axis
-  bool inside; // it lies in the emitting box
+  int across;  // axis of the receiving face; 3: no face, the voxel
+  int up;      // 1: the face at the upper end of axis `across`; 0: at the lower end
+  bool inside; // whether the voxel lies in the emitting box
 } lit_voxel;
 
-// The scene with its axes permuted and some of them reflected, so that the peak lies in the same direction from every
-// voxel: the light then has the symmetries of the scene.
+// A medium and emitting box with axes permuted and some of them reflected, so that the box lies in the same octant of
+// directions from every voxel: the computed light then has the symmetries of the scene.
 typedef struct
 {
   float spacing[3];
   int sourceFirst[3], sourceSize[3];
-  int strides[3], base;             // of sigma: voxel (0, 0, 0) is at index `base`
-  int sourceStrides[3], sourceBase; // of emission
+  int strides[3], base;             // of sigma_t: voxel (0, 0, 0) is at index `base`
+  int sourceStrides[3], sourceBase; // of emission: lowest voxel of the box is at index `sourceBase`
   int last, sourceLast;             // the highest index of sigma and of emission
-  int axis[3];                      // the scene's axis that corresponds to each axis here
+  int axis[3];                      // the original axis that corresponds to each permuted axis
   float sign[3];
 } turned_scene;
 
@@ -82,7 +83,7 @@ static inline real take(const __global float* from, integer i)
 }
 #endif
 
-// Loads the values at `i` and the ones behind them: one load per pair instead of two.
+// Loads the values at indices i and i + 1, with one load per pair instead of two.
 static inline void take_pairs(const __global float* from, integer i, real* first, real* second)
 {
 #if REAL_WIDTH == 1
@@ -122,25 +123,27 @@ static inline void take_pairs(const __global float* from, integer i, real* first
 #endif
 }
 
-// Mean of the transmittance over an optical length tau; `left` is the transmittance at its end.
+// Mean transmittance over a segment of optical length tau, phi1 of Eq. (1); `left` receives exp(-tau).
 static real mean_left(real tau, real* left)
 {
   const real lost = extinguished(tau, left);
   return select((real)1.0f, lost / fmax(tau, (real)1e-6f), tau > (real)1e-6f);
 }
 
-// A ray from a point in a voxel to the emitting box. Positions on it are lengths from that point.
+// State of a ray from a point in a voxel to the emitting box. Positions on the ray are distances from that point,
+// length.
 typedef struct
 {
   real rate[3];       // voxels per length along each axis
-  real step[3];       // length from one plane across each axis to the next
-  real next[3];       // position of the plane that it crosses next; advances with the ray
-  integer up[3];      // it propagates towards + along that axis
-  real enter, leave;  // positions at which it enters and leaves the box
-  real ahead, behind; // extent of the point's voxel along the ray, forward and backward
+  real step[3];       // distance along the ray between voxel planes across each axis
+  real next[3];       // position of the next voxel plane across each axis
+  integer up[3];      // whether the ray propagates towards increasing index along each axis
+  real enter, leave;  // positions at which the ray enters and leaves the emitting box
+  real ahead, behind; // distance from the point to its voxel's border, forward and backward
 } box_ray;
 
-// Finds the planes crossed at `end`, if the ray does not end there, and advances `next` to the planes behind them.
+// Sets `crossed` to the axes whose next voxel plane lies at or before position `end`, and advances `next` beyond these
+// planes; none if the ray ends there (way_ends).
 static void cross_planes(box_ray* ray, real end, real way_ends, integer* crossed)
 {
   for (int a = 0; a < 3; ++a)
@@ -160,7 +163,8 @@ static integer index_step(const box_ray* ray, const integer* crossed, const int*
   return step;
 }
 
-// Positions the ray at its entry into the box: the voxel's index in the grid, and in the box.
+// Positions the ray at its entry into the emitting box. Sets the voxel's index in sigma_t (`index`) and in emission
+// (`shining`).
 static void enter_box(const turned_scene* s, const real* point, box_ray* ray, integer* index, integer* shining)
 {
   *shining = s->sourceBase;
@@ -177,8 +181,9 @@ static void enter_box(const turned_scene* s, const real* point, box_ray* ray, in
   }
 }
 
-// Integrates emission along the ray through the box.
-//   received  transmittance from the box to the point
+// Integrates emission, attenuated on the path to the point, along the ray through the emitting box: radiance,
+// W / (length^2 sr).
+//   received  transmittance from the emitting box to the point
 //   clear     null, or receives the integral without extinction
 static void see_box(const turned_scene* s, const real* point, box_ray* ray, real received, const __global float* sigma,
   const __global float* emission, real* radiance, real* clear)
@@ -214,7 +219,7 @@ static void see_box(const turned_scene* s, const real* point, box_ray* ray, real
     cross_planes(ray, end, ray->leave, crossed);
     index += index_step(ray, crossed, s->strides);
     shining += index_step(ray, crossed, s->sourceStrides);
-    index = clamp(index, (integer)0, (integer)s->last); // rounding may step past the box
+    index = clamp(index, (integer)0, (integer)s->last); // rounding may step beyond the last voxel
     shining = clamp(shining, (integer)0, (integer)s->sourceLast);
     now = end;
     under_way = now < ray->leave && (clear ? (integer)-1 : received > (real)1e-35f);

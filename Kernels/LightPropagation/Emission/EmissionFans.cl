@@ -1,15 +1,17 @@
-// The light of a localised emission far from it, along fans of rays that many voxels share. Options:
+// Light of a localised emission in voxels far from it, along fans of rays that many voxels share. Options:
 //   CHANNELS  1
 //   NET_FLUX  1: compute net flux
 //
-// A fan consists of all rays from one point of the emitting box into one 24th of space, on a grid of tangents fine
-// enough that every voxel of the last layer contains a ray. Each ray stores the light it carries to every layer; each
-// voxel takes the mean of the rays that cross it (numerics.md, Eqs. (40a), (40b)). The rays of a SIMD packet lie in one
-// row: they cross planes between rows together, and at most one plane each between voxels of a row per step.
+// A fan consists of all rays from one point of the emitting box into one 24th of the sphere of directions, on a grid of
+// tangents fine enough that a ray crosses every voxel of the last layer. For each ray and layer, the light that the ray
+// carries is stored; each voxel averages over the rays that cross it (numerics.md, Eqs. (40a), (40b)). The rays of a
+// SIMD packet belong to one row of a fan: they cross planes between rows of voxels together, and at most one plane
+// between voxels of a row per step.
 
 #include "LightPropagation/Emission/EmissionBox.cl"
 
-// Accepted difference of the two halves of the fans, in units of the requested error: their mean is more accurate.
+// Accepted difference of the two halves of the fans, in units of EmissionInfo::uneven: the mean of both halves is more
+// accurate than their difference suggests.
 #define OF_HALVES 3.0f
 #define DIM 1e-6f // transmittance below which the halves of the fans need not agree
 
@@ -20,8 +22,9 @@ static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* tu
   turn_scene(s, &nowhere, fan->order, fan->turned, turned, &turned_nowhere);
 }
 
-// Copies sigma_t, with 0 in the emitting box: the extinction that rays undergo after leaving it. Voxels along a fan's
-// second axis are contiguous, then those along its third.
+// Copies sigma_t to `outside`, with 0 in the emitting box: the extinction that rays undergo after leaving the box.
+// Voxels
+// along the fan's second axis are contiguous, followed by those along its third axis. One work-item per voxel.
 __kernel void lay_out(
   EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first, __global float* outside)
 {
@@ -39,7 +42,9 @@ __kernel void lay_out(
   outside[FanMargin + to] = inside ? 0.0f : sigma[from];
 }
 
-// Sets up a line through a point of the emitting box, in both directions through the box.
+// Sets up a ray on the line through a point of the emitting box: positions of the box's faces on it, ahead of the point
+// and
+// behind.
 static void begin_line(const turned_scene* s, const float* point, const real* way, box_ray* ray)
 {
   ray->enter = -1e30f;
@@ -57,8 +62,8 @@ static void begin_line(const turned_scene* s, const float* point, const real* wa
   }
 }
 
-// Radiance at the end of the line in the box, divided by the density of points along it, W / sr. Points are distributed
-// in proportion to emission, so that this is the same for all lines if the box does not attenuate.
+// Radiance where a line leaves the emitting box, divided by the density of sample points along the line, W / sr. Points
+// are distributed in proportion to emission, so that this is the same for all lines if the box does not attenuate.
 static real weigh_line(const turned_scene* s, const float* point, const real* way, float emitted,
   const __global float* sigma, const __global float* emission)
 {
@@ -74,19 +79,19 @@ static real weigh_line(const turned_scene* s, const float* point, const real* wa
   return seen[0] * emitted / fmax(clear[0], (real)1e-30f);
 }
 
-// A packet of adjacent rays of a fan.
+// Origin and tangents of a packet of adjacent rays of a fan.
 typedef struct
 {
   float point[3];        // origin, voxels
   float low[2], high[2]; // smallest and largest tangent along the second and the third axis
 } line_packet;
 
-// Whether a packet may still reach voxels of its part of space in this layer or beyond.
+// Whether a packet may still reach voxels of its 24th of space, in this layer or beyond.
 static bool is_wanted(
   const EmissionInfo* s, const turned_scene* turned, const FanInfo* fan, const line_packet* packet, int layer)
 {
   const float near = layer - packet->point[0], far = near + 1.0f;
-  // no voxel of this part of space is farther aside
+  // lateral limit of this 24th of space in this layer
   const float away = layer + 1.0f - turned->sourceFirst[0] - 0.5f * turned->sourceSize[0];
   bool wanted = true;
   for (int a = 1; a < 3; ++a)
@@ -101,19 +106,20 @@ static bool is_wanted(
   return wanted;
 }
 
-// The rays of a packet and their current state.
+// Current state of a packet of rays in follow_fan().
 typedef struct
 {
   float point[2], row_tangent; // position of the origin, tangent of the row: second and third axis
-  real tangent, inverse;       // tangents along the second axis, and their inverses
+  real tangent, inverse;       // tangents of the rays along the second axis, and their inverses
   real per_layer;              // path length per layer
-  real tau;                    // optical length so far
-  real kept;                   // transmittance, averaged over the voxel that the ray is in at `sample`
-  float sample;                // layers from the origin
+  real tau;                    // optical length from the emitting box
+  real kept;                   // transmittance at `sample`, averaged over the voxel there
+  float sample;                // distance from the origin at which light is sampled, layers
 } fan_lines;
 
-// Advances the rays from `from` to `to`, in layers from the origin, within one row of voxels. No ray may cross more
-// than one plane.
+// Advances the rays from `from` to `to`, in layers from the origin, within one row of voxels. Requires that no ray
+// crosses
+// more than one voxel plane.
 static void cross_row(const turned_scene* s, const FanInfo* fan, const __global float* row, int last, float from,
   float to, fan_lines* lines)
 {
@@ -122,7 +128,7 @@ static void cross_row(const turned_scene* s, const FanInfo* fan, const __global 
   const real plane = clamp((fmax(begin, end) - lines->point[0]) * lines->inverse, (real)from, (real)to);
   const real middle = select((real)to, plane, begin != end);
   const integer low = clamp(to_integer(fmin(begin, end)), (integer)0, (integer)last);
-  const bool turned = fan->strides[1] < 0; // then voxels are in reverse order in memory
+  const bool turned = fan->strides[1] < 0; // whether voxels are in reverse order in memory
   real one, other;
   take_pairs(row, turned ? -1 - low : low, &one, &other);
   const integer as_they_lie = turned ? begin > end : begin <= end;
@@ -158,7 +164,7 @@ static void cross_layer(const turned_scene* s, const EmissionInfo* info, const F
   }
 }
 
-// Converts light per solid angle to the mean over a voxel: the average of 1 / r^2 over the layer.
+// Factor from light per solid angle to the mean over a voxel: the average of 1 / r^2 over the layer, 1/length^2.
 static real spread(const turned_scene* s, const fan_lines* lines, float layers)
 {
   const float forward = layers * s->spacing[0], up = lines->row_tangent * lines->sample * s->spacing[2];
@@ -168,12 +174,12 @@ static real spread(const turned_scene* s, const fan_lines* lines, float layers)
   return inverse * (1.0f + deep * (8.0f * forward * forward * inverse - 2.0f));
 }
 
-// Traces the rays of a fan.
+// Traces the rays of fans. One work-item per packet of rays, row, and fan.
 // points    origins in the permuted scene, [point][FanPointFloats]
-// tangents  of the rays, without the offset of the point
-// outside   see lay_out()
-// light     W / length^2 that the ray carries to the voxel it is in, and last the flux density through the face:
-//           [point][layer][row][line]
+// tangents  tangents of the rays along the second axis, without the offset of the point
+// outside   extinction outside the emitting box, see lay_out()
+// light     fluence that the ray contributes to the voxel it is in, W / length^2, and for the last layer index flux
+//           density through the face: [point][layer][row][line]
 __kernel void follow_fan(EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first,
   const __global float* outside, const __global float* points, const __global float* tangents,
   const __global float* emission, __global float* light)
@@ -225,15 +231,15 @@ __kernel void follow_fan(EmissionInfo s, FanInfo fan, const __global float* sigm
   store_real(weight * left * inverse * inverse * (along[0] / lines.per_layer), fan.layers * all, to);
 }
 
-// Number of a fan's rays along one axis that lie below a position at a depth. Two such numbers bound the rays that
-// cross a voxel there.
+// Number of a fan's rays, along one axis, that lie below a position at a depth. The rays that cross a voxel lie between
+// the numbers for its two borders.
 //   before  index of the ray with tangent 0, negated
 static integer lines_up_to(real place, float per_voxel, float before, int count)
 {
   return clamp(to_integer(ceil(place * per_voxel - before)), (integer)0, (integer)count);
 }
 
-// Adds the light of rays of one row to adjacent voxels.
+// Adds the light of rays of one row of a fan to the sums of adjacent voxels.
 //   got        light of one ray for each voxel
 //   aside, up  tangents of the ray and of the row, times the voxel's edge
 //   sums       [fluence, net flux along the permuted axes]
@@ -250,7 +256,8 @@ static void add_lines(const turned_scene* s, real got, real aside, float up, rea
   sums[3] += part * up;
 }
 
-// Adds the mean of the rays of fan p that cross adjacent voxels (numerics.md, Eqs. (40a), (40b)), or cells of the face.
+// Adds to `sums` the mean of the rays of fan p that cross adjacent voxels (numerics.md, Eqs. (40a), (40b)), or adjacent
+// cells of the face.
 //   layer  from 0; fan->layers is the face
 //   at     position along the second and the third axis
 static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer, real at, int row_at,
@@ -283,8 +290,8 @@ static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer,
   }
 }
 
-// Number of the 24 parts of space that share a voxel (its border may lie in several), if it lies in a part whose axes
-// all point away from the box and whose first axis is that of the largest distance; else 0.
+// Number of the 24 parts of space in which a voxel lies (several if it lies on a border of parts), or 0 if it is not in
+// the part of the permuted scene: all axes point away from the box, and the first one is that of the largest distance.
 //   distance  half voxels from the centre of the box along each axis
 static int parts_of_space(const int* distance)
 {
@@ -300,7 +307,7 @@ static int parts_of_space(const int* distance)
   return parts * (1 + (distance[1] == distance[0]) + (distance[2] == distance[0]));
 }
 
-// Distance of a voxel, or of a cell of the face, from the centre of the box along each axis, in half voxels.
+// Distance of a voxel, or of a cell of the face, from the centre of the emitting box along each axis, in half voxels.
 static void find_distance(const turned_scene* s, const int* at, bool is_face, int* distance)
 {
   for (int a = 0; a < 3; ++a)
@@ -309,13 +316,13 @@ static void find_distance(const turned_scene* s, const int* at, bool is_face, in
   }
 }
 
-// Index of a voxel of the permuted scene.
+// Index in the original grid of a voxel of the permuted scene.
 static ulong voxel_index(const turned_scene* s, const int* at)
 {
   return s->base + (long)at[0] * s->strides[0] + (long)at[1] * s->strides[1] + (long)at[2] * s->strides[2];
 }
 
-// Index of a cell of the face at the end of a fan.
+// Index, among the cells of all faces (FanFaceFirst), of a cell of the face at the end of a fan.
 static ulong cell_index(const EmissionInfo* s, const FanInfo* fan, const turned_scene* turned, const int* at)
 {
   const int sizes[2] = { s->size[fan->order[1]], s->size[fan->order[2]] };
@@ -324,9 +331,12 @@ static ulong cell_index(const EmissionInfo* s, const FanInfo* fan, const turned_
   return fan->faceFirst + (ulong)v * sizes[0] + u;
 }
 
-// Adds the fans in memory to the sums over all fans:
-//   path    W / length^2, [voxel];  flux  the same, [x, y, z][stride];  halves  path of the first half of the fans
-//   faces   outgoing flux density through the box's faces, W / length^2, [cell];  face_halves  that of the first half
+// Adds the light of the fans in memory to the sums over all fans. One work-item per packet of voxels, row, and layer.
+//   path         fluence, W / length^2, [voxel]
+//   flux         net flux, W / length^2, [x, y, z][stride]
+//   halves       fluence of the first half of the fans, [voxel]
+//   faces        outgoing flux density through the box's faces, W / length^2, [cell]
+//   face_halves  outgoing flux density of the first half of the fans, [cell]
 __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* points, const __global float* light,
   __global float* path, __global float* flux, ulong stride, __global float* halves, __global float* faces,
   __global float* face_halves)
@@ -383,15 +393,18 @@ __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* po
   }
 }
 
-// Whether the two halves of the fans agree, relative to their sum or to a small fraction of the light without
-// extinction, `clear`.
+// Whether the two halves of the fans agree: their difference is small relative to their sum, or to a small fraction of
+// the light without extinction.
+//   all         light of all fans;  first_half  light of the first half
+//   clear       light of all fans without extinction
 static bool agree(const EmissionInfo* s, float all, float first_half, float clear)
 {
   return fabs(all - 2.0f * first_half) <= OF_HALVES * s->uneven * fmax(all, DIM * clear);
 }
 
-// found    1: the two halves of the fans agree; -1: the voxel is too close for fans; else 0
-// emitted  integral of emission over the box, times the number of fans
+// Compares the two halves of the fans in each voxel.
+// found    1: the two halves of the fans agree; -1: the voxel is too close to the emission for fans; else 0
+// emitted  integral of emission over the emitting box, times the number of fans
 __kernel void judge_voxels(
   EmissionInfo s, float emitted, const __global float* path, const __global float* halves, __global float* found)
 {
@@ -409,7 +422,8 @@ __kernel void judge_voxels(
   found[i] = farthest < s.near ? -1.0f : agree(&s, path[i], halves[i], emitted / squared) ? 1.0f : 0.0f;
 }
 
-// judge_voxels() for the cells of a face; -1 also where the face's cells are farther aside than ahead.
+// Compares the two halves of the fans in each cell of a face, as judge_voxels() does in voxels.
+// found  also -1 in cells that are farther from the emission laterally than along the face's normal
 __kernel void judge_cells(EmissionInfo s, int axis, int up, ulong first, float emitted, const __global float* faces,
   const __global float* halves, __global float* found)
 {
@@ -420,7 +434,7 @@ __kernel void judge_cells(EmissionInfo s, int axis, int up, ulong first, float e
   const int aside = max(abs(2 * at[0] + 1 - 2 * s.sourceFirst[u] - s.sourceSize[u]),
     abs(2 * at[1] + 1 - 2 * s.sourceFirst[v] - s.sourceSize[v]));
   const float away = 0.5f * ahead * s.spacing[axis];
-  const bool far = ahead > s.near && aside <= ahead; // some layer of fans lies before it
+  const bool far = ahead > s.near && aside <= ahead; // fans have a layer of voxels before this cell
   const bool even = agree(&s, faces[first + i], halves[first + i], emitted / fmax(away * away, 1e-30f));
   found[first + i] = !far ? -1.0f : even ? 1.0f : 0.0f;
 }

@@ -15,14 +15,16 @@ namespace
 /// Initial number of fans into each part of space: two halves, each of two mirrored pairs.
 constexpr int FewestPoints = 8;
 constexpr int MostPoints = 1024; ///< maximum number of fans into each part of space
-/// Fraction of the voxels, per fan, that is left to rays of their own rather than doubling the fans.
+/// Maximum fraction of the voxels, per fan, whose two halves may differ without doubling the fans; these voxels trace
+/// rays
+/// individually.
 constexpr double FewLeft = 0.001;
-constexpr double LinesPerVoxel = 1.02;      ///< rays per voxel edge in the last layer: every voxel contains a ray
-constexpr int LineStep = 16;                ///< the number of lines is a multiple of this: the widest packet
+constexpr double LinesPerVoxel = 1.02; ///< rays per voxel edge in the last layer, so that a ray crosses every voxel
+constexpr int LineStep = 16; ///< the number of lines is a multiple of this, the width of the widest SIMD packet
 constexpr std::size_t KeptFloats = 1 << 24; ///< approximate size of the fans in memory at a time: 64 MiB
 constexpr int NearGap = 3;                  ///< voxels between the emitting box and the nearest voxel that uses fans
 
-/// Sobol's sequence in six dimensions (Joe and Kuo 2008).
+/// Sobol's low-discrepancy sequence in six dimensions (Joe and Kuo 2008).
 class Sobol
 {
 public:
@@ -47,9 +49,11 @@ public:
     }
   }
 
-  /// Point n, 0 to 1. The sequence is shifted and folded (baker's transform): the mean of the first 2^n points is 1/2
-  /// for every n, whereas that of the original sequence is lower by half a cell (an eighth for four points). The shift,
-  /// as a fraction of a cell, is never near 0 or 1/2, where the fold would make points coincide.
+  /// Coordinate of point n along a dimension, 0 to 1. The sequence is shifted and folded (baker's transform): the mean
+  /// of the
+  /// first 2^n points is 1/2 for every n, whereas that of the original sequence is lower by half a cell (an eighth for
+  /// four
+  /// points). The shift, as a fraction of a cell, is never near 0 or 1/2, where the fold would make points coincide.
   double At(int n, int dimension) const
   {
     int place = 0;
@@ -62,10 +66,10 @@ public:
   }
 
 private:
-  static constexpr int Bits = 9; ///< enough for MostPoints in pairs
+  static constexpr int Bits = 9; ///< bits of a point's index: enough for MostPoints / 2 points, each used for a pair
   static constexpr double Shift = 1.0 / 12.0;
 
-  /// Primitive polynomial over GF(2): its degree, inner coefficients, and initial direction numbers.
+  /// Primitive polynomial over GF(2): degree, inner coefficients, and initial direction numbers of one dimension.
   struct Polynomial
   {
     int degree, inner;
@@ -76,7 +80,7 @@ private:
   std::array<std::array<int, Bits>, Dimensions> Numbers = {};
 };
 
-/// The emitting box with its axes permuted and some of them reflected.
+/// The emitting box in the permuted and reflected axes of a fan.
 class TurnedBox
 {
 public:
@@ -94,8 +98,10 @@ public:
 
   std::array<int, 3> First, Size;
 
-  /// The point at given quantiles of the emission: along the first axis over the whole box, then along the other two
-  /// within the layer and row found so far.
+  /// The point at given quantiles of the emission, voxels: along the first axis over the complete box, then along each
+  /// other
+  /// axis within the layer and row already chosen.
+  /// @param parts  quantiles, 0 to 1
   /// @param swapped  the third axis comes before the second
   std::array<float, 3> PointAt(const std::array<double, 3>& parts, bool swapped) const
   {
@@ -187,7 +193,7 @@ public:
     this->FollowAll(0, this->Points, OfPart(monitor, 0.0, 0.5));
     while (this->AreManyLeft() && this->Points < MostPoints)
     {
-      // The fans so far become the first half.
+      // the fans traced so far become the first half
       this->Halves.CopyFrom(this->Light.path, 0, this->Halves.Size());
       this->FaceHalves.CopyFrom(this->Light.faces, 0, this->FaceHalves.Size());
       this->FollowAll(this->Points, 2 * this->Points, OfPart(monitor, 0.5, 1.0));
@@ -215,8 +221,7 @@ private:
     return values;
   }
 
-  /// Compares the two halves of the fans in all voxels. @return whether more than a few of the far voxels need more
-  /// fans
+  /// Compares the two halves of the fans in all voxels. @return whether too many far voxels still need more fans
   bool AreManyLeft()
   {
     const std::size_t voxels = this->Scene.volume.grid.VoxelCount();
@@ -242,7 +247,7 @@ private:
     }
   }
 
-  /// @param from, end  range of origins, for each part of space
+  /// Traces the fans into all 24 parts of space. @param from, end  range of origins in each part
   void FollowAll(int from, int end, const Monitor& monitor)
   {
     for (int part = 0; part < 24; ++part)
@@ -258,7 +263,7 @@ private:
         Define("NET_FLUX", this->Scene.volume.deposit.flux != nullptr));
   }
 
-  /// Copies sigma_t for the fans whose first axis is that of `fan`.
+  /// Fills Outside with a copy of sigma_t for the fans that have the same first axis as `fan`.
   void LayOut(const FanInfo& fan)
   {
     const SweepVolume& volume = this->Scene.volume;
@@ -269,7 +274,7 @@ private:
       layOut, cl::NullRange, cl::NDRange(size[fan.order[1]], size[fan.order[2]], size[fan.order[0]]));
   }
 
-  /// Describes the fans into one part of space. @return fan.layers is 0 if that part has no far voxels
+  /// Describes the fans into one of the 24 parts of space. @return layers is 0 if that part has no far voxels
   FanInfo Describe(int part) const
   {
     const EmissionInfo& info = this->Scene.info;
@@ -319,8 +324,9 @@ private:
     return fan;
   }
 
-  /// Whether all voxels of a fan's part of space are mirror images. Not if the number of voxels is odd: then the fan
-  /// shares the voxels in the middle with its own image.
+  /// Whether all voxels of a fan's part of space are mirror images of others, so that the fan is not traced. Not if the
+  /// grid
+  /// has an odd number of voxels along the mirrored axis: then the fan also lights the voxels in the middle.
   bool IsImage(const FanInfo& fan) const
   {
     int even = 0;
@@ -328,10 +334,12 @@ private:
     {
       even |= this->Scene.info.size[a] % 2 == 0 ? 1 << a : 0;
     }
-    return (~fan.turned & this->Scene.info.mirrored & even) != 0; // it propagates towards the high side
+    // the fan propagates towards the high side of a plane of symmetry
+    return (~fan.turned & this->Scene.info.mirrored & even) != 0;
   }
 
-  /// Origins, [point][FanPointFloats]; each pair are mirror images of each other in the second and third axis.
+  /// Origins [from, end) of fans, [point][FanPointFloats]; those of each pair are mirror images in the second and third
+  /// axis.
   std::vector<float> FindPoints(const FanInfo& fan, int from, int end) const
   {
     const TurnedBox box(this->Scene, fan);
@@ -394,7 +402,7 @@ private:
     }
   }
 
-  /// Buffers of the fans in memory, see EmissionFans.cl.
+  /// Arguments of follow_fan() and collect_fans() for the fans in memory.
   struct KeptFans
   {
     Buffer<float> points, tangents, light;
@@ -423,11 +431,11 @@ private:
   Device& TheDevice;
   const FanScene& Scene;
   const Buffer<float> Emission;
-  Buffer<float> Outside, Halves, FaceHalves; ///< as in EmissionFans.cl
-  int LaidOut = -1;                          ///< first axis of the fans for which Outside was copied; -1: none
+  Buffer<float> Outside, Halves, FaceHalves; ///< arguments of lay_out() and collect_fans()
+  int LaidOut = -1;                          ///< first axis of the fans for which Outside is valid; -1: none
   FanLight Light;
-  double Emitted = 0.0;      ///< integral of emission over the box, as in FanInfo
-  int Points = FewestPoints; ///< fans into each part of space, so far
+  double Emitted = 0.0;      ///< integral of emission over the emitting box, W / sr
+  int Points = FewestPoints; ///< fans into each part of space that are traced, or about to be traced
 };
 }
 

@@ -10,7 +10,7 @@
 
 namespace tyndall
 {
-/// The medium and its localised emission in one channel, as the fans of rays need them.
+/// Scene for GatherByFans(): a medium and its localised emission, in one channel.
 struct FanScene
 {
   const SweepVolume& volume;
@@ -18,26 +18,32 @@ struct FanScene
   std::vector<float> emission; ///< W / (length^3 sr), over the emitting box, x fastest
 };
 
-/// The light that fans carry to each voxel and through each cell of the box's faces. Values are valid only where
-/// `found` is 1.
+/// Result of GatherByFans(): light of a localised emission in each voxel and through each cell of the box's faces.
+/// Values are valid only where `found` (voxels) or `cellsFound` (cells) is 1.
 struct FanLight
 {
-  Buffer<float> path, flux; ///< W / length^2: mean over the voxel; flux is [x, y, z][stride], may be empty
-  /// 1: the voxel's value is accurate; less: it is too close to the emission, or the two halves of the fans differ
+  Buffer<float> path, flux; ///< fluence and net flux, voxel means, W / length^2; flux is [x, y, z][stride] or empty
+  /// For each voxel, 1: its value is accurate; 0: the two halves of the fans differ; -1: it is too close to the
+  /// emission.
   Buffer<float> found;
-  /// Outgoing flux density through the faces, W / length^2, and whether it is accurate; [cell] (FanFaceFirst).
+  /// Outgoing flux density through each cell of the box's faces, W / length^2, and 1 where it is accurate; index: see
+  /// FanFaceFirst.
   Buffer<float> faces, cellsFound;
 };
 
-/// The light of a localised emission in voxels far from it (numerics.md, Eqs. (40a), (40b)). Rays from points in the
-/// emitting box cross the whole grid, and every voxel on their way uses each of them. The cost is that of a few rays a
+/// Computes the light of a localised emission in voxels far from it (numerics.md, Eqs. (40a), (40b)). Rays from points
+/// in
+/// the emitting box cross the whole grid, and every voxel that a ray crosses uses it. The cost is that of a few rays
+/// per
 /// voxel, whereas rays traced for each voxel separately would all have to cross the grid to the emission.
 FanLight GatherByFans(Device& device, const FanScene& scene, const Monitor& monitor);
 
-/// Minimum distance, in half voxels, from the centre of the emitting box along an axis for a voxel to count as far.
+/// Minimum distance, in half voxels along an axis, between the centre of the emitting box and a voxel that uses fans of
+/// rays.
+/// @param sourceSize  size of the emitting box, voxels
 int FarFrom(const std::array<int, 3>& sourceSize);
 
-/// Index of the first cell of a face in the order -x, +x, -y, +y, -z, +z; for 6 the number of all cells. Within a face
-/// along axis a the cells along axis a + 1 are contiguous.
+/// Index of the first cell of face `face` (order -x, +x, -y, +y, -z, +z) among the cells of all faces of the grid; the
+/// number of all cells if `face` is 6. In a face across axis a, cells along axis a + 1 are contiguous.
 std::size_t FanFaceFirst(const Grid& grid, int face);
 }

@@ -1,21 +1,23 @@
-// Copies light to its mirror images, see EmissionMirrors.h. `mirrored` is a bit mask of axes.
+// Kernels of EmissionMirrors: find mirror symmetries of a scene, and copy light to mirror images. `mirrored` is a bit
+// mask
+// of the axes across which the scene is symmetric.
 
 #include "LightPropagation/Emission/EmissionRaysShared.h"
 
-// Whether a position along an axis is the mirror image of a lower one.
+// Whether position `at` along an axis is the mirror image of a lower position.
 static bool is_image(const EmissionInfo* s, int mirrored, int axis, int at)
 {
   return (mirrored >> axis & 1) != 0 && 2 * at >= s->size[axis] + (s->size[axis] & 1);
 }
 
-// The position on the low side of which this one is the mirror image; or itself.
+// Position along an axis whose light is copied to position `at`: its mirror image on the low side, or `at` itself.
 static int imaged(const EmissionInfo* s, int mirrored, int axis, int at)
 {
   return is_image(s, mirrored, axis, at) ? s->size[axis] - 1 - at : at;
 }
 
-// One work-item per row of voxels.
-// differs  [axis], set to 1 if some voxel's extinction differs from that of its mirror image
+// Finds axes across which extinction is not symmetric. One work-item per row of voxels.
+// differs  [axis], set to 1 if the extinction of any voxel differs from that of its mirror image
 __kernel void find_mirrors(
   EmissionInfo s, int mirrored, const __global float* sigma, ulong sigma_first, __global float* differs)
 {
@@ -55,8 +57,8 @@ __kernel void mark_images(EmissionInfo s, int mirrored, __global float* found)
   }
 }
 
-// Marks the cells of a face that are mirror images.
-// found  the face's cells start at `first`
+// Sets `found` to 1 in the cells of a face that are mirror images.
+// first  index of the face's first cell in `found`
 __kernel void mark_image_cells(EmissionInfo s, int mirrored, int face, ulong first, __global float* found)
 {
   const int axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -95,7 +97,9 @@ __kernel void copy_images(
 }
 
 // Copies light to the cells of a face that are mirror images.
-// faces  [cell][channel]: to the face's cells, from `first` on, from those that start at `from_first`
+// faces       [cell][channel]
+// from_first  first cell of the face that is read: of this face, or of the opposite one if it is its mirror image
+// first       first cell of the face that is written
 __kernel void copy_image_cells(
   EmissionInfo s, int mirrored, int face, ulong from_first, ulong first, int channels, __global float* faces)
 {

@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Whether the emission of a box of `size` voxels, x fastest, is symmetric across an axis; one channel.
+/// Whether one channel of the emission in a box of `size` voxels, x fastest, is symmetric across an axis.
 bool IsMirrored(const float* emission, const int* size, int axis)
 {
   const std::array<std::ptrdiff_t, 3> strides = { 1, size[0], static_cast<std::ptrdiff_t>(size[0]) * size[1] };

@@ -7,26 +7,30 @@
 
 namespace tyndall
 {
-/// Mirror symmetries of the scene: planes through the centres of the grid and of the emitting box across which
-/// extinction and emission are symmetric. The light is then symmetric, too: it is computed on the low side and copied
-/// to the high side.
+/// Mirror symmetries of a medium with a localised emission: planes through the centres of the grid and of the emitting
+/// box, across which extinction and emission are symmetric. The light has the same symmetry, so it is computed on the
+/// low
+/// side of each plane and copied to the high side.
 class EmissionMirrors
 {
 public:
   /// @param info  the grid and the emitting box
-  /// @param emission  of that box, [channel][voxel], x fastest
+  /// @param emission  in the emitting box, W / (length^3 sr), [channel][voxel], x fastest
   EmissionMirrors(
     Device& device, const SweepVolume& volume, const EmissionInfo& info, const std::vector<float>& emission);
 
-  /// Bit mask of the axes that have such a plane across them.
+  /// Bit mask of the axes that are normal to a plane of symmetry.
   int Axes() const { return this->Mirrored; }
-  /// Sets the entries of mirror images to 1, of voxels and of cells of the faces (FanFaceFirst), so that they are not
-  /// computed.
+  /// Sets to 1 the entries of `voxels` and `cells` (index: FanFaceFirst) that are mirror images of others, so that
+  /// their
+  /// light is not computed.
   void MarkImages(const Buffer<float>& voxels, const Buffer<float>& cells) const;
-  /// @param path  [channel][stride]
-  /// @param flux  [channel][x, y, z][stride], or empty
+  /// Copies the light of voxels to their mirror images.
+  /// @param path  path integrals, [channel][stride]
+  /// @param flux  their net flux, [channel][x, y, z][stride], or empty
   void CopyVoxels(const Buffer<float>& path, const Buffer<float>& flux) const;
-  /// @param faces  [cell][channel]
+  /// Copies the light of face cells to their mirror images.
+  /// @param faces  outgoing light, [cell][channel]
   void CopyCells(const Buffer<float>& faces) const;
 
 private:

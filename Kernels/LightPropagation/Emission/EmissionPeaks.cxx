@@ -11,13 +11,13 @@ namespace tyndall
 {
 namespace
 {
-/// A voxel counts as self-absorbing below this ratio of emission to absorbed incident light.
+/// Ratio of emission to absorbed incident light up to which a voxel counts as self-absorbing.
 constexpr double Hides = 2.0;
-constexpr double PartOfOne = 0.01; ///< minimum fraction of the emitted power for each peak
+constexpr double PartOfOne = 0.01; ///< minimum fraction of the medium's emitted power that each peak carries
 constexpr std::size_t MostPeaks = 16;
-constexpr double Widest = 0.125; ///< maximum width of a peak, in the box's longest edge
-constexpr double Hidden = 4.6;   ///< optical length beyond which a peak is not seen: 1% is left
-constexpr double Opaque = 3e4;   ///< optical thickness of a voxel above which a peak is left to the sweeps
+constexpr double Widest = 0.125; ///< maximum width of a peak, relative to the box's longest edge
+constexpr double Hidden = 4.6;   ///< optical length beyond which a peak is not visible (transmittance 1%)
+constexpr double Opaque = 3e4;   ///< optical thickness of a voxel above which its emission is swept, not a peak
 constexpr double Clear = 1.5;    ///< distance, in widths of the peak, over which its surroundings must be clear
 
 using Voxel = std::array<int, 3>;
@@ -34,11 +34,11 @@ std::size_t IndexOf(const Grid& grid, const Voxel& v)
   return (static_cast<std::size_t>(v[2]) * grid.size[1] + v[1]) * grid.size[0] + v[0];
 }
 
-/// The voxels far brighter than the mean of the others.
+/// Voxels that emit far more than the mean of all other voxels.
 struct BrightVoxels
 {
   std::vector<std::size_t> voxels; ///< in ascending order
-  double limit = 0.0;              ///< brightness above which emission belongs to a peak
+  double limit = 0.0;              ///< brightness, W / (length^3 sr): emission above it belongs to a peak
   double all = 0.0;                ///< sum of all voxels' brightness
   double Above(const Field& emission, std::size_t voxel) const
   {
@@ -89,7 +89,7 @@ BrightVoxels FindBright(const Medium& medium)
   return bright;
 }
 
-/// Connected groups of voxels, including neighbours at edges and corners.
+/// Sorts voxels into connected groups; voxels that share a face, an edge or a corner are connected.
 std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector<std::size_t>& voxels)
 {
   std::vector<std::vector<std::size_t>> groups;
@@ -128,7 +128,7 @@ std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector
   return groups;
 }
 
-/// The bounding box of a group of voxels.
+/// A peak with the bounding box of a group of voxels, without emission.
 EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
 {
   EmissionPeak peak;
@@ -150,7 +150,7 @@ EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
   return peak;
 }
 
-/// Whether a peak is small compared with the grid.
+/// Whether the width of a peak is at most an eighth of the grid's longest edge.
 bool IsSmall(const Grid& grid, const EmissionPeak& peak)
 {
   return peak.Width(grid) <= Widest * std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
@@ -215,7 +215,7 @@ bool IsSeen(const Medium& medium, const EmissionPeak& peak)
     {
       continue;
     }
-    double half = std::numeric_limits<double>::max(); // distance from the centre to the border of the peak
+    double half = std::numeric_limits<double>::max(); // distance from the peak's centre to its border along `way`
     for (int a = 0; a < 3; ++a)
     {
       way[a] /= length;
@@ -231,7 +231,8 @@ bool IsSeen(const Medium& medium, const EmissionPeak& peak)
   return clearest <= Hidden;
 }
 
-/// Whether a voxel is so thick that the light escaping from it cannot be resolved in single precision.
+/// Whether any voxel of a group is so optically thick that light escaping from it cannot be resolved in single
+/// precision.
 bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
 {
   const std::array<double, 3>& h = medium.grid.spacing;
@@ -246,7 +247,7 @@ bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
   });
 }
 
-/// Whether every voxel absorbs about as much of the incident light as it emits, in every channel.
+/// Whether every voxel of a group absorbs about as much of the incident light as it emits, in every channel.
 bool IsSelfAbsorbing(const Medium& medium, const std::vector<std::size_t>& group, const Rgb& comesIn)
 {
   return std::all_of(group.begin(), group.end(), [&](std::size_t voxel) {
@@ -260,7 +261,7 @@ bool IsSelfAbsorbing(const Medium& medium, const std::vector<std::size_t>& group
   });
 }
 
-/// Moves the emission above the limit to `peak`; the remainder stays in `smooth`.
+/// Moves the emission of a group's voxels above the limit to `peak`; the remainder stays in `smooth`.
 void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<std::size_t>& group, EmissionPeak& peak,
   std::vector<float>& smooth)
 {
@@ -346,7 +347,7 @@ SplitEmission Split(const Medium& medium, const Rgb& comesIn)
 
 namespace
 {
-/// Histogram of the voxels' brightness over all ranks: number of voxels and sum of brightness in each bin.
+/// Histogram of the brightness of all ranks' voxels: number of voxels and sum of their brightness in each bin.
 class BrightnessBins
 {
 public:
@@ -377,7 +378,7 @@ public:
   bool IsDominatedByFewVoxels(double most) const
   {
     double all = 0.0, bright = 0.0, counted = 0.0, voxels = 0.0;
-    std::size_t end = 0; // one past the bin that contains the last of them
+    std::size_t end = 0; // one past the bin that contains the last of the brightest voxels
     for (std::size_t bin = 0; bin < Bins; ++bin)
     {
       all += this->Sums[bin];
@@ -399,7 +400,8 @@ public:
   }
 
 private:
-  static constexpr std::size_t Bins = 512; ///< each an eighth of an octave wide; the last one holds all darker voxels
+  /// Number of bins, each an eighth of an octave wide; the last one holds all darker voxels.
+  static constexpr std::size_t Bins = 512;
   static constexpr double PerOctave = 8.0;
 
   std::size_t BinOf(double brightness) const

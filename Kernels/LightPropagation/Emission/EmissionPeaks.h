@@ -10,7 +10,7 @@
 
 namespace tyndall
 {
-/// A localised emission in a medium.
+/// A small, bright emitting region of a medium: its bounding box and the emission in it.
 struct EmissionPeak
 {
   std::array<int, 3> first = {}; ///< lowest voxel of its bounding box
@@ -24,14 +24,15 @@ struct EmissionPeak
   }
 };
 
-/// A medium's emission split into two parts that add up to it: a smooth one for a coarse quadrature, and localised
-/// peaks, whose light such a quadrature would carry through vacuum along a few rays only (ray effects).
+/// A medium's emission as the sum of a smooth field, which a coarse quadrature can sweep, and localised peaks, whose
+/// light
+/// such a quadrature would carry through vacuum along a few rays only (ray effects).
 struct SplitEmission
 {
   std::vector<EmissionPeak> peaks; ///< at most 16
-  std::vector<float> smooth; ///< the remainder, in the layout of the medium's emission; empty if there are no peaks
+  std::vector<float> smooth;       ///< emission minus peaks, laid out as Medium::emission; empty if there are no peaks
 
-  /// The emission without the peaks.
+  /// The medium's emission without the peaks, W / (length^3 sr).
   Field Smooth(const Medium& medium) const
   {
     Field field = medium.emission;
@@ -46,10 +47,10 @@ struct SplitEmission
 /// flame). A dark solid that emits hardly more than it absorbs of the incident light is no peak either: its emission
 /// and its shadow, which sweeps cast, are accurate together if both use the same directions. The limits: numerics.md,
 /// section 5.6.
-/// @param comesIn  mean incident radiance at the box's faces, W / (length^2 sr)
+/// @param comesIn  mean incident radiance at the domain's faces, W / (length^2 sr)
 SplitEmission Split(const Medium& medium, const Rgb& comesIn = {});
 
-// The limits of Split() that depend on the voxels' brightness alone; GlobalStatistics.h uses them, too.
+// Limits that Split() and MayHaveEmissionPeaks() apply to the brightness of voxels.
 constexpr std::size_t EmissionBrightPart = 64; ///< at most one voxel in this many is part of a peak
 constexpr double EmissionOutshines = 4.0; ///< peaks exceed this multiple of the mean emission of the remaining voxels
 constexpr double EmissionPartOfAll = 0.5; ///< minimum fraction of the emitted power that all peaks together carry
@@ -58,7 +59,7 @@ constexpr double EmissionPartOfAll = 0.5; ///< minimum fraction of the emitted p
 double EmissionBrightness(const Field& emission, std::size_t voxel);
 
 /// Whether a few bright voxels dominate the emission, so that a serial solve might trace their light along exact rays
-/// (EmissionPeaks.h), which a solve on several ranks does not. Necessary, not sufficient: a serial solve also requires
-/// that the voxels lie close together and do not absorb their own emission. Collective.
+/// (Split()), which a solve on several ranks does not. Necessary, not sufficient: Split() also requires that the voxels
+/// lie close together and do not absorb their own emission. Collective.
 bool MayHaveEmissionPeaks(const PropagationProblem& problem);
 }

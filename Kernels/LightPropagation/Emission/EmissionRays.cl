@@ -1,4 +1,4 @@
-// The light of a localised emission, gathered by each voxel along straight rays. Options:
+// Light of a localised emission, gathered by each voxel along straight rays. Options:
 //   CHANNELS  1, or 3 that share sigma_t
 //   NET_FLUX  1: compute net flux
 //   MOST      maximum number of rays from a voxel to the emitting box
@@ -30,7 +30,7 @@ static void begin_ray(const turned_scene* s, const lit_voxel* voxel, const real*
   ray->enter = fmin(ray->enter, ray->leave); // rounding may put the entry behind the exit
 }
 
-// Traces the ray from voxel `begin` of the grid to the box. @return its optical length
+// Traces a ray from voxel `begin` of the grid to the emitting box. @return optical length from the point to the box
 static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const __global float* sigma)
 {
   integer index = begin, crossed[3];
@@ -51,12 +51,12 @@ static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const 
 }
 
 // Traces rays from points to the emitting box and through it. Computes the radiance at the points, W / (length^2 sr),
-// [CHANNELS] (numerics.md, Eq. (40)). The extinction in the receiving voxel itself is averaged over the whole line
-// through that voxel.
-//   point      in voxels, along x, y, z
-//   way        unit vectors towards the box
-//   sigma      of the grid
-//   emission   of the box, W / (length^3 sr), [CHANNELS][voxel]
+// [CHANNELS] (numerics.md, Eq. (40)). The extinction in the receiving voxel is averaged over the line through that
+// voxel.
+//   point      position along x, y, z, voxels
+//   way        unit vectors towards the emitting box
+//   sigma      extinction of the grid, 1/length
+//   emission   of the emitting box, W / (length^3 sr), [CHANNELS][voxel]
 static void trace(const turned_scene* s, const lit_voxel* voxel, const real* point, const real* way,
   const __global float* sigma, const __global float* emission, real* radiance)
 {
@@ -76,8 +76,9 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
   see_box(s, point, &ray, received * left, sigma, emission, radiance, 0);
 }
 
-// Solid angle of each side of the box through which light arrives, as seen from the voxel's centre; 0 for the other
-// sides. At least an eighth of the largest one, since it is larger as seen from other points of the voxel.
+// Solid angle, seen from the voxel's centre, of each side of the emitting box through which light arrives; 0 for the
+// other
+// sides. At least an eighth of the largest one, since a side's solid angle is larger from other points of the voxel.
 static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* solid_angles)
 {
   float largest = 0.0f;
@@ -105,20 +106,20 @@ static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* sol
   }
 }
 
-// values[axis + shift], for each SIMD lane.
+// values[(axis + shift) % 3], for each SIMD lane.
 static inline real along(const real* values, integer axis, int shift)
 {
   const real other = select(values[(2 + shift) % 3], values[(1 + shift) % 3], axis == (integer)1);
   return select(other, values[shift % 3], axis == (integer)0);
 }
 
-// Traces rays to the box. A lattice provides points in the voxel and directions that are uniform over the solid angles
-// of the box's sides: its first coordinate selects the side, in proportion to its solid angle; the remainder of that
-// coordinate and the second one, (u, v) from 0 to 1, parametrise the angles by tan(x / 2) and sin (numerics.md, Eq.
-// (41)).
+// Gathers light along rays to the emitting box. A lattice provides points in the voxel and directions that are uniform
+// over the solid angles of the box's sides: its first coordinate selects the side, in proportion to its solid angle;
+// the remainder of that coordinate and the second one, (u, v) from 0 to 1, parametrise the angles by tan(x / 2) and sin
+// (numerics.md, Eq. (41)).
 //   from, end  range of rays, a multiple of REAL_WIDTH
-//   points     [u, v, x, y, z][MOST]
-//   sums       their mean, [channel][fluence, net flux along x, y, z]
+//   points     lattice, [u, v, x, y, z][MOST]
+//   sums       mean over the rays, W / length^2, [channel][fluence, net flux along x, y, z]
 static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const float* solid_angles, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
 {
@@ -193,17 +194,17 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
   }
 }
 
-// The transformations of the scene (permutations and reflections of its axes) that make equivalent voxels and faces
-// receive equal light: one only, unless a voxel lies symmetrically with respect to the emission.
+// Transformations of the scene (permutations and reflections of its axes) that make equivalent voxels and faces receive
+// equal light: one only, unless a voxel lies symmetrically with respect to the emission.
 typedef struct
 {
   int permutations[6][3]; // permutations of the scene's axes
   int count;
-  int turned, either; // bit masks of axes that are reflected, and of those that are used both ways
+  int turned, either; // bit masks of axes that are reflected, and of axes that are used in both senses
 } ways_to_turn;
 
-// Order of the axes: first the normal of a receiving face, then by distance from the centre of the emission, by its
-// size, and by the voxel's size.
+// Whether axis a precedes axis b in the permuted scene. Order: the normal of a receiving face, then decreasing distance
+// from the centre of the emission, size of the emission, and size of the voxel.
 static bool goes_before(const EmissionInfo* s, const lit_voxel* voxel, const int* distance, int a, int b)
 {
   if ((a == voxel->across) != (b == voxel->across))
@@ -242,7 +243,7 @@ static void find_ways(const EmissionInfo* s, const lit_voxel* voxel, ways_to_tur
   }
 }
 
-// Mean over all these transformations of the rays [from, end) of the lattice.
+// Mean of the light along rays [from, end) of the lattice, over all transformations `ways` of the scene.
 static void gather_ways(const EmissionInfo* s, const lit_voxel* voxel, const ways_to_turn* ways, int from, int end,
   const __global float* points, const __global float* sigma, const __global float* emission, float* sums)
 {
@@ -294,8 +295,9 @@ static bool is_close(const EmissionInfo* s, const lit_voxel* voxel)
   return close;
 }
 
-// Gathers light with as many rays as the error requires, in each transformation of the scene: half of a lattice in two
-// transformations is less accurate than the whole lattice in one.
+// Gathers light in a voxel or through a face with as many rays as the accepted error requires, in each transformation
+// of
+// the scene: half of a lattice in two transformations is less accurate than the complete lattice in one.
 static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {
@@ -325,10 +327,11 @@ static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float
   }
 }
 
+// Gathers the light of voxels [first, count), one work-item per voxel.
 // path      W length, [channel][stride]
 // flux      W length, [channel][x, y, z][stride]
-// emission  of the emitting box, [channel][voxel]
-// found     above 0: voxels that have their light from fans (EmissionFans.cl), which are skipped
+// emission  of the emitting box, W / (length^3 sr), [channel][voxel]
+// found     above 0: voxels lit by fans (EmissionFans.cl), which are skipped
 __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* path, __global float* flux,
   ulong stride, const __global float* found, ulong first, ulong count)
@@ -354,9 +357,10 @@ __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong s
   }
 }
 
-// Outgoing flux density through cell i of a face of the grid, [cell][CHANNELS], W / length^2.
-// found  above 0: cells that have their light from fans (EmissionFans.cl), which are skipped
-// face_first  the face's first cell in both
+// Gathers the outgoing flux density through cells [first, count) of a face of the grid, one work-item per cell.
+// out         W / length^2, [cell][CHANNELS]
+// found       above 0: cells lit by fans (EmissionFans.cl), which are skipped
+// face_first  the face's first cell in `out` and `found`
 __kernel void gather_face(EmissionInfo s, int axis, int up, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* out, const __global float* found,
   ulong face_first, ulong first, ulong count)
@@ -380,7 +384,7 @@ __kernel void gather_face(EmissionInfo s, int axis, int up, const __global float
   }
 }
 
-// Power that a row of voxels removes from the light gathered in it, W.
+// Power that each row of voxels removes, by extinction, from the light gathered in it, W. One work-item per row.
 __kernel void take_rows(int row, const __global float* sigma, ulong sigma_first, const __global float* path,
   ulong path_first, __global float* taken)
 {
@@ -408,7 +412,7 @@ __kernel void take_fans(const __global float* brought, __global float* values, u
   values[first + i * stride] = factor * brought[i];
 }
 
-// The minimum of both: a voxel is done if all sets of fans have found its light.
+// values[i] = min(values[i], found[i]): a voxel counts as lit by fans only if it is lit by the fans of all channels.
 __kernel void take_least(const __global float* found, __global float* values, ulong first, ulong stride, float factor)
 {
   const ulong i = get_global_id(0);

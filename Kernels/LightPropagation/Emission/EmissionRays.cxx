@@ -23,19 +23,20 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestRays = 32; ///< initial number of rays per voxel, at least
-constexpr int MostRays = 4096; ///< rays per voxel, at most
-/// Approximate initial number of rays in all voxels, for the default error: about a second of work.
+constexpr int FewestRays = 32; ///< smallest initial number of rays per voxel
+constexpr int MostRays = 4096; ///< largest number of rays per voxel
+/// Approximate initial number of rays in all voxels together, for the default error: about a second of work.
 constexpr double AllRays = 0x1p22;
-constexpr double CloseRays = 0x1p20; ///< the same for voxels in the emitting box and next to it
+constexpr double CloseRays = 0x1p20; ///< the same number, for voxels in the emitting box and next to it
 const double UsualError = PropagationSettings().emissionError;
 
-/// Generating vector of a lattice in five dimensions, found component by component for 32 to 2048 points; with 4096 the
-/// largest error of Kobayashi's points at 20^3 fell from 0.5% to 0.3%. For each n the first 2^n points, in bit-reversed
-/// order, are a lattice of their own.
+/// Generating vector of a rank-1 lattice in five dimensions, found component by component for 32 to 2048 points; with
+/// 4096
+/// the largest error at the points of Kobayashi's benchmark at 20^3 fell from 0.5% to 0.3%. For each n the first 2^n
+/// points, in bit-reversed order, are a lattice, too.
 constexpr std::array<std::uint32_t, 5> LatticeVector = { 1, 807, 303, 119, 445 };
 
-/// Lattice points, [dimension][MostRays], in 0 to 1.
+/// Lattice points, [dimension][MostRays], coordinates between 0 and 1.
 std::vector<float> LatticePoints()
 {
   std::vector<float> points;
@@ -56,7 +57,7 @@ std::vector<float> LatticePoints()
   return points;
 }
 
-/// Initial number of rays per voxel: at most `all` in total, unless that would be fewer than `least` per voxel.
+/// Initial number of rays per voxel, a power of two: at most `all` over all voxels, but at least `least` per voxel.
 int FewestFor(double voxels, double all, int least)
 {
   int rays = MostRays;
@@ -67,7 +68,8 @@ int FewestFor(double voxels, double all, int least)
   return rays;
 }
 
-/// The light of one peak in the channels that share sigma_t.
+/// Computes the light of one peak in the channels of a volume, which share sigma_t, and adds it to the volume's
+/// deposit.
 class PeakLight
 {
 public:
@@ -132,8 +134,9 @@ private:
     this->Points = Buffer<float>(this->TheDevice, LatticePoints(), "rays");
   }
 
-  /// Whether the emission has the same distribution in all channels, up to a factor: fans originate in proportion to
-  /// one distribution.
+  /// Whether the peak's emission has the same distribution in all channels, up to a factor. All channels can then share
+  /// one
+  /// set of fans, whose origins are distributed in proportion to emission.
   bool ShineAlike() const
   {
     const std::size_t voxels = this->OfChannels.size() / this->Volume.channels;
@@ -160,7 +163,7 @@ private:
     this->Found = Buffer<float>(device, volume.stride, "voxels that fans light");
     this->FaceLight = Buffer<float>(device, FanFaceFirst(volume.grid, 6) * volume.channels, "light that leaves");
     this->CellsFound = Buffer<float>(device, FanFaceFirst(volume.grid, 6), "cells that fans light");
-    // In grids so large that each voxel would have few rays, fans give as many rays at lower cost.
+    // If the grid is so large that each voxel starts with the fewest rays, fans trace as many rays at lower cost.
     const bool fans = this->Scene.fewest == FewestRays;
     this->Found.Fill(fans ? 1.0f : 0.0f);
     this->CellsFound.Fill(fans ? 1.0f : 0.0f);
@@ -191,7 +194,9 @@ private:
     }
   }
 
-  /// Channels with the same distribution of emission share one set of fans; otherwise each has its own.
+  /// Gathers light by fans in all channels. Channels with the same distribution of emission share one set of fans;
+  /// otherwise
+  /// each channel has a separate one.
   void GatherByFansFor(const Monitor& monitor)
   {
     const SweepVolume& volume = this->Volume;
@@ -265,8 +270,9 @@ private:
     }
   }
 
-  /// Stores the escaped power by cell in the order of BoxFaces.h; in `power` the cells along the axis after the face's
-  /// are contiguous.
+  /// Stores the escaped power of a face's cells in EscapedByCell, in the order of BoxFaces.h; in `power` the cells
+  /// along the
+  /// axis after the face's normal are contiguous.
   void KeepCells(int face, const std::vector<float>& power)
   {
     const Grid& grid = this->Volume.grid;
@@ -349,15 +355,15 @@ private:
   EmissionInfo Scene = {};
 
   std::vector<float> OfChannels;  ///< emission of the bounding box, W / (length^3 sr), [channel][voxel]
-  Buffer<float> Points, Emission; ///< as in EmissionRays.cl
+  Buffer<float> Points, Emission; ///< arguments of gather_voxels(): lattice, and emission
   Rgb Emitted = {};               ///< W
   Buffer<float> Path, Flux;
-  Buffer<float> Found;      ///< 1: the voxel's light was found by fans; less: it needs rays of its own
-  Buffer<float> CellsFound; ///< the same for cells of the faces
+  Buffer<float> Found;      ///< by voxel, 1: lit by fans; less: the voxel traces rays individually
+  Buffer<float> CellsFound; ///< by face cell, 1: lit by fans; less: the cell traces rays individually
   Buffer<float> FaceLight;  ///< outgoing flux density through the faces, W / length^2, [cell][channel]
-  Rgb Taken = {};           ///< W, removed by the medium
+  Rgb Taken = {};           ///< power that the medium removes from the gathered light, W, by channel
   std::array<Rgb, 6> Escaped = {};
-  std::vector<float> EscapedByCell; ///< W, [channel][cell]; empty if not wanted
+  std::vector<float> EscapedByCell; ///< escaped power, W, [channel][cell]; empty if not requested
   SweepTally Tally;
 };
 }

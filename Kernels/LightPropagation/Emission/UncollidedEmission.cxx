@@ -12,11 +12,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Empty = 1e-4;                           ///< maximum optical thickness of an empty voxel
-constexpr std::size_t MostVoxels = std::size_t(1) << 21; ///< of a grid that gets a sweep of its own
+constexpr double Empty = 1e-4; ///< maximum optical thickness of an empty voxel
+constexpr std::size_t MostVoxels = std::size_t(1)
+  << 21;                               ///< largest grid in which emission from empty voxels is swept separately
 constexpr int FewestPerEdge = 12;      ///< minimum number of directions along the edge of a cube's face
-constexpr double RaysOfVoxel = 2304.0; ///< rays per voxel along all directions of a cube's face
-constexpr double RaysOfGrid = 64e6;    ///< maximum of rays over all voxels, but at least one per direction and voxel
+constexpr double RaysOfVoxel = 2304.0; ///< approximate number of rays per voxel along all directions of a cube's face
+constexpr double RaysOfGrid =
+  64e6; ///< maximum number of rays over all voxels, if that is at least one per direction and voxel
 }
 
 UncollidedEmission::UncollidedEmission(EmissionPeak peak, double error)
@@ -57,7 +59,9 @@ bool VacuumEmission::IsEmpty(double sigma_t, const Grid& grid)
   return sigma_t * *std::max_element(grid.spacing.begin(), grid.spacing.end()) <= Empty;
 }
 
-/// Uses an even number of directions along an edge: then none is parallel to an axis, which may be periodic.
+/// Uses an even number of directions along the edge of a cube's face: then no direction is parallel to an axis, which
+/// may be
+/// periodic.
 std::unique_ptr<const SweptDirections> VacuumEmission::DirectionsFor(
   const Grid& whole, const PropagationSettings& settings)
 {

@@ -9,11 +9,11 @@
 
 namespace tyndall
 {
-/// The uncollided flux of a localised emission, along exact rays (EmissionRays.h).
+/// Uncollided source: light of a localised emission along exact rays (EmissionRays.h).
 class UncollidedEmission : public UncollidedSource
 {
 public:
-  /// @param error  as for DepositEmission()
+  /// @param error  accepted difference of the two halves of a voxel's rays, relative to their sum
   UncollidedEmission(EmissionPeak peak, double error);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
@@ -25,17 +25,17 @@ private:
   double Error;
 };
 
-/// The uncollided flux of emission from empty voxels, swept along more directions and rays than scattered light. Since
-/// nothing attenuates this light, errors in path length are visible, and few rays make paths in the outermost emitting
-/// voxels too short (numerics.md, section 5.6).
+/// Uncollided source: light emitted in empty (transparent) voxels, swept along more directions and rays than scattered
+/// light. Since nothing attenuates this light, errors in path length are visible, and few rays make paths in the
+/// outermost
+/// emitting voxels too short (numerics.md, section 5.6).
 class VacuumEmission : public UncollidedSource
 {
 public:
-  /// Whether this source gets a sweep of its own: not in grids so large that the additional rays cost more than they
-  /// gain, nor if emissionError is 0.
+  /// Whether emission from empty voxels is swept separately: not if emissionError is 0, nor in grids so large that the
+  /// additional rays would cost more time than their accuracy is worth.
   static bool IsApart(const Grid& whole, const PropagationSettings& settings);
-  /// Whether a voxel is transparent to its own emission.
-  /// @param sigma_t  extinction, 1/length
+  /// Whether a voxel counts as empty: its optical thickness along its longest edge is at most 1e-4.
   static bool IsEmpty(double sigma_t, const Grid& grid);
   static std::unique_ptr<const SweptDirections> DirectionsFor(const Grid& whole, const PropagationSettings& settings);
 
