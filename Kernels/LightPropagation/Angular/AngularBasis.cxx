@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// Spherical harmonics of Numerics, scaled so that their squares average to 1.
+/// Values of SphericalHarmonics() at `omega`, scaled so that the square of each averages to 1 over all directions.
 std::vector<double> Harmonics(int degree, const std::array<double, 3>& omega)
 {
   std::vector<double> values = SphericalHarmonics(degree, omega);
@@ -20,11 +20,11 @@ std::vector<double> Harmonics(int degree, const std::array<double, 3>& omega)
   return values;
 }
 
-/// Smallest part of a function's square norm that must remain after projecting out the previous functions.
+/// Smallest fraction of a function's squared norm that must remain after projecting out the previous functions.
 constexpr double LeastLeft = 0.3;
 
-/// Rows that orthonormalise the harmonics on a quadrature, function by function (Gram-Schmidt).
-/// @return as many rows as are well-conditioned on the quadrature
+/// Rows of coefficients that orthonormalise the spherical harmonics on a quadrature, function by function
+/// (Gram-Schmidt).
 std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree)
 {
   const int count = (degree + 1) * (degree + 1);

@@ -14,9 +14,10 @@ namespace tyndall
 namespace
 {
 
-constexpr int FewestParts = 48;          ///< parts of a face's edge, if cells are not a grid
-constexpr double BorderTolerance = 1e-9; ///< relative tolerance for points on a border
-/// Smallest eigenvalue that is inverted, relative to the largest
+/// minimum number of sample cells along a face's edge, if cells are not a grid
+constexpr int FewestParts = 48;
+constexpr double BorderTolerance = 1e-9; ///< relative offset of points on a border between two cells
+/// Smallest eigenvalue that KeepFlux() inverts, relative to the largest.
 constexpr double LeastMode = 1e-3;
 
 int CellsPerEdge(int perFace, const std::string& name)
@@ -30,7 +31,7 @@ int CellsPerEdge(int perFace, const std::string& name)
   return n;
 }
 
-/// Tangent at half of `twicePosition`, of n cells along a face's edge; exactly odd about the middle.
+/// Tangent at position twicePosition / 2 along a face's edge of n cells; exactly odd about the middle.
 double Tangent(bool equiangular, int n, double twicePosition)
 {
   const double fromMiddle = (twicePosition - n) / n; // in [-1, 1]
@@ -39,7 +40,7 @@ double Tangent(bool equiangular, int n, double twicePosition)
   return std::copysign(tangent, fromMiddle);
 }
 
-/// Solid angle of the rectangle [0, s] x [0, t] at distance 1.
+/// Solid angle of the rectangle [0, s] x [0, t] in a plane at distance 1, sr.
 double CornerSolidAngle(double s, double t)
 {
   return std::atan2(s * t, std::sqrt(1.0 + s * s + t * t));
@@ -50,8 +51,8 @@ double SolidAngle(double s0, double s1, double t0, double t1)
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
 }
 
-/// Index within a face of the direction whose cell contains these tangents, if cells are not a grid. The set has the
-/// face's symmetry, so in each orbit the nearest direction is the one in the same eighth of the face.
+/// Index, among a face's directions, of the one whose cell contains the tangents (s, t), if cells are not a grid. The
+/// set has the face's symmetry, so in each orbit the nearest direction is the one in the same eighth of the face.
 int NearestOnFace(const DirectionSet& set, double s, double t)
 {
   const bool exchanged = std::abs(s) > std::abs(t);
@@ -87,13 +88,14 @@ Faces Cosines(const std::array<double, 3>& omega)
   return cosines;
 }
 
-/// An environment integrated over the cells of a quadrature.
+/// Integrals of an environment's radiance over the cells of a quadrature.
 struct Seen
 {
-  std::vector<Rgb> sum;               ///< radiance times solid angle, by direction
-  std::vector<double> solidAngle;     ///< solid angle of cells, by direction
-  std::array<Rgb, 6> flux = {};       ///< flux through the cube's faces, in the direction of travel
-  std::array<double, 6> cosines = {}; ///< the same for radiance 1
+  std::vector<Rgb> sum;           ///< integral of radiance over each direction's cell, W / length^2
+  std::vector<double> solidAngle; ///< solid angle of each direction's cell, sr
+  /// flux density through the cube's faces in the direction of travel, W / length^2
+  std::array<Rgb, 6> flux = {};
+  std::array<double, 6> cosines = {}; ///< the same flux density at radiance 1, sr
 
   explicit Seen(const DirectionSet& set)
     : sum(set.directions.size(), Rgb{})
@@ -121,14 +123,15 @@ struct Seen
   }
 };
 
-/// Samples the environment at the centres of parts of all cells, each part about half a pixel wide: a pixel spans pi /
-/// height, a cell about pi / (2 n). The number of parts is even, so that no centre is a pole, where the azimuth is
-/// undefined.
+/// Integrates an environment over the cells of a quadrature. Samples it at the centres of sample cells about half a
+/// pixel wide: a pixel spans pi / height, a cell of the quadrature about pi / (2 n). The number of sample cells along
+/// an edge is even, so that no centre is a pole, where the azimuth is undefined.
 Seen LookAround(const DirectionSet& set, const Environment& environment)
 {
   const int n = set.cellsPerEdge;
   const bool grid = set.orbits.empty();
-  const int fewest = grid ? 2 : 2 * ((FewestParts + n) / (2 * n)); // cells that are not a grid cut through parts
+  // finer if cells are not a grid, since they cut through sample cells
+  const int fewest = grid ? 2 : 2 * ((FewestParts + n) / (2 * n));
   const int parts = std::max(2 * std::clamp((environment.height / n + 1) / 2, 1, 128), fewest);
   const bool equiangular = set.equiangular || !grid;
   const auto tangent = [&](double part) { return Tangent(equiangular, n * parts, 2.0 * part); };
@@ -163,9 +166,9 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
   return seen;
 }
 
-/// Scales radiance so that the flux through each face equals the environment's, up to the quadrature's half-range
-/// error. The factors are 1 + sum of (factor of a face) (cosine); of all solutions, the one nearest to 1 (numerics.md,
-/// Eq. (31a)).
+/// Scales radiance so that the flux through each face of the cube equals the environment's, up to the quadrature's
+/// half-range error. A direction's factor is 1 + sum over faces of (coefficient of the face) (cosine to its normal); of
+/// all solutions, the one nearest to 1 (numerics.md, Eq. (31a)).
 void KeepFlux(const DirectionSet& set, const Seen& seen, std::vector<Rgb>& radiance)
 {
   for (int c = 0; c < 3; ++c)
@@ -242,8 +245,8 @@ DirectionSet EquiangularDirections(int perFace, const std::string& name)
   const int n = set.cellsPerEdge;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
-    // Computed for the cell's mirror image in the first octant of the face, sorted, so that equivalent cells agree to
-    // the last bit.
+    // Computed for the cell's mirror image in the first octant of the face, with sorted indices, so that the weights of
+    // equivalent cells agree to the last bit.
     const int i = static_cast<int>(d) % n;
     const int j = static_cast<int>(d) / n % n;
     const int u = std::min(std::max(i, n - 1 - i), std::max(j, n - 1 - j));

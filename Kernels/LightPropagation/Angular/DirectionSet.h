@@ -14,8 +14,9 @@ namespace tyndall
 struct DirectionOrbit
 {
   double across = 0.0, along = 0.0; ///< 0 <= across <= along < 1
-  double weight = 0.0;              ///< weight of each direction, sr
-  /// Added to the cosine when the nearest direction is determined, so that each cell's solid angle equals its weight
+  double weight = 0.0;              ///< weight of each direction of the orbit, sr
+  /// Offset that Nearest() adds to the cosine to a direction of this orbit, so that each cell's solid angle equals its
+  /// weight.
   double reach = 0.0;
 };
 
@@ -24,56 +25,62 @@ struct DirectionOrbit
 struct DirectionSet
 {
   int cellsPerEdge = 0; ///< n
-  /// Cells subtend equal angles at the centre; false: cells have equal size on the face
+  /// Whether cells subtend equal angles at the cube's centre; false: cells have equal size on the face.
   bool equiangular = false;
-  std::vector<Direction> directions; ///< 6 n n
-  /// Only in FittedDirections; otherwise empty. Cells are then not a grid: a cell consists of the directions nearest to
-  /// its own (see Nearest).
+  std::vector<Direction> directions; ///< 6 n n directions with weights in sr
+  /// Orbits of the directions, in FittedDirections only; otherwise empty. With orbits, cells are not a grid: a cell
+  /// consists of all directions that are nearest to its own direction (see Nearest).
   std::vector<DirectionOrbit> orbits = {};
-  std::vector<std::array<double, 2>> tangents = {}; ///< tangents of one face's directions, if there are orbits
+  std::vector<std::array<double, 2>> tangents = {}; ///< tangents of one face's directions; empty without orbits
 
   int PerFace() const { return this->cellsPerEdge * this->cellsPerEdge; }
 };
 
 /// The published quadrature (Gruson et al. 2012, section 3.1; Fattal 2009): cells of equal size on the cube's faces,
 /// all directions with the same weight. Its sums do not tend to integrals as n grows: the half-range flux is 1.6% too
-/// large with
-/// 25 directions a face and tends to 3.1% (numerics.md, section 3).
-/// @param perFace  directions per face, a square number, else InvalidInput
+/// large with 25 directions per face, and 3.1% in the limit (numerics.md, section 3).
+/// @param perFace  directions per face
+/// @throws InvalidInput if `perFace` is no square number, or above 4096
 DirectionSet PublishedDirections(int perFace);
 
-/// Quadrature with cells of equal angle, weighted by solid angle (numerics.md, Eqs. (15), (16)). It integrates 1,
-/// omega and omega omega exactly; half-range integrals have an error, see HalfRangeFlux. It is invariant under every
-/// rotation and reflection of the cube, to the last bit.
-/// @param perFace  directions per face, a square number, else InvalidInput that calls it `name`
+/// Quadrature with cells of equal angle, weighted by solid angle (numerics.md, Eqs. (15), (16)). It integrates 1, omega
+/// and omega omega exactly; half-range integrals have an error, see HalfRangeFlux. It is invariant under every rotation
+/// and reflection of the cube, to the last bit.
+/// @param perFace  directions per face
+/// @param name  name of the parameter in the error's text
+/// @throws InvalidInput if `perFace` is no square number, or above 4096
 DirectionSet EquiangularDirections(int perFace, const std::string& name = "DirectionsPerFace");
 
 /// Quadrature of the conservative scheme: nodes and weights are fitted so that the transmission of diffuse light
 /// through slabs of optical thickness 0.1 to 5 and the half-range flux are accurate to 0.04% with 25 directions per
 /// face (numerics.md, Eq. (16a)), to 0.7% with 9. It integrates 1, omega and omega omega exactly and has the symmetry
-/// of EquiangularDirections, to the last bit. With 16, 36 and 64 there are no directions with a cosine of 0. Fitted
-/// sets exist for 9, 16, 25, 36, 49, 64, 100 directions per face; for other numbers the result is that of
-/// EquiangularDirections.
-/// @param perFace  directions per face, a square number, else InvalidInput that calls it `name`
+/// of EquiangularDirections, to the last bit. With 16, 36 and 64 directions per face, no direction has a cosine of 0 to
+/// an axis. Fitted sets exist for 9, 16, 25, 36, 49, 64 and 100 directions per face; for other numbers the result is
+/// that of EquiangularDirections.
+/// @param perFace  directions per face
+/// @param name  name of the parameter in the error's text
+/// @throws InvalidInput if `perFace` is no square number, or above 4096
 DirectionSet FittedDirections(int perFace, const std::string& name = "DirectionsPerFace");
 
-/// FittedDirections, but EquiangularDirections for voxels over a hundred times longer along one axis than along
-/// another. For non-absorbing ones (spacing 1, 1, 1000), sweeps along fitted directions were observed to end with
-/// errors of 50% and a small error estimate; along equiangular directions they do not converge either, but report it.
+/// FittedDirections(), or EquiangularDirections() for voxels over a hundred times longer along one axis than along
+/// another. In non-absorbing media of such voxels (spacing 1, 1, 1000), sweeps along fitted directions were observed to
+/// end with errors of 50% and a small error estimate; along equiangular directions they do not converge either, but
+/// report it.
 DirectionSet DirectionsForVoxels(int perFace, const std::array<double, 3>& spacing);
 
-/// Half-range flux of isotropic light through a face, by the quadrature, relative to the exact pi (numerics.md, Eq.
-/// (17)): 0.9875 (equiangular) or 0.99992 (fitted) with 25 directions. The power of incident diffuse light is wrong by
-/// this factor.
+/// Half-range flux of isotropic light through a face of the cube, summed over the quadrature, relative to the exact
+/// value pi (numerics.md, Eq. (17)): 0.9875 (equiangular) or 0.99992 (fitted) with 25 directions per face. The power of
+/// incident diffuse light is wrong by this factor.
 double HalfRangeFlux(const DirectionSet& set);
 
-/// Direction through a face of the cube. @param s, t  tangents along the next axis (cyclically) and the one after it
+/// Unit vector from the cube's centre through a point of face `face`.
+/// @param s, t  tangents along the axis (cyclically) after the face's normal, and along the one after that
 std::array<double, 3> DirectionThroughFace(int face, double s, double t);
 
-/// Index of the direction whose cell contains `omega` (of any length except 0).
+/// Index of the direction of `set` whose cell contains `omega` (of any length except 0).
 int Nearest(const DirectionSet& set, const std::array<double, 3>& omega);
 
-/// Incident radiance in each direction from environment and sky, W / (length^2 sr): the mean over the direction's cell,
-/// so that a uniform environment remains uniform.
+/// Incident radiance in each direction of `set` from environment and sky, W / (length^2 sr): the mean over the
+/// direction's cell, so that a uniform environment remains uniform.
 std::vector<Rgb> BoundaryRadiance(const DirectionSet& set, const Environment& environment, const Rgb& sky);
 }

@@ -10,7 +10,8 @@ namespace tyndall
 {
 namespace
 {
-/// Orbits of a fitted quadrature; weights are relative to equal weights (numerics.md, Eq. (16a)).
+/// Tabulated orbits of a fitted quadrature. A weight of 1 means equal weights of all directions (numerics.md, Eq.
+/// (16a)).
 struct FittedSet
 {
   int perFace;
@@ -89,7 +90,7 @@ const std::vector<FittedSet>& FittedSets()
   return sets;
 }
 
-/// The tangents of an orbit on one face: 1, 4 or 8.
+/// Tangents (s, t) of an orbit's directions through one face of the cube: 1, 4 or 8.
 std::vector<std::array<double, 2>> TangentsOf(const DirectionOrbit& orbit)
 {
   std::vector<std::array<double, 2>> all;

@@ -7,9 +7,11 @@ namespace tyndall
 {
 namespace
 {
-/// Positions closer than this to a voxel's border count as on it, so that rounding does not decide ties.
+/// Distance from a voxel's border, voxels, below which a position counts as on the border, so that rounding does not
+/// decide ties.
 constexpr double OnBorder = 1e-9;
-/// A periodic axis with fewer planes is crossed several times before its ray pattern repeats.
+/// Minimum number of planes of a ray pattern along a periodic axis: rays cross shorter axes several times before the
+/// pattern repeats.
 constexpr int FewestPlanes = 128;
 
 bool Same(double a, double b)
@@ -32,7 +34,7 @@ Bundle EmptyBundle(const PlaneAxes& axes, const Grid& grid, const std::array<dou
   return bundle;
 }
 
-/// Index of the direction's mirror image in the plane across `axis`. The set contains it, since quadratures are
+/// Index of a direction's mirror image in the plane across `axis`. The set contains it, since quadratures are
 /// symmetric.
 int MirrorImage(const DirectionSet& set, int direction, int axis)
 {
@@ -46,8 +48,8 @@ int Sign(double x)
   return x < 0.0 ? -1 : 1;
 }
 
-/// Adds a direction to the bundle it belongs to, or to a new one.
-/// @param part  part of its power that marches along this axis
+/// Adds direction `d` to the bundle with the same segments and power, or to a new bundle.
+/// @param part  fraction of the direction's power that marches along this axis
 void Sort(
   std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid, const DirectionSet& set, int d, double part)
 {
@@ -79,9 +81,9 @@ void Sort(
   bundles.push_back(fresh);
 }
 
-/// Staggers the starts of bundles. If all rays start in the middle, they cross the box's sides in the same pattern,
+/// Moves the starts of bundles apart. If all rays start in the middle, they cross the box's sides in the same pattern,
 /// however many directions there are. The starts follow the low-discrepancy sequence of the plastic number, which fills
-/// a square evenly (Roberts 2018), in the order of the bundles' tangents, the same along every axis.
+/// a square evenly (Roberts 2018), in the order of the bundles' tangents, which is the same along every axis.
 void Stagger(std::vector<Bundle>& bundles)
 {
   std::vector<Bundle*> inOrder;
@@ -96,7 +98,8 @@ void Stagger(std::vector<Bundle>& bundles)
   double first = 0.5, second = 0.5;
   for (Bundle* bundle : inOrder)
   {
-    const bool diagonal = Same(bundle->tangentU, bundle->tangentV); // no axis has precedence
+    // same start along u and v, so that no axis has precedence
+    const bool diagonal = Same(bundle->tangentU, bundle->tangentV);
     bundle->startU = diagonal || bundle->tangentU < bundle->tangentV ? first : second;
     bundle->startV = diagonal || bundle->tangentU > bundle->tangentV ? first : second;
     first = std::fmod(first + 0.7548776662466927, 1.0);
@@ -109,7 +112,7 @@ bool IsMove(const Move& move)
   return move.depth <= 1.0;
 }
 
-/// A coordinate, as whole voxels and remainder in [0, 1).
+/// A coordinate in voxels, split into an integer number of voxels and a remainder in [0, 1).
 struct Position
 {
   double voxel, rest;
@@ -120,7 +123,7 @@ struct Position
   }
 };
 
-/// The move of a straight ray in a plane.
+/// Move of a straight ray in plane `plane`, if it crosses a voxel's border there; all of its power moves.
 Move WholeMove(double start, double tangent, int plane)
 {
   const Position now(start + tangent * plane);
@@ -128,13 +131,14 @@ Move WholeMove(double start, double tangent, int plane)
   return next.voxel > now.voxel ? Move{ std::min(1.0, (1.0 - now.rest) / tangent), 1.0 } : Move();
 }
 
-/// The plane in which a ray is at `depth` planes; a plane includes its end.
+/// Index of the plane that contains a depth, counted in planes from the start; the end of a plane belongs to it.
 int PlaneAt(double depth)
 {
   return std::max(static_cast<int>(std::ceil(depth - OnBorder)) - 1, 0);
 }
 
-/// Adds a move; another one in the same plane is shifted to the end of the previous plane.
+/// Adds a move at `depth`, in planes from the start. If the plane already has a move, that one is shifted to the end of
+/// the previous plane.
 void Insert(std::vector<Move>& moves, double depth, double part)
 {
   int plane = std::min(PlaneAt(depth), static_cast<int>(moves.size()) - 1);
@@ -150,7 +154,7 @@ void Insert(std::vector<Move>& moves, double depth, double part)
     moves[plane] = move;
     return;
   }
-  // If all previous planes have a move, moves are shifted to the next plane without one.
+  // All previous planes have a move: moves are shifted towards the next plane without one.
   const auto free = std::find_if_not(moves.begin(), moves.end(), IsMove);
   if (free != moves.end())
   {
@@ -159,8 +163,9 @@ void Insert(std::vector<Move>& moves, double depth, double part)
   }
 }
 
-/// The moves of rays that start at `start` in their voxel and move by `tangent` voxels per plane, tangent x planes in
-/// total: whole moves, and one partial move by the remainder (numerics.md, Eq. (21)).
+/// Moves along one axis, by plane, of rays that start at `start` in their voxel and move by `tangent` voxels per plane,
+/// tangent x planes in total: moves of all power, and one move by a fraction equal to the remainder (numerics.md, Eq.
+/// (21)).
 std::vector<Move> Moves(double start, double tangent, int planes)
 {
   std::vector<Move> moves(planes);
@@ -173,7 +178,7 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   const double part = std::min(all - whole, 1.0);
   const auto wholeAt = [&](int k, double more) { return (k + more - start) / tangent; };
   const auto partAt = [&](int before) { return (before + part * (1.0 - start)) / tangent; };
-  // No plane has two moves; the move is placed as late as there is room.
+  // The partial move is placed as late as possible without two moves in one plane.
   const auto hasRoom = [&](int before) {
     const int plane = PlaneAt(partAt(before));
     return (before == 0 || PlaneAt(wholeAt(before, 0.0)) < plane) &&
@@ -193,8 +198,8 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   return moves;
 }
 
-/// Adds moves in the bundle's own frame. Members may exchange the axes, so both have moves if only one axis is
-/// periodic.
+/// Adds moves along u and v to a bundle, unless both axes are periodic. A bundle's members may exchange these axes, so
+/// both have moves if only one axis is periodic.
 void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& periodic, int planes)
 {
   if (!periodic[axes.u] || !periodic[axes.v])
@@ -204,7 +209,8 @@ void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& 
   }
 }
 
-/// Copies of each bundle, with moves, for every point of the map's finer lattice.
+/// Copies of each bundle, with moves, for every point of the finer lattice of mapResolution x mapResolution rays per
+/// voxel.
 std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
   const std::array<bool, 3>& periodic, int mapResolution)
 {
@@ -234,8 +240,8 @@ bool Bundle::MovesBothWaysAtOnce() const
   return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
 }
 
-/// Moves at the same depth are combined if tangents and starts are equal; otherwise that of the larger tangent comes
-/// first, independently of the bundle's orientation.
+/// Moves along u and v are combined if tangents and starts are equal; if they are otherwise at the same depth, the move
+/// along the larger tangent precedes, independently of the bundle's orientation.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
   const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {

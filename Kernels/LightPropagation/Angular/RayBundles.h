@@ -12,98 +12,104 @@ namespace tyndall
 /// Geometry of the rays of light propagation maps in a grid, computed once, on the host, in double precision
 /// (numerics.md, section 4.2).
 ///
-/// Rays march along an axis of the grid, plane by plane. All rays of one direction start on the lattice of the voxels,
-/// so they cross a plane in the same pattern: at most three voxels per ray, and the whole map shifts at once.
-/// Directions that are mirror images of each other (and, if voxels are square across the axis, those with both tangents
-/// swapped) have segments of the same lengths. They form a Bundle, for which transmittance is computed once.
+/// Rays march along an axis of the grid, plane by plane of voxels. All rays of one direction start at the same position
+/// in their voxels, so they cross each plane in the same pattern of at most three voxels per ray, and the map of all
+/// rays shifts as one. Directions that are mirror images of each other (and, if voxels are square across the axis,
+/// directions with exchanged tangents) have segments of the same lengths. They form a Bundle, for which transmittance
+/// is computed once.
 ///
 /// Guarantees: every voxel is crossed by every segment, so that a source emits all of its power (Eq. (20)); one
-/// sideways move of the pattern is made by only a part of each ray's power, so that exactly the power of a direction
-/// enters through the box's sides (Eqs. (21), (28)).
+/// sideways move of the pattern is made by only a fraction of each ray's power, so that exactly the power of a
+/// direction enters through the box's sides (Eqs. (21), (28)).
 
-/// The part of a plane that a ray crosses in one voxel.
+/// Segment of a ray: its path through one voxel of a plane.
 struct Segment
 {
-  int moveU = 0; ///< voxels moved since the segment before, in the bundle's own frame (both tangents positive): 0 or 1
+  /// voxels moved along u since the previous segment, in the bundle's frame (both tangents positive): 0 or 1
+  int moveU = 0;
   int moveV = 0;
-  double part = 1.0;   ///< part of each ray's power that moves; the rest stays
-  double length = 0.0; ///< along the ray, in the dataset's unit
+  double part = 1.0;   ///< fraction of each ray's power that moves; the remainder stays in its voxel
+  double length = 0.0; ///< length along the ray, in the dataset's unit
 };
 
-/// How a bundle crosses one plane: one to three segments.
+/// Path of a bundle's rays through one plane of voxels: one to three segments.
 struct PlaneCrossing
 {
   int count = 1;
   std::array<Segment, 3> segments;
 };
 
-/// One ray family of a bundle: a direction, and how the bundle's frame maps to the plane's axes.
+/// One direction of a bundle, its mirror image, and the map from the bundle's frame to the plane's axes.
 struct Member
 {
-  int direction = 0; ///< index into the direction set (the one that marches forward along the axis)
-  int opposite = 0;  ///< its mirror image that marches backward
-  int uFromU = 1, uFromV = 0, vFromU = 0, vFromV = 1; ///< a signed permutation
+  int direction = 0; ///< index in the direction set of the direction that marches forward along the axis; -1: none
+  int opposite = 0;  ///< index of the mirror image that marches backward; -1: none
+  int uFromU = 1, uFromV = 0, vFromU = 0, vFromV = 1; ///< signed permutation from the bundle's axes to the plane's
 };
 
-/// A sideways move by one voxel within a plane.
+/// A move of all rays of a bundle by one voxel along u or v, at some depth of a plane.
 struct Move
 {
   double depth = 2.0; ///< position of the move: 0 at the plane's entry, 1 at its exit; above 1: no move
-  double part = 1.0;  ///< part of each ray's power that moves
+  double part = 1.0;  ///< fraction of each ray's power that moves
 };
 
 struct Bundle
 {
-  double tangentU = 0.0; ///< voxels moved per plane, 0 <= tangent <= 1
+  double tangentU = 0.0; ///< voxels moved along u per plane, 0 to 1
   double tangentV = 0.0;
-  double startU = 0.5; ///< where rays start within a voxel of the first plane, in (0, 1)
+  double startU = 0.5; ///< position within a voxel of the first plane where rays start, in (0, 1)
   double startV = 0.5;
-  double length = 1.0; ///< length of a ray within one plane
-  double power = 1.0;  ///< power of a ray at radiance 1: weight |cos| area, length^2 sr; numerics.md, Eq. (19)
-  /// Moves by plane of the pattern, counted from where rays start. Empty if both axes across are periodic: no light
-  /// enters sideways, and all moves are whole.
+  double length = 1.0; ///< path length of a ray within one plane of voxels
+  double power = 1.0;  ///< power of a ray at radiance 1: weight |cos| area, length^2 sr (numerics.md, Eq. (19))
+  /// Moves along u and v in each plane of the pattern, counted from the plane where rays start. Empty if both axes
+  /// across the marching axis are periodic: no light enters sideways, and each move is made by all of a ray's power.
   std::vector<Move> movesU, movesV;
   std::vector<Member> members;
 
-  /// Crossing of a plane, counted from where the rays start. After the last plane the pattern repeats, except whole
-  /// moves, which continue.
+  /// Segments in plane `plane`, counted from the plane where rays start. After its last plane the pattern repeats,
+  /// except for rays without partial moves (periodic axes), which continue straight.
   PlaneCrossing Crossing(int plane) const;
-  /// Whether all moves are along both axes at once, i.e. tangents and starts are equal.
+  /// Whether rays always move along u and v at once, i.e. both tangents and both starts are equal.
   bool MovesBothWaysAtOnce() const;
 };
 
-/// Planes after which the ray pattern along an axis of `size` voxels repeats: `size`, or a multiple of it for a short
-/// periodic axis, whose rays wrap around.
+/// Number of planes after which the ray pattern along an axis of `size` voxels repeats: `size`, or a multiple of it for
+/// a short periodic axis, whose rays wrap around.
 int PlanesOfPattern(int size, bool periodic);
 
-/// Marching axis of a direction: the one whose voxel planes it crosses most often per unit length, so that it never
-/// moves sideways by more than one voxel per plane. If several axes are equal in this, all of them, in equal parts.
+/// Marching axes of a direction: the axis whose voxel planes it crosses most often per unit length, so that its rays
+/// never move sideways by more than one voxel per plane; several axes if they are equal in this, each with an equal
+/// fraction of the power.
 std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega);
 
-/// Part of a direction's power that marches along `axis`: 0 or 1; 1/2 or 1/3 if several axes share it.
+/// Fraction of a direction's power that marches along `axis`: 0 or 1; 1/2 or 1/3 if several axes share it.
 double PartMarching(const Grid& grid, const std::array<double, 3>& omega, int axis);
 
-/// Where the rays of a bundle start within a voxel of the first plane, or within its part on a finer lattice.
+/// Position within a voxel of the first plane (or within a cell of the finer lattice of rays) where the rays of a
+/// bundle start.
 enum class RayStarts
 {
-  Middle, ///< in the middle, for all bundles
-  /// At a different position for each bundle, so that patterns at the box's sides average out over the bundles
+  Middle, ///< middle of the voxel, for all bundles
+  /// A different position for each bundle, so that patterns at the box's sides average out over the bundles.
   Staggered
 };
 
-/// Bundles that march along `axis`, both ways, with mapResolution x mapResolution rays per voxel and direction.
+/// Bundles of all directions of `set` that march along `axis`, forward and backward, with mapResolution x mapResolution
+/// rays per voxel and direction.
 std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const DirectionSet& set, int mapResolution, RayStarts starts = RayStarts::Middle);
 
-/// Rays of one collimated beam: one bundle, with one member, for each of the mapResolution^2 lattices. `direction` is 0
-/// if the beam runs forward along the axis, otherwise `opposite` is 0; the other one is -1. Power is that of irradiance
-/// 1.
+/// Bundles for one collimated beam: one for each of the mapResolution^2 lattices of rays, with one member. Its
+/// `direction` is 0 if the beam marches forward along the axis, else its `opposite` is 0; the other index is -1. Power
+/// is that at irradiance 1.
 std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const std::array<double, 3>& omega, int mapResolution);
 
-/// The members of `bundles` that march one way along the axis (0 forward, 1 backward) and whose direction is lit.
+/// Copies of `bundles` reduced to members that march one way along the axis (0 forward, 1 backward) and whose direction
+/// is lit; bundles without such members are omitted.
 std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit);
 
-/// Number of rays per voxel, both ways.
+/// Number of rays of all bundles per voxel, forward and backward.
 int CountRays(const std::vector<Bundle>& bundles);
 }

@@ -9,7 +9,8 @@ namespace tyndall
 {
 namespace
 {
-/// The direction that represents `omega`.
+/// Direction that represents the class of `omega`: components along axes of one periodic voxel (`single`) are made
+/// positive and, for equal spacings, sorted in decreasing order.
 std::array<double, 3> Standard(std::array<double, 3> omega, const Grid& grid, const std::array<bool, 3>& single)
 {
   for (int a = 0; a < 3; ++a)
@@ -36,7 +37,7 @@ DirectionSymmetry::DirectionSymmetry(const Grid& grid, const std::array<bool, 3>
   {
     single[a] = periodic[a] && grid.size[a] == 1;
   }
-  std::map<std::array<double, 3>, int> numbers; // quadratures are symmetric to the last bit
+  std::map<std::array<double, 3>, int> numbers; // by exact components: quadratures are symmetric to the last bit
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
     const std::array<double, 3> standard = Standard(set.directions[d].omega, grid, single);
@@ -61,7 +62,7 @@ std::vector<Bundle> DirectionSymmetry::Standing(const std::vector<Bundle>& bundl
   std::vector<Bundle> standing;
   for (const Bundle& bundle : bundles)
   {
-    std::map<std::size_t, std::vector<Member>> parts; // by the size of the direction's class
+    std::map<std::size_t, std::vector<Member>> parts; // members by number of directions in their class
     for (Member member : bundle.members)
     {
       member.direction = this->IsRepresentative(member.direction) ? member.direction : -1;

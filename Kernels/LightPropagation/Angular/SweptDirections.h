@@ -13,33 +13,33 @@
 namespace tyndall
 {
 /// Classes of directions that carry the same light because the grid has a periodic axis of one voxel. Nothing varies
-/// along such an axis, so mirror images in it carry the same light; with two such axes, so do directions with these
-/// axes exchanged (if voxels are square across them). Each class is represented by one direction: that whose components
-/// along such axes are positive and decreasing.
+/// along such an axis, so mirror images in it carry the same light; with two such axes of equal spacing, so do
+/// directions with these axes exchanged. Each class is represented by one direction: that whose components along such
+/// axes are positive and decreasing.
 class DirectionSymmetry
 {
 public:
   DirectionSymmetry(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set);
 
-  /// Whether any class has more than one direction
+  /// Whether any class has more than one direction.
   bool Any() const { return this->Count() < static_cast<int>(this->ClassOf.size()); }
   int Count() const; ///< number of classes
 
-  /// The bundles restricted to representative directions, each with the power of its whole class.
+  /// Copies of `bundles` restricted to representative directions, each with the power of all directions of its class.
   std::vector<Bundle> Standing(const std::vector<Bundle>& bundles) const;
 
-  /// The class of `direction`, including itself.
+  /// Indices of all directions in the class of `direction`, including itself.
   const std::vector<int>& AllOf(int direction) const { return this->Classes[this->ClassOf[direction]]; }
 
 private:
   bool IsRepresentative(int direction) const { return direction >= 0 && this->AllOf(direction).front() == direction; }
 
-  std::vector<int> ClassOf;              ///< class of each direction
-  std::vector<std::vector<int>> Classes; ///< directions of each class; the representative first
+  std::vector<int> ClassOf;              ///< index of each direction's class
+  std::vector<std::vector<int>> Classes; ///< indices of each class's directions; the representative first
 };
 
-/// A quadrature with its rays, as bundles that sweep a box along each axis. If mirror images of a direction carry the
-/// same light, only one direction of each class is swept.
+/// A quadrature together with its rays: bundles that sweep a box along each axis. If several directions carry the same
+/// light (DirectionSymmetry), only one direction of each class is swept.
 class SweptDirections
 {
 public:
@@ -49,13 +49,14 @@ public:
   RayStarts Starts() const { return this->WhereRaysStart; }
   int RaysPerEdge() const { return this->MapResolution; } ///< rays per edge of a voxel
   const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
-  /// Whether equivalent directions are merged; not if the net flux is requested, which differs between mirror images
+  /// Whether only one direction of each class is swept; not if the net flux is requested, which differs between mirror
+  /// images.
   bool MergesMirrors() const { return this->Merges; }
-  /// Angular functions in the directions; for a representative direction, the mean over its class.
+  /// Values of the basis in the directions; for a representative direction, the mean over its class.
   AngularValues Values(const AngularBasis& basis) const;
-  /// Mean of `values` ([direction]) over the class that `direction` represents.
+  /// Mean of `values`, one per direction, over the class that `direction` represents.
   double Mean(int direction, const std::vector<double>& values) const;
-  /// The directions that `direction` represents, including itself.
+  /// Indices of the directions that `direction` represents, including itself.
   std::vector<int> AllOf(int direction) const;
 
   std::vector<Bundle> Along(int axis) const;

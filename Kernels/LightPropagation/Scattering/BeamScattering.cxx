@@ -15,7 +15,7 @@ namespace tyndall
 {
 namespace
 {
-/// Integral over the forward hemisphere of the part of a phase function above a level.
+/// Integral over the forward hemisphere of max(p - level, 0), for a phase function p.
 double PartAbove(const PhaseFunction& function, double level)
 {
   static const GaussLegendre rule(24);
@@ -32,7 +32,7 @@ double PartAbove(const PhaseFunction& function, double level)
   return sum;
 }
 
-/// Level for which PartAbove is `part`.
+/// Value of a phase function above which its integral over the forward hemisphere, PartAbove(), is `part`.
 double LevelOf(const PhaseFunction& function, double part)
 {
   double low = 0.0, high = std::max(function.Value(1.0), 1e-30);
@@ -49,8 +49,10 @@ double Dot(const std::array<double, 3>& a, const std::array<double, 3>& b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// First-scattered light of a beam along each direction of a set, without the top of the forward peak that is treated
-/// as unscattered; normalised to a mean of 1.
+/// First-scattered light of a beam along each direction of `set`, without the top of the forward peak that delta-M
+/// treats as unscattered; normalised to a mean of 1.
+/// @param peak  fraction of scattered light treated as unscattered
+/// @param beam  direction of the beam
 std::vector<double> WithoutPeak(
   const PhaseFunction& function, double peak, const DirectionSet& set, const std::array<double, 3>& beam)
 {
@@ -71,8 +73,8 @@ std::vector<double> WithoutPeak(
   return scattered;
 }
 
-/// Multiplies values by 1 + t omega such that their mean is unchanged and the mean of value times omega becomes `flux`,
-/// as far as no value becomes negative.
+/// Multiplies the values at directions omega by a + t . omega such that their mean is unchanged and the mean of value
+/// times omega becomes `flux`, unless a value would become negative: then t is limited.
 void Tilt(std::vector<double>& values, const DirectionSet& set, const glm::dvec3& flux)
 {
   constexpr double MostTilt = 0.98;

@@ -11,27 +11,31 @@
 namespace tyndall
 {
 /// First-collision source of a parallel beam along each direction of a quadrature, minus its truncated angular moments
-/// in `basis`, normalised to scattered light with a mean of 1 over all directions (numerics.md, Eqs. (42b), (42c)).
+/// in `basis`, in units of the mean of the scattered light over all directions (numerics.md, Eqs. (42b), (42c)).
 /// Truncated moments of a forward peak are negative sideways; the phase function without its peak is not. The peak
 /// removed is the part of the phase function above some level around the forward direction, with as much power as
 /// delta-M treats as unscattered.
 ///
 /// All moments of the result in `basis` are zero to rounding, so the moments of the scattered light do not change.
+/// @param truncated  phase function as truncated by delta-M
+/// @param beam  unit vector in which the beam travels
+/// @return one value per direction of `set`
 std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
   const AngularBasis& basis, const std::array<double, 3>& beam);
 
-/// The same if the moments are smoothed so that the source is nowhere negative (WithoutNegatives): the complete
-/// first-collision source of the beam minus its smoothed moments. The source along each direction then follows the
-/// phase function, with the mean cosine of the moments; its higher moments differ from theirs.
+/// Like BeyondMoments(), for moments that are smoothed so that the source is nowhere negative (WithoutNegatives,
+/// numerics.md, section 2.3): the complete first-collision source of the beam minus its smoothed moments. The source
+/// along each direction then follows the phase function, with the mean cosine of the smoothed moments; its higher
+/// moments differ from these.
 std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
   const AngularBasis& basis, const std::array<double, 3>& beam);
 
-/// First-collision sources of beams, stored in a source array after its angular moments. They are emitted once: not in
-/// the sweep during which the beams were traced, but in the next one.
+/// First-collision sources of beams, stored in a source array after its angular moments. Each is emitted in one sweep:
+/// not in that during which the beams were traced, but in the next one.
 class BeamsInSource
 {
 public:
-  /// @param source  must outlive this
+  /// @param source  source array; must outlive this object
   /// @param first, count  index range of the beams in the source array
   BeamsInSource(Device& device, Buffer<float>& source, std::size_t first, std::size_t count)
     : TheDevice(device)
@@ -41,9 +45,11 @@ public:
   {
   }
 
-  /// Moves the sources of the beams out of the array. Call before the sweep of the same order.
+  /// Moves the sources of the beams from the source array to a buffer of this object. Call before the sweep of the
+  /// order during which the beams are traced.
   void Hold();
-  /// Restores them for the next sweep; if already restored, sets them to 0. Call after each sweep.
+  /// Moves the sources of the beams back to the source array for the next sweep; sets them to 0 if they are already
+  /// there. Call after each sweep.
   void GoOn();
 
 private:

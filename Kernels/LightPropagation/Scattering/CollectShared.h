@@ -6,6 +6,6 @@
 SHARED_BEGIN
 enum
 {
-  CollectChunk = 4096 ///< voxels that a work-group sums in float; the host adds these sums in double
+  CollectChunk = 4096 ///< number of voxels that a work-group sums in float; the host adds the sums of groups in double
 };
 SHARED_END

@@ -1,6 +1,6 @@
-// Scattering source of isotropic scattering (Gruson et al., Eq. 4, conservative). The host defines
+// Source of isotropic scattering (Gruson et al. 2012, Eq. 4, in conservative form). The host defines
 //   REAL_WIDTH  4 or 8, floats per vector
-//   GROUP       work-items that process a chunk together (GroupSum.cl)
+//   GROUP       number of work-items that sum over one chunk (GroupSum.cl)
 //   DOUBLES     1 if the device has double precision
 //   SCATTERS    0: sigma_s is zero; `scatter_order` does not read it and writes no source. The other kernels are used
 //               only for media that scatter.
@@ -10,14 +10,15 @@
 #include "Numerics/GroupSum.cl"
 #include "Numerics/Numerics.cl"
 
-#define ADDED_UP 32 // vectors
+#define ADDED_UP 32 // number of vectors per partial sum
 
-// One scattering order: converts the path integrals of a sweep to fluence and to the next source. One work-group per
-// chunk of a channel; the arrays of a channel start at a vector boundary and are padded with zeros to whole vectors.
-//   path         W length; cleared
+// Processes one scattering order: converts the path integrals of a sweep to fluence and to the next source. One
+// work-group per chunk of a channel; the arrays of a channel start at a vector boundary and are padded with zeros to
+// whole vectors.
+//   path         W length; set to 0
 //   fluence      W / length^2, added to
 //   source       W / (length^3 sr), overwritten
-//   tally        [channel][chunk], absorbed and scattered power, W
+//   tally        absorbed and scattered power, W, [channel][chunk]
 //   first, last  index range of a channel, in whole vectors; the path integrals outside it are 0
 __kernel void scatter_order(__global float* path, __global float* fluence, __global float* source,
   const __global float* sigma_t, const __global float* sigma_s, __global float2* tally, ulong stride, ulong first,
@@ -32,7 +33,7 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
   sigma_s += channel * stride;
   sigma_t += one_sigma_t ? 0 : channel * stride;
   real absorbed = (real)0.0f, scattered = (real)0.0f;
-  // Sum in two steps: adding all values of a chunk one by one would lose digits in float.
+  // Sums in two steps: adding all values of a chunk to one sum would lose digits in float.
   for (ulong part = begin + FIRST_IN_CHUNK(REAL_WIDTH); part < end; part += ADDED_UP * step)
   {
     real absorbed_of_part = (real)0.0f, scattered_of_part = (real)0.0f;
@@ -58,8 +59,8 @@ __kernel void scatter_order(__global float* path, __global float* fluence, __glo
   PUT_SUM_OF_GROUP(float2, sum, tally[channel * get_num_groups(0) + get_group_id(0)])
 }
 
-// Source of all orders, minus the source that the last order left unswept, from that (in `source`) and the fluence of
-// all orders. One work-item per value of a channel.
+// Computes the source of all orders from their fluence, minus the source of the last order, which has not been swept
+// and is in `source` on entry (numerics.md, Eq. (44)). One work-item per value of a channel.
 __kernel void scatter_all_orders(
   const __global float* fluence, __global float* source, const __global float* sigma_s, ulong stride)
 {
@@ -67,8 +68,8 @@ __kernel void scatter_all_orders(
   source[i] = fmax(sigma_s[i] * fluence[i] * (M_1_PI_F * 0.25f) - source[i], 0.0f);
 }
 
-// Adds the first-collision source of uncollided light. One work-item per value of a channel.
-//   path    W length
+// Adds the first-collision source of uncollided light to `source`. One work-item per value of a channel.
+//   path    path integrals of uncollided light, W length
 //   volume  4 pi times the volume of a voxel
 __kernel void add_first_scattered(
   const __global float* path, __global float* source, const __global float* sigma_s, ulong stride, exact volume)
@@ -77,8 +78,9 @@ __kernel void add_first_scattered(
   source[i] += (float)((exact)sigma_s[i] * path[i] / volume);
 }
 
-// Given source plus scattering source of a channel, which starts at `first` in all arrays except `fluence`. One
-// work-item per voxel. The fluence of a diffusion system can be negative.
+// Sets `source` to the given source plus the scattering source, for one channel, which starts at index `first` in all
+// arrays except `fluence`. One work-item per voxel. The fluence may be negative, as solution of a diffusion system; it
+// counts as 0 there.
 __kernel void scatter_fluence(const __global exact* fluence, const __global float* given, __global float* source,
   const __global float* sigma_s, ulong first)
 {

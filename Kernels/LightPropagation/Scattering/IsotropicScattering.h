@@ -12,7 +12,7 @@ namespace tyndall
 class IsotropicScattering : public ScatteringOperator
 {
 public:
-  /// @param medium  must outlive this
+  /// @param medium  coefficients on the device; must outlive this object
   /// @param scatters  false: sigma_s is zero everywhere, and no source is written
   IsotropicScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, bool scatters);
 
@@ -21,7 +21,8 @@ public:
   bool CanScatterAllOrders() const override { return true; }
   void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const override;
   void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const override;
-  void AddBeam(const Buffer<float>&, const Buffer<float>&, int) const override {} ///< beams scatter isotropically too
+  /// nothing to add: isotropic scattering has no separate source of beams
+  void AddBeam(const Buffer<float>&, const Buffer<float>&, int) const override {}
   void ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence, const Buffer<float>& given,
     const Buffer<float>& source) const override;
 

@@ -1,12 +1,12 @@
 // Scattering source in angular moments, except the first moment (fluence), which IsotropicScattering.cl handles. One
-// work-item per row of voxels; it processes the functions of a group one after the other, as they lie in memory.
+// work-item per row of voxels; it processes the functions of each group of voxels in the order of the arrays.
 //   sigma_s  1/length, [degree][channel][stride]
-//   path     W length, with its moments (MomentPlacesShared.h)
-//   source   W / (length^3 sr), likewise
+//   path     path integrals and their moments, W length (MomentPlacesShared.h)
+//   source   source and its moments, W / (length^3 sr), with the same layout
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// First voxels of a group; 0 beyond the end of the row.
+// Loads the values of a group of voxels; 0 beyond the end of the row.
 static float16 load_group(const __global float* values, int voxels)
 {
   if (voxels >= MomentGroup)
@@ -21,8 +21,8 @@ static float16 load_group(const __global float* values, int voxels)
   return vload16(0, some);
 }
 
-// Runs ACTION for each function of each group of a row; the group is stored at `at`, and its source is `scale` times
-// its path integral.
+// Runs ACTION for each function of each group of voxels in a row. In ACTION, `at` is the index of the group's moments,
+// and `scale` the factor from path integral to source.
 #define FOR_MOMENTS(ACTION)                                                                                      \
   const ulong line = get_global_id(0);                                                                           \
   for (int x = 0; x < places.sizeX; x += MomentGroup)                                                            \
@@ -39,7 +39,7 @@ static float16 load_group(const __global float* values, int voxels)
     }                                                                                                            \
   }
 
-// One scattering order: overwrites the source, clears the path integrals.
+// Processes one scattering order: overwrites the source, sets the path integrals to 0.
 __kernel void scatter_moments(MomentPlaces places, int channel, __global float* path, __global float* source,
   const __global float* sigma_s, ulong stride, float per_path)
 {
@@ -58,7 +58,7 @@ __kernel void add_scattered_moments(MomentPlaces places, int channel, const __gl
 #undef ADD
 }
 
-// Given source plus scattering source.
+// Sets `source` to the given source plus the scattering source.
 __kernel void scatter_given_moments(MomentPlaces places, int channel, const __global float* path,
   const __global float* given, __global float* source, const __global float* sigma_s, ulong stride, float per_path)
 {
@@ -67,25 +67,25 @@ __kernel void scatter_given_moments(MomentPlaces places, int channel, const __gl
 #undef ADD_TO_GIVEN
 }
 
-// Adds moments from the second function on. One work-item per value.
+// Adds the moments of `path`, except the first, to those of `to`. One work-item per value.
 __kernel void add_moments(MomentPlaces places, const __global float* path, __global float* to)
 {
   const ulong at = places.second + get_global_id(0);
   to[at] += path[at];
 }
 
-// All moments: source of one order plus `part` times the stored source.
+// Computes shown = source + part * shown, for all angular moments. One work-item per value.
 __kernel void add_to_shown(const __global float* source, __global float* shown, float part)
 {
   const ulong at = get_global_id(0);
   shown[at] = source[at] + part * shown[at];
 }
 
-// Converts moments in the functions of an AngularBasis to spherical harmonics, for consecutive voxels. One work-item
-// per voxel of a row, row, and harmonic.
-//   basis    [function][harmonic]
-//   moments  with their layout; there are at most as many harmonics as functions
-//   scale    [channel][stride]
+// Converts moments in the functions of an AngularBasis to moments in spherical harmonics, for consecutive voxels. One
+// work-item per voxel of a row, row, and harmonic.
+//   basis    coefficients, [function][harmonic]
+//   moments  laid out as in MomentPlacesShared.h; there are at most as many harmonics as functions
+//   scale    factor of each voxel, [channel][stride]
 //   out      [voxel][harmonic][channel]
 __kernel void to_harmonics(MomentPlaces places, int channel, const __global float* basis, const __global float* moments,
   const __global float* scale, ulong stride, __global float* out)
@@ -103,8 +103,10 @@ __kernel void to_harmonics(MomentPlaces places, int channel, const __global floa
   out[(voxel * get_global_size(2) + j) * places.channels + channel] = scale[channel * stride + voxel] * sum;
 }
 
-// Source of a beam, in voxels of the highest degree; other voxels scatter it in moments only. One work-item per value.
+// Adds the first-collision source of a beam, in voxels of the highest degree; in other voxels beams are scattered in
+// moments only. One work-item per value.
 //   values  number of values of all channels
+//   degree  highest degree of the moments
 __kernel void scatter_beam(MomentPlaces places, const __global float* path, __global float* source,
   const __global float* sigma_s, ulong values, int beam, int degree, float per_path)
 {
@@ -113,8 +115,8 @@ __kernel void scatter_beam(MomentPlaces places, const __global float* path, __gl
     sigma_s[degree * values + i] != 0.0f ? sigma_s[i] * path[i] * per_path : 0.0f;
 }
 
-// Adds the net flux, W length, [channel][x, y, z][stride], from the moments of degree 1, which are sqrt(3) times the y,
-// z and x components. One work-item per voxel of a row, and row.
+// Adds the net flux of one channel, W length, [channel][x, y, z][stride], from the moments of degree 1, which are
+// sqrt(3) times the y, z and x components. One work-item per voxel of a row, and row.
 __kernel void add_flux_of_moments(
   MomentPlaces places, int channel, const __global float* path, __global float* flux, ulong stride)
 {

@@ -18,8 +18,8 @@ MomentScattering::MomentScattering(Device& device, const VolumeLayout& layout, c
 {
 }
 
-/// Runs a kernel on the moments of a channel except the first. Kernel arguments: layout of the moments, channel, then
-/// `arguments`.
+/// Runs a kernel of MomentScattering.cl on a channel's moments except the first, one work-item per row of voxels.
+/// @param arguments  kernel arguments after the layout of the moments and the channel
 template <class... Arguments>
 void MomentScattering::RunOnMoments(const char* name, int channel, const Arguments&... arguments) const
 {
@@ -30,7 +30,7 @@ void MomentScattering::RunOnMoments(const char* name, int channel, const Argumen
     cl::NDRange(static_cast<std::size_t>(size[1]) * size[2]), GroupOfLargeItems(this->TheDevice));
 }
 
-/// Factor from path integral, W length, to source, for a scattering coefficient of 1.
+/// Factor from path integral, W length, to source, W / (length^3 sr), for a scattering coefficient of 1.
 float MomentScattering::PerPath() const
 {
   return static_cast<float>(1.0 / (4.0 * Pi * this->Layout.grid.VoxelVolume()));
@@ -74,7 +74,7 @@ void MomentScattering::AddBeam(const Buffer<float>& path, const Buffer<float>& s
   With(kernel, this->Layout.Places(this->Functions), path, source, this->TheMedium.SigmaOfDegrees(), cl_ulong(values),
     cl_int(beam), cl_int(this->Degree), this->PerPath());
   this->TheDevice.Queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(values));
-  this->TheDevice.Finish(); // the path goes
+  this->TheDevice.Finish(); // the caller releases `path`
 }
 
 void MomentScattering::ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence,

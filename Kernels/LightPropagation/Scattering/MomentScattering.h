@@ -12,12 +12,12 @@ namespace tyndall
 class MomentScattering : public ScatteringOperator
 {
 public:
-  /// @param medium  must outlive this; has scattering coefficients of degrees 0 to `degree`
+  /// @param medium  scattering coefficients of degrees 0 to `degree`; must outlive this object
   MomentScattering(Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree);
 
   Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
     const std::array<std::size_t, 2>& range) const override;
-  bool CanScatterAllOrders() const override { return false; } ///< moments of all orders are not stored
+  bool CanScatterAllOrders() const override { return false; } ///< no: moments of all orders are not stored
   void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const override;
   void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const override;
   void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int beam) const override;
@@ -37,21 +37,22 @@ private:
   int Functions;
 };
 
-/// Makes MomentScattering of a degree above 0, else IsotropicScattering.
-/// @param scatters  false: sigma_s is zero everywhere (IsotropicScattering)
+/// Makes a MomentScattering if `degree` is above 0, else an IsotropicScattering.
+/// @param scatters  whether sigma_s is above zero anywhere; used by IsotropicScattering only
 std::unique_ptr<const ScatteringOperator> MakeScattering(
   Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree, bool scatters);
 
-/// Adds the angular moments of `path` to those of `to`, except the first, which is the path integral itself.
+/// Adds the angular moments of `path` to those of `to`, W length, except the first, which is the path integral.
+/// @param functions  number of functions of the angular basis
 void AddMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to);
 
-/// shown = source + part * shown, for all moments.
-/// @param values  number of values of a source
+/// Computes shown = source + part * shown, for all angular moments of a source.
+/// @param values  number of values in each array
 void AddToShown(
   Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part);
 
-/// Adds the net flux from the angular moments of `path` to `flux`, [channel][x, y, z][stride].
+/// Adds to `flux` the net flux, W length, [channel][x, y, z][stride], from the angular moments of degree 1 of `path`.
 void AddFluxOfMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& flux);
 }

@@ -8,9 +8,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t MostBeams = 4; ///< largest number of beams with exact first scattering
+constexpr std::size_t MostBeams = 4; ///< largest number of beams with separate first-collision sources
 
-/// Indices of the lamps that become beams; none if the phase function varies.
+/// Indices of the brightest directional lamps, which become beams; none if the phase function varies between voxels or
+/// channels.
 std::vector<int> BrightestBeams(const PhaseOfMedium& phase, const std::vector<Light>& lamps)
 {
   std::vector<int> beams;

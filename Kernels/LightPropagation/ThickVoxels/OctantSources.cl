@@ -1,5 +1,5 @@
-// Emission of optically thick voxels into each octant, in addition to the uniform source, see OctantSources.h. Faces d
-// of a voxel are -x, +x, -y, +y, -z, +z.
+// Source of optically thick voxels in each octant of directions, in addition to the uniform source; see
+// OctantSources.h. Faces d of a voxel are -x, +x, -y, +y, -z, +z.
 
 #include "LightPropagation/Sweep/BeyondFacesShared.h"
 #include "LightPropagation/Sweep/FallOfLight.cl"
@@ -11,7 +11,8 @@ typedef struct
   float lost;
 } layer_response;
 
-// Interpolates a table of VoxelResponse.h. For thin layers the values are proportional to the thickness.
+// Response of a layer, interpolated in a table of VoxelResponse.h. For layers thinner than those of the table the
+// values are proportional to the thickness.
 static layer_response response_of(const __global float* values, float albedo, float tau)
 {
   const float depth = clamp(2.0f * (log2(fmax(tau, 1e-30f)) - FirstDepth), 0.0f, ResponseDepths - 1.001f);
@@ -33,9 +34,9 @@ static layer_response response_of(const __global float* values, float albedo, fl
 
 // Converts the power that entered through voxels' faces to mean incident radiance. One work-item per row of voxels and
 // face.
-// currents  W, [face][stride] from 6 `first` on; cleared
-// pattern   of the rays that cross faces, see CrossingPattern.h
-// incoming  W / (length^2 sr), laid out as currents, added to; replaced if `fresh` is 1
+//   currents  entered power, W, [face][stride] from index 6 `first` on; set to 0
+//   pattern   crossings of faces by rays, see CrossingPattern.h
+//   incoming  radiance, W / (length^2 sr), laid out as currents; replaced if `fresh` is 1, else added to
 __kernel void take_incoming(OctantSourceInfo info, __global float* restrict currents,
   const __global float* restrict pattern, __global float* restrict incoming, int fresh)
 {
@@ -43,7 +44,7 @@ __kernel void take_incoming(OctantSourceInfo info, __global float* restrict curr
   const int axis = d / 2;
   const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
   const float area = info.perRadiance * info.spacing[u] * info.spacing[v];
-  // along u; across x it is the same for the whole row
+  // pattern along u; for faces across x, constant in the row
   const __global float* along = pattern + info.pattern[2 * axis];
   const float ofRow = pattern[info.pattern[2 * axis + 1] + (v == 1 ? y : z)];
   const ulong row = 6 * info.first + d * info.stride + ((ulong)z * info.size[1] + y) * info.size[0];
@@ -56,7 +57,7 @@ __kernel void take_incoming(OctantSourceInfo info, __global float* restrict curr
   }
 }
 
-// Index of a voxel's neighbour across face d; -1 beyond the box or block.
+// Index of a voxel's neighbour across face d; -1 if there is none in the box or subdomain.
 static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int d)
 {
   const int axis = d / 2, size = info->size[axis];
@@ -66,8 +67,9 @@ static long next_voxel(const OctantSourceInfo* info, const int* at, ulong i, int
   return !last ? (long)i + ahead : info->periodic[axis] ? (long)i - ahead * (size - 1) : -1;
 }
 
-// find_octant_sources() for one voxel.
-// responses  of layers as thick as the voxel along each axis
+// Computes the sources by octant of one voxel; arguments as in find_octant_sources().
+//   t, s       extinction and scattering coefficient, 1/length
+//   responses  responses of layers as thick as the voxel along each axis
 static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, float t, float s,
   const layer_response* responses, const __global float* source, const __global float* incoming,
   const __global float* beyond, __global float* of_lamps, int lamps, __global float* sources)
@@ -96,7 +98,7 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
       }
       else if (t > 0.0f)
       {
-        // Outgoing light through the box's faces is not known by voxel: estimated from the layer's response.
+        // Light leaving through the box's faces is not recorded by voxel: it is estimated from the layer's response.
         float shines = source[i];
         for (int octant = 0; octant < 8; ++octant)
         {
@@ -132,12 +134,13 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
 
 // Computes the sources by octant of light scattered from incident light (numerics.md, Eqs. (46e), (46f)). One work-item
 // per row of voxels.
-// incoming  W / (length^2 sr), of the sweep
-// source    W / (length^3 sr), of the sweep, like the previous contents of `sources`
-// beyond    as incoming, of the voxels beyond a block's faces
-// of_lamps  W / (length^3 sr) by face, if `lamps` is 1; cleared
-// sources   W / (length^3 sr), [octant][stride] from 8 `first` on, replaced: in addition to the uniform source. May be
-//           negative for the first orders, where later orders emit that light out of the voxel
+//   incoming  mean incident radiance at voxels' faces during the sweep, W / (length^2 sr)
+//   source    uniform source of the sweep, W / (length^3 sr)
+//   beyond    mean incident radiance of the voxels across a subdomain's faces, W / (length^2 sr)
+//   of_lamps  source by face of lamps' light, W / (length^3 sr), used if `lamps` is 1; set to 0
+//   sources   W / (length^3 sr), [octant][stride] from index 8 `first` on, in addition to the uniform source: on entry
+//             that of the sweep, replaced. May be negative for the first orders, where later orders emit that light out
+//             of the voxel
 __kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
   const __global float* source, const __global float* values, const __global float* incoming,
   const __global float* beyond, __global float* of_lamps, int lamps, __global float* sources, ulong channel)
@@ -165,10 +168,10 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
   }
 }
 
-// Adds the sources by face of light first scattered from one lamp (numerics.md, Eq. (46h)).
-// path, first_moments  of the lamp, as in Sweep/SweepOperator.h; cleared
-// of_lamps  W / (length^3 sr), laid out as first_moments, added to
-// all_path  W length, added to
+// Adds the sources by face of light first scattered from one lamp (numerics.md, Eq. (46h)). One work-item per voxel.
+//   path, first_moments  deposit of the lamp, as in Sweep/SweepOperator.h; set to 0
+//   of_lamps             source by face, W / (length^3 sr), laid out as first_moments, added to
+//   all_path             path integrals of all lamps, W length, added to
 __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
   __global float* path, __global float* first_moments, const __global float* falling, __global float* of_lamps,
   __global float* all_path)
@@ -179,7 +182,7 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, con
   {
     const ulong low = 6 * info.first + 2 * axis * info.stride + i, high = low + info.stride;
     const float h = info.spacing[axis], tau = t * h;
-    // Proximity of first scattering to a face: 1 - 2 t / tau for mean depth t.
+    // Proximity of first scattering to the lower face: 1 - 2 t / tau for mean depth t.
     const float towards = length > 0.0f ? 2.0f * (first_moments[low] - first_moments[high]) / length : 0.0f;
     const float r = clamp(fabs(towards), 0.0f, 0.9999f);
     first_moments[low] = first_moments[high] = 0.0f;
@@ -198,7 +201,7 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, con
     const float differs = falls * mix(slow.differs, fast.differs, v);
     const float alike = falls * mix(slow.alike, fast.alike, v);
     const float side = towards > 0.0f ? differs : -differs;
-    // Relative to the power of a uniform source through the voxel's faces across the axis.
+    // Source of a face for coefficient 1: power of first scattering per area of both faces across the axis.
     const float per_face = 0.5f * M_1_PI_F * s * t * length * h / (info.spacing[0] * info.spacing[1] * info.spacing[2]);
     of_lamps[low] += per_face * (alike + side);
     of_lamps[high] += per_face * (alike - side);

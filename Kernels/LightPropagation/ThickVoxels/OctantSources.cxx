@@ -12,24 +12,26 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Thick = 0.2; ///< optical thickness of a voxel: thinner ones return at most 1% too little
-/// The same for automatic sources: thinner ones return up to 2% too little, and sources by octant take two to three
-/// times the time of an order.
+/// optical thickness above which a voxel is thick; thinner voxels return at most 1% too little light
+constexpr double Thick = 0.2;
+/// Optical thickness above which a voxel is thick if the settings leave the choice open: thinner voxels return up to 2%
+/// too little light, and sources by octant multiply the time per order by two to three.
 constexpr double ThickUnasked = 0.25;
-/// Minimum fraction of the scattering voxels: fewer thick ones are walls, for which all others would have to pay.
+/// Minimum fraction of thick voxels among the scattering ones, if the settings leave the choice open: if fewer are
+/// thick, they are walls, and computing sources for all voxels costs too much.
 constexpr double Many = 0.25;
-/// Optical thickness of a voxel: in thicker ones the light that escapes is too small, compared with the light scattered
-/// in them, for floats.
+/// Optical thickness above which a voxel is opaque: the light that escapes from it is too small, compared with the
+/// light scattered in it, for single precision.
 constexpr double Opaque = 1e4;
 
-/// Statistics of a medium's voxels that decide, over all channels.
+/// Counts of voxels over all channels, from which OctantSources::Matter() decides.
 struct ThickVoxels
 {
   double scattering = 0.0, thick = 0.0; ///< number of scattering voxels, and of thick ones among these
   double thickest = 0.0;                ///< largest transport optical thickness along a voxel's longest edge
 };
 
-/// Statistics over all ranks. Collective.
+/// Counts the thick voxels of all ranks. Collective.
 ThickVoxels Count(const PropagationProblem& problem)
 {
   const Grid& grid = problem.TheGrid();
@@ -199,7 +201,7 @@ OctantSourceInfo OctantSources::InfoOf(int channel) const
     info.size[axis] = grid.size[axis];
     info.periodic[axis] = this->The.settings.periodic[axis];
     info.spacing[axis] = static_cast<float>(grid.spacing[axis]);
-    // A direction may represent its mirror image, too.
+    // Nothing varies along this axis, and a swept direction may represent its mirror image.
     info.leftOut[axis] = this->The.whole.size[axis] == 1 && this->The.settings.periodic[axis];
   }
   info.firstT = this->The.layout.ExtinctionFirst(channel);

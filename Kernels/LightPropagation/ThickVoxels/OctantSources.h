@@ -12,24 +12,26 @@
 
 namespace tyndall
 {
-/// Scattered light of optically thick voxels, order by order. Such light is scattered near the faces through which it
-/// enters, and returns through these more than through the opposite ones. Sweeps treat the scattering source as uniform
-/// in a voxel, except for the emission into each octant of directions; light that does not get out stays in the voxel,
-/// so that power is conserved. The sources by octant follow from the light that entered through both faces across each
-/// axis, by the exact response of a layer as thick as the voxel (numerics.md, section 6.5).
+/// Sources by octant of optically thick voxels, for each scattering order. Light that enters such a voxel is scattered
+/// near the faces through which it enters, and returns through these faces more than through the opposite ones. Sweeps
+/// treat the scattering source as uniform in a voxel, except for an additional source in each octant of directions;
+/// light that does not leave the voxel remains in it, so that power is conserved. The sources by octant follow from the
+/// light that entered through both faces across each axis, by the exact response of a layer as thick as the voxel
+/// (numerics.md, section 6.5).
 class OctantSources
 {
 public:
-  /// Whether any voxel is so thick that sources by octant make a difference. Collective.
+  /// Whether any voxel is so optically thick that sources by octant change the result. Collective.
   static bool AreThick(const PropagationProblem& problem);
-  /// Whether to use sources by octant: if the settings ask for them, some voxels are thick, none is opaque, and
-  /// scattering is isotropic. If the settings leave the choice open: if also at least a quarter of the scattering
-  /// voxels are thick, and the number of orders follows from the tolerance. Independent of the light sources, since
-  /// light is additive. First-scattered light of localised emission and of given light is uniform in a voxel; later
-  /// orders are by octant. Collective.
+  /// Whether to use sources by octant. They are used if the settings request them, any voxel is thick, none is opaque,
+  /// and scattering is isotropic. If the settings leave the choice open, at least a quarter of the scattering voxels
+  /// must also be thick, and the tolerance must determine the number of orders. Independent of the light sources, so
+  /// that the light of several sources adds up. First-scattered light of localised emission and of given light is
+  /// uniform in a voxel; later orders have sources by octant. Collective.
   static bool Matter(const PropagationProblem& problem);
 
-  /// The voxels of a serial domain, or of a rank's block, on a device; all members must outlive the OctantSources.
+  /// The voxels of a rank's subdomain (or of a serial domain) on a device. All references must outlive the
+  /// OctantSources.
   struct Scene
   {
     Device& device;
@@ -37,34 +39,38 @@ public:
     const VolumeLayout& layout;
     const MediumOnDevice& medium;
     const Grid& whole;
-    VoxelBox block; ///< in the whole grid
+    VoxelBox block; ///< the subdomain's voxels, in indices of the domain
     bool lamps;     ///< whether there are lamps
   };
   explicit OctantSources(const Scene& scene);
 
-  /// For Deposit::partialCurrents of every sweep.
+  /// Power that enters through voxels' faces, W, [channel][face][stride]; pass as Deposit::partialCurrents to every
+  /// sweep.
   const Buffer<float>& Currents() const { return this->OfSweep; }
-  /// For SweepRequest::octantSource.
+  /// Source of each octant as found by Find(), W / (length^3 sr), [channel][octant][stride]; pass as
+  /// SweepRequest::octantSource.
   const Buffer<float>& Sources() const { return this->Found; }
 
-  /// Takes over the light that entered through voxels' faces along some directions, which must outlive this object, and
-  /// clears Currents().
+  /// Adds the light in Currents() to the incident light, and sets Currents() to 0.
+  /// @param along  directions of the sweep that filled Currents(); must outlive this object
   void TakeIncoming(const SweptDirections& along);
-  /// The arrays to which one lamp adds its deposit; TakeLamp() takes over its first-scattered light near the faces and
-  /// adds its path to `allPath`.
+  /// Path integrals, W length, to which one lamp adds its deposit before TakeLamp().
   const Buffer<float>& LampPath() const { return this->PathOfLamp; }
+  /// First moments, as Deposit::firstMoments, to which one lamp adds its deposit before TakeLamp().
   const Buffer<float>& LampMoments() const { return this->MomentsOfLamp; }
+  /// Records the source near the faces of light first scattered from one lamp, adds LampPath() to `allPath`, and sets
+  /// LampPath() and LampMoments() to 0.
   void TakeLamp(const Buffer<float>& allPath);
-  /// Incident radiance of the light taken over, W / (length^2 sr), [channel][face][stride]; Find() needs it across a
-  /// block's faces.
+  /// Mean incident radiance at voxels' faces, W / (length^2 sr), [channel][face][stride], summed over the calls of
+  /// TakeIncoming() since the last Find(). Find() needs that of the ghost cells around a subdomain.
   const Buffer<float>& CameInThroughFaces() const { return this->Incoming; }
-  /// Computes the sources of the light scattered from all light taken over since the last call.
-  /// @param source  of the sweep in which the last of that light entered, W / (length^3 sr)
-  /// @param beyond  CameInThroughFaces() beyond a block's faces
+  /// Computes Sources() for the light scattered from all light of TakeIncoming() and TakeLamp() since the last call.
+  /// @param source  uniform source of the last sweep whose light was taken, W / (length^3 sr)
+  /// @param beyond  CameInThroughFaces() of the voxels across a subdomain's faces
   void Find(const Buffer<float>& source, const BeyondFaces& beyond = {});
 
 private:
-  /// Crossing pattern of the rays along some directions (CrossingPattern.h).
+  /// Crossing pattern of the rays of a SweptDirections (CrossingPattern.h).
   struct Crossings
   {
     Buffer<float> values;
@@ -74,15 +80,17 @@ private:
   const Crossings& CrossingsOf(const SweptDirections& along);
   OctantSourceInfo InfoOf(int channel) const;
 
-  bool IsEmpty() const { return this->The.layout.grid.VoxelCount() == 0; } ///< for a block without voxels
+  /// whether this rank's subdomain has no voxels
+  bool IsEmpty() const { return this->The.layout.grid.VoxelCount() == 0; }
 
   Scene The;
-  Buffer<float> OfSweep, Incoming;                  ///< [channel][face][stride]
-  Buffer<float> Found;                              ///< [channel][octant][stride]
-  Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps; ///< as in Deposit; OfLamps: [channel][face][stride]
-  Buffer<float> Diffuse, Falling;                   ///< VoxelResponse
+  Buffer<float> OfSweep, Incoming; ///< [channel][face][stride]
+  Buffer<float> Found;             ///< [channel][octant][stride]
+  /// see LampPath(), LampMoments(); OfLamps: source by face, [channel][face][stride]
+  Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps;
+  Buffer<float> Diffuse, Falling; ///< tables of VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;
-  bool CameIn = false;     ///< whether light was taken over since the last Find()
+  bool CameIn = false;     ///< whether TakeIncoming() was called since the last Find()
   bool LampsShine = false; ///< whether the next Find() includes lamps
 };
 }

@@ -13,11 +13,13 @@ namespace tyndall
 namespace
 {
 constexpr int Nodes = 10;              ///< number of quadrature nodes per hemisphere
-constexpr double LeastAlbedo = 1e-3;   ///< used instead of albedo 0, by which the response would be divided
-constexpr double LeastAbsorbed = 1e-5; ///< lower limit of 1 - albedo, used for white layers
-constexpr double MostAlike = 1.0;      ///< maximum for white layers, from which the same power leaves whatever it is
+constexpr double LeastAlbedo = 1e-3;   ///< smallest albedo, since the response is divided by it
+constexpr double LeastAbsorbed = 1e-5; ///< smallest 1 - albedo
+/// maximum of beta, which is arbitrary in non-absorbing layers: all power leaves anyway
+constexpr double MostAlike = 1.0;
 
-/// Response to incident power 1 at the top: outgoing powers, and number of collisions.
+/// Response of a layer to incident power 1 at its top: power that leaves through the top, power that leaves through the
+/// bottom, uncollided power among the latter, and number of collisions per unit of power.
 struct Response
 {
   double reflected, transmitted, straight, collisions;
@@ -49,7 +51,7 @@ public:
       this->Collisions(LayerSource(Nodes), in, up, down) };
   }
 
-  /// Response to first collisions of total power 1 with density exp(-fall z).
+  /// Response to first collisions of total power 1 whose density is proportional to exp(-fall z) at optical depth z.
   Response OfFalling(double albedo, double fall) const
   {
     const double lost = -std::expm1(-fall * this->Depth);
@@ -60,7 +62,7 @@ public:
       1.0 + this->Collisions(source, Eigen::VectorXd::Zero(Nodes), source.up, source.down) };
   }
 
-  double StraightPart() const { return this->Straight; } ///< 2 E_3(depth)
+  double StraightPart() const { return this->Straight; } ///< transmittance of uncollided isotropic light, 2 E_3(depth)
 
 private:
   double Collisions(const LayerSource& source, const Eigen::VectorXd& downAtTop, const Eigen::VectorXd& upAtTop,
@@ -77,7 +79,8 @@ private:
   Eigen::VectorXd Roots, Powers;
 };
 
-/// Reduction for thin voxels: light entering between these is not entirely isotropic (fitted to slabs of equal voxels).
+/// Factor that reduces the response of thin voxels, since light incident from neighbouring voxels is not entirely
+/// isotropic (fitted to slabs of equal voxels).
 double AmongOthers(double depth)
 {
   return 1.0 - 0.45 * std::exp(-2.0 * depth);
@@ -100,7 +103,8 @@ VoxelResponse::VoxelResponse()
       const Layer layer(modes, nodes, depth);
       const double lost = 1.0 - layer.StraightPart(), leaves = lost / (4.0 * depth), part = AmongOthers(depth);
       const Response even = layer.OfDiffuse();
-      const double scattered = even.reflected + even.transmitted - even.straight; // out, of all orders
+      // scattered power that leaves the layer, all orders
+      const double scattered = even.reflected + even.transmitted - even.straight;
       const double kept = std::max(lost - scattered, 1e-6);
       const double alike =
         std::clamp((scattered - 2.0 * leaves * albedo * even.collisions) / (albedo * lost * kept), 0.0, MostAlike);
