@@ -25,6 +25,7 @@ constexpr double LeastLeft = 0.3;
 
 /// Rows of coefficients that orthonormalise the spherical harmonics on a quadrature, function by function
 /// (Gram-Schmidt).
+/// @return as many rows as are well-conditioned on the quadrature
 std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree)
 {
   const int count = (degree + 1) * (degree + 1);

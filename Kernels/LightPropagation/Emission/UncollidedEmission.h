@@ -36,6 +36,7 @@ public:
   /// additional rays would cost more time than their accuracy is worth.
   static bool IsApart(const Grid& whole, const PropagationSettings& settings);
   /// Whether a voxel counts as empty: its optical thickness along its longest edge is at most 1e-4.
+  /// @param sigma_t  extinction, 1/length
   static bool IsEmpty(double sigma_t, const Grid& grid);
   static std::unique_ptr<const SweptDirections> DirectionsFor(const Grid& whole, const PropagationSettings& settings);
 

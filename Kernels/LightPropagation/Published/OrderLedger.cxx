@@ -13,7 +13,8 @@ namespace
 /// Limit on the number of orders; no convergent problem needs more.
 constexpr int MostOrders = 10000;
 
-constexpr double Negligible = 1e-3;     ///< fraction of the power left over, besides endlessly wrapped light
+/// fraction of the remaining power, without endlessly wrapping light, below which the solve ends
+constexpr double Negligible = 1e-3;
 constexpr double LargestRatio = 0.9999; ///< largest ratio of successive orders of a convergent series
 }
 
@@ -73,7 +74,7 @@ void OrderLedger::CloseOrder(const std::vector<float>& fluence)
                                       : MeetsTolerance(this->Settings, residual) || this->Orders() >= MostOrders);
 }
 
-/// Estimates the remainder of the orders, which decrease like a geometric series in the end.
+/// Estimated sum of all further orders, relative to the sum so far; orders finally decrease like a geometric series.
 double OrderLedger::EstimateResidual(const Rgb& orderSum) const
 {
   double residual = this->Orders() == 0 ? 1.0 : 0.0;

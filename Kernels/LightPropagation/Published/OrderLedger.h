@@ -9,25 +9,26 @@
 
 namespace tyndall
 {
-/// Powers and convergence of the scattering orders of a solve with the published scheme, and the stopping criterion.
+/// Energy balance and convergence by scattering order of a solve with the published scheme, and its stopping criterion.
 class OrderLedger
 {
 public:
-  /// @param medium  must outlive this
+  /// @param medium  must outlive this object
   OrderLedger(const Medium& medium, int channels, const PropagationSettings& settings);
 
-  /// Adds boundary powers of the current order, and the power that wraps around periodic axes. May be called several
-  /// times per order.
+  /// Adds powers of the current order: incident and escaped power, and power that wraps around periodic axes. May be
+  /// called several times per order.
   void Count(const SweepTally& tally);
-  /// @param fluence  of this order alone, channels interleaved
+  /// Ends the current order and decides whether it was the last one.
+  /// @param fluence  fluence of this order alone, W / length^2, channels interleaved
   void CloseOrder(const std::vector<float>& fluence);
 
   bool Done() const { return this->Finished; }
   int Orders() const { return static_cast<int>(this->Record.All().size()); }
-  /// Fraction of the solve that is done, given the fraction of the current order that is done.
+  /// Progress of the solve, 0 to 1, given the completed fraction of the current order.
   double Progress(double fractionOfOrder) const;
 
-  void WriteTo(LightField& field) const; ///< balance, facePowerOut, convergence
+  void WriteTo(LightField& field) const; ///< sets balance, facePowerOut and convergence
 
 private:
   double EstimateResidual(const Rgb& orderSum) const;
@@ -37,8 +38,8 @@ private:
   int Channels;
   bool Finished = false;
   EnergyLedger Powers;
-  Rgb Carried = {};       ///< W that wraps around periodic axes in this order
-  Rgb CarriedBefore = {}; ///< the same of the order before
+  Rgb Carried = {};       ///< power that wraps around periodic axes in this order, W
+  Rgb CarriedBefore = {}; ///< power that wrapped around in the previous order, W
   Rgb TotalSum = {}, LastSum = {};
   ConvergenceRecord Record;
 };

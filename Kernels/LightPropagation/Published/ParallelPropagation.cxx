@@ -32,14 +32,15 @@ ParallelPropagation::ParallelPropagation(Device& device, const Medium& medium, c
 {
 }
 
-/// Whether boundary light is incident: in the first order only.
+/// Boundary light is incident in the first order only.
 void ParallelPropagation::Propagate(int number, const Monitor& monitor)
 {
   Batch& batch = this->Plan.batches[number];
   const double batches = static_cast<double>(this->Plan.batches.size());
   if (this->Ledger.Orders() > 0 && this->Settings.periodic[batch.Map().axis])
   {
-    this->Plan.MakePasses(batch, this->Ledger.Orders()); // rays continue from their last position
+    // rays continue from their position at the end of the previous order
+    this->Plan.MakePasses(batch, this->Ledger.Orders());
   }
   const bool first = this->Ledger.Orders() == 0 && !this->SourceGiven;
   this->Sweep.Begin(batch, first, this->Tally);

@@ -12,53 +12,58 @@
 
 namespace tyndall
 {
-/// Light propagation maps as published, Algorithm 2 of Gruson et al. 2012: propagation into one temporary buffer T per
-/// direction (Eq. 6), then collection into U and I (Eq. 4). For how these equations are read see numerics.md, section
-/// 3.
+/// Light propagation maps as published, Algorithm 2 of Gruson et al. 2012, on the device: rays are propagated into one
+/// temporary buffer T per direction (Eq. 6), which is then collected into U and I (Eq. 4). Interpretation of these
+/// equations: numerics.md, section 3.
 ///
-/// Directions are propagated and collected in batches. The largest batch is one LPM, the p directions of a face, so
-/// that T needs p n^3 floats per channel as in the paper's section 5. If that does not fit the device, or the caller
-/// allows less, batches are smaller. The paper instead streams slices of the volume (section 4.2), which needs one pass
-/// over all slices per face. Batches of directions bound memory equally, and the result is bit-identical, because
-/// collection adds directions one by one in either case. The medium, U, I and one map per direction stay on the device.
+/// Directions are propagated and collected in batches. The largest batch is one LPM, the p directions of a cube face,
+/// so that T needs p n^3 floats per channel as in the paper's section 5. Batches are smaller if that does not fit the
+/// device, or exceeds `temporaryBytes`. The paper instead streams slices of the volume (section 4.2), which needs one
+/// pass over all slices per face. Batches of directions bound memory equally, and the result is bit-identical, because
+/// collection adds directions one by one in both methods. The medium, U, I and one map per direction stay on the
+/// device.
 ///
 /// Per order, call Propagate() and Collect() for each batch, then FinishOrder(); RunOrder() does all of this.
 class ParallelPropagation
 {
 public:
-  /// @param medium  its arrays must outlive this
+  /// @param medium  its arrays must outlive this object
   /// @param temporaryBytes  limit on the memory of T; 0: the memory left on the device
-  /// @param channels  3: solve three channels even if all is grey; 1: as many as the scene needs
+  /// @param channels  3: solve three channels even if medium and light are grey; 1: as many as the scene needs
   /// @throws InvalidInput if medium, illumination or settings are invalid
   /// @throws DeviceError if a batch of one direction does not fit
   ParallelPropagation(Device& device, const Medium& medium, const Illumination& illumination,
     const PropagationSettings& settings, std::size_t temporaryBytes = 0, int channels = 1);
-  ParallelPropagation(const ParallelPropagation&) = delete; // its parts refer to each other
+  ParallelPropagation(const ParallelPropagation&) = delete; // members refer to each other
   ParallelPropagation& operator=(const ParallelPropagation&) = delete;
 
   const PublishedModel& Model() const { return this->TheModel; }
   int BatchCount() const { return static_cast<int>(this->Plan.batches.size()); }
-  int FirstDirection(int batch) const; ///< BatchCount() gives the number of directions
+  /// index of a batch's first direction; for BatchCount(), the number of directions
+  int FirstDirection(int batch) const;
 
   /// Traces all rays of the directions of a batch through the volume once, which fills T.
-  /// @param monitor  receives fractions of the order
+  /// @param monitor  receives the progress of the solve
   void Propagate(int batch, const Monitor& monitor = {});
+  /// Adds T of a batch to the moments of the current order.
   void Collect(int batch);
   /// Computes U of the next order, I and fluence of all orders so far, powers and convergence.
   void FinishOrder();
+  /// Runs one scattering order: Propagate() and Collect() for each batch, then FinishOrder().
   void RunOrder(const Monitor& monitor = {});
   /// Whether the maximum order or the tolerance of the settings is reached.
   bool Done() const { return this->Ledger.Done(); }
 
-  /// T of a batch divided by sigma_s, so that it exists in vacuum as well: length W / (length^2 sr), one vector per
+  /// T of a batch divided by sigma_s, so that it exists in vacuum too: length W / (length^2 sr), one array per
   /// direction, x fastest, channels interleaved. T of Eq. (6) is sigma_s times this.
   std::vector<std::vector<float>> Contributions(int batch) const;
   void SetContributions(int batch, const std::vector<std::vector<float>>& contributions);
 
   /// U that the next order propagates, W / (length^3 sr): channels * SourceDirections() values per voxel, channels
-  /// fastest. Initially the emission of the medium. After U has been set, the next order has no boundary light, as any
-  /// order after the first.
+  /// fastest. Initially the emission of the medium.
   std::vector<float> Source() const { return this->Volumes.ReadSource(); }
+  /// Sets U of the next order, as returned by Source(). That order then has no boundary light, as any order after the
+  /// first.
   void SetSource(const std::vector<float>& source);
 
   LightField Result() const; ///< sum of all orders so far
@@ -78,14 +83,14 @@ private:
   PublishedPlan Plan;
   PublishedSweep Sweep;
   cl::Kernel UpdateSources;
-  SweepTally Tally; ///< boundary powers of the current order
-  bool Emits;       ///< U is not zero
+  SweepTally Tally; ///< incident, escaped and wrapped power of the current order
+  bool Emits;       ///< whether U is not zero everywhere
   bool SourceGiven = false;
   std::vector<float> FluenceDirect;
 };
 
-/// Solves all orders on the device.
-/// @param temporaryBytes  as in the constructor of ParallelPropagation
+/// Solves all scattering orders with ParallelPropagation.
+/// @param temporaryBytes  limit on the memory of T; 0: the memory left on the device
 LightField SolveParallel(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor = {}, std::size_t temporaryBytes = 0);
 }

@@ -10,11 +10,11 @@
 #include "LightPropagation/Published/PublishedShared.h"
 #include "Numerics/Numerics.cl"
 
-// Adds the directions of a batch to the moments, REAL_WIDTH voxels at a time, in either layout.
-//   coefficients   [MOMENTS][directions], starting at `first`
-//   contributions  T, [direction][CHANNELS][volume], length W / (length^2 sr)
+// Adds the deposits of a batch of directions to the moments, REAL_WIDTH voxels at a time, in either layout.
+//   coefficients   [MOMENTS][directions], starting at index `first`
+//   contributions  T over sigma_s, [direction][CHANNELS][volume], length W / (length^2 sr)
 //   moments        [MOMENTS][CHANNELS][volume]
-//   add            0: first batch of the order, moments are overwritten
+//   add            0: first batch of the order, moments are overwritten; 1: added to
 __kernel void add_directions(const int volume, const int directions, const int add, const int first,
   __global const float* coefficients, __global const float* contributions, __global float* moments)
 {
@@ -38,9 +38,10 @@ __kernel void add_directions(const int volume, const int directions, const int a
   }
 }
 
-// Computes U of the next order (Eq. (4)), and the moments of all orders so far.
-//   moments0, moments1  moments of this order from maps of layouts 0 and 1; moments0 becomes their sum
-//   totals              [MOMENTS][CHANNELS][volume 0]
+// Computes U of the next order (Eq. (4)), and the moments of all orders so far. One work-item per voxel and channel.
+//   moments0, moments1  moments of this order from the maps of layouts 0 and 1; moments0 receives their sum
+//   totals              moments of all orders, [MOMENTS][CHANNELS][volume 0]
+//   part                the sources U as multiples of moments
 __kernel void update_sources(const PublishedLayouts info, const int parts, __global const PublishedPart* part,
   __global const float* sigma_s, __global float* moments0, __global const float* moments1, __global float* totals,
   __global float* sources0, __global float* sources1)

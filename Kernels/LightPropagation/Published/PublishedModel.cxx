@@ -39,8 +39,8 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
   return best;
 }
 
-/// Indices of the directions nearest to a unit vector, one for each of 48 tiny displacements, the images of one under
-/// the symmetries of the cube. All are equal unless omega lies on a border between cells.
+/// Indices of the directions nearest to a unit vector, one for each of 48 tiny displacements, which are images of each
+/// other under the symmetries of the cube. All 48 are equal unless omega lies on a border between cells.
 std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
 {
   std::array<double, 3> push = { 1e-9, 2e-9, 3e-9 };
@@ -93,7 +93,7 @@ std::vector<std::array<Rgb, 3>> BoundaryOf(
   return boundary;
 }
 
-/// A small patch of the sphere, part of the cell of a stored direction.
+/// A small patch of the unit sphere: centre, solid angle, sr, and index of the stored direction in whose cell it lies.
 struct Patch
 {
   glm::dvec3 omega;
@@ -111,9 +111,9 @@ std::vector<Patch> Patches(const std::vector<std::array<double, 3>>& stored)
   return patches;
 }
 
-/// Means of a phase function over patches of the sphere, by angle between light and patch. Exact for rings around the
-/// direction of the light that are as wide as a round patch of the same area, so a peak narrower than a patch keeps its
-/// power.
+/// Mean of a phase function over a patch of the sphere, tabulated by the angle between light and patch. The mean is
+/// exact over a ring around the light's direction that is as wide as a round patch of the same area, so a peak narrower
+/// than a patch keeps its power.
 class PatchMeans
 {
 public:
@@ -128,7 +128,7 @@ public:
     }
   }
 
-  /// 1/sr
+  /// Mean at a cosine between light and patch, 1/sr.
   double At(double cosine) const
   {
     const double place = Rows * std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0)); // by sin(angle/2)
@@ -141,8 +141,8 @@ private:
   std::vector<double> Means;
 };
 
-/// F^{i,d} / |Omega^d| of Eq. (5) for all stored directions d (rows) and all propagation directions i: the integral of
-/// the phase function over both cells (numerics.md, Eq. (12)).
+/// F^{i,d} / |Omega^d| of Eq. (5), 1/sr, for all stored directions d (rows) and all propagation directions i (columns):
+/// the integral of the phase function over both cells (numerics.md, Eq. (12)).
 std::vector<std::vector<double>> ScatteringFactors(
   const PhaseFunction& function, const DirectionSet& set, const std::vector<std::array<double, 3>>& stored)
 {
@@ -163,7 +163,8 @@ std::vector<std::vector<double>> ScatteringFactors(
     }
     for (std::size_t d = 0; d < stored.size(); ++d)
     {
-      factors[d][i] += from.weight * scattered[d] / all; // correct for the difference between rings and patches
+      // division by `all` corrects the difference between rings and patches
+      factors[d][i] += from.weight * scattered[d] / all;
     }
     cellSize[i] += from.weight;
   };

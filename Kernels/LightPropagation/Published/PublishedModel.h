@@ -16,55 +16,61 @@
 
 namespace tyndall
 {
-/// Common part of Algorithms 1 and 2 of Gruson et al. 2012: directions, boundary conditions, and how the deposits of a
-/// ray become the stored quantities. For how the equations are read where the paper leaves a choice, and for the losses
-/// of the scheme, see numerics.md, section 3, Eqs. (9) to (14).
+/// Model shared by Algorithms 1 and 2 of Gruson et al. 2012: directions, boundary radiance, and the moments into which
+/// a ray's deposits are summed. Interpretation of the paper's equations, and losses of the scheme: numerics.md, section
+/// 3, Eqs. (9) to (14).
 ///
 /// A ray of direction i, weight w_i (sr), carries radiance L, W / (length^2 sr). Deposits are stored divided by
 /// sigma_s, so that fluence, the sum of deposits over all directions, is 4 pi I / sigma_s in the paper's notation, and
-/// exists in vacuum too. Light that enters a periodic box through a side face starts on the lattice of the map, so such
-/// a box should be several voxels wide.
+/// exists in vacuum too. Light that enters a periodic box through a side face starts at the elements of the map, so
+/// such a box should be several voxels wide.
 class PublishedModel
 {
 public:
-  /// @param channels  3: solve three channels even if all is grey; 1: as many as the scene needs
+  /// @param channels  3: three channels even if medium and light are grey; 1: as many as the scene needs
   /// @throws InvalidInput  from Check() of medium, illumination and settings (PropagationProblem.h) and from
   ///   CheckPublished; if the number of directions is not a square
   PublishedModel(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
 
-  int Channels() const { return this->ChannelCount; } ///< 3 if medium or light is coloured, else 1
+  /// 3 if medium or light is coloured or three were requested, else 1
+  int Channels() const { return this->ChannelCount; }
   const DirectionSet& Directions() const { return this->Set; }
 
-  /// Boundary radiance in order 0 along `direction` through the face perpendicular to `axis`.
+  /// Incident radiance, W / (length^2 sr), along `direction` through the face across `axis` in order 0.
   const Rgb& Boundary(int direction, int axis) const { return this->BoundaryRadiances[direction][axis]; }
 
-  /// Directions of I: a single (0, 0, 0) for the mean over all directions, or settings.storedDirections directions.
+  /// Directions for which I is stored: a single (0, 0, 0) for the mean over all directions, or
+  /// settings.storedDirections directions.
   const std::vector<std::array<double, 3>>& StoredDirections() const { return this->Stored; }
-  /// Directions of U: the six face normals if I has a single one, else the directions of I.
+  /// Directions for which U is stored: the six face normals if StoredDirections() has a single entry, else
+  /// StoredDirections().
   const std::vector<std::array<double, 3>>& SourceDirections() const { return this->Sources; }
-  /// d(i) of Eq. (3), an index into SourceDirections.
+  /// Index of the entry of SourceDirections() nearest to `direction`: d(i) of Eq. (3).
   int SourceOf(int direction) const { return this->NearestSource[direction]; }
 
   /// Number of moments. A moment is the sum over directions of a coefficient times the mean radiance of a voxel in that
-  /// direction. Moment 0 is the fluence. Scattered radiance by source direction and net flux have moments of their own
-  /// if they are not multiples of moment 0.
+  /// direction. Moment 0 is the fluence. Scattered radiance by source direction, and net flux, are further moments if
+  /// they are not multiples of moment 0.
   int MomentCount() const { return static_cast<int>(this->Coefficients.size()); }
+  /// Coefficient of a direction's mean radiance in a moment.
   double Coefficient(int moment, int direction) const { return this->Coefficients[moment][direction]; }
 
-  /// A quantity as a multiple of a moment.
+  /// A quantity expressed as factor times moment.
   struct Part
   {
     int moment = 0;
     double factor = 1.0;
   };
-  /// All moments of light of fluence 1 from another solver. The length of `mean` is the fraction of the light that is
-  /// treated as coming along the nearest direction of the set; the rest is spread over all directions. The net flux is
-  /// exact.
+  /// All moments of light from another solver, with fluence 1 and mean direction `mean`. A fraction |mean| of it is
+  /// assigned to the nearest direction of the set; the remainder is isotropic. The net flux is exact.
   std::vector<double> MomentsAlong(const std::array<double, 3>& mean) const;
+  /// U / sigma_s of a source direction.
   Part Source(int sourceDirection) const;
+  /// I / sigma_s of a stored direction.
   Part ScatteredRadiance(int storedDirection) const;
-  int NetFlux(int axis) const { return this->FirstFlux + axis; } ///< index of the moment
+  /// index of the moment that is the net flux along `axis`
+  int NetFlux(int axis) const { return this->FirstFlux + axis; }
 
 private:
   int ChannelCount = 1;
@@ -79,31 +85,33 @@ private:
 };
 
 /// Why the published scheme cannot solve a scene: its phase function varies between voxels or channels, or faces
-/// reflect. Empty if it can.
+/// reflect. Empty if it can solve the scene.
 std::string WhyNotPublished(const Medium& medium, const Illumination& illumination);
-/// @throws InvalidInput with the message of WhyNotPublished, if any
+/// @throws InvalidInput with the reason, if WhyNotPublished() gives one
 void CheckPublished(const Medium& medium, const Illumination& illumination);
-/// @throws InvalidInput if a face reflects: neither paper has reflecting faces
+/// @throws InvalidInput if a face reflects: neither published algorithm has reflecting faces
 void CheckPublishedFaces(const Illumination& illumination);
 
-/// Lights that the published scheme does not support, for LightField::leftOut; empty if none.
+/// Descriptions, for LightField::leftOut, of lights that the published scheme does not support; empty if there are
+/// none.
 std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
 
-/// Adds light from another solver to the moments of an order.
-/// @param add  adds a value to a moment of a voxel and channel
+/// Adds the uncollided light of another solver to the moments of an order.
+/// @param add  called to add a value to one moment of one voxel and channel
 void AddGiven(const PublishedModel& model, const UncollidedImage& image, std::size_t voxels,
   const std::function<void(std::size_t moment, std::size_t voxel, int channel, double value)>& add);
 
-/// Writes fluence, scattered radiance and, if requested, net flux from the moments of all orders; also leftOut and
-/// converged. field.convergence must be set.
-/// @param moment  returns a moment by number, by voxel with channels interleaved
+/// Writes to `field` fluence, scattered radiance and, if requested, net flux from the moments of all orders; also
+/// leftOut and converged. field.convergence must be set.
+/// @param moment  returns the moment of an index, by voxel with channels interleaved
 void WritePublishedLight(const PublishedModel& model, const Medium& medium, const MediumTraits& traits,
   const Illumination& illumination, const PropagationSettings& settings,
   const std::function<std::vector<float>(int)>& moment, LightField& field);
 
 class GridWalk;
 
-/// Geometry of the rays of one direction, whose map marches plane by plane along the axis of its cube face.
+/// Geometry of the rays of one direction, whose map marches plane by plane along the normal of the direction's cube
+/// face.
 struct MapGeometry
 {
   MapGeometry(
@@ -111,42 +119,44 @@ struct MapGeometry
 
   int axis, axisU, axisV; ///< marching axis; transverse axes, u the faster one in the map's memory
   int planes, sizeU, sizeV;
-  bool forward;          ///< towards +axis
+  bool forward;          ///< whether rays march towards increasing index along `axis`
   double slopeU, slopeV; ///< transverse shift per plane, in voxels
-  double length;         ///< of a ray in one plane
-  double beamPower;      ///< W that a ray carries at radiance 1: weight times perpendicular area
-  double density;        ///< mean radiance that a ray deposits in a voxel, per radiance and length, 1/length
+  double length;         ///< path length of a ray in one plane of voxels
+  double beamPower;      ///< power of a ray at radiance 1: weight times perpendicular area, length^2 sr
+  /// density_i of Eq. (13): mean radiance of a voxel per radiance and path length of a ray, 1/length
+  double density;
 
   int PlaneAt(int crossed) const
   {
     return this->forward ? crossed : this->planes - 1 - crossed;
-  }                                   ///< the plane after `crossed` planes
-  int EntryFace(int entryAxis) const; ///< 2 axis (+ 1 on the upper side): the face where this direction enters
+  } ///< index of the plane that rays reach after `crossed` planes
+  /// face across `entryAxis` through which this direction enters: 2 axis, + 1 on the upper side
+  int EntryFace(int entryAxis) const;
   int ExitFace(int exitAxis) const { return this->EntryFace(exitAxis) ^ 1; }
-  /// Transverse position within its voxel, [0, 1], at which a ray begins an order, if it began order 0 at `start`.
+  /// Transverse position within its voxel, 0 to 1, at which a ray begins order `order` if it began order 0 at `start`.
   /// Differs from `start` if the ray has wrapped around a periodic axis.
   double StartOfOrder(double start, double slope, int order) const;
-  /// Path of a ray of one of the resolution^2 sub-maps, numbered row by row, in an order.
+  /// Path of the rays of one of the resolution^2 sub-maps, numbered row by row, in a scattering order.
   GridWalk Walk(int resolution, int subMap, int order) const;
 
 private:
   std::array<bool, 3> Upward;
-  bool Continues; ///< behind the last plane
+  bool Continues; ///< whether rays wrap around the marching axis after the last plane
 };
 
 /// Traverses the voxels along one ray (Amanatides and Woo 1987), in double. Voxel boundaries closer than 1e-9 of a
 /// plane are crossed together, so that all rays of a direction treat ties equally. Crossings that coincide with the end
-/// of the path are left to the next order.
+/// of the path belong to the next order.
 class GridWalk
 {
 public:
   /// @param startU, startV  position within the first voxel, [0, 1]
   GridWalk(double startU, double startV, double slopeU, double slopeV, int planes);
 
-  int moveU = 0; ///< voxels to move before the segment: -1, 0, 1
+  int moveU = 0; ///< voxels to move along u before the segment: -1, 0, 1
   int moveV = 0;
   int plane = -1;        ///< plane of the segment, counted from the start of the ray
-  double fraction = 0.0; ///< length of the segment over that of a whole plane
+  double fraction = 0.0; ///< length of the segment relative to that of a complete plane
 
   bool Next(); ///< moves to the next segment; false beyond the last plane
 

@@ -6,16 +6,17 @@
 //
 // The paper synchronises the rays of a work-group by __syncthreads. Here a launch is one voxel crossing of all rays of
 // all directions, and the sequence of launches synchronises them. Rays are stored by the voxel they are in: a ray map
-// is [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border for light incident through the sides.
-// REAL_WIDTH > 1 (CPU): a work-item processes a row. REAL_WIDTH 1 (GPU): a work-item processes a voxel.
+// is [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border for light incident through the sides. A
+// work-item processes a row of the map if REAL_WIDTH > 1 (CPU), and one voxel if REAL_WIDTH is 1 (GPU).
+//
 
 #include "LightPropagation/Published/PublishedShared.h"
 #include "Numerics/Numerics.cl"
 
 #define PAD REAL_WIDTH
 
-// Outgoing radiance of the map of a direction, W / (length^2 sr), summed over rays: [through u by row][through
-// v][beyond the last plane by row].
+// Number of floats for the outgoing radiance of one direction, W / (length^2 sr), summed over rays: [through u by
+// row][through v][beyond the last plane by row].
 #define ESCAPED(map) (2 * (map).sizeV + 1)
 
 static __global float* ray_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
@@ -24,15 +25,17 @@ static __global float* ray_row(__global float* rays, const PublishedMap* map, in
   return rays + row * map->rayRow + PAD;
 }
 
-// Length times mean transmittance, (1 - exp(-tau)) / sigma; the length itself in vacuum.
+// Path length times mean transmittance, (1 - exp(-tau)) / sigma; the length in vacuum. `gone` is 1 - exp(-tau).
 inline real depth(real gone, real tau, float length)
 {
   return length * (max(gone, (real)1e-37f) / max(tau, (real)1e-37f));
 }
 
-// Initial radiance of the rays. Written to both maps, so that both contain the border.
-//   boundary  incident radiance perpendicular to w, u, v: [direction][3][CHANNELS]
-//   carried   radiance by voxel across a periodic axis, [direction][carried_stride], from carried_first on
+// Sets the initial radiance of the rays, in both ray maps, so that both contain the border. One work-item per element
+// of the map with border, direction and channel.
+//   boundary  incident radiance through the faces across w, u, v: [direction][3][CHANNELS]
+//   carried   radiance by voxel that has wrapped around a periodic axis, [direction][carried_stride], from index
+//             carried_first on
 __kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
   __global const float* carried, const ulong carried_first, const ulong carried_stride)
 {
@@ -51,7 +54,7 @@ __kernel void start_rays(const PublishedMap map, __global float* rays, __global 
   const int side_v = outside_v && !map.periodicV;
   boundary += direction * 3 * CHANNELS + channel;
   float radiance = boundary[0];
-  if (side_u || side_v) // at an edge, the mean of both sides
+  if (side_u || side_v) // at an edge, the mean of both sides' radiance
   {
     radiance = (side_u ? boundary[CHANNELS] : 0.0f) + (side_v ? boundary[2 * CHANNELS] : 0.0f);
     radiance *= side_u && side_v ? 0.5f : 1.0f;
@@ -67,7 +70,8 @@ __kernel void start_rays(const PublishedMap map, __global float* rays, __global 
   ray_row(rays, &map, 1, slot, v)[u] = radiance;
 }
 
-// Outgoing radiance through the sides as rays move into the next voxel; through an edge, half on each side.
+// Adds to `escaped` the radiance that leaves through the sides as rays move into the next voxel; at an edge, half of it
+// through each side.
 static void leave_sides(
   const PublishedMap* map, const PublishedCrossing* crossing, __global const float* row, int v, __global float* escaped)
 {
@@ -89,7 +93,7 @@ static void leave_sides(
   }
 }
 
-// Crosses one voxel: Eq. (3), and Eq. (6) divided by sigma_s (numerics.md, Eqs. (9), (10)).
+// Radiance of a ray after it has crossed one voxel, Eq. (3) (numerics.md, Eq. (9)).
 inline real cross_voxel(real radiance, real sigma_t, real source, float length)
 {
   const real tau = sigma_t * length;
@@ -97,6 +101,7 @@ inline real cross_voxel(real radiance, real sigma_t, real source, float length)
   const real gone = extinguished(tau, &left);
   return SOURCE ? multiply_add(radiance, left, source * depth(gone, tau, length)) : radiance * left;
 }
+// Deposit of a ray in a voxel, Eq. (6) divided by sigma_s (numerics.md, Eq. (10)), length W / (length^2 sr).
 inline real deposit(real radiance, real sigma_s, float length)
 {
   const real tau = sigma_s * length;
@@ -106,9 +111,9 @@ inline real deposit(real radiance, real sigma_s, float length)
 }
 
 // Moves all rays of all directions of a launch into their next voxel and through it.
-//   first, crossings  range of the launch in the table, one entry per direction
-//   plane             offset of the plane in a volume
-//   add               0: first ray in these voxels, T is overwritten; 1: added to T
+//   first, crossings  table of crossings, and index of the launch's first one; one per direction
+//   plane             index of the plane's first float in a volume
+//   add               0: first ray in these voxels, T is overwritten; 1: deposits are added to T
 __kernel void cross_voxels(const PublishedMap map, const int plane, const int add, const int first,
   __global const PublishedCrossing* crossings, __global const float* sigma_t, __global const float* sigma_s,
   __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped)
@@ -133,7 +138,7 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 
 #if REAL_WIDTH > 1
   leave_sides(&map, &crossing, ray_row(rays, &map, crossing.parity, slot, v), v, escaped);
-  const float right_border = to[map.sizeU]; // the last vector of the row may overwrite it
+  const float right_border = to[map.sizeU]; // saved, since the last vector of the row may overwrite it
   for (int u = 0; u < map.sizeU; u += REAL_WIDTH)
   {
     const real source = SOURCE ? load_real(u, sources) : (real)0.0f;
@@ -187,9 +192,9 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 #endif
 }
 
-// After the last plane: sums the outgoing radiance, and stores rays that wrap around a periodic axis for the next
-// order, [direction][carried_stride].
-//   crossings  one per direction; parity selects the map
+// Sums the outgoing radiance after the last plane, and stores rays that wrap around the marching axis for the next
+// order, [direction][carried_stride]. One work-item per row of the map, direction and channel.
+//   crossings  one per direction, from index `first` on; parity selects the ray map
 __kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
   __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
   const ulong carried_stride)

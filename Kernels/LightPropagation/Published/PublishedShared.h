@@ -1,17 +1,18 @@
-// Shared by C++ and the kernels of the published algorithm.
+// Shared by C++ and the kernels of the published algorithm (PublishedPropagate.cl, PublishedCollect.cl).
 #pragma once
 
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// Memory layouts of volumes: layout 0 is [z][y][x]; layout 1, for maps that march along x, is [x][z][y].
+/// Two memory layouts of volumes, both padded: layout 0 is [z][y][x]; layout 1, for maps that march along x, is
+/// [x][z][y].
 typedef struct
 {
   int size[3];
   int row[2], plane[2], volume[2]; ///< strides of rows, planes and channels in floats, by layout
 } PublishedLayouts;
 
-/// A source U as a multiple of a moment, and where it is stored.
+/// A source U, computed as sigma_s times `factor` times a moment, and its place in memory.
 typedef struct
 {
   int moment;
@@ -20,25 +21,26 @@ typedef struct
   int slot;
 } PublishedPart;
 
-/// A ray map.
+/// Size and memory layout of the ray maps of a batch of directions.
 typedef struct
 {
   int sizeU, sizeV;
-  int rowStride; ///< floats between rows of a volume
-  int volume;    ///< floats of a volume of one channel
-  int rayRow;    ///< floats of a row of a ray map
+  int rowStride; ///< floats between consecutive rows of the map in a volume
+  int volume;    ///< floats per volume of one channel
+  int rayRow;    ///< floats per row of a ray map
   int periodicU, periodicV;
-  int periodicW;  ///< rays start with their radiance beyond the last plane in the previous order
-  int directions; ///< in the batch
+  /// whether rays wrap around the marching axis: they start with their radiance at the end of the previous order
+  int periodicW;
+  int directions; ///< number of directions in the batch
 } PublishedMap;
 
-/// The rays of one direction in one launch.
+/// Segment that all rays of one direction cross in one launch of cross_voxels().
 typedef struct
 {
-  int direction; ///< within the batch
-  int parity;    ///< index of the ray map that holds them
+  int direction; ///< index of the direction within the batch
+  int parity;    ///< ray map, 0 or 1, from which radiance is read; the other one is written
   int moveU, moveV;
-  int source;   ///< index of U
-  float length; ///< of the segment in the voxel
+  int source;   ///< slot of U for this direction
+  float length; ///< path length in the voxel
 } PublishedCrossing;
 SHARED_END

@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-/// Voxel crossings between progress reports; about 50 ms on two cores.
+/// Number of voxel crossings between progress reports; about 50 ms on two cores.
 constexpr double CrossingsPerReport = 3e7;
 }
 
@@ -28,12 +28,12 @@ PublishedPlan::PublishedPlan(Device& device, const Grid& grid, const PublishedMo
   this->MeasureBuffers(perBatch);
 }
 
-/// Directions per batch: all of a cube face if they fit into the remaining memory; at least one.
+/// Number of directions per batch: all of a cube face if their T fits into the remaining memory; at least one.
 int PublishedPlan::DirectionsPerBatch(std::size_t temporaryBytes) const
 {
   const int perFace = this->Model.Directions().PerFace();
   const std::size_t one = this->LargestLayout() * sizeof(float);
-  const double maps = 4.0; // two ray maps, and the same again for tables
+  const double maps = 4.0; // two ray maps, and as much memory for tables of crossings
   const std::size_t map =
     static_cast<std::size_t>(maps * this->Volumes.Channels() * sizeof(float) * this->LargestRayMap());
   const std::size_t taken = this->TheDevice.BytesInUse() + map * perFace;
@@ -126,7 +126,7 @@ void PublishedPlan::AppendCoefficients(Batch& batch, std::vector<float>& to) con
   }
 }
 
-/// Crossings of all directions, by sub-map, plane and launch.
+/// Lists the crossings of all directions, by sub-map, plane and launch.
 void PublishedPlan::MakePasses(Batch& batch, int order) const
 {
   std::vector<PublishedCrossing> crossings;
@@ -163,7 +163,7 @@ GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) cons
   return map.Walk(this->Settings.mapResolution, subMap, order);
 }
 
-/// Adds the crossings of direction i of the batch, and its end.
+/// Adds the crossings of direction i of a batch on one sub-map to `byPlane`, and its entry for end_rays() to `ends`.
 void PublishedPlan::WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
   std::vector<PublishedCrossing>& ends) const
 {
@@ -240,7 +240,8 @@ void PublishedSweep::Begin(const Batch& batch, bool incident, SweepTally& tally)
   this->TallyIncident(batch, tally);
 }
 
-/// Boundary radiance perpendicular to w, u, v: [direction][3][channel].
+/// Incident radiance of a batch's directions through the faces across w, u, v, W / (length^2 sr):
+/// [direction][3][channel].
 std::vector<float> PublishedSweep::IncidentRadiance(const Batch& batch) const
 {
   std::vector<float> radiance;
@@ -256,7 +257,8 @@ std::vector<float> PublishedSweep::IncidentRadiance(const Batch& batch) const
   return radiance;
 }
 
-/// Counts incident power: of rays that start on the map, and of those that enter through a side.
+/// Adds the incident power of a batch to `tally`: power of rays that start on the first plane, and of rays that enter
+/// through the sides.
 void PublishedSweep::TallyIncident(const Batch& batch, SweepTally& tally) const
 {
   for (int i = 0; i < batch.count; ++i)
@@ -285,7 +287,7 @@ void PublishedSweep::TallyIncident(const Batch& batch, SweepTally& tally) const
   }
 }
 
-/// Reads the outgoing radiance of a pass, in the layout of PublishedPropagate.cl.
+/// Adds the outgoing power of a pass to `tally`, from the outgoing radiance in the layout of PublishedPropagate.cl.
 void PublishedSweep::TallyEscaped(const Batch& batch, SweepTally& tally) const
 {
   const std::vector<float> escaped = this->Escaped.Read();

@@ -11,7 +11,7 @@
 
 namespace tyndall
 {
-/// Sizes, in floats, of the buffers that all batches share.
+/// Sizes, in floats, of the buffers of PublishedSweep, which all batches share.
 struct PublishedSizes
 {
   std::size_t rays = 0, escaped = 0, carried = 0, contributions = 0, boundary = 0;
@@ -22,56 +22,59 @@ struct PublishedSizes
 class PublishedPlan
 {
 public:
-  /// A launch: some of the crossings in one plane.
+  /// One launch of cross_voxels(): a range of crossings in one plane of voxels.
   struct Launch
   {
     int plane, first, count;
-    bool add; ///< to the deposits of earlier launches in the plane
+    bool add; ///< whether deposits are added to those of earlier launches in this plane
   };
 
-  /// Path of a batch through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM", section
-  /// 5).
+  /// Path of a batch's rays through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM",
+  /// section 5).
   struct Pass
   {
     std::vector<Launch> launches;
-    int end = 0; ///< index of its crossings for end_rays
+    int end = 0; ///< index of the crossings for end_rays()
     std::size_t carriedFirst = 0;
   };
 
-  /// Directions of one cube face whose rays are propagated together, and their rows in T.
+  /// Directions of one cube face whose rays are propagated together, and whose deposits are in T at the same time.
   struct Batch
   {
-    int first = 0, count = 0; ///< directions
+    int first = 0, count = 0; ///< range of directions
     cl_int firstCoefficient = 0;
     std::size_t carriedFirst = 0;
     std::vector<MapGeometry> maps;
     std::vector<Pass> passes;
-    Buffer<PublishedCrossing> crossings; ///< of all passes
+    Buffer<PublishedCrossing> crossings; ///< crossings of all passes
     int Layout() const { return this->maps[0].axis == 0 ? 1 : 0; }
-    const MapGeometry& Map() const { return this->maps[0]; } ///< first map; all have the same axes and sizes
+    /// map of the first direction; all maps have the same axes and sizes
+    const MapGeometry& Map() const { return this->maps[0]; }
   };
 
-  /// @param model, volumes  must outlive this
+  /// @param model, volumes  must outlive this object
   /// @param temporaryBytes  limit on the memory of T; 0: the memory left on the device
   PublishedPlan(Device& device, const Grid& grid, const PublishedModel& model, const PropagationSettings& settings,
     const PublishedVolumes& volumes, std::size_t temporaryBytes);
 
   std::vector<Batch> batches;
-  Buffer<float> coefficients; ///< [batch][moment][direction], times the map's density
+  Buffer<float> coefficients; ///< coefficients of moments times density of the map, [batch][moment][direction]
   PublishedSizes sizes;
 
   int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
-  int RayRow(const Batch& batch) const;                ///< floats of a row of a ray map
-  std::size_t CarriedStride(const Batch& batch) const; ///< floats stored of one direction's map, all channels
+  int RayRow(const Batch& batch) const; ///< floats per row of a ray map
+  /// floats stored per direction for the next order, all channels and sub-maps
+  std::size_t CarriedStride(const Batch& batch) const;
 
-  /// Makes the passes of an order. Rays that wrap around a periodic axis start at another position in their voxels in
-  /// each order.
+  /// Makes the passes of a batch in order `order`. Rays that wrap around a periodic axis start at another position in
+  /// their voxels in each order.
   void MakePasses(Batch& batch, int order) const;
-  /// Path of a ray of a map.
+  /// Path of the rays of a sub-map in a scattering order.
   GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
 
 private:
-  using CrossingsByPlane = std::vector<std::vector<std::vector<PublishedCrossing>>>; ///< [plane][voxel in it]
+  /// [plane][index of the voxel along the ray in this plane]
+  using CrossingsByPlane = std::vector<std::vector<std::vector<PublishedCrossing>>>;
 
   int DirectionsPerBatch(std::size_t temporaryBytes) const;
   std::size_t LargestLayout() const;
@@ -97,25 +100,25 @@ public:
   using Batch = PublishedPlan::Batch;
   using Pass = PublishedPlan::Pass;
 
-  /// @param volumes, plan, model  must outlive this
+  /// @param volumes, plan, model  must outlive this object
   PublishedSweep(Device& device, const PublishedVolumes& volumes, const PublishedPlan& plan,
     const PublishedModel& model, const PropagationSettings& settings);
 
-  /// Prepares a batch.
-  /// @param incident  boundary light is incident (first order only), and counted in `tally`
+  /// Sets the incident radiance of a batch's directions.
+  /// @param incident  whether boundary light is incident (first order only); its power is counted in `tally`
   void Begin(const Batch& batch, bool incident, SweepTally& tally);
 
-  /// Traces one ray per map voxel and direction, from the first plane to beyond the last.
-  /// @param emits   U is not zero
-  /// @param report  receives the fraction of the pass that is done
+  /// Traces one ray per voxel of the first plane and direction through all planes. Adds escaped power to `tally`.
+  /// @param emits   whether U is not zero everywhere
+  /// @param report  receives the completed fraction of the pass
   void Send(
     const Batch& batch, const Pass& pass, bool emits, SweepTally& tally, const std::function<void(double)>& report);
 
-  /// Adds T of the batch to the moments of the order.
-  /// @param begins  first batch of a layout: overwrites the moments
+  /// Adds T of a batch to the moments of the order.
+  /// @param begins  whether this is the first batch of a memory layout, which overwrites the moments
   void Collect(const Batch& batch, bool begins);
 
-  Buffer<float> Contributions; ///< T
+  Buffer<float> Contributions; ///< temporary buffers T, see PublishedPropagate.cl
 
 private:
   void MakeKernels();

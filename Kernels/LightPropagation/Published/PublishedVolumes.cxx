@@ -9,7 +9,8 @@ namespace tyndall
 {
 namespace
 {
-/// Returns the grid if kernels can count its voxels with ints.
+/// Returns `grid` if kernels can index its padded voxels with 32-bit integers.
+/// @throws DeviceError otherwise
 const Grid& Addressable(const Device& device, const Grid& grid, int width)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -35,7 +36,7 @@ VolumeLayouts::VolumeLayouts(const Grid& grid, int width)
   {
     this->row[layout] = RoundUp(across[layout][0], width);
     const cl_int rows = this->row[layout] * across[layout][1];
-    this->plane[layout] = RoundUp(rows, 16) + (rows % 1024 == 0 ? 16 : 0); // not a multiple of 4 KB
+    this->plane[layout] = RoundUp(rows, 16) + (rows % 1024 == 0 ? 16 : 0); // avoids planes of a multiple of 4 KB
     this->volume[layout] = this->plane[layout] * across[layout][2];
   }
 }
@@ -70,7 +71,7 @@ std::size_t PublishedVolumes::LayoutSize(int layout) const
   return static_cast<std::size_t>(this->Layouts.volume[layout]) * this->Channels();
 }
 
-/// Calls visit(index in the layout, voxel x fastest, channel).
+/// Calls visit(index in the layout, index of the voxel x fastest, channel) for all voxels and channels.
 template <class Visit>
 void PublishedVolumes::ForEach(int layout, int channels, Visit visit) const
 {
@@ -91,7 +92,7 @@ void PublishedVolumes::ForEach(int layout, int channels, Visit visit) const
   }
 }
 
-/// Arranges value(voxel x fastest, channel) in one layout.
+/// Array in a layout, filled with value(index of the voxel x fastest, channel).
 template <class Value>
 std::vector<float> PublishedVolumes::ArrangeValues(int layout, int channels, Value value) const
 {
@@ -148,7 +149,7 @@ void PublishedVolumes::FindSlots()
   }
 }
 
-/// Makes U in the layouts in which the maps read it, initially the emission of the medium.
+/// Allocates U in the layouts in which the maps read it, and sets it to the emission of the medium.
 void PublishedVolumes::MakeSources(const Medium& medium)
 {
   std::vector<PublishedPart> parts;
@@ -175,7 +176,8 @@ void PublishedVolumes::MakeSources(const Medium& medium)
   }
 }
 
-/// @param value  function of voxel, source direction, channel
+/// Writes U of all source directions in all layouts.
+/// @param value  function of (voxel, source direction, channel)
 template <class Value>
 void PublishedVolumes::WriteSources(Value value)
 {

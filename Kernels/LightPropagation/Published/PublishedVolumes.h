@@ -9,7 +9,7 @@
 
 namespace tyndall
 {
-/// Memory layouts of volumes. Rows always run along u of the maps.
+/// Memory layouts of volumes. Rows always run along u of the maps that use the layout.
 struct VolumeLayouts : PublishedLayouts
 {
   /// @param width  rows are padded to a multiple of this many floats
@@ -18,40 +18,43 @@ struct VolumeLayouts : PublishedLayouts
   std::size_t Index(int layout, int x, int y, int z) const;
 };
 
-/// Arrays that stay on the device between scattering orders: the medium, U, and the moments of I and fluence. Each in
-/// both layouts, [...][channel][volume], with zero padding.
+/// Arrays that stay on the device between scattering orders: the medium, U, and the moments of the current order and of
+/// all orders; [...][channel][volume], with zero padding.
 struct PublishedVolumes
 {
   /// @param medium  copied
-  /// @param model  must outlive this
+  /// @param model  must outlive this object
   /// @param width  floats that a work-item processes at once
-  /// @throws DeviceError if they do not fit, or have more voxels than the kernels can address
+  /// @throws DeviceError if the arrays do not fit the device, or have more voxels than the kernels can address
   PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width);
 
   int Channels() const { return this->Model.Channels(); }
-  std::size_t LayoutSize(int layout) const; ///< floats of a quantity, all channels
+  std::size_t LayoutSize(int layout) const; ///< floats per quantity, all channels
 
-  /// Index, in quantities, of U of a direction in Sources; -1 if no map reads it in this layout.
+  /// Slot in Sources[layout] of U of a source direction; -1 if no map reads it in this layout.
   int SourceSlot(int layout, int sourceDirection) const { return this->Slots[layout][sourceDirection]; }
 
-  /// Conversions between a layout and arrays that are x fastest with channels interleaved; in arrays of U source
-  /// directions lie between voxel and channel.
+  /// Converts an array that is x fastest, with channels interleaved, to a layout.
   std::vector<float> Arrange(int layout, const float* interleaved) const;
+  /// Converts an array in a layout to one that is x fastest, with channels interleaved.
   std::vector<float> Interleave(int layout, const float* arranged) const;
+  /// Sets U from an array [voxel][source direction][channel], x fastest.
   void WriteSource(const std::vector<float>& source);
-  /// Adds light from another solver to the moments of the order just propagated.
+  /// Adds the uncollided light of another solver to the moments of the order just propagated.
   void AddGiven(const UncollidedImage& image);
+  /// Reads U into an array [voxel][source direction][channel], x fastest.
   std::vector<float> ReadSource() const;
-  std::vector<float> ReadMoment(const Buffer<float>& moments, int moment) const; ///< in layout 0
+  /// reads one moment from an array in layout 0; result x fastest, channels interleaved
+  std::vector<float> ReadMoment(const Buffer<float>& moments, int moment) const;
 
   /// Reads a range of floats of a buffer; waits for the device.
   std::vector<float> ReadPart(const Buffer<float>& buffer, std::size_t first, std::size_t count) const;
 
   int Width;
   VolumeLayouts Layouts;
-  bool Coloured; ///< sigma_t and sigma_s differ between channels
+  bool Coloured; ///< whether sigma_t or sigma_s differs between channels
 
-  Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2]; ///< by layout
+  Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2]; ///< [layout]
   Buffer<float> Totals;                                                    ///< moments of all orders, layout 0
   Buffer<PublishedPart> Parts;
 

@@ -14,14 +14,14 @@ namespace tyndall
 {
 namespace
 {
-/// (1 - exp(-sigma length)) / sigma; by its series where the difference would cancel.
+/// (1 - left) / sigma with left = exp(-sigma length); by its series where the difference would cancel.
 double Depth(double sigma, double left, double length)
 {
   return sigma * length > 1e-6 ? (1.0 - left) / sigma : length * (1.0 - 0.5 * sigma * length);
 }
 
-/// Moves by one voxel on a map of `size` with periodic wrap-around.
-/// @return whether it has wrapped around
+/// Moves a position by at most one voxel along an axis of `size` voxels, and wraps it around.
+/// @return whether the position has wrapped around
 bool Step(int& position, int move, int size)
 {
   position += move;
@@ -61,7 +61,8 @@ public:
     this->Sources.resize(this->Model.SourceDirections().size());
     for (std::size_t i = 0; i < this->Carried.size(); ++i)
     {
-      this->Sources[this->Model.SourceOf(static_cast<int>(i))] = emission; // "Initialize U with medium emitted light"
+      // "Initialize U with medium emitted light" (Algorithm 1)
+      this->Sources[this->Model.SourceOf(static_cast<int>(i))] = emission;
     }
   }
 
@@ -97,7 +98,7 @@ private:
     std::array<float, 3> radiance;
   };
 
-  /// Traces all rays of all maps once.
+  /// Traces the rays of all directions through the volume once.
   void Propagate(const Monitor& monitor)
   {
     for (std::vector<double>& moment : this->OrderMoments)
@@ -114,7 +115,7 @@ private:
     }
   }
 
-  /// Traces all rays of the map of one direction.
+  /// Traces all rays of one direction's map through the volume.
   void SendMap(int direction, const Monitor& monitor)
   {
     const DirectionSet& set = this->Model.Directions();
@@ -218,7 +219,7 @@ private:
     }
   }
 
-  /// Applies Eq. (3), then the contribution of the ray to Eq. (4).
+  /// Applies Eq. (3) to a ray, then adds its contribution to Eq. (4) to the moments of the order.
   void CrossVoxel(Ray& ray, const float* source, std::size_t first, double length, double density)
   {
     for (int c = 0; c < this->Channels; ++c)
@@ -237,7 +238,7 @@ private:
     }
   }
 
-  /// Adds light from another solver to the moments of the first order.
+  /// Adds the uncollided light of another solver to the moments of the first order.
   void AddGiven()
   {
     const UncollidedImage& image = this->Outside.uncollided;
@@ -248,7 +249,7 @@ private:
     tyndall::Add(this->Tally, TallyOf(image, this->TheMedium, 0, this->Channels));
   }
 
-  /// The rest of Eq. (4): U of the next order from the moments of this one.
+  /// Completes Eq. (4): computes U of the next order from the moments of this order, and adds these to the totals.
   void UpdateSources()
   {
     for (std::size_t k = 0; k < this->Totals.size(); ++k)
@@ -273,15 +274,15 @@ private:
   PublishedModel Model;
   int Channels;
   OrderLedger Ledger;
-  SweepTally Tally;   ///< of the current order
+  SweepTally Tally;   ///< incident, escaped and wrapped power of the current order
   std::size_t Values; ///< voxels times channels
   std::vector<float> Extinction, Scattering;
-  std::vector<std::vector<float>> Sources; ///< U by direction, channels interleaved; empty: no map reads it
-  /// Moments of this order, in double: thousands of rays cross a flat voxel, and sums in float were off by 6e-4.
+  std::vector<std::vector<float>> Sources; ///< U by source direction, channels interleaved; empty if no map reads it
+  /// Moments of this order, in double: thousands of rays cross a flat voxel, and sums in float were wrong by 6e-4.
   std::vector<std::vector<double>> OrderMoments;
   std::vector<std::vector<float>> Totals;  ///< moments of all orders
-  std::vector<std::vector<float>> Carried; ///< by direction: radiance that wraps around a periodic axis
-  std::vector<float> Coefficients;         ///< of the moments, for the current direction
+  std::vector<std::vector<float>> Carried; ///< radiance that wraps around the marching axis, by direction
+  std::vector<float> Coefficients;         ///< coefficients of the moments for the current direction
 };
 }
 

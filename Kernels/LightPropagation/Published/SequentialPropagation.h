@@ -7,15 +7,15 @@
 
 namespace tyndall
 {
-constexpr const char* SequentialDevice = "host, one core"; ///< LightField::device
+constexpr const char* SequentialDevice = "host, one core"; ///< value of LightField::device for SolveSequential()
 
-/// Light propagation maps as published, Algorithm 1 of Gruson et al. 2012 (Fattal 2009): one ray after the other on one
-/// core (numerics.md, section 3). The reference for the result and the speed of the parallel algorithm. Exponentials
-/// are those of the standard library, in double; radiance is float.
+/// Solves by light propagation maps as published, Algorithm 1 of Gruson et al. 2012 (Fattal 2009): one ray after the
+/// other on one core (numerics.md, section 3). The reference for the result and the speed of the parallel algorithm.
+/// Exponentials are those of the standard library, in double; radiance is float.
 ///
 /// Memory: host only, about (sources + moments) floats per voxel and channel.
 /// @throws InvalidInput if medium, illumination or settings are invalid
-/// @throws Aborted
+/// @throws Aborted if the monitor requests it
 LightField SolveSequential(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
   const Monitor& monitor = {});
 }
