@@ -12,10 +12,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Thin =
-  1e-3; ///< below it x^2 is neglected beside 1 in integrals of a beam, above it differences are used
+/// Argument x below which BeamIntegrals neglects x^2 against 1, and above which it uses differences.
+constexpr double Thin = 1e-3;
 
-/// (1 - exp(-r)) / r
+/// (1 - exp(-r)) / r: mean of exp(-r s) over [0, 1].
 double MeanOfExponential(double r)
 {
   return r < 1e-8 ? 1.0 - 0.5 * r : -std::expm1(-r) / r;
@@ -48,7 +48,7 @@ double SeriesOfMoment(int power, double r)
 /// (x a - y b) (x a + y b)^-1 for diagonal a, b.
 Eigen::MatrixXd Ratio(const LayerModes& modes, const Eigen::ArrayXd& a, const Eigen::ArrayXd& b)
 {
-  const Eigen::ArrayXd scale = 1.0 / (a + b); // only the ratio of a and b of a mode matters
+  const Eigen::ArrayXd scale = 1.0 / (a + b); // only the ratio a / b of each mode matters
   const Eigen::MatrixXd one = modes.x * (a * scale).matrix().asDiagonal();
   const Eigen::MatrixXd other = modes.y * (b * scale).matrix().asDiagonal();
   return (one + other).transpose().partialPivLu().solve((one - other).transpose()).transpose();
@@ -75,8 +75,8 @@ struct BeamIntegrals
 
   double slopeAtEntry; ///< a'(0)
   double slopeAtExit;  ///< -a'(1)
-  double mean;         ///< of a
-  double meanBeam;     ///< of exp(-r s)
+  double mean;         ///< mean of a
+  double meanBeam;     ///< mean of exp(-r s)
 };
 
 BeamIntegrals::BeamIntegrals(double x, double r)
@@ -149,7 +149,8 @@ Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, in
 
 namespace
 {
-/// Identity minus the scattering matrix, restricted to moments whose Legendre functions are even in the cosine, or odd.
+/// Identity minus the scattering matrix at the nodes, from the moments whose Legendre functions are even in the cosine,
+/// or from those whose functions are odd.
 Eigen::MatrixXd OneLessScattered(
   const LayerScattering& scattering, const Eigen::MatrixXd& legendre, int order, bool even)
 {
@@ -167,8 +168,10 @@ Eigen::MatrixXd OneLessScattered(
   return matrix;
 }
 
-/// Square of the smallest k, whose mode is nearly isotropic. Its rounding error would act as absorption, so the
-/// contribution of the isotropic part is computed from the absorption instead.
+/// Square of the smallest decay rate k, whose mode is nearly isotropic. Its rounding error would act as absorption, so
+/// the contribution of the isotropic part of the mode is computed from the absorption instead.
+/// @param even  OneLessScattered() of even functions
+/// @param mode  radiance of the mode at the nodes
 double SmallestSquare(const LayerScattering& scattering, const Eigen::MatrixXd& even, const Eigen::MatrixXd& legendre,
   const Eigen::VectorXd& mode)
 {
@@ -219,8 +222,8 @@ LayerSource::LayerSource(Eigen::Index nodes)
 {
 }
 
-/// Solutions with a = 0 at both ends have incident as well as outgoing light there. This adds the response that cancels
-/// the incident part.
+/// Adds the response that cancels the incident light of a solution with a = 0 at both boundaries of the layer, given
+/// its b where the beam enters and where it leaves.
 void LayerSource::AddEnds(const LayerModes& modes, const LayerOperator& layer, const Eigen::VectorXd& bAtEntry,
   const Eigen::VectorXd& bAtExit, bool fromTop)
 {

@@ -7,9 +7,9 @@
 
 namespace tyndall
 {
-/// Half-range quadrature in the cosine on (0, 1): Gauss's rule in the square root of the cosine, which clusters nodes
+/// Half-range quadrature in the cosine, on (0, 1): Gauss's rule in the square root of the cosine, which clusters nodes
 /// at grazing directions, where radiance varies fastest. With 16 nodes the transmittance of diffuse light, 2 E_3(tau),
-/// is accurate to 1e-7 and its mean within any layer to 2e-5 (Gauss's rule in the cosine itself: 5e-6, 7e-4).
+/// is accurate to 1e-7 and its mean within any layer to 2e-5 (Gauss's rule in the cosine: 5e-6, 7e-4).
 struct HalfRangeQuadrature
 {
   explicit HalfRangeQuadrature(int count);
@@ -17,14 +17,15 @@ struct HalfRangeQuadrature
   std::vector<double> cosines, weights; ///< ascending; the weights sum to 1
 };
 
-/// sqrt((l - m)! / (l + m)!) P_l^m(x) for l = 0 to `degree`, without the sign (-1)^m; 0 where l < m. |x| <= 1.
+/// Values of sqrt((l - m)! / (l + m)!) P_l^m(x) for l = 0 to `degree`, m = `order`, without the sign (-1)^m; 0 where l
+/// < m. |x| <= 1.
 std::vector<double> NormalisedLegendre(int degree, int order, double x);
 
-/// Scattering of a medium, per mean free path.
+/// Absorption and phase function of a uniform layer, per mean free path.
 struct LayerScattering
 {
-  double absorbed = 1.0; ///< 1 - albedo; stored separately to keep digits near albedo 1
-  DeltaM phase;          ///< without the unscattered forward part
+  double absorbed = 1.0; ///< 1 - albedo; stored instead of the albedo to keep digits near albedo 1
+  DeltaM phase;          ///< phase function without the forward peak, which is treated as unscattered
 
   double Albedo() const { return 1.0 - this->absorbed; }
 };
@@ -37,41 +38,41 @@ struct LayerScattering
 /// growing exponentials, and only one (k = 0 without absorption) needs a limit.
 struct LayerModes
 {
-  /// @param order  of the Fourier series in azimuth
+  /// @param order  order m of the Fourier series in azimuth
   LayerModes(const LayerScattering& scattering, const HalfRangeQuadrature& nodes, int order);
 
   Eigen::MatrixXd x, y, inverseX;
-  Eigen::VectorXd k; ///< >= 0, ascending
+  Eigen::VectorXd k; ///< decay rates of the modes per mean free path, >= 0, ascending
 };
 
-/// Normalised Legendre functions at the nodes, times sqrt(weight); column l.
+/// Normalised Legendre functions at the nodes, times sqrt(weight); row: node, column: degree l.
 Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, int order);
 
 /// Reflection and transmission operators of a uniform layer, the same from both sides. Vectors are over the nodes:
 /// radiance times the square root of the weight.
 struct LayerOperator
 {
-  /// @param depth  optical thickness
+  /// @param depth  optical thickness of the layer
   LayerOperator(const LayerModes& modes, double depth);
 
   Eigen::MatrixXd reflect, transmit;
 };
 
-/// Response of a layer to internal sources, without incident light.
+/// Light of a layer's internal sources, without incident light.
 struct LayerSource
 {
-  Eigen::VectorXd up, down;     ///< outgoing at the top and at the bottom
-  Eigen::VectorXd meanA, meanB; ///< means over depth of the mode amplitudes (LayerModes), for the
+  Eigen::VectorXd up, down;     ///< outgoing radiance at the top and at the bottom, at the nodes
+  Eigen::VectorXd meanA, meanB; ///< means over depth of the amplitudes a, b (LayerModes), for the
                                 ///< solution with a = 0 at top and bottom
 
   explicit LayerSource(Eigen::Index nodes);
 
-  /// Adds emission that is uniform in depth.
-  /// @param emitted  radiance that the whole layer emits at each node, the same up and down
+  /// Adds the light of emission that is uniform in depth.
+  /// @param emitted  emission times height of the layer at each node, equal up and down
   void AddEmission(const LayerModes& modes, const LayerOperator& layer, double depth, const Eigen::VectorXd& emitted);
 
-  /// Adds the first-collision source of a beam, per mean free path.
-  /// @param cosine  of the beam, > 0
+  /// Adds the light of the first-collision source of a beam, per mean free path.
+  /// @param cosine  cosine of the beam to the axis of the layers, > 0
   /// @param fromTop  the beam enters at the top; false: at the bottom
   /// @param sum, difference  sum and difference of forward and backward first-scattered light, where the beam enters
   void AddBeam(const LayerModes& modes, const LayerOperator& layer, double depth, double cosine, bool fromTop,
@@ -82,14 +83,15 @@ private:
     const Eigen::VectorXd& bAtExit, bool fromTop);
 };
 
-/// Means over the depth of a layer.
+/// Means over the depth of a layer, at the nodes.
 struct LayerMeans
 {
-  Eigen::VectorXd sum;  ///< of downward plus upward radiance
-  Eigen::VectorXd flux; ///< of downward minus upward radiance
+  Eigen::VectorXd sum;  ///< mean of downward plus upward radiance
+  Eigen::VectorXd flux; ///< mean of downward minus upward radiance
 };
 
-/// @param downAtTop, ...  radiance at both boundaries of the layer
+/// Means over the depth of a layer of the light of internal sources and of incident light.
+/// @param downAtTop, upAtTop, downAtBottom, upAtBottom  radiance at the nodes at both boundaries of the layer
 LayerMeans MeansOf(const LayerModes& modes, const LayerSource& source, double depth, const Eigen::VectorXd& downAtTop,
   const Eigen::VectorXd& upAtTop, const Eigen::VectorXd& downAtBottom, const Eigen::VectorXd& upAtBottom);
 }

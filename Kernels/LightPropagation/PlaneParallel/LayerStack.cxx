@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Modes by kind of layer and operators of layers, each computed once.
+/// Cache of the modes of each kind of layer and the operators of each layer.
 class Library
 {
 public:
@@ -53,7 +53,7 @@ private:
   std::map<std::pair<std::size_t, double>, LayerOperator> Operators;
 };
 
-/// Reflection operator of everything below an interface, and its upward radiance from sources.
+/// Reflection operator of all layers below an interface, and the upward radiance that their sources emit through it.
 struct Below
 {
   Eigen::MatrixXd reflect;
@@ -138,8 +138,8 @@ private:
     return source;
   }
 
-  /// First-collision source at the nodes for irradiance 1 of a beam: upward plus downward (parity 0) or their
-  /// difference (parity 1).
+  /// First-collision source at the nodes for a beam of irradiance 1: downward plus upward (parity 0), or forward minus
+  /// backward with respect to the beam (parity 1).
   Eigen::VectorXd FirstScattered(const LayerScattering& kind, const std::vector<double>& ofBeam, int parity) const
   {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(this->Roots.size());
@@ -152,14 +152,16 @@ private:
     return sum;
   }
 
-  /// Lambertian reflection: operator from incoming to reflected radiance at the nodes. ComesIn is the radiance incident
-  /// from outside and by reflected beams.
+  /// Operator of Lambertian reflection, from outgoing to reflected radiance at the nodes; 0 for azimuthal orders above
+  /// 0.
   Eigen::MatrixXd Lambert(double albedo) const
   {
     return this->Order == 0
       ? Eigen::MatrixXd(2.0 * albedo * this->Roots * this->Roots.cwiseProduct(this->Cosines).transpose())
       : Eigen::MatrixXd::Zero(this->Roots.size(), this->Roots.size());
   }
+  /// Radiance at the nodes that is incident from outside, plus that of beams reflected by the boundary.
+  /// @param irradiance  power of the beams at the boundary, W / length^2
   Eigen::VectorXd ComesIn(double radiance, double albedo, double irradiance) const
   {
     return this->Order == 0 ? Eigen::VectorXd((radiance + albedo / Pi * irradiance) * this->Roots)
@@ -229,8 +231,9 @@ private:
   std::vector<std::vector<double>> BeamsAt, OfBeams;
   double BeamsAtTop = 0.0, BeamsAtBottom = 0.0; ///< escaped power of the beams, W / length^2
   std::vector<LayerSource> Sources;
-  std::vector<Below> Under;              ///< by interface, from the top
-  std::vector<Eigen::MatrixXd> UpOfDown; ///< below each layer, of what comes down above it
+  std::vector<Below> Under; ///< [interface], from the top
+  /// [layer]: operator from downward radiance above a layer to upward radiance below it
+  std::vector<Eigen::MatrixXd> UpOfDown;
   std::vector<Eigen::VectorXd> UpOfSources;
 };
 }

@@ -7,48 +7,52 @@
 
 namespace tyndall
 {
+/// One layer of a LayerStack.
 struct StackLayer
 {
-  double depth = 0.0;   ///< optical thickness, without the unscattered forward part
-  double emitted = 0.0; ///< radiance that the whole layer emits
+  double depth = 0.0;   ///< optical thickness, without the forward peak (delta-M)
+  double emitted = 0.0; ///< emission times height of the layer, W / (length^2 sr)
   std::size_t kind = 0; ///< index into LayerStack::kinds
 };
 
-/// Layers from top to bottom, in one channel.
+/// Plane-parallel layers from top to bottom, in one channel; layers of one kind share absorption and phase function.
 struct LayerStack
 {
   std::vector<LayerScattering> kinds;
   std::vector<StackLayer> layers;
 };
 
-/// Parallel beam. Its azimuth enters through its irradiance.
+/// Parallel beam incident on the layers. Its azimuth enters through `irradiance`.
 struct StackBeam
 {
-  double cosine = 1.0;     ///< to the axis of the layers, above 0
-  bool fromTop = true;     ///< false: from the bottom
-  double irradiance = 0.0; ///< incident, perpendicular to the beam; of order m > 0: times cos or sin of m azimuth
+  double cosine = 1.0; ///< cosine to the axis of the layers, above 0
+  bool fromTop = true; ///< whether the beam enters at the top; false: at the bottom
+  /// incident irradiance, perpendicular to the beam, W / length^2; in order m > 0 times cos or sin of m azimuth
+  double irradiance = 0.0;
 };
 
+/// Light incident on a stack of layers, and reflection at its boundaries.
 struct StackLight
 {
   std::vector<StackBeam> beams;
-  double radianceAtTop = 0.0, radianceAtBottom = 0.0; ///< incident, isotropic
-  double albedoAtTop = 0.0, albedoAtBottom = 0.0;     ///< Lambertian
+  double radianceAtTop = 0.0, radianceAtBottom = 0.0; ///< incident isotropic radiance, W / (length^2 sr)
+  double albedoAtTop = 0.0, albedoAtBottom = 0.0;     ///< Lambertian albedo of the boundaries
 };
 
-/// Scattered light of the layers and diffuse boundary light; does not include the beams.
+/// Scattered, emitted and diffuse boundary light of a stack of layers; the beams are not included.
 struct StackSolution
 {
-  std::vector<LayerMeans> means;                ///< of each layer
-  Eigen::VectorXd upAtTop, downAtBottom;        ///< outgoing radiance
-  Eigen::VectorXd downAtTop, upAtBottom;        ///< incident radiance, with reflected light
-  double beamsAtTop = 0.0, beamsAtBottom = 0.0; ///< escaped power of the beams, W / length^2
+  std::vector<LayerMeans> means;                ///< means of each layer
+  Eigen::VectorXd upAtTop, downAtBottom;        ///< outgoing radiance at the nodes
+  Eigen::VectorXd downAtTop, upAtBottom;        ///< incident radiance at the nodes, including reflected light
+  double beamsAtTop = 0.0, beamsAtBottom = 0.0; ///< power of the beams that leaves, W / length^2, before reflection
 };
 
-/// Irradiance of a beam, perpendicular to it, where it enters each layer.
+/// Irradiance of a beam, perpendicular to it, where it enters each layer, W / length^2.
 std::vector<double> BeamAtLayers(const LayerStack& stack, const StackBeam& beam);
 
-/// Solves all layers by the adding method, from the bottom up (van de Hulst; numerics.md, Eqs. (P7), (P8)).
-/// @param order  of the Fourier series in azimuth; orders above 0 have no sources except beams
+/// Solves the light of all layers by the adding method, from the bottom up (van de Hulst 1980; numerics.md, Eqs. (P7),
+/// (P8)).
+/// @param order  order m of the Fourier series in azimuth; orders above 0 have no sources except beams
 StackSolution Solve(const LayerStack& stack, const StackLight& light, const HalfRangeQuadrature& nodes, int order);
 }

@@ -16,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostLayers = 8192; ///< about 200 MB if all differ
+constexpr int MostLayers = 8192; ///< largest number of layers; about 200 MB of operators if all differ
 
 /// Whether a field is constant within each layer perpendicular to an axis.
 bool IsLayered(const Field& field, const Grid& grid, int axis)
@@ -41,8 +41,8 @@ bool IsLayered(const Medium& medium, int axis)
     IsLayered(medium.emission, grid, axis) && IsLayered(medium.phase.G(), grid, axis);
 }
 
-constexpr int NodesIfIsotropic = 16, NodesElse = 20; ///< cosines per hemisphere
-constexpr int DegreeForPictures = 9;                 ///< degree of the stored moments
+constexpr int NodesIfIsotropic = 16, NodesElse = 20; ///< default number of nodes (cosines per hemisphere)
+constexpr int DegreeForPictures = 9;                 ///< highest degree of LightField::scatteredMoments
 
 int NodesFor(const SlabScene& scene, const PropagationSettings& settings)
 {
@@ -54,7 +54,7 @@ bool KeepsMoments(const SlabScene& scene, const PropagationSettings& settings)
   return settings.storeMoments && !scene.IsIsotropic();
 }
 
-/// Orders of the Fourier series in azimuth that are needed; isotropic scattering needs order 0 only.
+/// Highest order of the Fourier series in azimuth that must be solved; 0 for isotropic scattering.
 int OrdersFor(const SlabScene& scene, const PropagationSettings& settings, int degree)
 {
   return scene.IsIsotropic() || !scene.HasSlantingBeams() ? 0
@@ -63,7 +63,7 @@ int OrdersFor(const SlabScene& scene, const PropagationSettings& settings, int d
                                                           : 0;
 }
 
-/// Outgoing radiance at SurfaceCosines: polynomial interpolation in the square root of the cosine through the values at
+/// Outgoing radiance at SurfaceCosines: polynomial interpolation, in the square root of the cosine, of the radiance at
 /// the nodes.
 std::array<double, SurfaceCosines.size()> AtSurfaceCosines(
   const HalfRangeQuadrature& nodes, const Eigen::VectorXd& radiance)
@@ -86,7 +86,7 @@ std::array<double, SurfaceCosines.size()> AtSurfaceCosines(
   return at;
 }
 
-/// Converts the columns of a scene to light by voxel.
+/// Solves the columns of a plane-parallel scene and expands them to a LightField by voxel.
 class SlabLight
 {
 public:
@@ -294,7 +294,7 @@ LightField SolvePlaneParallel(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {
   Check(Domain(medium.grid), medium, illumination, settings);
-  EquiangularDirections(settings.directionsPerFace); // not used, but must be a valid number
+  EquiangularDirections(settings.directionsPerFace); // checks the number of directions, which is not used
   const double start = ClockSeconds();
   const MediumTraits traits = TraitsOf(medium, true);
   LightField light = SolveChannels(settings.leaveOut, SceneChannels(medium, traits, illumination), medium, illumination,

@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// Transmittance of a layer, and the mean of exp(-depth) over it.
+/// Transmittance exp(-depth) of a layer (`left`), and mean transmittance within it (`mean`).
 struct FallOff
 {
   explicit FallOff(double depth)
@@ -24,8 +24,8 @@ struct FallOff
   double mean, left;
 };
 
-/// Sum over nodes of weight, powers of the cosine and of the sine, and values that already contain the square root of
-/// the weight.
+/// Integral over the cosine of values times, optionally, cosine and sine of the direction. `values` already contain the
+/// square root of the weight.
 double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values, bool cosine, bool sine)
 {
   double sum = 0.0;
@@ -79,7 +79,7 @@ Eigen::MatrixXd Projection(const SlabScene& scene, const HalfRangeQuadrature& no
   return matrix;
 }
 
-/// Amplitudes of one layer, in the order of the columns of Projection.
+/// Amplitudes of the Fourier series of one layer's mean radiance, in the order of the columns of Projection().
 Eigen::VectorXd Amplitudes(const SlabColumn& column, std::size_t layer, int series)
 {
   const Eigen::Index count = column.even.means[layer].sum.size();
@@ -142,7 +142,7 @@ LayerStack SlabScene::StackOf(int channel, int degree) const
   const Medium& medium = this->TheMedium;
   LayerStack stack;
   std::map<double, DeltaM> phases;                        // by mean cosine
-  std::map<std::pair<double, double>, std::size_t> kinds; // by mean cosine and absorption
+  std::map<std::pair<double, double>, std::size_t> kinds; // by absorption and mean cosine
   for (std::size_t i = 0; i < this->Count(); ++i)
   {
     const std::size_t voxel = this->VoxelOf(i);
@@ -250,8 +250,8 @@ SlabColumn::SlabColumn(const SlabScene& scene, int channel, const HalfRangeQuadr
   this->SumUp(scene, light, nodes, channel);
 }
 
-/// Adds the beams. In `fluence`, light scattered into the unscattered forward part belongs to the beam; in `direct` it
-/// does not.
+/// Adds the beams' fluence, flux and incident power. In `fluence`, light scattered into the forward peak (delta-M)
+/// belongs to the beam; in `direct` it does not.
 void SlabColumn::AddBeams(const SlabScene& scene, const StackLight& light, int channel)
 {
   const LayerStack unscattered = scene.UnscatteredStackOf(channel);
@@ -270,7 +270,7 @@ void SlabColumn::AddBeams(const SlabScene& scene, const StackLight& light, int c
   }
 }
 
-/// Adds uncollided light of faces and emission, along the nodes.
+/// Adds to `direct` the uncollided light of sky, faces and emission, along the nodes.
 void SlabColumn::AddDiffuse(const StackLight& light, const LayerStack& unscattered, const HalfRangeQuadrature& nodes)
 {
   const std::size_t count = unscattered.layers.size();

@@ -8,32 +8,35 @@
 
 namespace tyndall
 {
-/// A plane-parallel scene. Layers are stacked along one axis; "top" is the side of the lowest coordinate. Azimuth is
-/// measured about this axis, from the next axis in cyclic order.
+/// A plane-parallel scene, as layers and incident light. Layers are stacked along one axis; "top" is the side of the
+/// lowest coordinate. Azimuth is measured about this axis, from the next axis in cyclic order.
 class SlabScene
 {
 public:
-  /// @param medium, illumination  IsPlaneParallel must hold; must outlive this
+  /// @param medium, illumination  scene for which IsPlaneParallel() holds; must outlive this object
   SlabScene(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
 
   int Along() const { return this->Axis; }
   std::size_t Count() const { return static_cast<std::size_t>(this->TheMedium.grid.size[this->Axis]); }
-  double Height() const { return this->TheMedium.grid.spacing[this->Axis]; } ///< of a layer
-  double Across() const;                                                     ///< area of the slab
-  std::size_t VoxelOf(std::size_t layer) const;                              ///< in the first column
+  double Height() const { return this->TheMedium.grid.spacing[this->Axis]; } ///< height of a layer, length
+  /// area of the slab across the axis of the layers, length^2
+  double Across() const;
+  /// index of a layer's voxel in the first column of voxels
+  std::size_t VoxelOf(std::size_t layer) const;
   std::size_t LayerOf(std::size_t voxel) const;
   bool IsIsotropic() const { return this->Isotropic; }
   bool HasSlantingBeams() const;
 
-  /// @param degree  of the moments of scattering; scattering beyond it is treated as unscattered
+  /// Layers in one channel, with delta-M scattering.
+  /// @param degree  highest degree of the phase function's moments; scattering beyond it is treated as unscattered
   LayerStack StackOf(int channel, int degree) const;
-  /// The same without scattering, with the full extinction.
+  /// Layers in one channel without delta-M: with the full extinction, for uncollided light.
   LayerStack UnscatteredStackOf(int channel) const;
   StackLight LightOf(int channel) const;
-  /// The beams only, each multiplied by cos or sin of `order` times its azimuth.
+  /// Incident beams without other light, each irradiance multiplied by cos or sin of `order` times the beam's azimuth.
   StackLight BeamsOf(int channel, int order, bool sine) const;
-  double Absorbing(std::size_t layer, int channel) const; ///< sigma_a times the height of the layer
-  /// Net flux along the two axes parallel to the layers, for irradiance 1 of a beam.
+  double Absorbing(std::size_t layer, int channel) const; ///< absorption optical thickness of a layer
+  /// Net flux of a beam along the two axes parallel to the layers, for irradiance 1.
   std::array<double, 2> Sideways(std::size_t beam) const;
 
 private:
@@ -45,21 +48,22 @@ private:
   bool Isotropic = true;
   std::vector<std::array<double, 3>>
     Directions;                      ///< unit vectors of the incident lights: along the axis and the next two axes
-  std::vector<std::size_t> Entering; ///< indices of the incident lights
+  std::vector<std::size_t> Entering; ///< indices of the incident lights in Illumination::lights
 };
 
-/// Light of one column of voxels in one channel; all columns are equal. Arrays by layer; W per unit area of the layers.
+/// Light of one column of voxels in one channel; all columns are equal. Arrays have one value per layer; powers are per
+/// area of the layers, W / length^2.
 class SlabColumn
 {
 public:
-  /// @param orders  highest order of the Fourier series in azimuth to solve; 1 is needed for the flux along the layers
+  /// @param orders  highest order of the Fourier series in azimuth that is solved; net flux along the layers needs 1
   SlabColumn(const SlabScene& scene, int channel, const HalfRangeQuadrature& nodes, int degree, int orders);
 
-  std::vector<double> fluence, direct;          ///< W / length^2
-  std::array<std::vector<double>, 3> flux;      ///< along the axis of the layers and the next two axes
-  std::array<double, 2> out = {}, entered = {}; ///< at top and bottom; out is before reflection
+  std::vector<double> fluence, direct;          ///< fluence of all light and of uncollided light, W / length^2
+  std::array<std::vector<double>, 3> flux;      ///< net flux along the axis of the layers and the next two axes
+  std::array<double, 2> out = {}, entered = {}; ///< outgoing (before reflection) and incident power at top and bottom
   double absorbed = 0.0, emitted = 0.0;
-  std::array<double, 2> escaped = {}; ///< after reflection
+  std::array<double, 2> escaped = {}; ///< power that leaves at top and bottom, without reflected power
   LayerStack stack;
   StackSolution even;                                 ///< azimuthal order 0
   std::vector<std::array<StackSolution, 2>> slanting; ///< azimuthal orders 1, 2, ..., [cos, sin]

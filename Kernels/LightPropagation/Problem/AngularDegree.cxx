@@ -10,15 +10,16 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostMoments = 32;     ///< moments of phase functions that are examined
+constexpr int MostMoments = 32;     ///< highest degree of phase-function moments that is examined
 constexpr double Negligible = 1e-3; ///< magnitude below which a moment of a phase function is neglected
 constexpr int DegreeOfSlabs = 9, DegreeOfThin = 6, DegreeOfOthers = 3;
 constexpr double SomewhatForward = 0.6;
-constexpr double Thick = 8.0; ///< optical thickness of the box above which singly scattered light is a small part
+constexpr double Thick = 8.0; ///< optical thickness of the box above which singly scattered light is a small fraction
 constexpr double MuchThinner = 8.0;
-constexpr std::size_t ArraysOfMoments = 4; ///< arrays of moments: source, path, given light, and uncollided light
+/// number of arrays of moments: source, path, given light, and uncollided light
+constexpr std::size_t ArraysOfMoments = 4;
 
-/// Largest magnitude of the moments of all phase functions of the medium, by degree.
+/// Largest magnitude of any of the medium's phase functions' moments, by degree.
 std::vector<double> LargestMoments(const Medium& medium)
 {
   std::vector<double> largest(MostMoments + 1, 0.0);
@@ -47,8 +48,8 @@ std::vector<double> LargestMoments(const Medium& medium)
   return largest;
 }
 
-/// Highest degree, at most `degree`, whose arrays fit in half of the memory; the other half is left for everything
-/// else.
+/// Highest degree, at most `degree`, whose arrays of moments fit in half of the memory; the other half is for all other
+/// arrays.
 int HighestThatFits(std::size_t voxels, int degree, const DeviceMemory& memory)
 {
   constexpr std::size_t MostChannels = 3;
@@ -63,7 +64,7 @@ int HighestThatFits(std::size_t voxels, int degree, const DeviceMemory& memory)
   return degree;
 }
 
-/// Highest degree whose moment is larger than `negligible`; 0: none.
+/// Highest degree whose moment is larger than `negligible`; 0 if there is none.
 int LastAbove(const std::vector<double>& moments, double negligible)
 {
   int last = 0;

@@ -11,10 +11,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Width =
-  10.0; ///< width in edges of the other axes; larger ones gain little, and flat voxels slow down the diffusion solve
+/// Width of a voxel along unvarying axes, in edges along the other axes: larger widths gain little, and flat voxels slow
+/// down the diffusion solve.
+constexpr double Width = 10.0;
 constexpr int EdgeInSlabs = 12;
-/// An even number of rows with directions of cosine 0, whose light would wrap around forever
+/// Even number of directions along a cube face's edge whose quadrature has directions of cosine 0 to an axis; their
+/// light would wrap around forever.
 constexpr int EdgeWithCosineZero = 10;
 }
 
@@ -82,7 +84,7 @@ PropagationSettings AxisPermutation::Of(const PropagationSettings& settings) con
   return turned;
 }
 
-/// Moves values by cell of the box's faces back to the original faces; the order of cells within a face is unchanged.
+/// Moves the values of face cells back to the original faces; the order of cells within a face is unchanged.
 void AxisPermutation::TurnBackCells(std::vector<float>& values, const Grid& grid) const
 {
   const std::size_t each = values.size() / BoxFaceCellCount(grid);
@@ -98,8 +100,8 @@ void AxisPermutation::TurnBackCells(std::vector<float>& values, const Grid& grid
   }
 }
 
-/// Expresses harmonics of permuted directions in harmonics of original directions, degree by degree. The coefficients
-/// are integrals of their products over all directions, by an exact quadrature.
+/// Converts scattered moments from harmonics of permuted directions to harmonics of original directions, degree by
+/// degree. The coefficients are integrals of their products over all directions, by an exact quadrature.
 void AxisPermutation::TurnBackMoments(LightField& light, const Grid& grid) const
 {
   const std::size_t channels = static_cast<std::size_t>(light.channels);

@@ -8,24 +8,25 @@
 
 namespace tyndall
 {
-/// Permutes the axes of a plane-parallel slab so that its layers are along x. Rows of voxels are then as long as the
-/// slab; rows of one voxel would fill only a tenth of a vector, and a slab of 1024 layers along z takes twenty times as
-/// long. Axes are permuted cyclically, so arrays over the voxels, and over the cells of one face, stay unchanged in
-/// memory.
+/// Permutes the axes of a plane-parallel slab so that its layers are stacked along x. Rows of voxels are then as long
+/// as the slab; rows of one voxel would fill only a tenth of a vector, and a slab of 1024 layers along z takes twenty
+/// times as long. Axes are permuted cyclically, so arrays over the voxels, and over the cells of one face, stay
+/// unchanged in memory.
 class AxisPermutation
 {
 public:
-  /// Permutes only slabs along y or z (UnvaryingAxes) without an environment, whose pixels have a fixed up direction;
-  /// otherwise converts to false.
+  /// Finds the permutation: only for slabs with layers along y or z (UnvaryingAxes) without an environment, whose
+  /// pixels have a fixed up direction. Otherwise the object converts to false.
   AxisPermutation(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings);
 
   explicit operator bool() const { return this->Along != 0; }
 
   Medium Of(const Medium& medium) const; ///< the permuted medium; it refers to the same arrays
+  /// The permuted lights, faces and sky.
   Illumination Of(const Illumination& illumination) const;
   PropagationSettings Of(const PropagationSettings& settings) const;
 
-  /// Converts the light of the permuted scene back to the original axes. @param grid  of the original scene
+  /// Converts the light of the permuted scene back to the original axes. @param grid  grid of the original scene
   void Undo(LightField& light, const Grid& grid) const;
 
 private:
@@ -44,25 +45,25 @@ private:
 class UnvaryingAxes
 {
 public:
-  /// There are none if a lamp is inside or near the box, or if the source is constant as in the published scheme.
+  /// Finds the axes. There are none if a lamp is inside or near the box, or if the source is constant as in the
+  /// published scheme.
   UnvaryingAxes(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings);
 
   bool IsSlab() const { return this->Single[0] + this->Single[1] + this->Single[2] == 2; }
 
-  /// The grid with its voxels widened along these axes to ten times the edge along the other axes. Light does not
-  /// depend on this width; with a smaller one rays would wrap around many times, with a larger one more sweeps are
-  /// needed.
+  /// Copy of `grid` whose voxels are widened along the unvarying axes to ten times the edge along the other axes. Light
+  /// does not depend on this width; with a smaller one rays would wrap around many times, with a larger one more sweeps
+  /// are needed.
   Grid Widened(const Grid& grid) const;
 
 private:
   std::array<bool, 3> Single = {};
 };
 
-/// Number of directions per cube face to solve with: that of the settings, with these exceptions:
+/// Number of directions per cube face with which a scene is solved: that of the settings, with these exceptions:
 ///  - in a slab at least 144 (cheap, since mirror images are merged), with an even number of rows;
 ///  - with two periodic axes an even number of rows: with an odd number, some directions are parallel to the slab and
-///    their
-///    light never leaves (tau 0.01: reflectance 11% too low, 122 sweeps instead of 4).
+///    their light never leaves (tau 0.01: reflectance 11% too low, 122 sweeps instead of 4).
 /// No exceptions if the source is constant as in the published scheme, or if adaptDirections is false.
 int DirectionsPerFaceFor(const PropagationSettings& settings, const UnvaryingAxes& unvarying);
 }

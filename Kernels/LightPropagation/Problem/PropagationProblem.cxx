@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// Checks the scene before the first member of a problem is constructed from it; returns `domain`.
+/// Checks a scene before the first member of a problem is constructed from it. @return `domain`
 const Domain& Checked(
   const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
@@ -34,7 +34,7 @@ PropagationProblem::PropagationProblem(const Domain& domain, const Medium& mediu
   this->Given = domain.Any(this->SolvedLight.uncollided.IsThere());
   this->Isotropic = !domain.Any(!domain.IsEmpty() && !this->Solved.phase.IsIsotropic());
   this->Truncate(memory);
-  // The traits only know the extinction according to the similarity relation.
+  // Until here, greyExtinction refers to the extinction of the similarity relation only.
   this->TheTraits.greyExtinction =
     this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
 }
@@ -52,7 +52,7 @@ void PropagationProblem::TakeChannels()
   }
 }
 
-/// Truncates the phase functions, based on properties of the whole domain. Collective.
+/// Sets Truncated: the delta-M scattering, of a degree that follows from properties of the domain. Collective.
 void PropagationProblem::Truncate(const DeviceMemory& memory)
 {
   const Domain& domain = this->Solving;

@@ -19,20 +19,20 @@
 
 namespace tyndall
 {
-/// The scene as it is solved: in units of length and power that floats represent well, widened along axes on which
-/// nothing varies, and with as few channels as needed. Each rank has the medium of its block; everything that decisions
-/// are based on (traits, channels, degree of the moments) refers to the whole domain. Made once from the user's input;
-/// Undo() converts the resulting light back.
+/// A scene as it is solved: in units of length and power that floats represent well, widened along axes on which
+/// nothing varies, and with as few channels as needed. Each rank has the medium of its subdomain; all properties on
+/// which decisions are based (traits, channels, degree of the moments) refer to the domain. Made once from the user's
+/// input; Undo() converts the resulting light back.
 class PropagationProblem
 {
 public:
-  /// Collective.
+  /// Checks and converts a scene. Collective.
   /// @param domain  domain of the grid as given by the user
-  /// @param medium  medium of this rank's block, with its grid; of a block without voxels only the grid is read
+  /// @param medium  medium of this rank's subdomain, with its grid; of a subdomain without voxels only the grid is read
   /// @param medium, illumination  their arrays must outlive this object
-  /// @throws InvalidInput  as Check() in SceneChecks.h
   /// @param memory  memory of this rank's device, which limits the degree of angular moments if the settings leave it
-  /// open
+  ///   open
+  /// @throws InvalidInput  as Check() in SceneChecks.h
   PropagationProblem(const Domain& domain, const Medium& medium, const Illumination& illumination,
     const PropagationSettings& settings, const DeviceMemory& memory = {});
   /// Problem on a serial domain.
@@ -41,26 +41,27 @@ public:
     : PropagationProblem(Domain(medium.grid), medium, illumination, settings, memory)
   {
   }
-  PropagationProblem(const PropagationProblem&) = delete; // the medium sees arrays that this owns
+  PropagationProblem(const PropagationProblem&) = delete; // the medium refers to arrays of this object
   PropagationProblem& operator=(const PropagationProblem&) = delete;
 
   const Domain& TheDomain() const { return this->Solving; }
   const Grid& Whole() const { return this->Solving.Whole(); } ///< grid of the domain
   const Medium& TheMedium() const { return this->Solved; }
-  const Grid& TheGrid() const { return this->Solved.grid; } ///< grid of this rank's block
-  /// Of the whole domain, except `filled`, which is of this rank's block
+  const Grid& TheGrid() const { return this->Solved.grid; } ///< grid of this rank's subdomain
+  /// Traits of the domain's medium, except `filled`, which refers to this rank's subdomain.
   const MediumTraits& Traits() const { return this->TheTraits; }
-  const TruncatedScattering& Scattering() const { return *this->Truncated; } ///< scattering as the sweeps treat it
+  /// scattering coefficients and moments of the sweeps (delta-M)
+  const TruncatedScattering& Scattering() const { return *this->Truncated; }
   const Illumination& Shining() const { return this->SolvedLight; }
   const PropagationSettings& Settings() const { return this->TheSettings; }
-  int Channels() const { return this->ChannelCount; } ///< 1 or 3
-  /// Whether uncollided light is an input, given by voxel.
+  int Channels() const { return this->ChannelCount; } ///< number of channels that are solved, 1 or 3
+  /// Whether uncollided light is given by voxel, as input.
   bool HasGivenLight() const { return this->Given; }
   /// Whether all voxels of the domain have an isotropic phase function.
   bool IsIsotropic() const { return this->Isotropic; }
   /// Whether the source is linear within a voxel; false: constant, as in the published scheme.
   bool HasLinearSource() const { return this->TheSettings.source != PropagationSource::Constant; }
-  /// Whether scattering is computed: the medium scatters, or the settings forbid leaving out computations.
+  /// Whether scattering is computed: the medium scatters, or leaveOut is off in the settings.
   bool ComputesScattering() const { return !this->TheSettings.leaveOut || this->TheTraits.scatters; }
   bool IsSlab() const { return this->Unvarying.IsSlab(); }
 

@@ -9,22 +9,23 @@ namespace tyndall
 {
 namespace
 {
-/// Optical thickness of a box from which on few directions suffice for scattered light
+/// Optical thickness of a box above which few directions suffice for scattered light.
 constexpr double ThickBox = 8.0;
 
-/// Settings of one quality level.
+/// Values of settings at one quality level.
 struct Level
 {
   int directions, directionsInThickBox;
-  int uncollidedDirections; ///< if light is incident from outside
+  int uncollidedDirections; ///< directions per face for uncollided light, if light is incident through faces
   double tolerance, emissionError;
 };
 
 /// Properties of a scene that a quality level depends on.
 struct SceneOfQuality
 {
-  bool isLit, scatters; ///< isLit: light is incident through the box's faces
-  double thickness;     ///< mean optical thickness of the box
+  /// isLit: whether light is incident through the box's faces; scatters: whether any voxel scatters
+  bool isLit, scatters;
+  double thickness; ///< mean optical thickness of the box
 };
 
 bool Scatters(const Medium& medium)
@@ -37,7 +38,7 @@ bool Scatters(const Medium& medium)
 constexpr Level Draft = { 9, 9, 0, 1e-2, 0.05 };
 constexpr Level Fine = { 64, 49, 400, 1e-4, 0.01 };
 constexpr Level Reference = { 256, 144, 1600, 1e-5, 0.005 };
-constexpr int Staggered = 144; ///< directions per face from which on staggered ray starts halve the error
+constexpr int Staggered = 144; ///< minimum number of directions per face for which staggered ray starts halve the error
 
 void SetLevel(const Level& level, PropagationSettings& settings, const SceneOfQuality& scene)
 {

@@ -12,24 +12,24 @@
 
 namespace tyndall
 {
-/// Settings for a quality level and a scene: number of directions, also for uncollided light, where rays start,
-/// tolerance, and the error of bright emission. Only settings at their default values are changed. Cost and accuracy of
-/// the levels were measured (measurements.md).
+/// Settings with the values of a quality level for a scene: number of directions, also for uncollided light, starts of
+/// rays, tolerance, and the error of localised emission. Only settings at their default values are changed. Cost and
+/// accuracy of the levels were measured (measurements.md).
 ///
 /// The result depends on whether light is incident through faces, from a sky or an environment (only then uncollided
-/// light has finer directions), whether anything scatters (else the directions are those of uncollided light), and
-/// whether the box is so thick that scattered light is nearly isotropic.
-/// Collective; the quality is the same on all ranks.
-/// @param medium  of this rank's block
+/// light has finer directions), whether any voxel scatters (else the directions are those of uncollided light), and
+/// whether the box is so optically thick that scattered light is nearly isotropic.
+/// Collective; `quality` must be the same on all ranks.
+/// @param medium  medium of this rank's subdomain
 PropagationSettings AtQuality(const Domain& domain, Quality quality, PropagationSettings settings, const Medium& medium,
   const Illumination& illumination);
 
-/// "Name = value" for each setting that a quality level may choose.
+/// Text "Name = value" for each setting that a quality level may choose.
 std::vector<std::string> Words(const PropagationSettings& settings);
-/// The same with the values that SolveConservative used for `light`: more directions if a slab needs them
-/// (GridAxes.h), and the chosen uncollidedDirections, 0 if no light used them. Layers solved in the polar cosine
-/// only used none of these settings; the result is then "PolarNodes = value".
+/// Text "Name = value" for each of these settings as SolveConservative used it for `light`: more directions if a slab
+/// needs them (GridAxes.h), and the chosen uncollidedDirections, 0 if no light used them. SolvePlaneParallel uses none
+/// of these settings; for its light the text is "PolarNodes = value".
 std::vector<std::string> Words(PropagationSettings settings, const LightField& light);
-/// The settings that the published scheme uses.
+/// Text "Name = value" for each of these settings that the published scheme uses.
 std::vector<std::string> WordsAsPublished(const PropagationSettings& settings);
 }

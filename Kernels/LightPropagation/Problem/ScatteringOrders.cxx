@@ -14,19 +14,21 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Uneven = 1.5; ///< ratio of the thickest line to the mean of all lines, weighted by thickness
+/// ratio of the thickest line to the mean line (weighted by thickness) above which a medium is uneven
+constexpr double Uneven = 1.5;
 
-/// The default tolerance rather than the user's, so that the choice of method does not depend on it.
+/// Tolerance until which orders are counted: the default rather than the user's, so that the choice of a scheme does
+/// not depend on it.
 const double UsualTolerance = PropagationSettings().tolerance;
 /// Extrapolation distance: distance beyond a face at which the diffuse flux extrapolates to zero, mean free paths
 /// (numerics.md, Eq. (86)).
 constexpr double Extrapolation = 1.42 / 2.0;
-/// Optical thickness along a voxel's longest edge above which diffusion may gain nothing
+/// Optical thickness along a voxel's longest edge above which sweeps with moments need more expensive corrections.
 constexpr double ThickVoxel = 10.0;
 
 /// Time of an accelerated solve, in units of one unaccelerated scattering order of the same scene (`./run bench
-/// thick`): set-up and finish, the number of iterations, and the correction of each, in addition to its sweep.
-/// LightSources.cxx has its own, older figure.
+/// thick`): set-up and finish, number of iterations (rows), and correction per iteration, in addition to its sweep.
+/// LightSources.cxx has a separate, older figure.
 struct AcceleratedTime
 {
   double setUp, rows, correction;
@@ -34,20 +36,23 @@ struct AcceleratedTime
 };
 constexpr AcceleratedTime InEvenMedia = { 7.0, 6.0, 3.0 };
 constexpr AcceleratedTime InUnevenMedia = { 7.0, 7.0, 3.0 };
-/// Sweeps with moments are expensive, and a slab's diffusion system is small. For these, only the totals were measured.
+/// Times with angular moments, whose sweeps are expensive, and of a slab, whose diffusion system is small. For these,
+/// only the totals were measured.
 constexpr AcceleratedTime InMoments = { 5.0, 8.0, 1.0 };
 constexpr AcceleratedTime InMomentsOfThickVoxels = { 8.0, 8.0, 3.0 };
 constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
-/// The number of iterations is computed by TimeInCells.
+/// Time of coarse-mesh DSA; TimeInCells() computes the number of iterations.
 constexpr AcceleratedTime InCells = { 3.0, 0.0, 0.4 };
-/// Reduction of the error per iteration, times the albedo: 5 iterations at albedo 0.5, 7 at 0.9 to 1
+/// Factor, relative to the albedo, by which an iteration of coarse-mesh DSA reduces the error: 5 iterations at albedo
+/// 0.5, 7 at 0.9 to 1.
 constexpr double CellFall = 0.3;
-constexpr double CellAtMost = 1.0; ///< optical width of a cell where the medium is thickest
+constexpr double CellAtMost = 1.0; ///< maximum optical width of a cell of coarse-mesh DSA where the medium is thickest
 constexpr int MostHalvings = 3;
 constexpr double PlainSetUp = 0.8; ///< set-up of source iteration, in orders: measured 0.8 in 100^3 voxels, 2 in 40^3
 
-/// Sums of a quantity over the lines of voxels along each axis, by axis and position on the other two axes, the lower
-/// one fastest.
+/// Sums of a quantity over the lines of voxels along each axis: [axis][position on the other two axes, the lower one
+/// fastest].
+/// @param value  value(voxel); called from several threads
 using LineSums = std::array<std::vector<double>, 3>;
 
 /// @param value  value(voxel); called from several threads
@@ -91,19 +96,19 @@ LineSums SumAlongLines(const Grid& grid, const Value& value)
   return lines;
 }
 
-/// Optical thickness of lines of voxels along each axis. Light stays longest in the thickest lines, but leaks into
-/// their neighbours. The estimate therefore averages the thickest line (weight 1/3) and all lines, each weighted by its
-/// thickness (2/3). With it, the predicted number of scattering orders is within two thirds of the actual one for
-/// log-normal media of tau 1 to 12 and albedo 0.8 to 0.98; the thickest line alone overestimates it up to three times
-/// (numerics.md, Eq. (86a)).
+/// Mean optical thickness of lines of voxels along each axis. Light stays longest in the thickest lines, but leaks into
+/// their neighbours. The estimate is therefore a geometric mean of the thickest line (exponent 1/3) and of the mean
+/// line, weighted by thickness (exponent 2/3). With it, the predicted number of scattering orders is within two thirds
+/// of the actual one for log-normal media of tau 1 to 12 and albedo 0.8 to 0.98; the thickest line alone overestimates
+/// it up to three times (numerics.md, Eq. (86a)).
 struct ThickLines
 {
   ThickLines() = default; ///< vacuum
-  /// @param sigma_t  sums of the extinction, 1/length
+  /// @param sigma_t  sums of the extinction along lines (SumAlongLines), 1/length
   ThickLines(const Grid& grid, const LineSums& sigma_t);
 
   std::array<double, 3> along = {};
-  bool uneven = false; ///< the thickest line is much thicker than the mean
+  bool uneven = false; ///< whether the thickest line is much thicker than the mean
 };
 
 /// Properties of one channel from which the number of scattering orders is estimated.
@@ -120,7 +125,7 @@ struct ScatteringOfScene
   Grid grid;
   std::array<bool, 3> periodic = {};
   std::array<Rgb, 6> faceAlbedo = {};
-  int degree = 0; ///< of angular moments
+  int degree = 0; ///< degree of the angular moments
   bool isSlab = false;
   double thickest = 0.0; ///< largest extinction of any voxel and channel that the sweeps use, 1/length
   std::vector<ScatteringOfChannel> channels;
@@ -143,15 +148,15 @@ ThickLines::ThickLines(const Grid& grid, const LineSums& sigma_t)
   }
 }
 
-/// Leakage along an axis.
+/// Leakage of the slowest diffusion mode along an axis, relative to the extinction (numerics.md, Eq. (86)).
 double LeakAlong(double longest, double extrapolations)
 {
   const double extrapolated = longest + extrapolations;
   return Pi * Pi / 3.0 / (extrapolated * extrapolated);
 }
 
-/// Sum of the extrapolation distances at both faces across an axis. A reflecting face acts as if the medium continued
-/// there, at most as a mirror image of the whole medium.
+/// Sum of the extrapolation distances at both faces across an axis, mean free paths. A reflecting face acts as if the
+/// medium continued there, at most as a mirror image of the medium.
 double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel, double longest)
 {
   const auto beyond = [&](int face) {
@@ -162,8 +167,8 @@ double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel,
   return std::min(low, longest + high) + std::min(high, longest + low);
 }
 
-/// Optical thickness of the lines of voxels of the whole domain. Collective.
-/// @param value  value(voxel) for this rank's voxels
+/// Optical thickness of the lines of voxels of the domain. Collective.
+/// @param value  value(voxel): extinction of this rank's voxels, 1/length
 template <class Value>
 ThickLines LinesOf(const Domain& domain, const Value& value)
 {
@@ -187,7 +192,7 @@ ThickLines LinesOf(const Domain& domain, const Value& value)
   return { domain.Whole(), all };
 }
 
-/// Mean albedo of scattered light, in the coefficients that the sweeps use. Collective.
+/// Mean albedo of a channel, weighted by sigma_s, from the coefficients that the sweeps use. Collective.
 double AlbedoOf(const PropagationProblem& problem, int channel)
 {
   const Medium& medium = problem.TheMedium();
@@ -201,7 +206,7 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
   return sums[0] > 0.0 ? sums[1] / sums[0] : 0.0;
 }
 
-/// Leakage of the slowest mode along axes that are not periodic, relative to its extinction (numerics.md, Eq. (86)).
+/// Leakage of the slowest diffusion mode along all open axes, relative to the extinction (numerics.md, Eq. (86)).
 double Leak(const ScatteringOfScene& scene, int channel)
 {
   const std::array<double, 3>& longest = scene.channels[channel].diffusing.along;
@@ -218,7 +223,7 @@ double Leak(const ScatteringOfScene& scene, int channel)
   return leak;
 }
 
-/// Largest extinction that the sweeps use, over all voxels and channels, 1/length. Collective.
+/// Largest extinction of any voxel and channel of the domain, as the sweeps use it, 1/length. Collective.
 double ThickestExtinction(const PropagationProblem& problem)
 {
   double largest = 0.0;
@@ -254,15 +259,15 @@ bool AreThinEnough(const Grid& grid, const std::array<int, 3>& halvings)
   return thin && any;
 }
 
-/// Whether coarse-mesh DSA can be used: scattering is isotropic, no voxel is so thick that diffusion must describe the
-/// light leaving it, and no face reflects, which the cells would have to predict.
+/// Whether coarse-mesh DSA can be used: scattering is isotropic, the scene is no slab, no face reflects (cells would
+/// have to predict the reflected light), and voxels are thin enough for cells of several voxels.
 bool CanUseCells(const ScatteringOfScene& scene)
 {
   return scene.degree == 0 && !scene.isSlab && !Reflects(scene) &&
     AreThinEnough(scene.grid, CellHalvings(scene.grid, scene.thickest));
 }
 
-/// Time of coarse-mesh DSA. It corrects scattered light, so it converges faster at lower albedo.
+/// Time of coarse-mesh DSA at an albedo. Only scattered light is corrected, so it converges faster at lower albedo.
 AcceleratedTime TimeInCells(double albedo)
 {
   const double rows = albedo > 0.0 ? std::log(UsualTolerance) / std::log(CellFall * albedo) : 0.0;

@@ -7,16 +7,16 @@
 
 namespace tyndall
 {
-/// Estimated number of scattering orders (source iterations) until about 1e-4 of the light is left: the rate of
-/// diffusion in a slab with extrapolated boundaries (numerics.md, Eq. (86)), applied to thick lines of voxels.
-/// Collective, as are all functions here that take a problem.
+/// Estimated number of scattering orders (source iterations) until about 1e-4 of the light remains, from the decay rate
+/// of diffusion in a slab with extrapolated boundaries (numerics.md, Eq. (86)) as thick as the thick lines of voxels.
+/// Collective, as are all functions in this header that take a problem.
 double OrdersNeeded(const PropagationProblem& problem);
 
 /// Whether source iteration is predicted to take longer than an accelerated solve. Costs of set-up, sweeps and
 /// corrections were measured (`./run bench thick`).
 bool ScatteredManyTimes(const PropagationProblem& problem);
 
-/// Iteration scheme for the fluence of all scattering orders.
+/// Iteration scheme by which the fluence of all scattering orders is computed.
 enum class IterationScheme
 {
   SourceIteration, ///< one sweep per scattering order; Conservative/SourceIteration.h
@@ -24,12 +24,14 @@ enum class IterationScheme
   CoarseMeshDsa,
   Dsa, ///< diffusion synthetic acceleration on the voxels; Conservative/Acceleration/DiffusionAcceleration.h
 };
-/// The fastest scheme. Collective.
+/// Chooses the iteration scheme that is predicted to be fastest, unless the settings determine it. Collective.
 IterationScheme ChooseIterationScheme(const PropagationProblem& problem);
 
 /// Base-2 logarithm of the number of voxels per cell of coarse-mesh DSA along each axis, such that a cell is at most
-/// about one mean free path wide where the medium is thickest. All 0: voxels are too thick for cells of several voxels.
+/// about one mean free path wide where the medium is thickest. All 0 if voxels are too thick for cells of several
+/// voxels.
 std::array<int, 3> CellHalvings(const PropagationProblem& problem);
-/// @param thickest  the largest extinction, 1/length
+/// CellHalvings() for a grid and its largest extinction.
+/// @param thickest  the largest extinction of any voxel, 1/length
 std::array<int, 3> CellHalvings(const Grid& grid, double thickest);
 }

@@ -11,13 +11,14 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MomentsLookedAt = 8; ///< moments of phase functions that are compared between ranks
+constexpr int MomentsLookedAt = 8; ///< highest degree of phase-function moments that are compared between ranks
 
-/// Sinks and sources of light within a medium, by channel.
+/// Whether a medium absorbs light, and whether light originates within it, by channel.
 struct LightEnds
 {
-  std::array<bool, 3> absorbs = {}; ///< any voxel absorbs
-  /// Any voxel emits, or scatters light of lamps inside the box or uncollided light that is given as input.
+  std::array<bool, 3> absorbs = {}; ///< whether any voxel absorbs
+  /// Whether any voxel emits, or scatters light of lamps with a position or given uncollided light; evaluated only in
+  /// channels without absorption.
   std::array<bool, 3> begins = {};
 };
 

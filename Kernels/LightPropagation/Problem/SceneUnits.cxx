@@ -13,8 +13,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int UsualExponent = 40;       ///< powers between 2^-40 W and 2^40 W are scaled by less than 2
-constexpr int UsualLengthExponent = 20; ///< spacings between 2^-20 and 2^20 are not scaled
+constexpr int UsualExponent = 40;       ///< total powers between 2^-40 W and 2^40 W are scaled by less than 2
+constexpr int UsualLengthExponent = 20; ///< longest spacings between 2^-20 and 2^20 are not scaled
 
 double Largest(const Rgb& values)
 {
@@ -41,7 +41,7 @@ void Divide(Rgb& values, double unit)
   }
 }
 
-/// Replaces a field by a copy in `values`, each value changed.
+/// Replaces a field by change(value) of each of its values, stored in `values`.
 template <class Change>
 void Copy(Field& field, std::size_t voxels, std::vector<float>& values, const Change& change)
 {
@@ -68,7 +68,7 @@ void Multiply(std::vector<float>& values, double unit, const char* name)
     values.begin(), values.end(), values.begin(), [=](float value) { return static_cast<float>(value * unit); });
 }
 
-/// Upper bound of the power that a light sends into the box, W; sum of its channels.
+/// Upper bound of the power that a light sends into the box, W, summed over channels.
 double PowerInto(const Grid& grid, const Light& light)
 {
   if (light.type != LightType::Directional)
@@ -111,7 +111,7 @@ AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illuminati
     2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
   if (illumination.uncollided.IsThere())
   {
-    all.first = 0.0; // given light is not scaled by its digits and stays as given, bit for bit
+    all.first = 0.0; // given light is scaled by a power of two only, so that its digits stay as given, bit for bit
     for (int c = 0; c < 3; ++c)
     {
       all.power += PowerLost(illumination.uncollided, medium, c);
@@ -153,7 +153,7 @@ SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, d
     pixel = static_cast<float>(pixel / unit);
   }
   UncollidedImage& image = this->illumination.uncollided;
-  if (!image.IsThere() || voxels == 0) // on a rank without voxels the image is there, but without values
+  if (!image.IsThere() || voxels == 0) // on a rank without voxels the image has no values
   {
     return;
   }

@@ -9,58 +9,62 @@ namespace tyndall
 {
 /// Units of power and length chosen by the solver (numerics.md, Eq. (85)). Light is linear in its power, but floats
 /// overflow at 3e38 (rays carry W, path integrals W length) and round. The unit of power is proportional, up to a power
-/// of two, to the power of the sources, so that a scene with scaled power is rounded alike and solved by the same
-/// steps.
+/// of two, to the power of the sources, so that a scene with scaled power has the same rounding errors and takes the
+/// same steps of the solver.
 
-/// Quantities from which the unit of power is computed. Ranks take the maximum of each, since only emission and given
-/// uncollided light differ between them.
+/// Quantities from which the unit of power is computed. Over several ranks it is computed from the maximum of each,
+/// since only emission and given uncollided light differ between ranks.
 struct AllThatShines
 {
   double power = 0.0; ///< upper bound of the total power, W
-  /// A light's power; if there is none a radiance, then emission. 0: no source, or uncollided light is given
+  /// Power of the first light; if there is none, the first boundary radiance or the largest emission; 0: no source, or
+  /// uncollided light is given.
   double first = 0.0;
 };
 
-/// @param medium  medium of the whole grid, or of a block
+/// Finds these quantities for a scene.
+/// @param grid  grid of the domain
+/// @param medium  medium of the domain, or of a subdomain
 AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illumination& illumination);
 
-/// Unit of power to solve a scene in, W; between 1 and 2 if the power of the sources is not far from that.
+/// Unit of power in which a scene is solved, W; between 1 and 2 if the power of the sources is between 2^-40 W and 2^40
+/// W.
 double PowerUnitFor(const AllThatShines& all);
 
-/// A scene converted to another unit of power.
+/// A scene converted to `unit` of power, W.
 struct SceneInUnits
 {
   SceneInUnits(const Medium& medium, const Illumination& illumination, double unit);
 
   std::vector<float> emission, uncollided;
-  Medium medium;             ///< refers to `emission`
-  Illumination illumination; ///< refers to `uncollided`
+  Medium medium;             ///< medium with emission from `emission`
+  Illumination illumination; ///< illumination with given light from `uncollided`
 };
 
-/// Converts light from the unit of power back to W.
+/// Converts light from `unit` of power back to W.
 /// @throws InvalidInput  if a value overflows a float
 void ToWatts(LightField& light, double unit);
 
-/// Areas and volumes of voxels must fit in floats, too. Boxes whose voxels are far from size 1 are solved in their own
-/// unit of length, a power of two. Radiance and fluence do not depend on the unit.
+/// Areas and volumes of voxels must fit in floats, too. Boxes whose voxels are far from size 1 are therefore solved in
+/// another unit of length, a power of two. Radiance and fluence do not depend on this unit.
 
-/// Unit of length to solve a box in; 1 if its longest spacing is not far from 1.
+/// Unit of length in which a box is solved, in units of the grid; 1 if its longest spacing is between 2^-20 and 2^20.
 double LengthUnitOf(const Grid& grid);
 
-/// The grid in this unit of length.
+/// A grid converted to `unit` of length.
 Grid InUnit(Grid grid, double unit);
 
-/// A scene converted to another unit of length. Powers in W result divided by the square of the unit (see
-/// MultiplyPowers).
+/// A scene converted to `unit` of length. Powers in W result divided by the square of the unit (see MultiplyPowers).
 struct SceneInLengths
 {
   SceneInLengths(const Medium& medium, const Illumination& illumination, double unit);
 
   std::vector<float> sigma_a, sigma_s, emission;
-  Medium medium; ///< refers to these arrays
+  Medium medium; ///< medium that refers to sigma_a, sigma_s and emission
   Illumination illumination;
 };
 
-/// Multiplies all quantities in W by `factor`: the same light in a box whose faces are larger by this factor.
+/// Multiplies all powers of a LightField (W) by `factor`: the same light in a box whose faces are larger by this
+/// factor.
 void MultiplyPowers(LightField& light, double factor);
 }

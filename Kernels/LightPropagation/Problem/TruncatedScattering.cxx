@@ -10,10 +10,11 @@ namespace tyndall
 {
 namespace
 {
-/// Directions per face that are tested as incident ones, in addition to those of the set
+/// Number of directions per face that are tested as incident ones, in addition to those of the set.
 constexpr int FromPerFace = 144;
-constexpr double LeastPart = 1e-3;   ///< tolerance for rounding, relative to the mean
-constexpr double MostDamping = 16.0; ///< damping s at which all moments vanish
+/// smallest accepted value of the phase function, relative to its mean; allows for rounding
+constexpr double LeastPart = 1e-3;
+constexpr double MostDamping = 16.0; ///< largest damping s, at which all moments above degree 0 vanish
 
 /// Whether `omega` lies in one of the 48 parts of the sphere that are images of each other under rotations and
 /// reflections of the cube. A quadrature and its functions, degree by degree, have that symmetry.
@@ -25,7 +26,7 @@ bool IsInOnePart(const std::array<double, 3>& omega)
 
 std::vector<std::array<double, 3>> ComingFrom(const DirectionSet& set)
 {
-  std::vector<std::array<double, 3>> from = { { 1.0, 0.0, 0.0 } }; // beams are often parallel to an axis
+  std::vector<std::array<double, 3>> from = { { 1.0, 0.0, 0.0 } }; // included since beams are often parallel to an axis
   for (const DirectionSet& one : { set, EquiangularDirections(FromPerFace) })
   {
     for (const Direction& direction : one.directions)
@@ -40,7 +41,8 @@ std::vector<std::array<double, 3>> ComingFrom(const DirectionSet& set)
 }
 
 constexpr double Thickest = 1.0; ///< optical thickness of a voxel up to which its degree is above 0
-constexpr int Columns = 1024;    ///< tabulated mean cosines; moments are interpolated linearly between them
+/// number of intervals between tabulated mean cosines; truncations are interpolated linearly
+constexpr int Columns = 1024;
 
 std::vector<DeltaM> TruncationsOf(const PhaseFunction& function, int degree, const DirectionKernel* nowhereNegative)
 {
@@ -99,7 +101,7 @@ DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel)
     return truncated;
   }
   const double g = truncated.forward + (1.0 - truncated.forward) * truncated.moments[1];
-  const double forward = g < 0.0 ? 0.0 : truncated.forward; // there is no forward peak to remove
+  const double forward = g < 0.0 ? 0.0 : truncated.forward; // g < 0: no forward peak to remove
   const auto damped = [&](double s) {
     std::vector<double> moments = truncated.moments;
     for (std::size_t l = 0; l < moments.size(); ++l)
@@ -177,7 +179,7 @@ std::vector<std::string> TruncatedScattering::LeftOut() const
   return words;
 }
 
-/// Highest degree at which the voxel is not optically thick.
+/// Highest degree at which the voxel is not optically thick along `shortest`, length of its shortest edge.
 int TruncatedScattering::FittingDegree(std::size_t voxel, int channel, double shortest) const
 {
   const double absorbs = this->TheMedium.sigma_a.At(voxel, channel);

@@ -13,59 +13,62 @@
 
 namespace tyndall
 {
-/// Discrete phase function: the scattering between the directions of a quadrature that a series of angular moments
-/// gives (numerics.md, section 2.3). For a truncated forward peak it is negative for some pairs of directions.
+/// Phase function between the directions of a quadrature as given by a series of angular moments (numerics.md, section
+/// 2.3). For a truncated forward peak it is negative for some pairs of directions.
 class DirectionKernel
 {
 public:
   /// @param degree  degree of the moments, at most MostDegree(set)
   DirectionKernel(const DirectionSet& set, int degree);
 
-  /// Minimum of the phase function (mean 1) for scattering into any direction of the set, from any direction of the set
-  /// or between them.
-  /// @param moments  moments 0 to the degree, or fewer
+  /// Minimum of the phase function (mean 1) for scattering into any direction of the set, from directions of the set
+  /// and from intermediate ones.
+  /// @param moments  moments from degree 0 on, at most up to the degree of the kernel
   double Least(const std::vector<double>& moments) const;
 
 private:
   int Degrees;
-  std::vector<float> Parts; ///< [pair of directions][degree]: contribution of a moment of 1
+  std::vector<float> Parts; ///< contribution of a moment of 1 to the phase function, [pair of directions][degree]
 };
 
-/// Returns `truncated` unchanged if its phase function is nowhere negative on the quadrature. Otherwise multiplies
-/// moments of degree l by exp(-s l (l + 1)), with the smallest s that removes negative values; the unscattered part is
-/// adjusted so that the mean cosine is unchanged.
+/// Removes negative values of a truncated phase function on a quadrature (numerics.md, Eq. (8d)): returns `truncated`
+/// unchanged if there are none, else with moments of degree l multiplied by exp(-s l (l + 1)), with the smallest s that
+/// suffices; the unscattered fraction is adjusted so that the mean cosine is unchanged.
 DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel);
 
-/// A medium's scattering as the sweeps treat it (delta-M, DeltaM.h): in each voxel the forward peak is treated as
+/// Delta-M scattering of a medium, as used by sweeps (DeltaM.h): in each voxel the forward peak is treated as
 /// unscattered light, and the remainder has moments up to a degree. Optically thick voxels have a lower degree, down to
-/// 0, since light loses its directional information within them (numerics.md, section 2.2). Coefficients in 1/length.
+/// 0, since light loses its directional information within them (numerics.md, section 2.2). Coefficients are in
+/// 1/length.
 class TruncatedScattering
 {
 public:
   /// @param medium  must outlive this object
   /// @param degree  degree in optically thin voxels; 0: all scattering is isotropic, by the similarity relation
   /// @param nowhereNegative  quadrature on which the phase function is kept nonnegative (WithoutNegatives); null:
-  /// moments of delta-M, which may be negative in places
+  ///   moments of delta-M, which may be negative in some directions
   TruncatedScattering(const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative = nullptr);
 
   int Degree() const { return this->MostDegree; } ///< highest degree of any voxel
-  /// For a block of a larger medium: sets the highest degree of the whole medium, at least that of the block, at most
-  /// the degree given to the constructor.
+  /// Sets the highest degree of any voxel to that of the domain, if the medium is a subdomain: at least that of the
+  /// subdomain, at most that given to the constructor.
   void RaiseDegree(int degree) { this->MostDegree = degree; }
-  /// Descriptions of what was left out of the medium's scattering; empty if nothing
+  /// Descriptions, for LightField::leftOut, of simplifications of the medium's scattering; empty if there are none.
   std::vector<std::string> LeftOut() const;
   bool IsNowhereNegative() const { return this->NowhereNegative && this->MostDegree > 0; }
 
+  /// Scattering coefficient without the forward peak.
   float SigmaS(std::size_t voxel, int channel) const;
   float SigmaT(std::size_t voxel, int channel) const
   {
     return this->TheMedium.sigma_a.At(voxel, channel) + this->SigmaS(voxel, channel);
   }
-  /// sigma_s of degree l: SigmaS(voxel, channel) times the phase function's moment l. 0 above the voxel's degree.
+  /// Scattering coefficient of degree l: SigmaS(voxel, channel) times the phase function's moment l. 0 above the
+  /// voxel's degree.
   float SigmaS(std::size_t voxel, int channel, int l) const;
-  /// Part of the scattered light that is treated as unscattered; 0 where nothing scatters.
+  /// Fraction of the scattered light that is treated as unscattered; 0 in voxels that do not scatter.
   float StraightOn(std::size_t voxel, int channel) const;
-  /// Truncation in the voxels of highest degree, first channel; only if g does not vary.
+  /// Truncated phase function of the voxels of highest degree, in the first channel; only if g does not vary.
   const DeltaM& OfThinVoxels() const { return this->OfChannel[0][this->MostDegree]; }
   int DegreeOf(std::size_t voxel, int channel) const
   {
@@ -82,9 +85,9 @@ private:
   int MostDegree;
   int Channels;
   bool NowhereNegative;
-  std::array<std::vector<DeltaM>, 3> OfChannel; ///< by degree; used if g does not vary by voxel
-  std::vector<std::vector<DeltaM>> OfG;         ///< used if g varies: by g, evenly spaced from -1 to 1, then by degree
-  std::vector<std::uint8_t> Degrees;            ///< [voxel][channel]; empty: all 0
+  std::array<std::vector<DeltaM>, 3> OfChannel; ///< [degree]; used if g does not vary by voxel
+  std::vector<std::vector<DeltaM>> OfG;         ///< [g, evenly spaced from -1 to 1][degree]; used if g varies
+  std::vector<std::uint8_t> Degrees;            ///< degree of each voxel, [voxel][channel]; empty: all 0
 };
 
 /// A medium's coefficients on the device, 1/length, in the layout of VolumeLayout. sigma_t and sigma_s exclude light
@@ -92,10 +95,10 @@ private:
 class MediumOnDevice
 {
 public:
-  /// Which coefficients get arrays of their own.
+  /// Coefficients for which arrays are allocated, besides sigma_t.
   struct Needs
   {
-    bool sigma_s; ///< false if it is never read or equals sigma_t
+    bool sigma_s; ///< false: sigma_s is never read, or equals sigma_t
     bool sigma_a;
   };
   MediumOnDevice(Device& device, const Medium& medium, const TruncatedScattering& scattering,
@@ -106,7 +109,7 @@ public:
   const Buffer<float>& SigmaA() const { return this->Absorption; } ///< empty if not requested
   /// sigma_s of each degree (TruncatedScattering.h), [degree][channel][stride]; empty if all scattering is isotropic.
   const Buffer<float>& SigmaOfDegrees() const { return this->OfDegrees; }
-  /// Transport extinction sigma_a + sigma_s (1 - g), used by the diffusion correction. The same as SigmaT() if all
+  /// Transport extinction sigma_a + sigma_s (1 - g), used by the diffusion correction. Equal to SigmaT() if all
   /// scattering is isotropic.
   const Buffer<float>& TransportSigmaT() const
   {
