@@ -11,25 +11,29 @@ namespace tyndall
 {
 namespace
 {
-constexpr double WarmMargin = 1.5;      ///< safety factor: the error of a guess does not fall evenly
-constexpr double MarginOfChanges = 1.5; ///< safety factor: changes do not fall evenly
-constexpr double MuchLeftOver = 0.01;   ///< fraction of the power, at the default tolerance
-constexpr double SlowestFall = 1e-4;    ///< relative decrease per order below which wrapped light is endless
-constexpr double NextToAll = 1e-3;      ///< largest other power relative to endless light
+constexpr double WarmMargin = 1.5;      ///< safety factor, since the error of an initial guess does not decrease evenly
+constexpr double MarginOfChanges = 1.5; ///< safety factor, since changes do not decrease evenly
+/// fraction of the power above which left-over power is reported, unless the tolerance is larger
+constexpr double MuchLeftOver = 0.01;
+constexpr double SlowestFall = 1e-4; ///< relative decrease per order below which wrapping light is endless
+/// largest other power, relative to endless light, with which that is recognised
+constexpr double NextToAll = 1e-3;
 
-constexpr double ImbalanceAtMost = 1e-2; ///< fraction of the power: an error, too large for rounding
-constexpr double ImbalanceUnsaid = 1e-4; ///< fraction of the power: rounding, no warning
-constexpr double FaintChannel = 1e-3;    ///< relative to the brightest: channels of photons share power units
-constexpr double OpaqueVoxel = 100.0;    ///< approximate optical thickness beyond which floats lose light in a voxel
+constexpr double ImbalanceAtMost = 1e-2; ///< imbalance, as fraction of the power, above which the solve fails
+constexpr double ImbalanceUnsaid = 1e-4; ///< imbalance, as fraction of the power, up to which there is no warning
+/// smallest power of a channel, relative to the brightest, with which its imbalance is compared
+constexpr double FaintChannel = 1e-3;
+constexpr double OpaqueVoxel = 100.0; ///< approximate optical thickness beyond which floats lose light in a voxel
 
 struct ThickestVoxel
 {
-  double thickness = 0.0; ///< transport mean free paths along its longest edge, largest of all channels
-  std::string name;       ///< empty: not known
+  double thickness = 0.0; ///< transport optical thickness along its longest edge, largest of all channels
+  std::string name;       ///< description of its position; empty: not known
 };
 
-/// @param named  grid in whose indices the voxel is named
-/// @param first  first voxel of the medium in that grid
+/// Voxel of a medium with the largest transport extinction.
+/// @param named  grid in whose indices the voxel is described
+/// @param first  position in that grid of the medium's first voxel
 ThickestVoxel ThickestOf(const Medium& medium, const Grid& named, const std::array<int, 3>& first = {})
 {
   const Grid& grid = medium.grid;
@@ -54,7 +58,7 @@ ThickestVoxel ThickestOf(const Medium& medium, const Grid& named, const std::arr
     VoxelName(named, named.IndexOf({ first[0] + at[0], first[1] + at[1], first[2] + at[2] })) };
 }
 
-/// Thickest voxel of all ranks. Collective.
+/// Voxel of the domain with the largest transport optical thickness. Collective.
 ThickestVoxel ThickestOf(const Domain& domain, const Medium& medium)
 {
   const ThickestVoxel own = domain.IsEmpty() ? ThickestVoxel() : ThickestOf(medium, domain.Whole(), domain.Own().first);
@@ -63,6 +67,7 @@ ThickestVoxel ThickestOf(const Domain& domain, const Medium& medium)
   return { thickest, WordsOfAny(domain.Comm(), has ? own.name : std::string()) };
 }
 
+/// Result of an energy balance check: no error, an error worth a warning, or failure.
 enum class Balancing
 {
   Well,
@@ -70,7 +75,7 @@ enum class Balancing
   Not
 };
 
-/// Largest value over channels of powerOf(channel, incoming power), relative to the incoming power (entered plus
+/// Largest value over channels of powerOf(channel, incoming power) relative to the incoming power (entered plus
 /// emitted). A faint channel is compared with a thousandth of the brightest one; for grey light the other channels are
 /// empty.
 /// @param powerOf  function of channel and incoming power in W, returns W
@@ -93,7 +98,7 @@ double LargestPart(const EnergyBalance& balance, const PowerOf& powerOf)
   return worst;
 }
 
-/// Fraction of the power that is lost or created.
+/// Energy imbalance: fraction of the incoming power that is lost or created.
 double ImbalanceOf(const EnergyBalance& balance)
 {
   return LargestPart(balance, [&](std::size_t c, double in) {
@@ -101,8 +106,8 @@ double ImbalanceOf(const EnergyBalance& balance)
   });
 }
 
-/// Fraction of the power that is impossible, even if the balance sums up: absorbed or escaped power below 0, or more
-/// left over than came in.
+/// Fraction of the incoming power that is impossible, even if the balance holds: absorbed or escaped power below 0, or
+/// more power left over than incoming.
 double ImpossiblePart(const EnergyBalance& balance)
 {
   return LargestPart(balance, [&](std::size_t c, double in) {
@@ -120,8 +125,8 @@ Balancing BalancingOf(const EnergyBalance& balance)
   return error <= ImbalanceUnsaid ? Balancing::Well : error <= ImbalanceAtMost ? Balancing::Poorly : Balancing::Not;
 }
 
-/// Possible causes of an energy imbalance, and remedies.
-/// @param enters  power enters from outside the medium
+/// Text on possible causes of an energy imbalance, and remedies.
+/// @param enters  whether power enters from outside the medium
 std::string WordsOfImbalance(const ThickestVoxel& thickest, bool enters)
 {
   const std::string thickness = Text("%.3g", thickest.thickness);
@@ -142,7 +147,7 @@ std::string WordsOfImbalance(const ThickestVoxel& thickest, bool enters)
         : " at the emission, for nothing else shines, and " + others);
 }
 
-/// Throws, because the iteration has failed.
+/// Throws InvalidInput for a balance with impossible powers: the iteration has failed.
 [[noreturn]] void RefuseImpossible(const EnergyBalance& balance)
 {
   const double in = Sum(balance.entered) + Sum(balance.emitted);
@@ -170,7 +175,7 @@ void Judge(LightField& light, Balancing balancing, const ThickestVoxel& thickest
   throw InvalidInput((std::isnan(error) ? "The light is not a number, " : "The light does not balance: " + part) + why);
 }
 
-/// Fraction of the power that the solver left over.
+/// Fraction of the incoming power that is left over.
 double LeftOver(const EnergyBalance& balance)
 {
   const double all = Sum(balance.entered) + Sum(balance.emitted);

@@ -11,14 +11,17 @@ namespace tyndall
 {
 namespace
 {
-constexpr int LargestUnstaggered = 100; ///< quadratures are fitted up to this number
-constexpr double UncollidedWork = 5.0;  ///< measured cost of an uncollided direction relative to one of a sweep
+constexpr int LargestUnstaggered = 100; ///< largest number of directions per face of a fitted quadrature
+/// measured cost of a direction of uncollided light, relative to a direction of a sweep
+constexpr double UncollidedWork = 5.0;
 constexpr double LeastSweeps = 3.0;
-constexpr double OnFinerGrid = 1.3; ///< error on the grid itself relative to the coarse grid: measured 0.97 to 1.3
+/// angular error on the fine grid relative to that on the coarse grid: measured 0.97 to 1.3
+constexpr double OnFinerGrid = 1.3;
 constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 100, 196, 256, 400 };
 constexpr int UncollidedCounts[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
 
-/// Measured error with so many directions per cube face, relative to that with 9; above 100, with staggered rays.
+/// Measured error with a number of directions per cube face, relative to that with 9; above 100 directions, with
+/// staggered rays.
 struct Fall
 {
   double directions, error;
@@ -26,7 +29,7 @@ struct Fall
 constexpr Fall Falls[] = { { 1, 8.0 }, { 4, 2.6 }, { 9, 1.0 }, { 16, 0.8 }, { 25, 0.5 }, { 36, 0.38 }, { 49, 0.34 },
   { 64, 0.28 }, { 100, 0.22 }, { 256, 0.14 }, { 400, 0.12 }, { 900, 0.06 }, { 1600, 0.035 }, { 4096, 0.02 } };
 
-/// Interpolates Falls, linearly in logarithms.
+/// Error with `directions` per cube face relative to that with 9: interpolates Falls, linearly in logarithms.
 double FallenTo(int directions)
 {
   const Fall* above = std::begin(Falls) + 1;
@@ -39,7 +42,8 @@ double FallenTo(int directions)
   return below.error * std::pow(above->error / below.error, part);
 }
 
-/// Root mean square of the difference of one component of two solutions, relative to the total fluence of `other`.
+/// Root mean square of the difference of two solutions in part(light, index of a value), relative to that of the
+/// fluence of `other`.
 template <class Part>
 double Difference(Communicator& communicator, const LightField& one, const LightField& other, const Part& part)
 {

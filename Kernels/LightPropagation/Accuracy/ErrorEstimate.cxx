@@ -12,12 +12,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr double OrderInDirections = 0.9; ///< error ~ (number of directions)^-OrderInDirections
+constexpr double OrderInDirections = 0.9; ///< order of convergence: error ~ (number of directions)^-OrderInDirections
 constexpr double OrderInSpace = 2.0;
-constexpr double FinePart = 0.8; ///< fraction of the time spent on the fine grid, for progress
+constexpr double FinePart = 0.8; ///< fraction of the progress that is attributed to the solve on the fine grid
 
-/// Number of directions per cube face for comparison: fewer, unless there is a single one; an even number of rows if
-/// `directionsPerFace` has one.
+/// Number of directions per cube face of the coarse solve that is compared: fewer than `directionsPerFace`, unless that
+/// is 1; an even number of rows if `directionsPerFace` has one.
 int OtherDirections(int directionsPerFace)
 {
   const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(directionsPerFace))));
@@ -26,14 +26,15 @@ int OtherDirections(int directionsPerFace)
   return other * other;
 }
 
-/// Error with `directions` relative to the difference from the solution with `others`.
+/// Angular error with `directions` per cube face, relative to the difference from the solution with `others`.
 double PartOfDifference(int directions, int others)
 {
   const double ratio = std::pow(static_cast<double>(others) / directions, OrderInDirections);
   return ratio < 1.0 ? ratio / (1.0 - ratio) : ratio / (ratio - 1.0);
 }
 
-/// Replaces values, [outer][count][inner], by the mean of three neighbours along the middle axis, of two at its ends.
+/// Replaces values, [outer][count][inner], by the mean over neighbours along the middle axis: of three values, or of
+/// two at its ends.
 void SmoothAlong(std::vector<double>& values, std::size_t count, std::size_t inner)
 {
   const std::vector<double> rough = values;
@@ -66,15 +67,15 @@ void Smooth(std::vector<double>& values, const Grid& grid, int channels)
   }
 }
 
-/// Whether the solve stopped after its first order, from which the remainder cannot be estimated.
+/// Whether a solve stopped after its first order before convergence; the remainder cannot be estimated from one order.
 bool IsStoppedTooSoonToTell(const LightField& light)
 {
   return light.convergence.size() == 1 && light.convergence.front().residual > 0.0;
 }
 
-/// Distributes the variance of coarse voxels to their fine voxels, in proportion to squared fluence: brighter voxels
-/// have larger errors, as next to lamps.
-/// @param averages, variance  of the coarse voxels that overlap this rank's block
+/// Variance of fluence in fine voxels: that of their coarse voxels, in proportion to squared fluence, since brighter
+/// voxels have larger errors, as next to lamps.
+/// @param averages, variance  fluence of the coarse voxels that overlap this rank's subdomain, and its variance
 std::vector<double> InVoxels(const LightField& light, const std::vector<float>& averages,
   const std::vector<double>& variance, const Coarsening& seen)
 {
@@ -100,10 +101,11 @@ double SumOf(const std::vector<double>& values)
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Computes the two error components of coarse fluence, and their variance.
+/// Computes the two error components of the fluence of coarse voxels, and its variance, from the fluence of the fine
+/// solve and of two coarse solves.
 struct ErrorOfAverages
 {
-  double inSpace, partOfDifference; ///< factors of the differences between solves
+  double inSpace, partOfDifference; ///< factors from differences between solves to errors in space and in directions
 
   double InSpace(float fine, float same) const { return this->inSpace * (static_cast<double>(fine) - same); }
   double InDirections(float same, float other) const
@@ -123,16 +125,17 @@ struct ErrorOfAverages
   }
 };
 
-/// Fluence and variance of the coarse voxels of a rank, or of all that overlap its block.
+/// Fluence of coarse voxels and its variance, for the coarse voxels that a rank owns or for all that overlap its
+/// subdomain.
 struct VarianceOfAverages
 {
   const std::vector<float>& averages; ///< fluence
-  std::vector<double> variance;       ///< of the fluence
+  std::vector<double> variance;       ///< variance of the fluence
 };
 
-/// Sets fluenceError and relativeError. Errors by voxel are smoothed with their total preserved. They are at least as
-/// large, relative to the light, as in the averages, which do not resolve the decrease of light within voxels next to
-/// lamps.
+/// Sets fluenceError and relativeError of `light`. Errors by voxel are smoothed with their total preserved. Relative to
+/// the light, they are at least as large as in the coarse voxels, which do not resolve the decrease of light within
+/// voxels next to lamps.
 void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfAverages& own, VarianceOfAverages seen)
 {
   const Coarsening& toSeen = blocks.Seen();
@@ -158,7 +161,8 @@ void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfA
   light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
 }
 
-/// Error of a plane-parallel solve: the change caused by fewer cosines. It has no other error.
+/// Sets the error of a plane-parallel solve, which has an error in angle only: the change caused by fewer polar
+/// cosines.
 void WriteErrorOfCosines(LightField& light, const LightField& few)
 {
   double errors = 0.0, fluences = 0.0;

@@ -11,45 +11,46 @@
 
 namespace tyndall
 {
-/// Solves a scene on the grid of its domain. Collective.
+/// Function that solves a scene on the grid of its domain. Collective.
 using PropagationSolver = std::function<LightField(const SceneBlock&, const PropagationSettings&, const Monitor&)>;
 
-/// The two error components of Eq. (84) that are estimated separately, as root mean squares relative to that of
-/// fluence, and the residual.
+/// Error components of Eq. (84) that are estimated separately, in space and in directions, as root mean squares
+/// relative to that of fluence, and the residual of the iteration.
 struct ErrorParts
 {
   double inSpace = 0.0, inDirections = 0.0, residual = 0.0;
 };
 
-/// Sets fluenceError and relativeError of `light` (Eqs. (82) to (84)). Collective; the return value and relativeError
-/// are global.
-/// @param light  of this rank's block
-/// @param same, other  fluence of this rank's coarse voxels, with the same quadrature and with another one
+/// Sets fluenceError and relativeError of `light` (Eqs. (82) to (84)) from two coarse solutions. Collective; the
+/// returned error components and relativeError are global.
+/// @param light  light of this rank's subdomain
+/// @param same, other  fluence of this rank's coarse voxels, solved with the quadrature of `light` and with another one
 /// @param partOfDifference  ratio of the angular error of `light` to the difference between the two coarse solutions
 /// @param orderInSpace  order of convergence in the voxel size
 ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, const std::vector<float>& same,
   const std::vector<float>& other, double partOfDifference, double orderInSpace);
 
-/// Solves, and estimates the error of fluence without a reference, from two more solves on a grid of half the voxels
-/// per axis (numerics.md, section 9.2):
+/// Solves a scene, and estimates the error of its fluence without a reference, from two more solves on a grid of half
+/// the voxels per axis (numerics.md, section 9.2). Components of the error:
 ///  - in voxel size, of order 2 (Richardson), Eq. (82);
 ///  - in angle, from a solve with 0.6 times as many directions along the edge of a cube face, Eq. (83);
 ///  - of scattering orders not computed: the residual.
-/// fluenceError is a standard error, Eq. (84); relativeError is that of all voxels. The estimate is too large if the
-/// medium has edges as sharp as a voxel (coarsening blurs them), and wrong by up to a factor of two either way next to
-/// a lamp. Measured accuracy: measurements.md.
+/// fluenceError is a standard error by voxel, Eq. (84); relativeError is the root mean square over all voxels. The
+/// estimate is too large if the medium has edges as sharp as a voxel (coarsening blurs them), and wrong by up to a
+/// factor of two either way next to a lamp. Measured accuracy: measurements.md.
 ///
-/// A solve that stopped after its first order with light left has no estimate, because one order does not show the rate
-/// of decrease: relativeError is NaN, and fluenceError empty.
+/// There is no estimate for a solve that stopped after its first order before convergence, because one order does not
+/// show the rate of decrease: relativeError is NaN, and fluenceError empty.
 ///
-/// Takes 1 / 8 + 1 / 20 of the time of the sweeps, more on small grids. An axis of a single voxel is not coarsened, and
-/// its error in voxel size is not estimated.
+/// The estimate takes 1 / 8 + 1 / 20 of the time of the sweeps, more on small grids. An axis of a single voxel is not
+/// coarsened, and its error in voxel size is not estimated.
 ///
-/// On several ranks the coarse grid is that of the domain (CoarseBlocks.h), so that errors do not depend on the blocks,
-/// except by rounding. Collective; all ranks must have the same kinds of fields. If the coarse solves use DSA and
-/// UncollidedDirections is left open, boundary light uses the directions of scattered light on the coarse grid. If it
-/// had finer directions on the grid itself, the estimate is then too large by the error of the coarser ones.
-/// @throws as `solve`
+/// On several ranks the coarse grid is that of the domain (CoarseBlocks.h), so that errors do not depend on the
+/// decomposition, except by rounding. Collective; all ranks must have values in the same fields. If the coarse solves
+/// use DSA and UncollidedDirections is left open, boundary light uses the directions of scattered light on the coarse
+/// grid. If boundary light had finer directions on the fine grid, the estimate is then too large by the error of the
+/// coarser ones.
+/// @throws the exceptions of `solve`
 LightField SolveWithErrorEstimate(
   const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve);
 }

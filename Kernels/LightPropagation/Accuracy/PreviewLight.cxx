@@ -15,8 +15,8 @@ namespace tyndall
 {
 namespace
 {
-/// Halves the number of voxels along each axis once, and again while more than PreviewVoxels are left.
-/// @param may  whether a grid may be halved
+/// Halves the number of voxels along each axis once, and again while the grid has more than PreviewVoxels voxels.
+/// @param may  may(grid): whether a grid may be halved
 template <class May>
 Grid Halved(Grid grid, const May& may)
 {
@@ -32,25 +32,26 @@ std::string SizeOf(const Grid& grid)
   return std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " + std::to_string(grid.size[2]);
 }
 
-/// A decomposed scene on the coarse grid, gathered on the first rank that has fine voxels. Constructor and Spread are
+/// A decomposed scene on the coarse grid, gathered on the first rank that has fine voxels. Constructor and Spread() are
 /// collective.
 class SceneOnFirst
 {
 public:
-  /// @param blocks  must outlive this
-  /// @param own  scene of this rank's coarse voxels, with the same kinds of fields on all ranks; not read on a rank
+  /// @param blocks  decomposition of the coarse grid; must outlive this object
+  /// @param own  scene of this rank's coarse voxels, with values in the same fields on all ranks; not read on a rank
   ///   without coarse voxels
-  /// @param fine  medium of this rank's block, which provides the phase function of the domain
+  /// @param fine  medium of this rank's subdomain, which provides the phase function of the domain
   SceneOnFirst(const CoarseBlocks& blocks, const SceneBlock& own, const Medium& fine);
   SceneOnFirst(const SceneOnFirst&) = delete;
   SceneOnFirst& operator=(const SceneOnFirst&) = delete;
 
+  /// Whether this rank has the gathered scene.
   bool IsHere() const { return this->Here; }
-  /// The gathered scene; valid on that rank only.
+  /// The gathered scene; valid only on the rank where IsHere() is true.
   SceneBlock Scene() const { return { Domain(this->TheMedium.grid), this->TheMedium, this->Light, this->Index }; }
 
-  /// Distributes the light that the first rank computed: fluence and its uncollided part to the owners of the coarse
-  /// voxels, and global data (balance, powers, convergence, messages) to all ranks.
+  /// Distributes the light that the gathered scene's rank computed: fluence and its uncollided part to the owners of
+  /// the coarse voxels, and global data (balance, powers, convergence, messages) to all ranks.
   void Spread(LightField& light) const;
 
 private:
@@ -58,7 +59,7 @@ private:
 
   const CoarseBlocks& Blocks;
   const bool Here;
-  std::vector<VoxelBox> Boxes; ///< by rank: all coarse voxels on one rank, none on the rest
+  std::vector<VoxelBox> Boxes; ///< boxes of coarse voxels by rank: all of them on one rank, none on the others
   Medium TheMedium;
   Illumination Light;
   Field Index;
@@ -138,7 +139,7 @@ void RequireSame(const SceneBlock& scene, const PropagationSettings& alike)
     { scene.index.values ? 1.0 : 0.0 });
 }
 
-/// Interpolates light from the coarse grid to this rank's voxels.
+/// Preview shown to the user: coarse light interpolated to this rank's voxels.
 LightField Shown(LightField&& found, const CoarseBlocks& blocks)
 {
   LightField light;

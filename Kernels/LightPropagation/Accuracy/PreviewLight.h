@@ -13,30 +13,33 @@ namespace tyndall
 /// Solves a scene on the grid of its domain. Collective on that domain.
 using PreviewSolver = std::function<LightField(const SceneBlock&)>;
 
-/// Grid of a preview: the number of voxels along each axis is halved once, and again while more than PreviewVoxels are
-/// left.
+/// Coarse grid of a preview: the number of voxels along each axis is halved once, and again while the grid has more
+/// than PreviewVoxels voxels.
 Grid PreviewGrid(const Grid& grid);
 
-/// The same in whole steps, so that cubic voxels stay cubic; returns the grid unchanged if some axis cannot be halved.
+/// Coarse grid of a preview as PreviewGrid(), but halved only while all numbers of voxels are even, so that cubic
+/// voxels remain cubic; the grid itself if it cannot be halved.
 Grid CubicPreviewGrid(const Grid& grid);
 
-constexpr double PreviewTolerance = 0.1; ///< tolerance of its iterations: relative error of fluence
-constexpr int PreviewDirections = 4;     ///< per cube face
-constexpr int PreviewOrders = 24;        ///< of discrete ordinates; later orders are extrapolated as a geometric series
+constexpr double PreviewTolerance = 0.1; ///< tolerance of a preview: relative error of fluence
+constexpr int PreviewDirections = 4;     ///< directions of a preview per cube face
+/// scattering orders of a preview by discrete ordinates; later orders are extrapolated as a geometric series
+constexpr int PreviewOrders = 24;
 
 /// Number of voxels for which a preview takes less than 0.2 s on two cores (measurements.md).
 constexpr std::size_t PreviewVoxels = 32768;
 
-/// Solves on a coarser grid of averages (Coarsening.h) and interpolates linearly between coarse voxel centres: fast
-/// feedback while parameters change. The result has `fluence`, `fluence_direct`, powers and the table of iterations.
-/// All other data by voxel, face or direction are omitted; `leftOut` says so, and how coarse the grid is.
+/// Solves a scene on a coarser grid of averages (Coarsening.h) and interpolates linearly between coarse voxel centres:
+/// fast feedback while parameters change. The result has `fluence`, `fluence_direct`, powers and the table of
+/// iterations. All other data by voxel, face or direction are omitted; `leftOut` states that, and the size of the
+/// coarse grid.
 ///
-/// A small coarse grid is gathered and solved by the first rank that has voxels, which is faster than on several; its
-/// result equals that of a serial preview for any decomposition. A larger one is decomposed. Collective.
+/// A small coarse grid is gathered and solved by the first rank that has voxels, which is faster than on several ranks;
+/// its result equals that of a serial preview for any decomposition. A larger one is decomposed. Collective.
 /// @param alike  settings that must be the same on all ranks, as must the scene
 /// @param coarse  a grid over the box of the domain, nowhere finer than its grid
 /// @param small  number of coarse voxels up to which one rank solves
-/// @throws InvalidInput  on every rank, if they differ
+/// @throws InvalidInput  on every rank, if settings or scenes differ
 /// @throws the exceptions of `solve`
 LightField SolvePreview(const SceneBlock& scene, const PropagationSettings& alike, const Grid& coarse,
   const PreviewSolver& solve, std::size_t small = PreviewVoxels);

@@ -17,7 +17,8 @@ Field Keep(Arrays& arrays, std::vector<float>&& values, int components)
   return { arrays.back().data(), components };
 }
 
-/// Values of a field in all fine voxels that overlap the coarse voxels of this rank. Collective.
+/// Field over all fine voxels that overlap this rank's coarse voxels. Collective.
+/// @param arrays  receives the values
 Field Gather(const CoarseBlocks& blocks, const Field& field, Arrays& arrays)
 {
   if (!field.values)
@@ -106,7 +107,8 @@ void CoarseScene::AverageGivenLight(const Medium& fine, const Coarsening& coarse
   image.fluence = this->AveragedFluence(fine, fluence, coarsening);
 }
 
-/// Means weighted by sigma_t of the fine voxels, so that the medium takes the same power.
+/// Means of fluence over coarse voxels, weighted by sigma_t of the fine voxels, so that the medium removes the same
+/// power.
 Field CoarseScene::AveragedFluence(const Medium& fine, const Field& fluence, const Coarsening& coarsening)
 {
   const int channels = fluence.HasColour() || fine.Channels() == 3 ? 3 : 1;
@@ -130,7 +132,7 @@ Field CoarseScene::AveragedFluence(const Medium& fine, const Field& fluence, con
   return Keep(this->Means, std::move(averages), channels);
 }
 
-/// Means weighted by the fluence.
+/// Means of mean directions over coarse voxels, weighted by fluence.
 Field CoarseScene::AveragedDirections(const Field& mean, const Field& fluence, const Coarsening& coarsening)
 {
   const std::size_t voxels = coarsening.Fine().VoxelCount();

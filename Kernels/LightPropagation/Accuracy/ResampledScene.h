@@ -13,23 +13,24 @@
 
 namespace tyndall
 {
-/// A scene as one rank holds it. Medium and illumination must outlive it; fields over voxels are of the rank's block.
+/// A scene as one rank has it: the domain, and the fields over the voxels of this rank's subdomain. Medium and
+/// illumination must outlive this object.
 struct SceneBlock
 {
   Domain domain;
   const Medium& medium;
   const Illumination& illumination;
-  Field index = {}; ///< another quantity by voxel, such as the refractive index; may have no values
+  Field index = {}; ///< a further quantity by voxel, such as the refractive index; may have no values
 };
 
-/// A scene averaged to a coarser grid over the same box, with its own arrays. Coefficients are means over the coarse
-/// voxels, g weighted by sigma_s. Uncollided light that is given by voxel is averaged so that the power the medium
-/// takes from it is conserved.
+/// A scene averaged to a coarser grid over the same box. Coefficients are means over the coarse voxels, g is weighted
+/// by sigma_s. Uncollided light that is given by voxel is averaged so that the power the medium removes from it is
+/// conserved.
 class CoarseScene
 {
 public:
-  /// Collective.
-  /// @param fine  of this rank's block, with the same kinds of fields on all ranks
+  /// Averages a scene. Collective.
+  /// @param fine  scene on the fine grid, with values in the same fields on all ranks
   CoarseScene(const CoarseBlocks& blocks, const SceneBlock& fine);
   CoarseScene(const SceneBlock& fine, const Grid& coarse)
     : CoarseScene(CoarseBlocks(fine.domain.Comm(), fine.domain.Partition(), coarse), fine)
@@ -51,44 +52,44 @@ private:
   Medium Averaged;
   Illumination Light;
   Field Index;
-  std::deque<std::vector<float>> Means; ///< the fields refer to them
+  std::deque<std::vector<float>> Means; ///< arrays to which the fields of the coarse scene refer
 };
 
-/// Fine voxels per coarse voxel along each axis, at least 1.
+/// Number of fine voxels per coarse voxel along each axis, at least 1.
 using Factors = std::array<int, 3>;
+/// Grid over the same box with `factors` voxels per voxel of `coarse` along each axis.
 Grid Refined(const Grid& coarse, const Factors& factors);
 /// Copies each coarse value to all of its fine voxels.
-/// @param values  `components` per voxel of `coarse`, x fastest
+/// @param values  values by voxel of `coarse`, x fastest, `components` each
 std::vector<float> Repeated(const float* values, int components, const Grid& coarse, const Factors& factors);
 
-/// A scene on a finer grid, with its own arrays: the same medium, for a more accurate solve.
+/// A scene on a finer grid over the same box, with the same medium, for a more accurate solve.
 class DividedScene
 {
 public:
-  /// @param scene  its fields, but not its index, are repeated; must outlive this
-  /// @param parts  of an edge of the voxels
+  /// @param scene  scene whose fields, but not its index, are repeated; must outlive this object
+  /// @param parts  number of fine voxels per voxel along each axis
   DividedScene(const SceneBlock& scene, const Factors& parts);
   DividedScene(const DividedScene&) = delete;
   DividedScene& operator=(const DividedScene&) = delete;
 
-  /// Halves each edge, except along periodic axes of a single voxel, on which nothing varies.
+  /// Factors that halve each edge of a voxel, except along periodic axes of a single voxel, along which nothing varies.
   static Factors Halves(const Grid& whole, const std::array<bool, 3>& periodic);
 
   SceneBlock Scene() const { return { this->TheDomain, this->Divided, this->Light }; }
 
-  /// Averages the light of the refined scene to the voxels of the original scene, and to the cells of all of the box's
-  /// faces.
+  /// Averages the light of the refined scene over the voxels of the original scene, and over the face cells of its box.
   void Undo(LightField& light) const;
 
 private:
   Field Repeated(const Field& field);
   void UndoCells(std::vector<float>& values) const;
 
-  Grid Whole, Given; ///< grids of the whole scene and of this rank's block, not refined
+  Grid Whole, Given; ///< original grids of the domain and of this rank's subdomain
   Factors Along;
   Domain TheDomain;
   Medium Divided;
   Illumination Light;
-  std::deque<std::vector<float>> Arrays; ///< the fields refer to them
+  std::deque<std::vector<float>> Arrays; ///< arrays to which the fields of the fine scene refer
 };
 }

@@ -18,23 +18,27 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Aim = 0.95;          ///< error to aim for, relative to the target
-constexpr double DirectionPart = 0.9; ///< share of it for the angular error
-constexpr double LeastRoom = 0.3;     ///< smallest angular share, besides the error in voxel size
-constexpr double MuchTooCoarse = 1.5; ///< error in voxel size, relative to the aim, beyond repair by directions
+constexpr double Aim = 0.95;          ///< estimated error at which the search ends (Goal), relative to the target
+constexpr double DirectionPart = 0.9; ///< fraction of Goal that is allowed for the angular error
+/// smallest angular error, relative to Goal, that is required in addition to the error in voxel size
+constexpr double LeastRoom = 0.3;
+/// error in voxel size, relative to Goal, above which more directions do not help
+constexpr double MuchTooCoarse = 1.5;
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
-constexpr double OrderOfClouds = 1.7, OrderBesideLamps = 1.4; ///< measured: clouds 1.7, lamps in fog 1.4 to 1.7
-constexpr double MuchUncollided = 0.3; ///< share of the error above which one more solve measures it
+/// order of convergence in voxel size; measured: clouds 1.7, lamps in fog 1.4 to 1.7
+constexpr double OrderOfClouds = 1.7, OrderBesideLamps = 1.4;
+constexpr double MuchUncollided = 0.3; ///< fraction of uncollided light's error above which one more solve measures it
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
 
-/// Fluence of coarse voxels, and its settings.
+/// Fluence of a solve on the coarse grid, and the settings of that solve.
 struct CoarseLight
 {
   PropagationSettings settings;
   std::vector<float> fluence;
 
+  /// Whether a solve with `others` on the coarse grid would give this fluence.
   bool Has(const PropagationSettings& others) const
   {
     return others.directionsPerFace == this->settings.directionsPerFace && others.uncollidedDirections == 0 &&
@@ -42,7 +46,7 @@ struct CoarseLight
   }
 };
 
-/// The search; all ranks take the same steps.
+/// The search of SolveToTargetError(). Collective: all ranks take the same steps.
 class TargetSearch
 {
 public:
@@ -95,7 +99,7 @@ private:
     return this->Count(this->Coarse.Scene(), settings, OfPart(this->TheMonitor, from, to));
   }
 
-  /// Solves the coarse grid with few and with more directions.
+  /// Solves on the coarse grid with few and with more directions, and initialises Forecast from these solutions.
   void LookAtDirections()
   {
     PropagationSettings settings = this->Asked;
@@ -120,7 +124,7 @@ private:
     }
   }
 
-  /// Whether to measure the error of uncollided light separately: it is large, comes from boundary sources, and the
+  /// Whether the error of uncollided light is measured separately: it is large, stems from boundary sources, and the
   /// target needs more than a few directions.
   bool MayHaveFinerUncollided() const
   {
@@ -128,7 +132,7 @@ private:
       this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal).directionsPerFace > More;
   }
 
-  /// Solves the grid itself, and the coarse grid for the estimate.
+  /// Solves on the scene's grid and, for the error estimate, on the coarse grid.
   void SolveAlong(const PropagationSettings& settings, double from, double to)
   {
     this->Used = settings;
@@ -149,7 +153,7 @@ private:
       this->Forecast->PartOfDifference(settings, other.settings), order);
   }
 
-  /// Angular error that the target allows besides errors in voxel size and of missing orders; 0 if next to nothing.
+  /// Angular error that Goal allows in addition to an error in voxel size and the residual; 0 if it is below LeastRoom.
   double RoomBeside(double inSpace) const
   {
     const double others = std::hypot(inSpace, this->Parts.residual);
@@ -157,7 +161,8 @@ private:
     return room < LeastRoom * this->Goal ? 0.0 : room;
   }
 
-  /// Cheapest settings with at most that angular error; none if the settings in use suffice, or no others are better.
+  /// Cheapest settings with an angular error of at most `room`; none if the settings in use suffice, or no others are
+  /// better.
   std::optional<PropagationSettings> BetterWithin(double room)
   {
     if (this->Parts.inDirections <= room)
@@ -169,8 +174,8 @@ private:
     return this->Forecast->Error(better) < this->Forecast->Error(this->Used) ? std::optional(better) : std::nullopt;
   }
 
-  /// Solves the grid itself again if the angular error is larger than allowed, or large: halving voxels would take far
-  /// longer, and angular errors make those in voxel size look larger than they are.
+  /// Solves on the scene's grid again, with more directions, if the angular error is too large. Halving voxels would
+  /// take far longer, and angular errors make errors in voxel size look larger than they are.
   void TryBetterDirections()
   {
     const double room = std::max(this->RoomBeside(this->Parts.inSpace), LeastRoom * this->Goal);
@@ -184,8 +189,10 @@ private:
     }
   }
 
-  /// Whether the target is met even if the whole difference to the coarse solution with other directions were an error
-  /// in voxel size. If so, the two need not be separated.
+  /// Whether Goal is met even if the complete difference from a coarse solution with other directions were an error in
+  /// voxel size, so that the error in voxel size need not be separated. Sets the error estimate accordingly.
+  /// @param other  fluence of that coarse solution
+  /// @param error  predicted angular error
   bool IsMetAtMost(const std::vector<float>& other, double error, double order)
   {
     ErrorParts parts = WriteErrorEstimate(this->Light, this->Blocks, other, other, 0.0, order);
@@ -201,7 +208,7 @@ private:
     return all <= this->Goal;
   }
 
-  /// Tries voxels of half the edge, which leave a quarter of the error in voxel size.
+  /// Solves with voxels of half the edge length, if a quarter of the error in voxel size is small enough.
   void TryHalves()
   {
     const double room = this->RoomBeside(this->Parts.inSpace / 4.0);
@@ -231,7 +238,7 @@ private:
     {
       light = this->Count(divided->Scene(), this->Used, OfPart(this->TheMonitor, 0.6, 1.0));
     }
-    catch (const DeviceError& error) // thrown on all ranks
+    catch (const DeviceError& error) // thrown on all ranks, e.g. if memory is short
     {
       this->WhyNot = std::string(" Voxels of half the edge were tried: ") + error.what();
       return;
@@ -242,8 +249,8 @@ private:
     this->Light = std::move(light);
   }
 
-  /// Estimates the error with halved voxels: a third of the difference from the solution with whole voxels, and the
-  /// other errors as before.
+  /// Sets the error estimate of a solution with halved voxels: a third of its difference from the solution with the
+  /// original voxels, and angular error and residual as before.
   void EstimateOfDivided(LightField& light)
   {
     double errors = 0.0, all = 0.0;
@@ -265,7 +272,7 @@ private:
   {
     TargetLight found;
     found.settings = this->Used;
-    found.met = light.relativeError <= this->Target; // false if NaN (not known)
+    found.met = light.relativeError <= this->Target; // false if the estimate is NaN (not known)
     found.divided = this->InHalves;
     found.solves = this->Solves;
     found.seconds = this->TheScene.domain.Max(ClockSeconds() - this->Start);
@@ -317,7 +324,7 @@ TargetLight SolveToTargetError(const SceneBlock& scene, const PropagationSetting
   {
     throw InvalidInput("TargetError is " + Text("%g", target) + "; it must be above 0 and below 1.");
   }
-  Check(scene.domain, scene.medium, scene.illumination, settings); // before coarse grids are solved
+  Check(scene.domain, scene.medium, scene.illumination, settings); // the scene is checked before solves on coarse grids
   return TargetSearch(scene, settings, target, monitor, solve).Run();
 }
 }
