@@ -8,7 +8,7 @@ namespace tyndall
 {
 namespace
 {
-/// Expands each group of `width` values to three groups, multiplied by red, green and blue.
+/// Expands each group of `width` values to three groups: its multiples by red, green and blue of `colour`.
 void Spread(std::vector<float>& values, std::size_t width, const Rgb& colour)
 {
   std::vector<float> three(3 * values.size());
@@ -35,7 +35,7 @@ void KeepOne(std::vector<float>& values, std::size_t width)
   values.shrink_to_fit();
 }
 
-/// Applies `change` to each power by colour, and `scale` to sums over channels.
+/// Applies change(power) to each power by channel, and multiplies powers summed over channels by `scale`.
 template <class Change>
 void ChangePowers(LightField& light, const Change& change, double scale)
 {
@@ -53,7 +53,7 @@ void ChangePowers(LightField& light, const Change& change, double scale)
   }
 }
 
-/// Calls act for every array, with the number of consecutive values per channel.
+/// Calls act(values, width) for every array of a LightField; `width` is the number of consecutive values per channel.
 template <class Act>
 void ForArrays(LightField& light, const Act& act)
 {

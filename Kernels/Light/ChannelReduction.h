@@ -6,45 +6,47 @@
 
 namespace tyndall
 {
-/// Colour channels of a scene: how many its light has as data, and how many have to be solved for.
+/// Number of colour channels of a scene: in the resulting light, and in the solve.
 struct SceneChannels
 {
-  int given = 1; ///< channels of the solve's result: 3 if medium or lights have coloured data, else 1
-  /// Whether one channel is enough: the medium's coefficients are grey, and all light sources have the same colour.
+  int given = 1; ///< number of channels of the result: 3 if medium or lights have coloured data, else 1
+  /// Whether one channel suffices: the medium's coefficients are grey, and all light sources have the same colour.
   bool one = true;
   CommonColour colour;
 
   SceneChannels(const Medium& medium, const MediumTraits& traits, const Illumination& illumination);
-  /// Number of channels to solve for: 1 if that is enough and `leaveOut` is true, else 3.
+  /// Number of channels in which the scene is solved: 1 if that suffices and `leaveOut` is true, else 3.
   int Solved(bool leaveOut) const { return leaveOut && this->one ? 1 : 3; }
-  /// Expands light of `solved` channels to `given` channels, and notes in leftOut that one channel stood for all.
+  /// Converts light of `solved` channels to `given` channels; LightField::leftOut states whether one channel was solved
+  /// for all.
   void Undo(LightField& light, int solved) const;
 
 private:
   const char* LeftOut() const;
 };
 
-/// The grey scene that stands for one whose three channels are multiples of each other: its brightest channel.
+/// Grey scene with the values of the brightest channel, for a scene whose three channels are multiples of each other.
 struct OneChannelScene
 {
   OneChannelScene(const Medium& medium, const Illumination& illumination, const SceneChannels& channels);
 
-  Medium medium; ///< refers to the arrays of the given medium
+  Medium medium; ///< medium that refers to the arrays of the given one
   Illumination light;
 };
 
-/// Solves a scene in as many channels as it needs, or in three if `leaveOut` is false. The result has `given` channels
-/// either way.
+/// Solves a scene in one channel if that suffices and `leaveOut` is true, else in three. The result has channels.given
+/// channels.
 /// @param solve  called as solve(medium, illumination, channels); returns the LightField
 template <class Solve>
 LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Medium& medium,
   const Illumination& illumination, const Solve& solve);
 
-/// Expands light of one channel to three channels, its multiples by `colour`.
+/// Expands light of one channel to three channels: its multiples by the components of `colour`.
 void Spread(LightField& light, const Rgb& colour);
 
-/// Keeps the first of three equal channels.
+/// Reduces light of three equal channels to one channel.
 void KeepOneChannel(LightField& light);
+/// Reduces interleaved values of three equal channels to one channel.
 void KeepOneChannel(std::vector<float>& interleaved);
 
 template <class Solve>

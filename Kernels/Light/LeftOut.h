@@ -19,25 +19,26 @@ extern const char* const NoEmission;
 extern const char* const
   OneOrder; ///< there is only one scattering order: no light is scattered, though the medium could scatter
 extern const char* const NetFlux;
-extern const char* const MomentsForPictures; ///< angular moments of scattered light
+extern const char* const MomentsForPictures; ///< angular moments of scattered light were not requested
 extern const char* const Isotropic;
 extern const char* const ConstantIndex;
 extern const char* const EmptyBricks;
 extern const char* const NoLights;
-extern const char* const OwnUncollided;   ///< uncollided light was found by another solver
-extern const char* const NoEmissionPeaks; ///< emission needs no extra rays
+extern const char* const OwnUncollided;   ///< uncollided light is given by another solver
+extern const char* const NoEmissionPeaks; ///< emission needs no separate rays
 extern const char* const BlackFaces;      ///< no face of the box reflects
-extern const char* const DefaultSky;      ///< no light was given: the filter used its own
+extern const char* const DefaultSky;      ///< no light was given: the filter used its default sky
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces emit light
 extern const char* const EvenOutside;     ///< boundary light is isotropic: it needs no separate quadrature
 extern const char* const
   ThinVoxels; ///< all voxels are optically thin: the place of scattering within a voxel does not matter
-extern const char* const NotByOctant;   ///< Source By octant was asked for but cannot be used in this scene
-extern const char* const NotSideBySide; ///< the device ran concurrent queues one after the other
+extern const char* const NotByOctant;   ///< Source By octant was requested but cannot be used in this scene
+extern const char* const NotSideBySide; ///< the device does not run two queues concurrently
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
-std::string DarkDirections(double lit); ///< lit: fraction of the rays that carry incident light
+/// Many directions carry no incident light; lit: fraction of the rays that carry incident light.
+std::string DarkDirections(double lit);
 std::string MirrorImages(int classes, int directions);
 std::string TwoAxes(int polarNodes);          ///< the scene is uniform along two axes
-std::string DirectionsAlongSlab(int perFace); ///< the number of directions used instead
+std::string DirectionsAlongSlab(int perFace); ///< the number of directions was changed to perFace, for a slab
 }
 }

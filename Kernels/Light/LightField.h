@@ -13,13 +13,14 @@ namespace tyndall
 /// up to rounding and the energy error of the scheme.
 struct EnergyBalance
 {
-  Rgb entered = {};  ///< through the box's faces and from lights inside it
-  Rgb emitted = {};  ///< by the medium itself
-  Rgb absorbed = {}; ///< by the medium
-  Rgb escaped = {};  ///< escaped power: out through the box's faces, less what they reflect
-  Rgb leftOver = {}; ///< scattered, or reflected by a face, but not yet propagated when the solver stopped
+  Rgb entered = {};  ///< power that enters through the box's faces and from lights inside it
+  Rgb emitted = {};  ///< power emitted by the medium
+  Rgb absorbed = {}; ///< power absorbed by the medium
+  Rgb escaped = {};  ///< power that leaves through the box's faces, less the power they reflect
+  Rgb leftOver = {}; ///< power scattered, or reflected by a face, but not yet propagated when the solver stopped
 
-  /// |entered + emitted - absorbed - escaped - leftOver| / (entered + emitted), of the worst channel; 0 without light
+  /// Relative error of the balance: |entered + emitted - absorbed - escaped - leftOver| / (entered + emitted), in the
+  /// worst channel; 0 without light.
   double RelativeError(int channels) const;
 };
 
@@ -40,65 +41,68 @@ inline double EnergyBalance::RelativeError(int channels) const
 struct ConvergenceRow
 {
   int iteration = 0;
-  double seconds = 0.0; ///< since the start of the solve
+  double seconds = 0.0; ///< time since the start of the solve, s
   /// Estimate of the relative error if the solver stops here: scattered light not yet propagated over all scattered
   /// light (numerics.md, Eqs. (43), (73)). 1 after the first row unless it is the last, since one order does not show
   /// the rate of convergence.
   double residual = 0.0;
   double change =
     0.0; ///< relative change of the light in this row; a poor measure of the error if light is scattered very often
-  double absorbed = 0.0; ///< W so far, channels summed
+  double absorbed = 0.0; ///< power absorbed so far, W, summed over channels
   double escaped = 0.0;
   double leftOver = 0.0;
 };
 
-/// What a solve reports about itself, of the whole domain.
+/// Report of a solve on its accuracy, convergence and settings, for the domain.
 struct SolveReport
 {
-  /// Estimated error of the fluence: its root mean square over that of the fluence. 0: not asked for; NaN: not known.
+  /// Estimated error of the fluence: its root mean square over that of the fluence. 0: not requested; NaN: not known.
   double relativeError = 0.0;
   /// Half-range flux of the quadrature used for boundary sources (DirectionSet.h); 0: there is none.
   double halfRangeFlux = 0.0;
   std::vector<ConvergenceRow> convergence;
-  /// For each row, how many sweeps the initial guess saved: the row at which the last solve without a guess reached
-  /// this residual, less this row's number; 0 if this solve had no guess. Empty: no warm start was asked for
-  /// (KeptLight.h).
+  /// Number of sweeps that the initial guess saved, for each convergence row: the row at which the last solve without a
+  /// guess reached this residual, less this row's number; 0 if this solve had no guess. Empty if no warm start was
+  /// requested (KeptLight.h).
   std::vector<int> sweepsSaved;
-  bool converged = true; ///< the last residual is at most the tolerance, or all orders that were asked for are done
+  bool converged = true; ///< whether the last residual is at most the tolerance, or all requested orders were computed
   std::vector<std::string> doubts; ///< warnings about the result, one sentence each
-  /// Polar quadrature nodes of a plane-parallel solve (PropagationSettings::polarNodes); 0: rays were traced through
-  /// voxels.
+  /// Number of polar quadrature nodes of a plane-parallel solve (PropagationSettings::polarNodes); 0: rays were traced
+  /// through voxels.
   int polarNodes = 0;
-  /// Directions per face that were used, if the solver chooses (PropagationSettings::adaptDirections).
+  /// Number of directions per face that was used, if the solver chooses it (PropagationSettings::adaptDirections).
   int directionsPerFace = 0;
   int uncollidedDirections = 0;     ///< directions per face for uncollided boundary light; 0: as directionsPerFace
   std::vector<std::string> leftOut; ///< parts of the computation that the scene did not need (LeftOut.h)
   int solves = 1;                   ///< number of solves, including those on coarser grids (TargetError.h)
-  double secondsOfAll = 0.0;        ///< run time of all solves; 0 if there was only one, whose time is in `convergence`
-  std::vector<std::string> settingsUsed; ///< "Name = value" for each setting chosen by the quality (Quality.h)
+  /// Run time of all solves, s; 0 if there was only one, whose time is in `convergence`.
+  double secondsOfAll = 0.0;
+  /// Text "Name = value" for each setting that the quality determines (Quality.h).
+  std::vector<std::string> settingsUsed;
   std::string device;
 };
 
 /// The light in a medium, as every solver returns it. Arrays are over the grid's voxels, x fastest, channels
-/// interleaved; an array that was not asked for is empty.
+/// interleaved; an array that was not requested is empty.
 struct LightField : SolveReport
 {
   int channels = 1;
   std::vector<float> fluence;       ///< W / length^2, `channels` per voxel
-  std::vector<float> fluenceDirect; ///< uncollided part of the fluence
+  std::vector<float> fluenceDirect; ///< fluence of uncollided light, W / length^2
   /// First moments of collisions of lamps' uncollided light (numerics.md, Eq. (37)), 6 * channels per voxel: for
   /// channels 0, 1, 2 one value per face -x, +x, ... +z. Each is the distance, 0 to 1/2 voxel, of the mean collision
-  /// place from the voxel's centre towards the face, times the uncollided fluence, W / length^2. Empty: not asked for.
+  /// position from the voxel's centre towards the face, times the uncollided fluence, W / length^2. Empty: not
+  /// requested.
   std::vector<float> firstMoments;
-  std::vector<float> fluenceError;      ///< estimated standard error of the fluence
+  std::vector<float> fluenceError;      ///< estimated standard error of the fluence, W / length^2
   std::vector<float> netFlux;           ///< W / length^2, 3 * channels per voxel: (x, y, z) of channel 0, 1, 2
   std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections per voxel
   std::vector<std::array<double, 3>>
     storedDirections; ///< directions of scatteredRadiance; a single (0, 0, 0) if it is isotropic
   /// Angular moments of the in-scattered radiance by outgoing direction, W / (length^2 sr): coefficients of the
-  /// spherical harmonics of Numerics/SphericalHarmonics.h times sqrt(4 pi), [voxel][(degree + 1)^2][channel], so that
+  /// spherical harmonics of Numerics/Legendre.h times sqrt(4 pi), [voxel][(degree + 1)^2][channel], so that
   /// the first is the mean. Excludes light first scattered from lampsApart, and the unscattered part given by
-  /// straightOn. 0 where nothing is scattered; empty if scattering is isotropic or the moments were not asked for.
+  /// straightOn. 0 in voxels that do not scatter; empty if scattering is isotropic or the moments were not requested.
   std::vector<float> scatteredMoments;
   /// Fraction of scattered light that is treated as unscattered (delta-M; numerics.md, Eq. (8a)); 1 or 3 per voxel.
   std::vector<float> straightOn;
@@ -107,10 +111,10 @@ struct LightField : SolveReport
   /// boundary voxel is optically thick, or it is not known.
   std::vector<float> surfaceRadiance;
   EnergyBalance balance;
-  /// Net escaped power through -x, +x, -y, +y, -z, +z, W: what leaves less what the faces reflect.
+  /// Escaped power through faces -x, +x, -y, +y, -z, +z, W: power that leaves, less the power the faces reflect.
   std::array<Rgb, 6> facePowerOut = {};
   /// Outgoing partial current in the cells of the box's faces, W / length^2, [cell][channel] (BoxFaces.h), before
-  /// reflection; empty if it was not asked for and no face reflects.
+  /// reflection; empty if it was not requested and no face reflects.
   std::vector<float> facePower;
   std::array<Rgb, 6> faceAlbedo = {}; ///< fraction of facePower that is reflected (Illumination::faceAlbedo)
 };

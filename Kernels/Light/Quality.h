@@ -2,8 +2,8 @@
 
 namespace tyndall
 {
-/// Trade-off between accuracy and run time: one choice for the settings that determine both. Each solver has a function
-/// that maps it to its own settings, depending on the scene.
+/// Trade-off between accuracy and run time, from which the settings that determine both are chosen. Each solver has a
+/// function that maps a quality to its settings, depending on the scene.
 enum class Quality
 {
   Draft = 0,   ///< for previews while settings are chosen
@@ -12,8 +12,8 @@ enum class Quality
   Reference = 3 ///< for references in comparisons
 };
 
-/// Sets `number` to the quality's value if it still has its default value; any other value was chosen by the user and
-/// stays. Quality::Default changes no number, so every value can be chosen.
+/// Sets `number` to the quality's value `ofQuality` if it has its default value; any other value was chosen by the user
+/// and is not changed. Quality::Default changes no number, so a user can choose any value.
 template <class Number>
 void SetUnlessChosen(Number& number, const Number& byDefault, const Number& ofQuality)
 {

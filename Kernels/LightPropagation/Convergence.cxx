@@ -13,15 +13,15 @@ namespace
 {
 constexpr double WarmMargin = 1.5;      ///< safety factor, since the error of an initial guess does not decrease evenly
 constexpr double MarginOfChanges = 1.5; ///< safety factor, since changes do not decrease evenly
-/// fraction of the power above which left-over power is reported, unless the tolerance is larger
+/// Fraction of the power above which left-over power is reported, unless the tolerance is larger.
 constexpr double MuchLeftOver = 0.01;
 constexpr double SlowestFall = 1e-4; ///< relative decrease per order below which wrapping light is endless
-/// largest other power, relative to endless light, with which that is recognised
+/// Largest other power, relative to endless light, with which that is recognised.
 constexpr double NextToAll = 1e-3;
 
 constexpr double ImbalanceAtMost = 1e-2; ///< imbalance, as fraction of the power, above which the solve fails
 constexpr double ImbalanceUnsaid = 1e-4; ///< imbalance, as fraction of the power, up to which there is no warning
-/// smallest power of a channel, relative to the brightest, with which its imbalance is compared
+/// Smallest power of a channel, relative to the brightest, with which its imbalance is compared.
 constexpr double FaintChannel = 1e-3;
 constexpr double OpaqueVoxel = 100.0; ///< approximate optical thickness beyond which floats lose light in a voxel
 

@@ -28,7 +28,7 @@ enum class PropagationAcceleration
 struct PropagationSettings
 {
   int directionsPerFace = 25; ///< directions per cube face, a square number: 1, 4, 9, 16, 25, ...
-  /// whether to use more directions for slabs (GridAxes.h); false: exactly directionsPerFace
+  /// Whether to use more directions for slabs (GridAxes.h); false: exactly directionsPerFace.
   bool adaptDirections = true;
   /// Number of polar cosines per hemisphere for plane-parallel media (PlaneParallelPropagation.h); 0: 16, or 20 if
   /// scattering is anisotropic.
@@ -52,7 +52,7 @@ struct PropagationSettings
   /// Whether to store the angular moments of scattered light (LightField::scatteredMoments), from which pictures are
   /// rendered. No effect at degree 0.
   bool storeMoments = true;
-  /// number of directions in which scattered radiance is stored: 1 (mean), 6 (faces), or more
+  /// Number of directions in which scattered radiance is stored: 1 (mean), 6 (faces), or more.
   int storedDirections = 1;
   PropagationSource source = PropagationSource::Automatic;
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic; ///< ignored if maximumOrders is set
@@ -68,10 +68,10 @@ struct PropagationSettings
   /// Bytes of device memory that the solve may use; 0: nine tenths of the available memory. If the arrays over voxels
   /// do not fit, they stay in host memory and are streamed, with bit-identical results.
   std::size_t memoryBudget = 0;
-  /// whether to omit computations that the scene does not need; false: compute all, to measure the saving
+  /// Whether to omit computations that the scene does not need; false: compute all, to measure the saving.
   bool leaveOut = true;
 
-  /// whether any axis is periodic
+  /// Whether any axis is periodic.
   bool IsPeriodic() const { return this->periodic[0] || this->periodic[1] || this->periodic[2]; }
 };
 

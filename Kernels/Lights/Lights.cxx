@@ -79,9 +79,10 @@ Rgb Lookup(const Environment& environment, const std::array<double, 3>& directio
 
 namespace
 {
-constexpr double LeastSpotAngle = 1e-12; ///< degrees; smaller angles' squared sines underflow in floats
+/// Smallest opening angle, degrees; the squared sine of a smaller one underflows in floats.
+constexpr double LeastSpotAngle = 1e-12;
 
-/// Normalises a vector of any length but 0; scales it first, so that squares neither underflow nor overflow.
+/// Unit vector along a vector; scales it first, so that squares neither underflow nor overflow. 0 if the vector is 0.
 glm::dvec3 Unit(const std::array<double, 3>& vector)
 {
   const double largest = std::max({ std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2]) });
@@ -150,12 +151,13 @@ std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
 
 namespace
 {
-constexpr double FarAway = 1e5; ///< distance over the box's longest edge from which light is taken as parallel
-constexpr double TooFarToAim =
-  1e10; ///< the same, from which a direction in doubles cannot resolve which part of the box is lit
-constexpr double SmallFromFar = 1e-3; ///< largest edge over distance for which a rectangle is treated as a point
+constexpr double FarAway = 1e5; ///< distance, relative to the box's longest edge, from which light is taken as parallel
+/// Distance, relative to the box's longest edge, from which doubles cannot resolve which voxels a cone illuminates.
+constexpr double TooFarToAim = 1e10;
+/// Largest edge, relative to the distance, for which a rectangle is taken as a point.
+constexpr double SmallFromFar = 1e-3;
 
-/// Directional light that replaces a lamp that is FarAway. @param way from the lamp to the box's centre
+/// Directional light that replaces a lamp beyond FarAway. @param way  vector from the lamp to the box's centre
 Light Parallel(const Light& lamp, const glm::dvec3& way, double distance)
 {
   const double angle = AngleFromAxis(lamp, { way.x, way.y, way.z });
@@ -239,7 +241,7 @@ Environment Turned(const Environment& environment, const Rotation& rotation)
   Environment turned = environment;
   for (int row = 0; row < 3; ++row)
   {
-    turned.toPicture[row] = Product(rotation, environment.toPicture[row]); // times the transpose
+    turned.toPicture[row] = Product(rotation, environment.toPicture[row]); // the product with the transposed rotation
   }
   return turned;
 }
@@ -257,7 +259,7 @@ Environment Turned(const Environment& environment, int up, double degrees)
 
 namespace
 {
-/// "1e+39; it must be ..."
+/// End of an error message for a value that is no power or radiance: "1e+39; it must be ...".
 std::string Refusal(double value)
 {
   return Text("%.6g", value) + "; it must be finite and not negative, at most 3.40282e+38, as floats are.";

@@ -12,10 +12,10 @@ struct Grid;
 
 enum class LightType
 {
-  Directional = 0, ///< parallel beam that fills all of space
+  Directional = 0, ///< parallel beam from infinity that illuminates the complete box
   Point = 1,
   Spot = 2,      ///< point source that emits uniformly into a cone
-  Rectangle = 3, ///< emits from one side, Lambertian
+  Rectangle = 3, ///< Lambertian emitter, on one side
 };
 
 /// One light, as a row of the LightRig's polydata.
@@ -23,12 +23,12 @@ struct Light
 {
   LightType type = LightType::Directional;
   std::array<double, 3> position = { 0.0, 0.0, 0.0 };   ///< position of the point, or centre of the rectangle
-  std::array<double, 3> direction = { 0.0, 0.0, -1.0 }; ///< direction of travel; any length but 0
+  std::array<double, 3> direction = { 0.0, 0.0, -1.0 }; ///< direction in which the light travels; any length but 0
   Rgb power = { 1.0, 1.0, 1.0 }; ///< W; for a directional light: W / length^2 through a plane normal to `direction`
   std::array<double, 2> size = { 0.0, 0.0 }; ///< edge lengths of a rectangle
   double angle = 0.0; ///< degrees; spot: full opening angle; rectangle: rotation of its edges about `direction`
-  /// How finely grid solvers subdivide a rectangle, 0.7 to 3. At 1 the uncollided light is within 2% (root mean square)
-  /// in voxels of a third of a mean free path (numerics.md, section 5.3).
+  /// Fineness with which grid solvers subdivide a rectangle, 0.7 to 3. At 1 the uncollided light is within 2% (root
+  /// mean square) in voxels of a third of a mean free path (numerics.md, section 5.3).
   double fineness = 1.0;
 };
 
@@ -43,7 +43,7 @@ struct Environment
 {
   int width = 0; ///< 0: there is no environment
   int height = 0;
-  std::vector<float> radiance; ///< 3 * width * height, RGB interleaved
+  std::vector<float> radiance; ///< pixels, W / (length^2 sr), 3 * width * height, RGB interleaved, row by row
   /// Maps a direction of the scene to the picture's axes.
   Rotation toPicture = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
 
@@ -63,58 +63,60 @@ struct Illumination
   /// Albedo of each face, 0 to 1: the fraction of the outgoing partial current that is reflected diffusely
   /// (Lambertian), where it leaves, in addition to the face's boundary source.
   std::array<Rgb, 6> faceAlbedo = {};
-  UncollidedImage uncollided; ///< uncollided light that another solver has computed, in addition to the other sources
+  UncollidedImage uncollided; ///< uncollided light computed by another solver, in addition to the other sources
 };
 
-/// The light's `direction` normalised; 0 if it is 0.
+/// Unit vector in which a light travels; 0 if Light::direction is 0.
 std::array<double, 3> DirectionOf(const Light& light);
 
-/// Sets the fineness of rectangular lights for a quality.
+/// Sets the fineness of rectangular lights to the value for a quality.
 void SetFineness(std::vector<Light>& lights, Quality quality);
 
 /// Radiant intensity on the axis, W / sr, of a lamp of 1 W; 0 for a directional light.
 double AxialIntensity(const Light& lamp);
 
-/// Angle between a light's direction and `way`, which may have any length.
+/// Angle between a light's direction and `way`, a vector of any length, radians.
 double AngleFromAxis(const Light& light, const std::array<double, 3>& way);
 /// Half the opening angle of a spot, radians.
 double HalfAngle(const Light& spot);
 
-/// The lights as seen from a box: a lamp further away than 1e5 of the box's longest edges becomes a directional light
-/// with the lamp's irradiance at the box's centre (0 if the lamp does not illuminate it). A spot whose cone boundary
-/// crosses the box is kept as it is, and so is a rectangle that is large for its distance.
-/// @throws InvalidInput if such a spot is too far away to be aimed at the box
+/// Lights as seen from a box: a lamp further away than 1e5 of the box's longest edges becomes a directional light with
+/// the lamp's irradiance at the box's centre (0 if the lamp does not illuminate it). A spot whose cone boundary crosses
+/// the box is unchanged, and so is a rectangle that is large relative to its distance.
+/// @throws InvalidInput if such a spot is so far away that its direction cannot be resolved
 std::vector<Light> SeenFrom(const Grid& grid, std::vector<Light> lights);
 
-/// The edges of a rectangular light as vectors: the first is horizontal (across z and the direction; along x where the
-/// direction is vertical), then turned by `angle`; the second is the direction x the first.
+/// Edges of a rectangular light as vectors: the first is horizontal (across z and the direction; along x if the
+/// direction is vertical), then rotated by `angle` about the direction; the second is the direction x the first.
 std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light);
 
-/// Radiance of the environment seen along `direction` of the scene (from the viewer outwards; light travels the
-/// opposite way), interpolated bilinearly between pixels.
+/// Radiance of the environment, W / (length^2 sr), seen along `direction` of the scene (from the viewer outwards; light
+/// travels the opposite way), interpolated bilinearly between pixels.
 Rgb Lookup(const Environment& environment, const std::array<double, 3>& direction);
 
 /// Reorients an environment: its up direction (+z) becomes axis `up` of the scene (0, 1, 2: x, y, z; the other axes
 /// follow in cyclic order), then it is rotated by `degrees` about that axis.
 Environment Turned(const Environment& environment, int up, double degrees);
-/// Rotates or mirrors an environment: what was seen along d is then seen along rotation * d.
+/// Rotates or mirrors an environment: the radiance that was seen along d is then seen along rotation * d.
 /// @throws InvalidInput if `rotation` is not orthogonal
 Environment Turned(const Environment& environment, const Rotation& rotation);
 
-/// Whether any of the lights has a position, next to which light decreases steeply: it is not a parallel beam.
+/// Whether any of the lights has a position, i.e. is no parallel beam; light decreases steeply next to such a light.
 bool AnyHasPosition(const std::vector<Light>& lights);
 
 /// Whether any light source has a power or radiance above 0.
 bool Shines(const Illumination& illumination);
-/// Whether there is a boundary source: faces, sky or environment, as opposed to lamps.
+/// Whether there is a boundary source other than lamps: faces, sky or environment.
 bool ShinesThroughFaces(const Illumination& illumination);
 
 /// Whether any face reflects (has an albedo above 0).
 bool Reflects(const Illumination& illumination);
 
+/// Checks the albedos of faces.
 /// @throws InvalidInput if a reflecting face lies across a periodic axis, which has no faces
 void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>& periodic);
 
+/// Checks all light sources.
 /// @throws InvalidInput if a light has a zero direction, an angle out of range, no size, or a power that is negative or
 ///   beyond float; if an environment has a negative or infinite pixel (names the first); if the radiance of the sky or
 ///   a face is negative or beyond float; if a face's albedo is outside [0, 1]

@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// Red, green, blue.
+/// Values in red, green and blue.
 using Rgb = std::array<double, 3>;
 
 inline double Sum(const Rgb& rgb)

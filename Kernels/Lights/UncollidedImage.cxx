@@ -12,7 +12,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LongestMean = 1.0 + 1e-3; ///< longest mean of unit vectors, with rounding in floats
+/// Largest accepted length of a mean of unit vectors: 1 with rounding in floats.
+constexpr double LongestMean = 1.0 + 1e-3;
 
 void CheckFluence(const UncollidedImage& image, const Grid& grid)
 {

@@ -9,13 +9,14 @@ namespace tyndall
 {
 struct Medium;
 
-/// Uncollided light by voxel, computed by another solver, e.g. from photons along bent rays. A solver uses it in place
-/// of its own lamps' uncollided light and transports what is scattered from it (numerics.md, section 5.7).
+/// Uncollided light by voxel, computed by another solver, e.g. from photons along bent rays. A solver to which it is
+/// given uses it in place of the uncollided light of the lamps, and transports the light scattered from it
+/// (numerics.md, section 5.7).
 struct UncollidedImage
 {
-  Field fluence; ///< W / length^2, on the medium's grid; null: there is no image
-  /// Power-weighted mean direction, 3 components per voxel; its length, 0 to 1, is the anisotropy. Null: isotropic
-  /// light.
+  Field fluence; ///< uncollided fluence, W / length^2, on the medium's grid; null: there is no image
+  /// Power-weighted mean direction of the uncollided light, 3 components per voxel; its length is 0 for isotropic light
+  /// and 1 for a beam. Null: isotropic light.
   Field meanDirection;
   std::array<Rgb, 6> escaped = {}; ///< uncollided power escaped through -x, +x, -y, +y, -z, +z, W
 
@@ -25,6 +26,7 @@ struct UncollidedImage
 /// Power that the medium absorbs and scatters from the image's light in one channel, W.
 double PowerLost(const UncollidedImage& image, const Medium& medium, int channel);
 
+/// Checks given uncollided light.
 /// @throws InvalidInput if a fluence is negative or beyond float, a mean direction is not finite or longer than 1
 ///   (names the first such voxel), or an escaped power is not representable as float
 void Check(const UncollidedImage& image, const Medium& medium);

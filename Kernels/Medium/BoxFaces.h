@@ -7,27 +7,31 @@
 
 namespace tyndall
 {
-/// The face (0 to 5: -x, +x, -y, +y, -z, +z) through which light enters that travels up or down an axis.
+/// Index of the face (0 to 5: -x, +x, -y, +y, -z, +z) through which light enters that travels up (towards +) or down
+/// `axis`.
 inline int EntryFace(int axis, bool up)
 {
   return 2 * axis + (up ? 0 : 1);
 }
 
-/// A boundary cell: the face of a voxel that lies on a face of the box.
+/// A face cell: the face of a boundary voxel that lies on a face of the box.
 struct BoxFaceCell
 {
-  std::size_t
-    number; ///< index among all cells: faces in the order -x, +x, -y, +y, -z, +z, in each the lower axis varies fastest
-  int face, u, v; ///< u runs along the lower of the two axes in the face
+  /// Index among the cells of all faces: faces in the order -x, +x, -y, +y, -z, +z; within a face the lower axis varies
+  /// fastest.
+  std::size_t number;
+  /// Face of the box, and position of the cell in it; u runs along the lower of the two axes in the face.
+  int face, u, v;
   std::size_t voxel;
-  std::size_t inward; ///< the next voxel inwards; the voxel itself if there is none
+  std::size_t inward; ///< index of the next voxel inwards; `voxel` if there is none
 };
 
-/// Numbering of the cells of one face of the box among those of all faces.
+/// Numbering of the cells of one face of the box among the cells of all faces: `first` is the index of its first cell.
 struct BoxFaceLayout
 {
   std::size_t first;
-  std::array<std::size_t, 3> step; ///< stride between neighbouring cells along each axis; 0 along the face's normal
+  /// Index difference between neighbouring cells along each axis; 0 along the face's normal.
+  std::array<std::size_t, 3> step;
 };
 
 inline BoxFaceLayout LayoutOfFace(const Grid& grid, int face)
@@ -44,7 +48,7 @@ inline BoxFaceLayout LayoutOfFace(const Grid& grid, int face)
   return layout;
 }
 
-/// Calls act(cell) for every cell of the box's faces, in order.
+/// Calls act(BoxFaceCell) for every cell of the box's faces, in ascending order of their index.
 template <class Act>
 void ForBoxFaceCells(const Grid& grid, const Act& act)
 {
@@ -76,11 +80,11 @@ inline std::size_t BoxFaceCellCount(const Grid& grid)
       static_cast<std::size_t>(n[2]) * n[0]);
 }
 
-/// Cosines to the outward normal at which the outgoing radiance of a cell is tabulated; cubic interpolation between
-/// them is within 0.5% of Chandrasekhar's H for cosines from 0.03 on.
+/// Cosines to the outward normal at which the outgoing radiance of a face cell is tabulated. Cubic interpolation
+/// between them is within 0.5% of Chandrasekhar's H function for cosines of at least 0.03.
 constexpr std::array<double, 4> SurfaceCosines = { 0.05, 0.25, 0.6, 1.0 };
 
-/// Optical thickness of a boundary voxel along the face's normal above which the light at its surface must be
-/// distinguished from that at its centre.
+/// Optical thickness of a boundary voxel along the face's normal above which the light at its surface is distinguished
+/// from that at its centre.
 constexpr double ThickAtSurface = 0.5;
 }

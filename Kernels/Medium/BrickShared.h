@@ -6,8 +6,8 @@
 SHARED_BEGIN
 enum
 {
-  BrickBits = 3,    ///< bits of a voxel's index along an axis that give its place within the brick
-  BrickEdge = 8,    ///< voxels per edge of a brick; the same as of OpenVDB's leaves
+  BrickBits = 3,    ///< number of low bits of a voxel's index along an axis that are its position within the brick
+  BrickEdge = 8,    ///< voxels per edge of a brick, as in OpenVDB's leaf nodes
   BrickVoxels = 512 ///< voxels per brick
 };
 SHARED_END

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// One axis of both grids, and the ranges of it that an array covers.
+/// One axis of both complete grids, in units of fine voxels.
 struct CoarsenedAxis
 {
   CoarsenedAxis(int fineOfAll, int coarseOfAll)
@@ -17,20 +17,22 @@ struct CoarsenedAxis
     , width(static_cast<double>(fineOfAll) / coarseOfAll)
   {
   }
-  /// Start of a coarse voxel in units of fine voxels; it ends `width` further.
+  /// Lower end of a coarse voxel, in fine voxels; its upper end is `width` higher.
   double BeginOf(std::size_t coarse) const { return static_cast<double>(coarse) * this->width; }
+  /// Whether fine voxel `fine` exists and begins below position `end`.
   bool Reaches(std::size_t fine, double end) const { return fine < this->count && fine < end - 1e-9; }
 
-  std::size_t count; ///< fine voxels of the whole axis
+  std::size_t count; ///< number of fine voxels along the complete axis
   double width;      ///< width of a coarse voxel in fine voxels
 };
 
+/// Range of voxels along an axis that an array covers.
 struct Part
 {
   std::size_t first, size;
 };
 
-/// Means along one axis of an array of [outer][from][inner] values, to [outer][to][inner].
+/// Means over coarse voxels along one axis: from an array [outer][from][inner] to one [outer][to][inner].
 std::vector<float> AverageAlong(const CoarsenedAxis& axis, const float* values, std::size_t outer, const Part& from,
   const Part& to, std::size_t inner)
 {
@@ -215,8 +217,8 @@ std::vector<float> Coarsening::Average(const Field& values, const Field& weights
   return means;
 }
 
-/// Interpolation weights of a fine voxel along an axis: (1 - part) of the coarse voxel `first`, as indexed in the
-/// array, and `part` of `second`.
+/// Interpolation weights of a fine voxel along an axis: 1 - part for coarse voxel `first` and part for coarse voxel
+/// `second`, both as indices in the restricted array.
 struct Coarsening::Between
 {
   std::size_t first, second;
@@ -238,7 +240,7 @@ std::vector<Coarsening::Between> Coarsening::BetweenAlong(int axis) const
   return places;
 }
 
-/// Interpolates a row of coarse values along x between four coarse rows.
+/// Interpolates a row of coarse values along x, at position (y, z), between the four nearest coarse rows.
 void Coarsening::MixRows(
   const std::vector<float>& values, const Between& y, const Between& z, std::vector<float>& row) const
 {

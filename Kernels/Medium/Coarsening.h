@@ -9,25 +9,26 @@
 
 namespace tyndall
 {
-/// Transfer between a grid and a coarser grid over the same box: averaging and refinement. May cover a part of both
-/// grids.
+/// Transfer of values between a grid and a coarser grid over the same box: averaging and refinement. May be restricted
+/// to boxes of both grids (PartOf).
 class Coarsening
 {
 public:
-  /// Half as many voxels per axis, rounded down, at least one.
+  /// Transfer to a coarse grid with half as many voxels per axis, rounded down, at least one.
   explicit Coarsening(const Grid& fine);
-  /// @param coarse  grid over the same box, nowhere finer
+  /// @param coarse  grid over the same box as `fine`, along no axis finer
   Coarsening(const Grid& fine, const Grid& coarse);
 
-  /// The same transfer restricted to a box of each grid. Average needs all of FineBox(coarse), and returns bit for bit
-  /// what it returns for the whole grids; Parent needs all of ParentBox(fine).
+  /// This transfer restricted to a box of each grid. Average() requires that `fine` contains FineBox(coarse), and
+  /// returns bit for bit the values that it returns for the complete grids; Parent() requires that `coarse` contains
+  /// ParentBox(fine).
   Coarsening PartOf(const VoxelBox& fine, const VoxelBox& coarse) const;
-  /// Fine voxels that overlap a box of coarse voxels.
+  /// Box of the fine voxels that overlap a box of coarse voxels.
   VoxelBox FineBox(const VoxelBox& coarse) const;
-  /// Coarse voxels whose centres lie in a box of fine voxels. Boxes that partition the fine grid yield boxes that
-  /// partition the coarse grid.
+  /// Box of the coarse voxels whose centres lie in a box of fine voxels. Boxes that partition the fine grid yield boxes
+  /// that partition the coarse grid.
   VoxelBox CoarseBox(const VoxelBox& fine) const;
-  /// Coarse voxels that contain the centres of a box of fine voxels.
+  /// Box of the coarse voxels that contain the centres of a box of fine voxels.
   VoxelBox ParentBox(const VoxelBox& fine) const;
 
   const Grid& Fine() const { return this->FineGrid; }
@@ -36,22 +37,23 @@ public:
   double Ratio() const;
 
   /// Means over coarse voxels: each fine voxel is weighted by its overlap, so that the integral is conserved. NaN if
-  /// one of the fine values is.
-  /// @param values  `components` per fine voxel, x fastest
+  /// any of the fine values is NaN.
+  /// @param values  values of the fine voxels, x fastest, `components` each
   std::vector<float> Average(const float* values, int components) const;
 
   /// Weighted means over coarse voxels, 0 where all weights are 0. Used for the mean cosine, weighted by sigma_s
   /// (numerics.md, Eq. (3e)). Means are clamped to the range of the values, so that rounding cannot exceed it.
-  /// @param weights  not negative
+  /// @param weights  weights of the fine voxels, not negative
   /// @return 3 components per coarse voxel if values or weights are coloured, else 1
   std::vector<float> Average(const Field& values, const Field& weights) const;
 
   /// Interpolates coarse values at the centres of the fine voxels: linearly between coarse centres, constant beyond
-  /// them. A part needs all of ParentBox(fine) and one layer of coarse voxels around it, clipped to the grid.
-  /// @param values  `components` per coarse voxel, x fastest
+  /// them. A restricted transfer requires that its coarse box contains ParentBox(fine) and one layer of coarse voxels
+  /// around it, clipped to the grid.
+  /// @param values  values of the coarse voxels, x fastest, `components` each
   std::vector<float> Refine(const std::vector<float>& values, int components) const;
 
-  /// The coarse voxel that contains the centre of a fine voxel.
+  /// Index of the coarse voxel that contains the centre of a fine voxel.
   std::size_t Parent(std::size_t fineVoxel) const;
 
 private:
@@ -60,7 +62,7 @@ private:
   void MixRows(const std::vector<float>& values, const Between& y, const Between& z, std::vector<float>& row) const;
 
   Grid FineGrid, CoarseGrid;
-  VoxelBox FinePart, CoarsePart;             ///< in voxels of the whole grids
-  std::array<int, 3> FineOfAll, CoarseOfAll; ///< sizes of the whole grids, voxels
+  VoxelBox FinePart, CoarsePart;             ///< boxes of both grids to which the transfer is restricted
+  std::array<int, 3> FineOfAll, CoarseOfAll; ///< sizes of the complete grids, voxels
 };
 }

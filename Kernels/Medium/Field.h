@@ -9,7 +9,8 @@ struct Field
 {
   const float* values = nullptr; ///< null: the quantity is zero everywhere
   int components = 1;
-  int standsForAll = -1; ///< component (of three) that is used for every channel; -1: each channel uses its own
+  /// Index of the component (of three) that is used for every channel; -1: channel c uses component c.
+  int standsForAll = -1;
 
   bool HasColour() const { return this->components == 3 && this->standsForAll < 0; }
   float At(std::size_t voxel, int channel) const

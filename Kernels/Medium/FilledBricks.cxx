@@ -19,8 +19,9 @@ std::int32_t BitsOf(float value)
   return bits;
 }
 
-/// One field in a layer of bricks along z, which is contiguous in memory. Floats are compared as integers: non-negative
-/// floats have the order of their bits, all non-finite values compare larger, and integer operations need no branches.
+/// Values of one field in a layer of bricks across z, which is contiguous in memory. Floats are compared as integers:
+/// non-negative floats have the order of their bits, all non-finite values compare larger, and integer operations need
+/// no branches.
 class LayerOfBricks
 {
 public:
@@ -33,7 +34,7 @@ public:
   {
   }
 
-  /// Marks bricks with any non-zero value, and updates the summary of all values.
+  /// Marks in `bricks` the bricks with any non-zero value, and updates the summary `all` of all values.
   void Mark(unsigned char* bricks, FilledBricks::Values& all)
   {
     this->Collect();
@@ -60,7 +61,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t Lanes = 8; ///< lanes per brick, as many as a vector instruction has
+  static constexpr std::size_t Lanes = 8; ///< number of partial results per brick, one per lane of a vector instruction
 
   /// Calls act(row, y) for the rows of voxels from y0 to y1, in the order of memory.
   template <class Act>
@@ -75,7 +76,8 @@ private:
     }
   }
 
-  /// ORs the bits of each brick's values. Reads memory sequentially; going brick by brick would take twice as long.
+  /// Combines the bits of each brick's values by OR, in Bits. Reads memory sequentially; reading brick by brick would
+  /// take twice as long.
   void Collect()
   {
     const std::size_t each = Count(this->Of.components), ofBrick = BrickEdge * each;
@@ -118,7 +120,7 @@ private:
   const Grid& TheGrid;
   const std::array<int, 3> BrickCount;
   const int Layer;
-  std::vector<std::int32_t> Bits; ///< per brick, in lanes
+  std::vector<std::int32_t> Bits; ///< [brick][lane]: bits of its values, combined by OR
 };
 static_assert(BrickEdge == 8, "a row of a brick is whole lanes");
 
@@ -128,7 +130,7 @@ void Widen(FilledBricks::Values& all, const FilledBricks::Values& part)
   all.sound = all.sound && part.sound;
 }
 
-/// Marks the filled bricks of a layer along z for one field.
+/// Marks the bricks of a layer across z in which one field has a non-zero value.
 void MarkLayer(const Field& field, const Grid& grid, int layer, FilledBricks& bricks, FilledBricks::Values& values)
 {
   if (field.values)

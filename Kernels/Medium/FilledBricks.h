@@ -9,23 +9,24 @@
 
 namespace tyndall
 {
-/// Bricks of BrickEdge^3 voxels, counted from the grid's lower corner (the last along an axis may reach beyond the
-/// grid), and whether each is filled, i.e. has a voxel with non-zero sigma_t or emission.
+/// Partition of a medium into bricks of BrickEdge^3 voxels, from the grid's lower corner (the last brick along an axis
+/// may reach beyond the grid), and for each brick whether it is filled, i.e. has a voxel with non-zero sigma_t or
+/// emission.
 ///
-/// Found in one pass over the medium's arrays on all cores, together with the checks that every solver makes, so that a
-/// mostly empty medium costs little more than one read. A reader's active-voxel mask is not used: after a filter that
-/// changes the arrays it would be wrong and lose light, and a medium that does not come from a file has none.
+/// Determined in one pass over the medium's arrays on all cores, together with the checks that every solver makes, so
+/// that a mostly empty medium costs little more than one read. A reader's active-voxel mask is not used: after a filter
+/// that changes the arrays it would be wrong and lose light, and a medium that was not read from a file has none.
 struct FilledBricks
 {
   /// Summary of all values of sigma_a, sigma_s or emission, in all components.
   struct Values
   {
-    float largest = 0.0f; ///< the largest value; valid only if `sound`
-    bool sound = true;    ///< all values are finite and not negative; also false if one is -0
+    float largest = 0.0f; ///< largest value; valid only if `sound` is true
+    bool sound = true;    ///< whether all values are finite and not negative; also false if any is -0
   };
 
   std::array<int, 3> count = { 0, 0, 0 }; ///< bricks along each axis
-  std::vector<unsigned char> filled;      ///< 1 or 0, x fastest
+  std::vector<unsigned char> filled;      ///< by brick, x fastest: 1 if it is filled, else 0
   std::size_t filledCount = 0;
   Values absorption, scattering, emission;
 
@@ -34,7 +35,7 @@ struct FilledBricks
     return this->filled.empty() ? 0.0
                                 : static_cast<double>(this->filledCount) / static_cast<double>(this->filled.size());
   }
-  /// The `filled` flags of the bricks that a row of voxels along x passes through.
+  /// Elements of `filled` of the bricks along the row of voxels at (y, z) along x.
   const unsigned char* RowOf(int y, int z) const
   {
     const auto row = static_cast<std::size_t>(z / BrickEdge * this->count[1] + y / BrickEdge);
@@ -44,7 +45,7 @@ struct FilledBricks
 
 FilledBricks FindFilledBricks(const Medium& medium);
 
-/// Check(medium) and FindFilledBricks in one pass.
+/// Checks a medium as Check(medium) does, and finds its filled bricks, in one pass.
 /// @throws InvalidInput as Check(medium)
 FilledBricks CheckedBricks(const Medium& medium);
 }

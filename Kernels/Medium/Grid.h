@@ -11,25 +11,26 @@ struct Grid
 {
   std::array<int, 3> size = { 1, 1, 1 };             ///< voxels per axis, at least 1
   std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< edges of a voxel, > 0
-  std::array<double, 3> origin = { 0.0, 0.0, 0.0 };  ///< the box's lower corner
+  std::array<double, 3> origin = { 0.0, 0.0, 0.0 };  ///< lower corner of the box
 
   std::size_t VoxelCount() const
   {
     return static_cast<std::size_t>(this->size[0]) * static_cast<std::size_t>(this->size[1]) *
       static_cast<std::size_t>(this->size[2]);
   }
-  /// Array strides: from a voxel to the next along each axis.
+  /// Array strides: difference of array indices between neighbouring voxels along each axis.
   std::array<std::size_t, 3> Strides() const
   {
     const std::size_t x = static_cast<std::size_t>(this->size[0]);
     return { 1, x, x * static_cast<std::size_t>(this->size[1]) };
   }
-  /// Array index of voxel (i, j, k), and the inverse.
+  /// Array index of voxel (i, j, k).
   std::size_t IndexOf(const std::array<int, 3>& voxel) const
   {
     const std::array<std::size_t, 3> stride = this->Strides();
     return voxel[0] + voxel[1] * stride[1] + voxel[2] * stride[2];
   }
+  /// Voxel (i, j, k) at an array index.
   std::array<int, 3> VoxelAt(std::size_t index) const
   {
     const std::array<std::size_t, 3> stride = this->Strides();

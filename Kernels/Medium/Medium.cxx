@@ -45,11 +45,11 @@ void CheckComponents(const Field& field, const char* name)
 
 namespace
 {
-constexpr double LongestSpacing =
-  1e30; ///< the shortest is its inverse, so that products of several areas stay within doubles
-constexpr double MostUnequal = 1e9; ///< longest spacing over shortest
+/// Largest spacing; the smallest one is its inverse, so that products of several areas stay within doubles.
+constexpr double LongestSpacing = 1e30;
+constexpr double MostUnequal = 1e9; ///< largest ratio of the longest to the shortest spacing
 
-/// Finds the first invalid value and reports it, if there is any.
+/// Checks the values of a field. @throws InvalidInput for the first invalid value
 void CheckField(const Field& field, const FilledBricks::Values& found, const char* name, const Grid& grid)
 {
   const std::size_t count = found.sound ? 0 : grid.VoxelCount() * static_cast<std::size_t>(field.components);
@@ -69,7 +69,7 @@ void CheckMeanCosines(const Medium& medium)
   const Field& g = medium.phase.G();
   if (!g.values)
   {
-    return; // the phase function has checked its own parameters
+    return; // without g by voxel, the phase function has checked its parameters
   }
   CheckComponents(g, "g");
   const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(g.components);
@@ -88,19 +88,20 @@ void CheckMeanCosines(const Medium& medium)
   }
 }
 
-/// Checks sigma_a + sigma_s, the extinction; floats end at 3.4e38.
+/// Checks that sigma_a + sigma_s is at most LargestExtinction.
 void CheckExtinction(const Medium& medium, const FilledBricks& bricks)
 {
   if (!medium.sigma_a.values && !medium.sigma_s.values)
   {
-    return; // also for a box without values, which may have more voxels than can be counted
+    return; // a grid without values may have more voxels than can be indexed
   }
   const int channels = medium.phase.HasColour() ? 3 : std::max(medium.sigma_a.components, medium.sigma_s.components);
   const auto extinctionOf = [&](std::size_t i, int c) {
     const double g = std::abs(medium.phase.MeanCosine(i, c));
     return medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
   };
-  constexpr float little = static_cast<float>(LargestExtinction / 4.0); // 1 + g is 2 at most
+  // below it the sum is small enough, since 1 + g is at most 2
+  constexpr float little = static_cast<float>(LargestExtinction / 4.0);
   if (bricks.absorption.largest <= little && bricks.scattering.largest <= little)
   {
     return;
@@ -176,7 +177,7 @@ void Check(const Medium& medium)
   CheckShape(medium);
   const bool values = medium.sigma_a.values || medium.sigma_s.values || medium.emission.values;
   CheckValues(medium,
-    values ? FindFilledBricks(medium) : FilledBricks()); // no bricks: there may be more voxels than can be counted
+    values ? FindFilledBricks(medium) : FilledBricks()); // without values there may be more voxels than can be indexed
 }
 
 FilledBricks CheckedBricks(const Medium& medium)

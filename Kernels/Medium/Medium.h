@@ -8,9 +8,11 @@
 
 namespace tyndall
 {
-constexpr double LargestExtinction = 1e37; ///< 1/length; the inverse of a larger value is not a normal float
+/// Largest sigma_t, 1/length; the inverse of a larger value is not a normal float.
+constexpr double LargestExtinction = 1e37;
 
-/// A participating medium: what pbrt calls sigma_a, sigma_s, Le and the phase function, constant in each voxel.
+/// A participating medium, constant in each voxel: sigma_a, sigma_s, emission (Le of pbrt) and phase function on a
+/// grid.
 struct Medium
 {
   Grid grid;
@@ -19,18 +21,19 @@ struct Medium
   Field emission; ///< emitted radiance per unit length, W / (length^3 sr)
   PhaseOfMedium phase;
 
-  /// Scattering and extinction coefficient of the isotropic medium with the same diffusion and absorption, by the
-  /// similarity relation (numerics.md, Eq. (8)), 1/length.
+  /// Scattering coefficient of the isotropic medium with the same diffusion and absorption, by the similarity relation
+  /// (numerics.md, Eq. (8)), 1/length.
   float TransportSigmaS(std::size_t voxel, int channel) const
   {
     return static_cast<float>(this->sigma_s.At(voxel, channel) * (1.0 - this->phase.MeanCosine(voxel, channel)));
   }
+  /// Extinction coefficient of that isotropic medium, 1/length.
   float TransportSigmaT(std::size_t voxel, int channel) const
   {
     return this->sigma_a.At(voxel, channel) + this->TransportSigmaS(voxel, channel);
   }
 
-  /// 3 if any coefficient is coloured, else 1.
+  /// Number of channels of the medium: 3 if any coefficient or the phase function is coloured, else 1.
   int Channels() const
   {
     const bool colour =
@@ -39,19 +42,23 @@ struct Medium
   }
 };
 
-/// Whether any voxel is optically thicker than `meanFreePaths` along the grid's longest spacing, by TransportSigmaT.
+/// Whether the transport optical thickness (TransportSigmaT) of any voxel along the grid's longest spacing is above
+/// `meanFreePaths`.
 bool AnyVoxelIsThickerThan(double meanFreePaths, const Medium& medium);
 
-/// "(i, j, k)" of the voxel with array index `voxel`.
+/// Text "(i, j, k)" for the voxel at array index `voxel`.
 std::string VoxelName(const Grid& grid, std::size_t voxel);
 
+/// Checks the number of components of a field called `name`.
 /// @throws InvalidInput if the field has neither 1 nor 3 components
 void CheckComponents(const Field& field, const char* name);
 
+/// Checks size and spacing of a grid.
 /// @throws InvalidInput if the grid is empty, or a spacing is outside [1e-30, 1e30] or more than 1e9 times another
 void Check(const Grid& grid);
 
-/// @throws InvalidInput if the grid is invalid as above, a coefficient is negative or not finite, sigma_a + sigma_s
-///   exceeds LargestExtinction, or a mean cosine g is outside (-1, 1) (names the first such voxel)
+/// Checks a medium.
+/// @throws InvalidInput if the grid is invalid (Check(grid)), a coefficient is negative or not finite, sigma_a +
+///   sigma_s exceeds LargestExtinction, or a mean cosine g is outside (-1, 1) (names the first such voxel)
 void Check(const Medium& medium);
 }

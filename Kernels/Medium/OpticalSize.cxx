@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Largest sum of the density along a row of voxels parallel to an axis.
+/// Largest sum of the density along any row of voxels parallel to an axis.
 double LargestRow(const float* density, const Grid& grid, int axis)
 {
   const PlaneAxes plane = AcrossAxis(axis);

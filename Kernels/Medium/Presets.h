@@ -10,10 +10,11 @@ namespace tyndall
 struct MediumPreset
 {
   const char* name;
-  const char* densityOne; ///< what density 1 means
+  const char* densityOne; ///< meaning of density 1, for users
   Rgb sigma_s;            ///< 1/mm
   Rgb sigma_a;            ///< 1/mm
   Rgb g; ///< mean cosine of the phase function; 0 if sigma_s is the reduced coefficient, sigma_s (1 - g)
+  /// Publication from which the coefficients are taken.
   const char* source;
 };
 

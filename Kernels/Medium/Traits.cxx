@@ -7,7 +7,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SameColour = 3e-7; ///< relative: what rounding to float leaves of multiples of one colour
+constexpr double SameColour = 3e-7; ///< relative tolerance for multiples of one colour: rounding to float
 
 bool Grey(const Rgb& rgb)
 {
@@ -84,9 +84,9 @@ CommonColour ColourOf(const Illumination& illumination)
 
 namespace
 {
-constexpr float SameExtinction = 2e-7f; ///< relative: what rounding to float leaves of equal sums
+constexpr float SameExtinction = 2e-7f; ///< relative tolerance for equal sums: rounding to float
 
-/// Voxels of one brick in a row along x.
+/// The voxels of a row along x that lie in one brick.
 struct Row
 {
   const Medium& medium;
@@ -94,7 +94,7 @@ struct Row
   std::size_t first;
   int size;
 
-  /// Whether a field has a non-zero value in any component; fields are not negative.
+  /// Whether a field has a non-zero value in any of these voxels and components; fields are not negative.
   bool Has(const Field& field) const
   {
     const float* begin = field.values + this->first * field.components;
@@ -133,7 +133,7 @@ struct Row
   }
 };
 
-/// Calls act(row) for the rows of filled bricks, in the order of voxels.
+/// Calls act(Row) for each row of voxels in filled bricks, in the order of voxels.
 template <class Act>
 void ForFilledRows(const Medium& medium, const FilledBricks& bricks, bool similarity, const Act& act)
 {
@@ -155,7 +155,7 @@ void ForFilledRows(const Medium& medium, const FilledBricks& bricks, bool simila
   }
 }
 
-/// Bounding box of the voxels that are not empty.
+/// Bounding box of the voxels with extinction or emission.
 class FilledBox
 {
 public:
@@ -166,7 +166,7 @@ public:
   {
   }
 
-  /// Only the outermost filled bricks need a voxel-by-voxel search.
+  /// Determines the box from the filled bricks; only the outermost ones are searched voxel by voxel.
   void Find(const FilledBricks& bricks)
   {
     const FilledBox ofBricks = this->BoxOf(bricks);

@@ -9,13 +9,13 @@
 
 namespace tyndall
 {
-/// The common colour of several lights, if there is one. Black is a multiple of every colour.
+/// The colour that several lights have in common, if there is one. Black is a multiple of every colour.
 class CommonColour
 {
 public:
   void Add(const Rgb& rgb);
-  void AddNone() { this->One = false; }          ///< for something that changes the colour of light
-  void Add(const float* rgb, std::size_t count); ///< `count` colours, interleaved
+  void AddNone() { this->One = false; }          ///< makes IsOne() false, for anything that changes the colour of light
+  void Add(const float* rgb, std::size_t count); ///< adds `count` colours, RGB interleaved
 
   bool IsOne() const
   {
@@ -32,24 +32,26 @@ private:
   Rgb Sum = {};
 };
 
-/// The common colour of all boundary sources and of the lights inside the box; none if a face's albedo is coloured.
+/// Common colour of all boundary sources and of the lights inside the box; there is none if a face's albedo is
+/// coloured.
 CommonColour ColourOf(const Illumination& illumination);
 
-/// Properties of a medium that let solvers skip work. Determined in one scan of its arrays (some milliseconds for 128^3
-/// voxels), or, if the filled bricks are known, of these bricks only.
+/// Properties of a medium that let solvers omit computations. Determined in one scan of its arrays (some milliseconds
+/// for 128^3 voxels), or of its filled bricks only, if these are known.
 struct MediumTraits
 {
-  bool absorbs = false;       ///< sigma_a is not zero everywhere
-  bool scatters = false;      ///< sigma_s is not zero everywhere
-  bool emits = false;         ///< emission is not zero everywhere
-  bool isotropic = true;      ///< g is 0 in all voxels that scatter
-  bool grey = true;           ///< sigma_a, sigma_s (to 2e-7) and the phase function are the same in all channels
-  bool greyExtinction = true; ///< sigma_a + sigma_s is the same in all channels; true if `grey` is
+  bool absorbs = false;       ///< whether sigma_a is above zero in any voxel
+  bool scatters = false;      ///< whether sigma_s is above zero in any voxel
+  bool emits = false;         ///< whether emission is above zero in any voxel
+  bool isotropic = true;      ///< whether g is 0 in all voxels that scatter
+  bool grey = true;           ///< whether sigma_a, sigma_s (to 2e-7) and the phase function are equal in all channels
+  bool greyExtinction = true; ///< whether sigma_a + sigma_s is equal in all channels; true if `grey` is
   CommonColour emission;
   VoxelBox filled; ///< smallest box that contains all voxels with extinction or emission
 };
 
-/// @param similarity  use sigma_s (1 - g) instead of sigma_s in sigma_t
+/// Determines the traits of a medium.
+/// @param similarity  whether greyExtinction refers to sigma_a + sigma_s (1 - g)
 MediumTraits TraitsOf(const Medium& medium, bool similarity = false);
 MediumTraits TraitsOf(const Medium& medium, const FilledBricks& bricks, bool similarity = false);
 }

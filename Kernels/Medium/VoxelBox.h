@@ -7,7 +7,7 @@
 
 namespace tyndall
 {
-/// A box of voxels within a grid.
+/// A box of voxels within a grid: its lowest voxel and its size in voxels.
 struct VoxelBox
 {
   std::array<int, 3> first = { 0, 0, 0 };

@@ -12,7 +12,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewestForMoments = 16; ///< nine moments are prescribed, and no weight may become negative
+/// Smallest number of directions for which nine prescribed moments give no negative weight.
+constexpr int FewestForMoments = 16;
 constexpr int MostDirections = 65536;
 
 void CheckCount(int count, int fewest)

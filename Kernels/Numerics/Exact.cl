@@ -1,4 +1,4 @@
-// The type `exact` of Device/ExactValues.h: double, or float if the device has no double. The host defines
+// Type `exact` of Device/ExactValues.h: double, or float if the device has no double precision. The host defines
 //   DOUBLES  1 if the device has double precision
 
 #pragma once

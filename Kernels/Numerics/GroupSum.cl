@@ -1,10 +1,10 @@
-// Sums over work-groups. The host defines
+// Sums over the work-items of a work-group. The host defines
 //   GROUP  work-items per group, a power of 2; 1: each work-item sums alone, as on a CPU
 
 #pragma once
 
-// Writes the sum of the values of a group's work-items to `place`. Must stand at the end of a kernel's outermost scope,
-// which all work-items reach.
+// Writes the sum of `value` over a group's work-items to `place`. Must be the last statement of a kernel's outermost
+// scope, and be reached by all work-items.
 #if GROUP == 1
 #define PUT_SUM_OF_GROUP(type, value, place) place = value;
 #else
@@ -25,7 +25,7 @@
   }
 #endif
 
-// For a chunk of values summed by one group with adjacent work-items reading adjacent vectors: the first vector of this
-// work-item, and the stride to its next.
+// Index of a work-item's first vector in a chunk, and stride to its next vector, if one group sums the chunk and
+// adjacent work-items read adjacent vectors of `width` values.
 #define FIRST_IN_CHUNK(width) (get_local_id(0) * (GROUP == 1 ? 0 : (width)))
 #define STEP_IN_CHUNK(width) (GROUP * (width))

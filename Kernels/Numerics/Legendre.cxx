@@ -53,7 +53,7 @@ GaussLegendre::GaussLegendre(int count)
   {
     double x = -std::cos(Pi * (i + 0.75) / (count + 0.5));
     double slope = 1.0;
-    for (int step = 0; step < 20; ++step) // Newton's method doubles the digits each time
+    for (int step = 0; step < 20; ++step) // each step of Newton's method doubles the number of correct digits
     {
       const std::vector<double> p = LegendrePolynomials(count, x);
       slope = count * (x * p[count] - p[count - 1]) / (x * x - 1.0);
@@ -70,7 +70,7 @@ std::vector<double> SphericalHarmonics(int degree, const std::array<double, 3>& 
   const double z = omega[2];
   // (x + i y)^m gives sin^m times cosine and sine of m times the azimuth, so that the poles need no special case.
   double real = 1.0, imaginary = 0.0;
-  double sectoral = std::sqrt(1.0 / (4.0 * Pi)); // of order m in degree m, but sin^m
+  double sectoral = std::sqrt(1.0 / (4.0 * Pi)); // normalisation of the harmonic of degree m and order m, without sin^m
   for (int m = 0; m <= degree; ++m)
   {
     double last = 0.0, now = sectoral;

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-// Numbers as text, and back, in the same digits under any locale: a host program may have set one with a decimal comma.
-// Sources write and read no floating-point number in another way (the test NumbersKnowNoLocale).
+// Conversion of numbers to text and back, independent of the locale: a host program may have set one with a decimal
+// comma. No source converts floating-point numbers in another way (the test NumbersKnowNoLocale).
 
 namespace tyndall
 {
@@ -21,7 +21,7 @@ inline std::string Text(const char* format, double value)
   {
     std::from_chars(format + 2, format + std::strlen(format) - 1, precision);
   }
-  char text[512]; // the largest double has 309 digits before its point
+  char text[512]; // large enough: the largest double has 309 digits before the decimal point
   const auto written = std::to_chars(text, text + sizeof(text), value,
     kind == 'f'     ? std::chars_format::fixed
       : kind == 'e' ? std::chars_format::scientific
@@ -30,7 +30,7 @@ inline std::string Text(const char* format, double value)
   return { text, written.ptr };
 }
 
-/// A float literal of C++ and OpenCL C, with all of its digits.
+/// A float as literal of C++ and OpenCL C, with all digits.
 inline std::string FloatLiteral(float value)
 {
   return Text("%.8e", value) + "f";

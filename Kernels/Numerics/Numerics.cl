@@ -1,5 +1,5 @@
-// Numerics shared by all kernels that trace light through a medium. Define REAL_WIDTH as 1, 4, 8 or 16 first: `real` is
-// then a float or a float vector; all functions work on either.
+// Numerics shared by all kernels that trace light through a medium. REAL_WIDTH must be defined as 1, 4, 8 or 16 before:
+// `real` is then a float or a vector of this many floats, and all functions work on either.
 
 #pragma once
 
@@ -22,13 +22,14 @@ typedef TYNDALL_JOIN(int, REAL_WIDTH) integer;
 #define as_real TYNDALL_JOIN(as_float, REAL_WIDTH)
 #define to_integer TYNDALL_JOIN(convert_int, REAL_WIDTH)
 #define to_real TYNDALL_JOIN(convert_float, REAL_WIDTH)
-// Used instead of vload and vstore, since PoCL splits a vstore into pieces of four floats.
+// Loads and stores of unaligned vectors, used instead of vload and vstore, since PoCL splits a vstore into pieces of
+// four floats.
 typedef real __attribute__((aligned(4))) real_anywhere;
 #define load_real(index, pointer) (*(const __global real_anywhere*)((pointer) + (index)))
 #define store_real(value, index, pointer) (*(__global real_anywhere*)((pointer) + (index)) = (value))
 #endif
 
-// a b + c in one instruction if the device has one; PoCL's mad takes two.
+// multiply_add(a, b, c) = a b + c, in one instruction if the device has one; PoCL's mad takes two.
 #if defined(FP_FAST_FMAF) || defined(__FMA__)
 #define multiply_add fma
 #else
@@ -58,10 +59,10 @@ inline float sum_of(real values)
 #endif
 }
 
-// Fraction extinguished over an optical length, 1 - exp(-tau), to a few units in the last place for every tau >= 0, and
-// the fraction transmitted, exp(-tau).
+// Fraction of light removed over an optical length, 1 - exp(-tau), to a few units in the last place for every tau >= 0.
+// `left` receives the transmittance, exp(-tau). Computed as
 //   exp(-tau) = 2^n (1 + q), q = expm1(r), r = -tau - n ln 2 in [-ln 2 / 2, ln 2 / 2]
-// so that there is no cancellation for small tau. PoCL's exp is scalar and costs five times this.
+// so that there is no cancellation for small tau. PoCL's exp is scalar and takes five times as long.
 inline real extinguished(real tau, real* left)
 {
   const real t = fmin(tau, (real)87.0f); // 2^-126 is the smallest normal number; beyond it the transmittance is 0

@@ -16,14 +16,14 @@ static uint4 philox(uint4 counter, uint2 key)
   return counter;
 }
 
-// Sequence of random numbers of one photon.
+// State of the sequence of random numbers of one photon.
 typedef struct
 {
   uint2 key;      // the seed
   ulong stream;   // index of the photon
   uint block;     // index of the next block
-  int left;       // unused numbers of the current block
-  uint values[4]; // the current block
+  int left;       // number of unused values of the current block
+  uint values[4]; // values of the current block
 } random_numbers;
 
 static random_numbers random_of(ulong seed, ulong stream)
@@ -45,7 +45,7 @@ static random_numbers random_after(ulong seed, ulong stream, uint blocks, int le
   return random;
 }
 
-// Next number in (0, 1): (k + 1/2) 2^-24.
+// Draws the next random number of a sequence, in (0, 1): (k + 1/2) 2^-24.
 static float draw(random_numbers* random)
 {
   if (random->left == 0)

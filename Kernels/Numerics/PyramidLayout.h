@@ -14,19 +14,22 @@ struct PyramidLayout
 {
   explicit PyramidLayout(const std::array<int, 3>& size); ///< size of the grid, voxels
 
-  int LevelCount() const { return static_cast<int>(this->sizes.size()); } ///< 1 + ceil(log2(longest edge))
-  int Top() const { return this->LevelCount() - 1; }                      ///< the level with a single node
+  /// Number of levels, 1 + ceil(log2(longest edge in voxels)).
+  int LevelCount() const { return static_cast<int>(this->sizes.size()); }
+  int Top() const { return this->LevelCount() - 1; } ///< index of the level with a single node
 
-  std::vector<std::array<int, 3>> sizes; ///< nodes per axis of each level; level 0 is the grid itself
+  std::vector<std::array<int, 3>> sizes; ///< nodes per axis of each level; level 0 is the grid
   std::vector<std::size_t> offsets;      ///< first node of each level from 1 on; level 0 is not stored in the buffer
-  std::size_t nodeCount = 0;             ///< nodes of the levels from 1 on: for a large cube, a seventh of its voxels
+  /// Number of nodes of the levels from 1 on: a seventh of the voxels of a large cube.
+  std::size_t nodeCount = 0;
 };
 
-/// Work-group size of the pyramid kernels, one work-item per node. It is the same for every level, so that each kernel
-/// is compiled once.
+/// Work-group size of the kernels over a pyramid's nodes (one work-item per node). It is equal for all levels, so that
+/// each kernel is compiled once.
 inline cl::NDRange PyramidGroup()
 {
   return cl::NDRange(32, 8, 1);
 }
+/// Global size of such a kernel for a level of `nodes` nodes, rounded up to work-groups.
 cl::NDRange PyramidRange(const std::array<int, 3>& nodes);
 }

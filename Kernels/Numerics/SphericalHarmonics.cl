@@ -1,5 +1,5 @@
-// The real spherical harmonics of a unit vector, ordered as in Numerics/SphericalHarmonics.h and scaled so
-// that the mean of their squares is 1. The host defines DEGREE, the highest degree.
+// Real spherical harmonics of a unit vector, (DEGREE + 1)^2 values ordered as in Numerics/Legendre.h and scaled so that
+// the square of each averages to 1 over all directions. The host defines DEGREE, the highest degree.
 
 #pragma once
 

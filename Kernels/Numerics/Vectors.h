@@ -15,7 +15,7 @@ inline glm::dvec3 Vector(const std::array<double, 3>& v)
   return { v[0], v[1], v[2] };
 }
 
-/// Clips a convex polygon to the half-space depth(point) >= 0, where depth is linear in the point.
+/// Clips a convex polygon to the half-space depth(point) >= 0; `depth` is linear in the point.
 template <class Point, class Depth>
 std::vector<Point> Clipped(const std::vector<Point>& polygon, const Depth& depth)
 {
@@ -36,7 +36,7 @@ std::vector<Point> Clipped(const std::vector<Point>& polygon, const Depth& depth
   return clipped;
 }
 
-/// Vectors as kernel arguments.
+/// Conversion of vectors to kernel arguments.
 inline cl_float4 Float4(const glm::dvec3& v, double w = 0.0)
 {
   return { { static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w) } };

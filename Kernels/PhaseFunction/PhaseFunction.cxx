@@ -13,8 +13,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double EndsWithin = 1e-3; ///< largest distance of a table's ends from -1 and 1
-constexpr double Rounding = 1e-9;   ///< largest excess of a cosine over 1
+constexpr double EndsWithin = 1e-3; ///< largest difference of a table's end cosines from -1 and 1
+constexpr double Rounding = 1e-9;   ///< largest accepted excess of a cosine over 1
 
 void CheckMeanCosine(double g)
 {
@@ -38,7 +38,7 @@ double ValueOfHenyeyGreenstein(double g, double cosine)
   return (1.0 - g * g) / (4.0 * Pi * square * std::sqrt(square));
 }
 
-/// Inverse cumulative distribution (Witt 1977).
+/// Inverse cumulative distribution of the Henyey-Greenstein function (Witt 1977).
 double CosineOfHenyeyGreenstein(double g, double u)
 {
   if (std::abs(g) < 1e-4)
@@ -61,7 +61,7 @@ double BelowOfHenyeyGreenstein(double g, double cosine)
   return (1.0 - g * g) / (2.0 * g) * (1.0 / root - 1.0 / (1.0 + g));
 }
 
-/// 1/k + (1 - k^2) / (2 k^2) log((1 - k) / (1 + k))
+/// Mean cosine of Schlick's function: 1/k + (1 - k^2) / (2 k^2) log((1 - k) / (1 + k)).
 double MeanCosineOfSchlick(double k)
 {
   if (std::abs(k) < 0.02)
@@ -74,7 +74,7 @@ double MeanCosineOfSchlick(double k)
 
 double KOfSchlick(double g)
 {
-  double low = 0.0, high = 1.0; // the mean cosine grows with k
+  double low = 0.0, high = 1.0; // bisection, since the mean cosine grows with k
   for (int i = 0; i < 60; ++i)
   {
     const double k = 0.5 * (low + high);
@@ -93,7 +93,7 @@ double CosineOfSchlick(double k, double u)
   return std::clamp((2.0 * u + k - 1.0) / (2.0 * k * u - k + 1.0), -1.0, 1.0);
 }
 
-/// Inverse cumulative distribution of 3/8 (1 + c^2): solves c^3 + 3 c + 4 = 8 u.
+/// Inverse cumulative distribution of Rayleigh's function, 3/8 (1 + c^2) in c: solves c^3 + 3 c + 4 = 8 u.
 double CosineOfRayleigh(double u)
 {
   const double half = 4.0 * u - 2.0;
@@ -122,7 +122,7 @@ void CheckCount(std::size_t cosines, std::size_t values)
   }
 }
 
-/// Both arguments must hold finite numbers.
+/// Checks that a table reaches from cosine -1 to 1. All numbers must be finite.
 void CheckEnds(const std::vector<double>& cosines, const std::vector<double>& values)
 {
   const char* const what = "is an end of the table; it must reach from cosine -1 to 1.";
@@ -181,7 +181,7 @@ double ValueOfTable(const PhaseFunction::Table& table, double cosine)
   return table.values[row] + std::clamp(part, 0.0, 1.0) * (table.values[row + 1] - table.values[row]);
 }
 
-/// Between two rows the cumulative distribution is a parabola.
+/// Cumulative distribution of a table: a parabola between two rows.
 double BelowOfTable(const PhaseFunction::Table& table, double cosine)
 {
   const auto after = std::upper_bound(table.cosines.begin(), table.cosines.end(), cosine);
@@ -225,7 +225,8 @@ std::vector<double> MomentsOfTable(const PhaseFunction::Table& table, int degree
   return moments;
 }
 
-/// Integrates over intervals that halve towards the peak, each with its own quadrature rule.
+/// Legendre moments of a phase function with a peak at cosine 1 (`peak` > 0) or -1, integrated by Gauss's rule over
+/// intervals that halve towards the peak.
 std::vector<double> MomentsByQuadrature(const PhaseFunction& function, double peak, int degree)
 {
   std::vector<double> moments(degree + 1, 0.0);
@@ -278,7 +279,7 @@ PhaseFunction PhaseFunction::Schlick(double g)
 {
   CheckMeanCosine(g);
   PhaseFunction function;
-  function.Which = Kind::Schlick; // also for g = 0, since WithMeanCosine needs the kind
+  function.Which = Kind::Schlick; // even if g is 0, since WithMeanCosine() needs the kind
   function.The.first = g == 0.0 ? 0.0 : KOfSchlick(g);
   return function;
 }
@@ -305,7 +306,7 @@ PhaseFunction PhaseFunction::Tabulated(std::vector<double> cosines, std::vector<
   double sum = 0.0;
   for (std::size_t row = 0; row < table.cosines.size(); ++row)
   {
-    table.values[row] /= largest > 0.0 ? largest : 1.0; // so that the sum does not overflow
+    table.values[row] /= largest > 0.0 ? largest : 1.0; // scaled so that the sum does not overflow
     sum +=
       row == 0 ? 0.0 : Pi * (table.values[row] + table.values[row - 1]) * (table.cosines[row] - table.cosines[row - 1]);
     table.below.push_back(sum);
@@ -392,7 +393,7 @@ double PhaseFunction::CosineAt(double u) const
     case Kind::HenyeyGreenstein: return CosineOfHenyeyGreenstein(this->The.first, u);
     case Kind::DoubleHenyeyGreenstein:
     {
-      double low = -1.0, high = 1.0; // a sum of two functions has no closed inverse
+      double low = -1.0, high = 1.0; // bisection, since the sum of two functions has no closed inverse
       for (int i = 0; i < 60; ++i)
       {
         const double cosine = 0.5 * (low + high);

@@ -6,8 +6,8 @@
 namespace tyndall
 {
 /// Phase function: the angular distribution of scattered light, by the cosine between its directions before and after
-/// scattering (1 forward, -1 backward). Symmetric in both directions (reciprocity). All solvers, the photons and the
-/// ray caster use this description; numerics.md, section 2.1.
+/// scattering (1 forward, -1 backward), and therefore reciprocal. All solvers, the photons and the ray caster use this
+/// class; numerics.md, section 2.1.
 ///
 /// A value type: copies are cheap, since they share the table.
 class PhaseFunction
@@ -23,31 +23,32 @@ public:
     Tabulated
   };
 
-  PhaseFunction() = default; ///< isotropic
-  /// Henyey and Greenstein 1941.
+  PhaseFunction() = default; ///< isotropic scattering
+  /// Phase function of Henyey and Greenstein (1941).
   /// @param g  mean cosine in (-1, 1), else InvalidInput is thrown; 0: isotropic
   static PhaseFunction HenyeyGreenstein(double g);
   /// Sum of two Henyey-Greenstein functions (Kattawar 1975), e.g. a forward and a backward lobe.
-  /// @param part  weight of the first function, in [0, 1]; the second has the rest
+  /// @param part  weight of the first function, in [0, 1]; the second function has weight 1 - part
   static PhaseFunction DoubleHenyeyGreenstein(double g, double secondG, double part);
-  /// (1 - k^2) / (4 pi (1 - k cosine)^2), Blasi et al. 1993, with k chosen so that the mean cosine is exactly g.
+  /// Schlick's phase function (1 - k^2) / (4 pi (1 - k cosine)^2) (Blasi et al. 1993), with k chosen so that the mean
+  /// cosine is exactly g.
   static PhaseFunction Schlick(double g);
-  /// 3 / (16 pi) (1 + cosine^2)
+  /// Rayleigh's phase function 3 / (16 pi) (1 + cosine^2).
   static PhaseFunction Rayleigh();
-  /// Piecewise linear between the rows of a table, e.g. from a Mie code; normalised to an integral of 1.
+  /// Phase function that is linear between the rows of a table, e.g. from a Mie code; normalised to an integral of 1.
   /// @param cosines  from -1 to 1 (to 1e-3), ascending or descending
   /// @param values   in any unit, not negative
-  /// @throws InvalidInput if a row is not a number, negative or out of order (names the first), there are fewer than
-  ///   two rows, or the integral is zero
+  /// @throws InvalidInput if a row is not a number, negative or out of order (names the first such row), there are
+  ///   fewer than two rows, or the integral is zero
   static PhaseFunction Tabulated(std::vector<double> cosines, std::vector<double> values);
 
   Kind TheKind() const { return this->Which; }
-  bool IsIsotropic() const; ///< whether it scatters isotropically, whatever its kind
+  bool IsIsotropic() const; ///< whether scattering is isotropic, whatever the kind of function
 
-  /// Value in 1/sr; its integral over all directions is 1.
+  /// Value at a cosine, 1/sr; the integral over all directions is 1.
   /// @param cosine  in [-1, 1]
   double Value(double cosine) const;
-  double MeanCosine() const; ///< in (-1, 1)
+  double MeanCosine() const; ///< mean cosine g, in (-1, 1)
   /// Legendre moments 2 pi integral p(c) P_l(c) dc for l = 0 to `degree`: 1, the mean cosine, ...
   std::vector<double> Moments(int degree) const;
   /// The cosine below which a fraction u of the light is scattered, 0 <= u <= 1: the inverse cumulative distribution.
@@ -56,24 +57,27 @@ public:
   /// Fraction of the light scattered below a cosine in [-1, 1]: the cumulative distribution, which CosineAt inverts.
   double Below(double cosine) const;
 
-  /// The same kind of function with another mean cosine, for the two kinds that have one parameter; for an isotropic
-  /// function, Henyey-Greenstein.
+  /// Phase function of the same kind with mean cosine g, for the two kinds that have one parameter; Henyey-Greenstein
+  /// if this function is isotropic.
   /// @throws InvalidInput for other kinds, or if g is outside (-1, 1)
   PhaseFunction WithMeanCosine(double g) const;
 
-  /// Parameters for kernels: Henyey-Greenstein's g, second g and weight of the first; for Schlick, k.
+  /// Parameters of the function, for kernels: g, second g, and weight of the first for Henyey-Greenstein; k for
+  /// Schlick.
   struct Parameters
   {
     double first = 0.0, second = 0.0, part = 1.0;
   };
   const Parameters& Shape() const { return this->The; }
+  /// Rows of a tabulated function.
   struct Table
   {
-    std::vector<double> cosines, values, below; ///< ascending; values, 1/sr; cumulative distribution at each cosine
+    /// Ascending cosines; values, 1/sr; cumulative distribution at each cosine.
+    std::vector<double> cosines, values, below;
   };
-  const Table* TheTable() const { return this->Rows.get(); } ///< null unless Tabulated
+  const Table* TheTable() const { return this->Rows.get(); } ///< rows of a tabulated function; null for other kinds
 
-  /// Whether both are the same function; isotropic ones are equal, whatever their kind.
+  /// Whether two functions are equal; isotropic ones are, whatever their kinds.
   bool operator==(const PhaseFunction& other) const;
   bool operator!=(const PhaseFunction& other) const { return !(*this == other); }
 
@@ -84,18 +88,18 @@ private:
 };
 
 /// Delta-M truncation of a phase function (Wiscombe 1977; numerics.md, Eqs. (8a), (8b)): the forward peak is treated as
-/// unscattered light, the rest is expanded up to a degree. Scattering is then sigma_s (1 - forward), with the moments
-/// given here; for degree 0 it is isotropic with sigma_s (1 - g), the similarity relation.
+/// unscattered light, and the remainder is expanded in Legendre moments up to a degree. Scattering is then sigma_s (1 -
+/// forward), with these moments; for degree 0 it is isotropic with sigma_s (1 - g), the similarity relation.
 struct DeltaM
 {
   double forward = 0.0;        ///< fraction of scattered light treated as unscattered; negative for degree 0 and g < 0
-  std::vector<double> moments; ///< Legendre moments 0 to degree of the rest; the first is 1
+  std::vector<double> moments; ///< Legendre moments 0 to degree of the remainder; the first is 1
 
   DeltaM() = default;
   /// @param moments  Legendre moments 0 to degree + 1 of the phase function
   explicit DeltaM(const std::vector<double>& moments);
 };
 
-/// Truncations of a phase function to each of the degrees 0 to `degree`.
+/// Truncations of a phase function to each of the degrees 0 to `degree`, by degree.
 std::vector<DeltaM> Truncations(const PhaseFunction& function, int degree);
 }

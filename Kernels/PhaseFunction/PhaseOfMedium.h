@@ -13,12 +13,12 @@
 
 namespace tyndall
 {
-/// Phase function of a medium: one for all voxels, one per channel, or one kind with a mean cosine by voxel (e.g. a
-/// mixture of droplets and haze).
+/// Phase function of a medium: one function for all voxels and channels, one per channel, or one kind of function with
+/// a mean cosine by voxel (e.g. a mixture of droplets and haze).
 class PhaseOfMedium
 {
 public:
-  PhaseOfMedium() = default; ///< isotropic
+  PhaseOfMedium() = default; ///< isotropic scattering
   /// Implicit conversion: one phase function for all voxels and channels.
   PhaseOfMedium(const PhaseFunction& ofAll);
   explicit PhaseOfMedium(const std::array<PhaseFunction, 3>& ofChannels);
@@ -26,20 +26,22 @@ public:
   /// @param g  mean cosine by voxel, which replaces that of `kind`; not owned
   PhaseOfMedium(const PhaseFunction& kind, const Field& g);
 
-  const PhaseFunction& OfChannel(int channel) const { return this->Functions[channel]; } ///< only if g does not vary
-  const Field& G() const { return this->ByVoxel; } ///< without values if g does not vary
+  /// Function of a channel; only if g does not vary by voxel.
+  const PhaseFunction& OfChannel(int channel) const { return this->Functions[channel]; }
+  const Field& G() const { return this->ByVoxel; } ///< mean cosine by voxel; has no values if g does not vary
   bool Varies() const { return this->ByVoxel.values != nullptr; }
 
-  bool IsIsotropic() const; ///< as far as can be told without reading G()
+  bool IsIsotropic() const; ///< whether scattering is isotropic; false if g varies by voxel, even if it is 0
   bool HasColour() const;
   double MeanCosine(std::size_t voxel, int channel) const
   {
     return this->Varies() ? this->ByVoxel.At(voxel, channel) : this->MeanCosines[channel];
   }
+  /// Phase function of a voxel in a channel.
   PhaseFunction At(std::size_t voxel, int channel) const;
-  /// The same kind of function with other mean cosines by voxel, on another grid.
+  /// Phase function of the same kind with other mean cosines by voxel, on another grid.
   PhaseOfMedium WithG(const Field& g) const { return PhaseOfMedium(this->Functions[0], g); }
-  /// The phase function of one channel, for a scene that is solved in one channel.
+  /// Phase function of `channel` in all channels, for a scene that is solved in one channel.
   PhaseOfMedium Seen(int channel) const;
 
 private:
@@ -48,11 +50,10 @@ private:
   Field ByVoxel;
 };
 
-// Mean cosines by voxel are used only in voxels that scatter; elsewhere they are meaningless, and may be any number or
-// NaN.
+// Mean cosines by voxel are used only in voxels that scatter; in other voxels they may be any number or NaN.
 
-/// Smallest and largest mean cosine of the voxels that scatter, by channel; infinity and minus infinity for a channel
-/// in which none scatters.
+/// Smallest and largest mean cosine g of the voxels that scatter, by channel; infinity and minus infinity for a channel
+/// in which no voxel scatters.
 struct MeanCosineRange
 {
   MeanCosineRange()
@@ -60,7 +61,7 @@ struct MeanCosineRange
     this->least.fill(std::numeric_limits<double>::infinity());
     this->greatest.fill(-std::numeric_limits<double>::infinity());
   }
-  /// @param g, sigma_s  by voxel, for `voxels` voxels
+  /// @param g, sigma_s  fields over `voxels` voxels
   MeanCosineRange(const Field& g, const Field& sigma_s, std::size_t voxels)
     : MeanCosineRange()
   {
@@ -91,9 +92,9 @@ struct MeanCosineRange
 };
 
 /// Phase function of a medium with g by voxel: one function per channel if all voxels that scatter have the same g,
-/// else by voxel. A channel in which no voxel scatters gets the g of another channel.
+/// else a function by voxel. A channel in which no voxel scatters has the g of another channel.
 /// @param kind  a kind with one mean cosine (PhaseFunction::WithMeanCosine), else InvalidInput is thrown
-/// @param range  range of g in the whole medium, of which `g` may cover a part
+/// @param range  range of g in the domain, of which `g` may cover a subdomain
 inline PhaseOfMedium PhaseByVoxel(const PhaseFunction& kind, const Field& g, const MeanCosineRange& range)
 {
   if (!range.IsEven())
@@ -111,6 +112,7 @@ inline PhaseOfMedium PhaseByVoxel(const PhaseFunction& kind, const Field& g, con
   return PhaseOfMedium(functions);
 }
 
+/// Replaces meaningless mean cosines, which checks would reject.
 /// @return g with values outside (-1, 1) replaced by 0 in voxels that do not scatter; empty if there are none to
 ///   replace
 inline std::vector<float> WithoutUnusedCosines(const Field& g, const Field& sigma_s, std::size_t voxels)

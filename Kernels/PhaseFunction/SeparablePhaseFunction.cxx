@@ -16,14 +16,15 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostForSingularValues = 1024; ///< most directions; the work grows with their cube
-constexpr double Dependent = 1e-3; ///< a vector is linearly dependent if less than this fraction of its length remains
-constexpr double Nothing = 1e-14;  ///< relative to the largest eigenvalue; smaller values are zero up to rounding
+constexpr int MostForSingularValues = 1024; ///< largest number of directions; the work grows with its cube
+/// A column is linearly dependent if less than this fraction of its length remains after projection.
+constexpr double Dependent = 1e-3;
+constexpr double Nothing = 1e-14; ///< eigenvalues below this, relative to the largest, are zero up to rounding
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Orthonormal columns with their eigenvalues.
+/// Orthonormal columns [direction][term], sqrt(w_i) u_k(i), with their eigenvalues.
 struct Basis
 {
   MatrixXd columns;
@@ -81,7 +82,7 @@ int DegreeOfMeans(const std::vector<Direction>& directions)
   return std::clamp(static_cast<int>(20.0 / std::sqrt(least / Pi)), 16, 512);
 }
 
-/// Cap moments of the directions' cells, [degree][direction], up to the degree at which terms vanish in rounding.
+/// Cap moments of the directions' cells, [degree][direction], up to the degree beyond which terms vanish in rounding.
 std::vector<std::vector<double>> MeansByDegree(
   const std::vector<double>& moments, const std::vector<Direction>& directions)
 {
@@ -135,7 +136,7 @@ std::vector<double> CellMeanMatrix(const PhaseFunction& function, const std::vec
   return matrix;
 }
 
-/// Orthonormalises columns one after the other; linearly dependent ones are dropped.
+/// Orthonormalises columns in their order (Gram-Schmidt); linearly dependent ones are omitted.
 Basis Orthonormal(const MatrixXd& columns, const VectorXd& values)
 {
   Basis basis = { MatrixXd(columns.rows(), columns.cols()), VectorXd(columns.cols()) };
@@ -143,7 +144,7 @@ Basis Orthonormal(const MatrixXd& columns, const VectorXd& values)
   for (int k = 0; k < columns.cols(); ++k)
   {
     VectorXd column = columns.col(k);
-    for (int again = 0; again < 2; ++again) // the second pass removes what rounding left
+    for (int again = 0; again < 2; ++again) // the second pass removes the rounding errors of the first
     {
       const MatrixXd before = basis.columns.leftCols(kept);
       column -= before * (before.transpose() * column);
@@ -159,7 +160,7 @@ Basis Orthonormal(const MatrixXd& columns, const VectorXd& values)
   return basis;
 }
 
-/// The first `terms` spherical harmonics, with the moments of their degrees.
+/// Basis of the first `terms` spherical harmonics, with the phase function's moments of their degrees as eigenvalues.
 Basis Harmonics(const std::vector<Direction>& directions, const std::vector<double>& moments, int terms)
 {
   const VectorXd roots = RootsOfWeights(directions);
@@ -180,7 +181,7 @@ Basis Harmonics(const std::vector<Direction>& directions, const std::vector<doub
   return Orthonormal(columns, values);
 }
 
-/// Eigenvectors of a symmetric matrix, largest absolute eigenvalues first.
+/// Basis of the eigenvectors of a symmetric matrix, largest absolute eigenvalues first.
 Basis Eigenvectors(const MatrixXd& matrix)
 {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix);
@@ -197,8 +198,9 @@ Basis Eigenvectors(const MatrixXd& matrix)
   return basis;
 }
 
-/// Eigenvectors of a matrix that conserves power and has the exact mean cosine: 1 and omega are made eigenvectors, and
-/// eigenvalues on their orthogonal complement are limited to the theoretical maximum (numerics.md, Eq. (D5)).
+/// Basis of the eigenvectors of a matrix that is repaired to conserve power and have the exact mean cosine: 1 and omega
+/// are made eigenvectors, and eigenvalues on their orthogonal complement are limited to the theoretical maximum
+/// (numerics.md, Eq. (D5)).
 Basis RepairedEigenvectors(
   const MatrixXd& matrix, const std::vector<Direction>& directions, const std::vector<double>& moments)
 {
@@ -217,7 +219,8 @@ Basis RepairedEigenvectors(
   return all;
 }
 
-/// Fraction of light in the forward peak beyond the degree of `terms` terms; 0 for backward peaks.
+/// Fraction of light in the forward peak that `terms` terms cannot represent, the moment of the next degree; 0 for
+/// backward peaks.
 double PeakBeyond(const std::vector<double>& moments, int terms)
 {
   return std::max(0.0, moments[DegreeOfTerm(terms - 1) + 1]);
@@ -276,7 +279,7 @@ double TheoreticalError(const std::vector<double>& moments, int terms)
   {
     squares.insert(squares.end(), 2 * l + 1, moments[l] * moments[l]);
   }
-  std::sort(squares.begin(), squares.end()); // ascending, so that the sum is accurate
+  std::sort(squares.begin(), squares.end()); // ascending order, so that the sum is accurate
   const std::size_t beyond = squares.size() - std::min<std::size_t>(squares.size(), terms);
   const double tail = std::accumulate(squares.begin(), squares.begin() + beyond, 0.0);
   return std::sqrt(tail / std::accumulate(squares.begin(), squares.end(), 0.0));

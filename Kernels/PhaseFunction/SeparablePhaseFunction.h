@@ -7,30 +7,33 @@
 
 namespace tyndall
 {
-/// Basis of a separable phase function.
+/// Basis functions of a SeparablePhaseFunction.
 enum class PhaseFactorisation
 {
   SingularValues,    ///< singular vectors of the phase matrix on the directions (Gong et al., section 3.2)
-  SphericalHarmonics ///< spherical harmonics with its Legendre moments, degree by degree
+  SphericalHarmonics ///< spherical harmonics; eigenvalues are Legendre moments of the phase function, degree by degree
 };
 
-/// How the phase matrix samples the phase function for a pair of directions.
+/// Element of the phase matrix for a pair of directions.
 enum class PhaseSampling
 {
-  PointValues, ///< its value between the two directions, as published
-  CellMeans    ///< its mean over both directions' cells, taken as caps of their solid angles (numerics.md, Eq. (D3))
+  PointValues, ///< value of the phase function at the angle between the two directions, as published
+  /// Mean of the phase function over both directions' cells, taken as caps of equal solid angle (numerics.md, Eq. (D3))
+  CellMeans
 };
 
+/// Settings of a SeparablePhaseFunction.
 struct SeparableSettings
 {
   int terms = 25; ///< number of terms, at most the number of directions
   PhaseFactorisation factorisation = PhaseFactorisation::SphericalHarmonics;
   PhaseSampling sampling = PhaseSampling::PointValues;
-  /// Repair the truncated sum so that it conserves power exactly for any number of terms, and has the exact mean cosine
-  /// from four terms on; false: as published, where truncation and sampling change both.
+  /// Whether to repair the truncated sum so that it conserves power exactly for any number of terms, and has the exact
+  /// mean cosine if there are at least four terms; false: as published, where truncation and sampling change both.
   bool repaired = true;
-  /// Treat a part of scattered light as unscattered (delta-M: W. J. Wiscombe, J. Atmos. Sci. 34 (1977)); the terms
-  /// represent the rest. Not used with singular values if all terms are kept, since nothing is then truncated.
+  /// Whether to treat a fraction of scattered light as unscattered (delta-M: W. J. Wiscombe, J. Atmos. Sci. 34 (1977));
+  /// the terms represent the remainder. Ignored with singular values if all terms are kept, since nothing is then
+  /// truncated.
   bool truncatesPeak = false;
 };
 
@@ -38,10 +41,11 @@ struct SeparableSettings
 struct SeparableErrors
 {
   double frobenius = 0.0;  ///< relative Frobenius norm of the difference, weighted by solid angles
-  double maximum = 0.0;    ///< largest difference over the matrix' largest value
+  double maximum = 0.0;    ///< largest difference, relative to the matrix' largest value
   double rowSum = 0.0;     ///< largest deviation from 1 of the total power scattered from a direction
   double meanCosine = 0.0; ///< largest deviation of a direction's mean cosine from that of the phase function
-  double least = 0.0;      ///< smallest value over the largest; negative if there are too few terms
+  /// Smallest value of the sum, relative to the matrix' largest value; negative if there are too few terms.
+  double least = 0.0;
 };
 
 /// A phase function on a set of directions as a sum of N products (Z. Gong et al., Interactive rendering of multiple
@@ -66,20 +70,21 @@ public:
   int Terms() const
   {
     return static_cast<int>(this->Eigenvalues.size());
-  } ///< number of terms kept, at most those asked for
+  } ///< number of terms kept, at most SeparableSettings::terms
   int DirectionCount() const { return static_cast<int>(this->Directions.size()); }
   const std::vector<Direction>& TheDirections() const { return this->Directions; }
-  double Peak() const { return this->PeakPart; }                        ///< fraction treated as unscattered
-  double Eigenvalue(int term) const { return this->Eigenvalues[term]; } ///< lambda, in [-1, 1] if repaired
-  double Factor(int direction, int term) const                          ///< u, 1/sqrt(sr)
+  /// Fraction of scattered light treated as unscattered.
+  double Peak() const { return this->PeakPart; }
+  double Eigenvalue(int term) const { return this->Eigenvalues[term]; } ///< lambda_k, in [-1, 1] if repaired
+  double Factor(int direction, int term) const                          ///< u_k(i), 1/sqrt(sr)
   {
     return this->Factors[static_cast<std::size_t>(term) * this->Directions.size() + direction];
   }
-  double Value(int i, int j) const; ///< 1/sr, without the peak: sum_k lambda_k u_k(i) u_k(j)
+  double Value(int i, int j) const; ///< sum_k lambda_k u_k(i) u_k(j), without the peak, 1/sr
 
-  /// Singular values of the matrix (absolute eigenvalues), largest first; with spherical harmonics, those of its terms.
+  /// Singular values (absolute eigenvalues) of the phase matrix, largest first; with spherical harmonics, of its terms.
   const std::vector<double>& SingularValues() const { return this->Singular; }
-  /// The full matrix, 1/sr, [i][j], including the peak, and repaired if the settings ask for it.
+  /// The full phase matrix, 1/sr, [i][j], including the peak; repaired if the settings request it.
   const std::vector<double>& Matrix() const { return this->Whole; }
   /// Errors of the sums of 1, 2, ..., Terms() terms against Matrix().
   std::vector<SeparableErrors> ErrorsByTerms() const;
@@ -91,15 +96,16 @@ private:
   std::vector<double> Eigenvalues, Factors, Singular, Whole;
 };
 
-/// Theoretical value of `frobenius`: a phase function on the sphere has the eigenvalues chi_l, each 2 l + 1 times; the
-/// result is the root of the sum of squares beyond the `terms` largest, over that of all (numerics.md, Eq. (D4)).
+/// Theoretical value of SeparableErrors::frobenius: a phase function on the sphere has the eigenvalues chi_l, each 2 l
+/// + 1 times; the error is the root of the sum of squares of all but the `terms` largest, relative to that of all
+/// (numerics.md, Eq. (D4)).
 /// @param moments  Legendre moments of the phase function, up to a degree beyond which they are negligible
 double TheoreticalError(const std::vector<double>& moments, int terms);
 
-/// The matrix of a phase function on directions, 1/sr, [i][j]; symmetric. Not repaired.
+/// Phase matrix of a phase function on directions, 1/sr, [i][j]; symmetric, not repaired.
 std::vector<double> PhaseMatrix(
   const PhaseFunction& function, const std::vector<Direction>& directions, PhaseSampling sampling);
 
-/// Legendre moments, degree by degree, of averaging over a cap of `solidAngle` sr around a direction.
+/// Legendre moments, by degree, of the uniform distribution over a cap of `solidAngle` sr around a direction.
 std::vector<double> CapMoments(double solidAngle, int degree);
 }

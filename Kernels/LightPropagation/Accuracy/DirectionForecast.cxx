@@ -12,10 +12,10 @@ namespace tyndall
 namespace
 {
 constexpr int LargestUnstaggered = 100; ///< largest number of directions per face of a fitted quadrature
-/// measured cost of a direction of uncollided light, relative to a direction of a sweep
+/// Measured cost of a direction of uncollided light, relative to a direction of a sweep.
 constexpr double UncollidedWork = 5.0;
 constexpr double LeastSweeps = 3.0;
-/// angular error on the fine grid relative to that on the coarse grid: measured 0.97 to 1.3
+/// Angular error on the fine grid relative to that on the coarse grid: measured 0.97 to 1.3.
 constexpr double OnFinerGrid = 1.3;
 constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 100, 196, 256, 400 };
 constexpr int UncollidedCounts[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };

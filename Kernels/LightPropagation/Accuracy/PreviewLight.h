@@ -23,7 +23,7 @@ Grid CubicPreviewGrid(const Grid& grid);
 
 constexpr double PreviewTolerance = 0.1; ///< tolerance of a preview: relative error of fluence
 constexpr int PreviewDirections = 4;     ///< directions of a preview per cube face
-/// scattering orders of a preview by discrete ordinates; later orders are extrapolated as a geometric series
+/// Scattering orders of a preview by discrete ordinates; later orders are extrapolated as a geometric series.
 constexpr int PreviewOrders = 24;
 
 /// Number of voxels for which a preview takes less than 0.2 s on two cores (measurements.md).

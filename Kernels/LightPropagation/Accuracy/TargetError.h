@@ -8,7 +8,7 @@ namespace tyndall
 /// Result of SolveToTargetError(): the light, its settings, and the cost.
 struct TargetLight
 {
-  /// the light with its estimated relativeError; `doubts` has a warning if the target was missed
+  /// The light with its estimated relativeError; `doubts` has a warning if the target was missed.
   LightField light;
   PropagationSettings settings; ///< settings of the final solve
   bool met = false;             ///< whether the estimated error is at most the target

@@ -14,7 +14,7 @@ namespace tyndall
 namespace
 {
 
-/// minimum number of sample cells along a face's edge, if cells are not a grid
+/// Minimum number of sample cells along a face's edge, if cells are not a grid.
 constexpr int FewestParts = 48;
 constexpr double BorderTolerance = 1e-9; ///< relative offset of points on a border between two cells
 /// Smallest eigenvalue that KeepFlux() inverts, relative to the largest.
@@ -93,7 +93,7 @@ struct Seen
 {
   std::vector<Rgb> sum;           ///< integral of radiance over each direction's cell, W / length^2
   std::vector<double> solidAngle; ///< solid angle of each direction's cell, sr
-  /// flux density through the cube's faces in the direction of travel, W / length^2
+  /// Flux density through the cube's faces in the direction of travel, W / length^2.
   std::array<Rgb, 6> flux = {};
   std::array<double, 6> cosines = {}; ///< the same flux density at radiance 1, sr
 

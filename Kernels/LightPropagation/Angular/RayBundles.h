@@ -25,7 +25,7 @@ namespace tyndall
 /// Segment of a ray: its path through one voxel of a plane.
 struct Segment
 {
-  /// voxels moved along u since the previous segment, in the bundle's frame (both tangents positive): 0 or 1
+  /// Voxels moved along u since the previous segment, in the bundle's frame (both tangents positive): 0 or 1.
   int moveU = 0;
   int moveV = 0;
   double part = 1.0;   ///< fraction of each ray's power that moves; the remainder stays in its voxel

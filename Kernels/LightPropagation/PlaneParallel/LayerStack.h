@@ -27,7 +27,7 @@ struct StackBeam
 {
   double cosine = 1.0; ///< cosine to the axis of the layers, above 0
   bool fromTop = true; ///< whether the beam enters at the top; false: at the bottom
-  /// incident irradiance, perpendicular to the beam, W / length^2; in order m > 0 times cos or sin of m azimuth
+  /// Incident irradiance, perpendicular to the beam, W / length^2; in order m > 0 times cos or sin of m azimuth.
   double irradiance = 0.0;
 };
 

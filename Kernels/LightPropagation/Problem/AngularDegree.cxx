@@ -16,7 +16,7 @@ constexpr int DegreeOfSlabs = 9, DegreeOfThin = 6, DegreeOfOthers = 3;
 constexpr double SomewhatForward = 0.6;
 constexpr double Thick = 8.0; ///< optical thickness of the box above which singly scattered light is a small fraction
 constexpr double MuchThinner = 8.0;
-/// number of arrays of moments: source, path, given light, and uncollided light
+/// Number of arrays of moments: source, path, given light, and uncollided light.
 constexpr std::size_t ArraysOfMoments = 4;
 
 /// Largest magnitude of any of the medium's phase functions' moments, by degree.

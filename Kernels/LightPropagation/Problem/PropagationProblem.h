@@ -50,7 +50,7 @@ public:
   const Grid& TheGrid() const { return this->Solved.grid; } ///< grid of this rank's subdomain
   /// Traits of the domain's medium, except `filled`, which refers to this rank's subdomain.
   const MediumTraits& Traits() const { return this->TheTraits; }
-  /// scattering coefficients and moments of the sweeps (delta-M)
+  /// Scattering coefficients and moments of the sweeps (delta-M).
   const TruncatedScattering& Scattering() const { return *this->Truncated; }
   const Illumination& Shining() const { return this->SolvedLight; }
   const PropagationSettings& Settings() const { return this->TheSettings; }

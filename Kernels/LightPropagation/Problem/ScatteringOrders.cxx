@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// ratio of the thickest line to the mean line (weighted by thickness) above which a medium is uneven
+/// Ratio of the thickest line to the mean line (weighted by thickness) above which a medium is uneven.
 constexpr double Uneven = 1.5;
 
 /// Tolerance until which orders are counted: the default rather than the user's, so that the choice of a scheme does

@@ -12,7 +12,7 @@ namespace
 {
 /// Number of directions per face that are tested as incident ones, in addition to those of the set.
 constexpr int FromPerFace = 144;
-/// smallest accepted value of the phase function, relative to its mean; allows for rounding
+/// Smallest accepted value of the phase function, relative to its mean; allows for rounding.
 constexpr double LeastPart = 1e-3;
 constexpr double MostDamping = 16.0; ///< largest damping s, at which all moments above degree 0 vanish
 
@@ -41,7 +41,7 @@ std::vector<std::array<double, 3>> ComingFrom(const DirectionSet& set)
 }
 
 constexpr double Thickest = 1.0; ///< optical thickness of a voxel up to which its degree is above 0
-/// number of intervals between tabulated mean cosines; truncations are interpolated linearly
+/// Number of intervals between tabulated mean cosines; truncations are interpolated linearly.
 constexpr int Columns = 1024;
 
 std::vector<DeltaM> TruncationsOf(const PhaseFunction& function, int degree, const DirectionKernel* nowhereNegative)

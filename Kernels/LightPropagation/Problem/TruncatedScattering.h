@@ -36,7 +36,7 @@ private:
 /// suffices; the unscattered fraction is adjusted so that the mean cosine is unchanged.
 DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel);
 
-/// Delta-M scattering of a medium, as used by sweeps (DeltaM.h): in each voxel the forward peak is treated as
+/// Delta-M scattering of a medium, as used by sweeps (PhaseFunction.h): in each voxel the forward peak is treated as
 /// unscattered light, and the remainder has moments up to a degree. Optically thick voxels have a lower degree, down to
 /// 0, since light loses its directional information within them (numerics.md, section 2.2). Coefficients are in
 /// 1/length.

@@ -13,7 +13,7 @@ namespace
 /// Limit on the number of orders; no convergent problem needs more.
 constexpr int MostOrders = 10000;
 
-/// fraction of the remaining power, without endlessly wrapping light, below which the solve ends
+/// Fraction of the remaining power, without endlessly wrapping light, below which the solve ends.
 constexpr double Negligible = 1e-3;
 constexpr double LargestRatio = 0.9999; ///< largest ratio of successive orders of a convergent series
 }

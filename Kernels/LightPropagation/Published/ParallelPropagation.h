@@ -39,7 +39,7 @@ public:
 
   const PublishedModel& Model() const { return this->TheModel; }
   int BatchCount() const { return static_cast<int>(this->Plan.batches.size()); }
-  /// index of a batch's first direction; for BatchCount(), the number of directions
+  /// Index of a batch's first direction; for BatchCount(), the number of directions.
   int FirstDirection(int batch) const;
 
   /// Traces all rays of the directions of a batch through the volume once, which fills T.

@@ -69,7 +69,7 @@ public:
   Part Source(int sourceDirection) const;
   /// I / sigma_s of a stored direction.
   Part ScatteredRadiance(int storedDirection) const;
-  /// index of the moment that is the net flux along `axis`
+  /// Index of the moment that is the net flux along `axis`.
   int NetFlux(int axis) const { return this->FirstFlux + axis; }
 
 private:
@@ -130,7 +130,7 @@ struct MapGeometry
   {
     return this->forward ? crossed : this->planes - 1 - crossed;
   } ///< index of the plane that rays reach after `crossed` planes
-  /// face across `entryAxis` through which this direction enters: 2 axis, + 1 on the upper side
+  /// Face across `entryAxis` through which this direction enters: 2 axis, + 1 on the upper side.
   int EntryFace(int entryAxis) const;
   int ExitFace(int exitAxis) const { return this->EntryFace(exitAxis) ^ 1; }
   /// Transverse position within its voxel, 0 to 1, at which a ray begins order `order` if it began order 0 at `start`.

@@ -29,7 +29,7 @@ typedef struct
   int volume;    ///< floats per volume of one channel
   int rayRow;    ///< floats per row of a ray map
   int periodicU, periodicV;
-  /// whether rays wrap around the marching axis: they start with their radiance at the end of the previous order
+  /// Whether rays wrap around the marching axis: they start with their radiance at the end of the previous order.
   int periodicW;
   int directions; ///< number of directions in the batch
 } PublishedMap;

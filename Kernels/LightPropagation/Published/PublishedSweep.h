@@ -48,7 +48,7 @@ public:
     std::vector<Pass> passes;
     Buffer<PublishedCrossing> crossings; ///< crossings of all passes
     int Layout() const { return this->maps[0].axis == 0 ? 1 : 0; }
-    /// map of the first direction; all maps have the same axes and sizes
+    /// Map of the first direction; all maps have the same axes and sizes.
     const MapGeometry& Map() const { return this->maps[0]; }
   };
 
@@ -63,7 +63,7 @@ public:
 
   int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
   int RayRow(const Batch& batch) const; ///< floats per row of a ray map
-  /// floats stored per direction for the next order, all channels and sub-maps
+  /// Floats stored per direction for the next order, all channels and sub-maps.
   std::size_t CarriedStride(const Batch& batch) const;
 
   /// Makes the passes of a batch in order `order`. Rays that wrap around a periodic axis start at another position in

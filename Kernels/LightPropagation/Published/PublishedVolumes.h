@@ -44,7 +44,7 @@ struct PublishedVolumes
   void AddGiven(const UncollidedImage& image);
   /// Reads U into an array [voxel][source direction][channel], x fastest.
   std::vector<float> ReadSource() const;
-  /// reads one moment from an array in layout 0; result x fastest, channels interleaved
+  /// Reads one moment from an array in layout 0; result x fastest, channels interleaved.
   std::vector<float> ReadMoment(const Buffer<float>& moments, int moment) const;
 
   /// Reads a range of floats of a buffer; waits for the device.

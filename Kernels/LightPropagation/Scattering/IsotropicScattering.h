@@ -21,7 +21,7 @@ public:
   bool CanScatterAllOrders() const override { return true; }
   void ScatterAllOrders(const Buffer<float>& fluence, const Buffer<float>& source) const override;
   void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const override;
-  /// nothing to add: isotropic scattering has no separate source of beams
+  /// Nothing to add: isotropic scattering has no separate source of beams.
   void AddBeam(const Buffer<float>&, const Buffer<float>&, int) const override {}
   void ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence, const Buffer<float>& given,
     const Buffer<float>& source) const override;

@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// optical thickness above which a voxel is thick; thinner voxels return at most 1% too little light
+/// Optical thickness above which a voxel is thick; thinner voxels return at most 1% too little light.
 constexpr double Thick = 0.2;
 /// Optical thickness above which a voxel is thick if the settings leave the choice open: thinner voxels return up to 2%
 /// too little light, and sources by octant multiply the time per order by two to three.

@@ -80,13 +80,13 @@ private:
   const Crossings& CrossingsOf(const SweptDirections& along);
   OctantSourceInfo InfoOf(int channel) const;
 
-  /// whether this rank's subdomain has no voxels
+  /// Whether this rank's subdomain has no voxels.
   bool IsEmpty() const { return this->The.layout.grid.VoxelCount() == 0; }
 
   Scene The;
   Buffer<float> OfSweep, Incoming; ///< [channel][face][stride]
   Buffer<float> Found;             ///< [channel][octant][stride]
-  /// see LampPath(), LampMoments(); OfLamps: source by face, [channel][face][stride]
+  /// See LampPath(), LampMoments(); OfLamps: source by face, [channel][face][stride].
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps;
   Buffer<float> Diffuse, Falling; ///< tables of VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;

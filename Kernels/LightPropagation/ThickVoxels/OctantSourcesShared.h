@@ -25,7 +25,7 @@ typedef struct
   int periodic[3];
   int leftOut[3]; ///< axes along which the scene is constant (one periodic voxel)
   int pattern[6]; ///< offset of the crossing tables: [axis][other axes in order]
-  /// first value of this channel in sigma_t, and in other arrays by voxel; values per channel
+  /// First value of this channel in sigma_t, and in other arrays by voxel; values per channel.
   ulong firstT, first, stride;
   float spacing[3];
   float perRadiance; ///< power per area through a face at isotropic radiance 1, by the quadrature, sr
