@@ -12,7 +12,7 @@ namespace left_out
 {
 extern const char* const Grey;           ///< neither medium nor lights are coloured
 extern const char* const OneColour;      ///< the medium is grey, and all lights have the same colour
-extern const char* const GreyExtinction; ///< one transmittance for three channels
+extern const char* const GreyExtinction; ///< all channels have the same sigma_t, hence one transmittance
 extern const char* const NoScattering;
 extern const char* const NoAbsorption;
 extern const char* const NoEmission;
@@ -25,7 +25,7 @@ extern const char* const ConstantIndex;
 extern const char* const EmptyBricks;
 extern const char* const NoLights;
 extern const char* const OwnUncollided;   ///< uncollided light is given by another solver
-extern const char* const NoEmissionPeaks; ///< emission needs no separate rays
+extern const char* const NoEmissionPeaks; ///< there is no localised emission that needs separate rays
 extern const char* const BlackFaces;      ///< no face of the box reflects
 extern const char* const DefaultSky;      ///< no light was given: the filter used its default sky
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces emit light

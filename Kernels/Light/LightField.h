@@ -32,7 +32,7 @@ inline double EnergyBalance::RelativeError(int channels) const
     const double in = this->entered[c] + this->emitted[c];
     const double out = this->absorbed[c] + this->escaped[c] + this->leftOver[c];
     const double error = in > 0.0 ? std::abs(in - out) / in : std::abs(out);
-    worst = error <= worst || std::isnan(worst) ? worst : error; // NaN propagates
+    worst = error <= worst || std::isnan(worst) ? worst : error; // a NaN of any channel is returned
   }
   return worst;
 }

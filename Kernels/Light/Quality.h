@@ -6,10 +6,10 @@ namespace tyndall
 /// function that maps a quality to its settings, depending on the scene.
 enum class Quality
 {
-  Draft = 0,   ///< for previews while settings are chosen
+  Draft = 0,   ///< previews while settings are chosen
   Default = 1, ///< the settings' default values
   Fine = 2,
-  Reference = 3 ///< for references in comparisons
+  Reference = 3 ///< reference solutions of comparisons
 };
 
 /// Sets `number` to the quality's value `ofQuality` if it has its default value; any other value was chosen by the user

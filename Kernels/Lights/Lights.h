@@ -41,7 +41,7 @@ using Rotation = std::array<std::array<double, 3>, 3>;
 /// rotation changes the orientation only; pixels are not resampled, so that no power is lost.
 struct Environment
 {
-  int width = 0; ///< 0: there is no environment
+  int width = 0; ///< pixels per row; 0: there is no environment
   int height = 0;
   std::vector<float> radiance; ///< pixels, W / (length^2 sr), 3 * width * height, RGB interleaved, row by row
   /// Maps a direction of the scene to the picture's axes.

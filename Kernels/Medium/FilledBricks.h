@@ -25,7 +25,7 @@ struct FilledBricks
     bool sound = true;    ///< whether all values are finite and not negative; also false if any is -0
   };
 
-  std::array<int, 3> count = { 0, 0, 0 }; ///< bricks along each axis
+  std::array<int, 3> count = { 0, 0, 0 }; ///< number of bricks along each axis
   std::vector<unsigned char> filled;      ///< by brick, x fastest: 1 if it is filled, else 0
   std::size_t filledCount = 0;
   Values absorption, scattering, emission;

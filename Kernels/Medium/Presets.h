@@ -11,8 +11,8 @@ struct MediumPreset
 {
   const char* name;
   const char* densityOne; ///< meaning of density 1, for users
-  Rgb sigma_s;            ///< 1/mm
-  Rgb sigma_a;            ///< 1/mm
+  Rgb sigma_s;            ///< scattering coefficient, 1/mm
+  Rgb sigma_a;            ///< absorption coefficient, 1/mm
   Rgb g; ///< mean cosine of the phase function; 0 if sigma_s is the reduced coefficient, sigma_s (1 - g)
   /// Publication from which the coefficients are taken.
   const char* source;

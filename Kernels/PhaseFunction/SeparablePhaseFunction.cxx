@@ -19,7 +19,7 @@ namespace
 constexpr int MostForSingularValues = 1024; ///< largest number of directions; the work grows with its cube
 /// A column is linearly dependent if less than this fraction of its length remains after projection.
 constexpr double Dependent = 1e-3;
-constexpr double Nothing = 1e-14; ///< eigenvalues below this, relative to the largest, are zero up to rounding
+constexpr double Nothing = 1e-14; ///< eigenvalues below this, relative to the largest, count as zero (rounding)
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

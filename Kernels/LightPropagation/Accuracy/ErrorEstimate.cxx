@@ -129,7 +129,7 @@ struct ErrorOfAverages
 /// subdomain.
 struct VarianceOfAverages
 {
-  const std::vector<float>& averages; ///< fluence
+  const std::vector<float>& averages; ///< fluence of coarse voxels
   std::vector<double> variance;       ///< variance of the fluence
 };
 

@@ -10,7 +10,7 @@
 
 namespace tyndall
 {
-/// Solves a scene on the grid of its domain. Collective on that domain.
+/// Function that solves a scene on the grid of its domain. Collective on that domain.
 using PreviewSolver = std::function<LightField(const SceneBlock&)>;
 
 /// Coarse grid of a preview: the number of voxels along each axis is halved once, and again while the grid has more

@@ -9,7 +9,8 @@ namespace tyndall
 {
 namespace
 {
-using Arrays = std::deque<std::vector<float>>; ///< whose values do not move
+/// arrays of fields; a deque, so that values are not moved when arrays are added
+using Arrays = std::deque<std::vector<float>>;
 
 Field Keep(Arrays& arrays, std::vector<float>&& values, int components)
 {

@@ -24,7 +24,7 @@ struct DirectionOrbit
 /// -y, +y, -z, +z (the face the direction points through); within a face, cells row by row.
 struct DirectionSet
 {
-  int cellsPerEdge = 0; ///< n
+  int cellsPerEdge = 0; ///< number n of cells along the edge of a cube's face
   /// Whether cells subtend equal angles at the cube's centre; false: cells have equal size on the face.
   bool equiangular = false;
   std::vector<Direction> directions; ///< 6 n n directions with weights in sr

@@ -181,8 +181,8 @@ static void enter_box(const turned_scene* s, const real* point, box_ray* ray, in
   }
 }
 
-// Integrates emission, attenuated on the path to the point, along the ray through the emitting box: radiance,
-// W / (length^2 sr).
+// Integrates emission, attenuated on the path to the point, along the ray through the emitting box.
+//   radiance  W / (length^2 sr), [CHANNELS]
 //   received  transmittance from the emitting box to the point
 //   clear     null, or receives the integral without extinction
 static void see_box(const turned_scene* s, const real* point, box_ray* ray, real received, const __global float* sigma,

@@ -23,8 +23,7 @@ static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* tu
 }
 
 // Copies sigma_t to `outside`, with 0 in the emitting box: the extinction that rays undergo after leaving the box.
-// Voxels
-// along the fan's second axis are contiguous, followed by those along its third axis. One work-item per voxel.
+// Voxels along the fan's second axis are contiguous, followed by those along its third axis. One work-item per voxel.
 __kernel void lay_out(
   EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first, __global float* outside)
 {
@@ -43,8 +42,7 @@ __kernel void lay_out(
 }
 
 // Sets up a ray on the line through a point of the emitting box: positions of the box's faces on it, ahead of the point
-// and
-// behind.
+// and behind.
 static void begin_line(const turned_scene* s, const float* point, const real* way, box_ray* ray)
 {
   ray->enter = -1e30f;
@@ -82,7 +80,7 @@ static real weigh_line(const turned_scene* s, const float* point, const real* wa
 // Origin and tangents of a packet of adjacent rays of a fan.
 typedef struct
 {
-  float point[3];        // origin, voxels
+  float point[3];        // origin of the rays, voxels
   float low[2], high[2]; // smallest and largest tangent along the second and the third axis
 } line_packet;
 
@@ -111,15 +109,14 @@ typedef struct
 {
   float point[2], row_tangent; // position of the origin, tangent of the row: second and third axis
   real tangent, inverse;       // tangents of the rays along the second axis, and their inverses
-  real per_layer;              // path length per layer
+  real per_layer;              // path length of each ray per layer
   real tau;                    // optical length from the emitting box
   real kept;                   // transmittance at `sample`, averaged over the voxel there
   float sample;                // distance from the origin at which light is sampled, layers
 } fan_lines;
 
 // Advances the rays from `from` to `to`, in layers from the origin, within one row of voxels. Requires that no ray
-// crosses
-// more than one voxel plane.
+// crosses more than one voxel plane.
 static void cross_row(const turned_scene* s, const FanInfo* fan, const __global float* row, int last, float from,
   float to, fan_lines* lines)
 {

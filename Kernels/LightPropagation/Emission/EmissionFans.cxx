@@ -16,8 +16,7 @@ namespace
 constexpr int FewestPoints = 8;
 constexpr int MostPoints = 1024; ///< maximum number of fans into each part of space
 /// Maximum fraction of the voxels, per fan, whose two halves may differ without doubling the fans; these voxels trace
-/// rays
-/// individually.
+/// rays individually.
 constexpr double FewLeft = 0.001;
 constexpr double LinesPerVoxel = 1.02; ///< rays per voxel edge in the last layer, so that a ray crosses every voxel
 constexpr int LineStep = 16; ///< the number of lines is a multiple of this, the width of the widest SIMD packet
@@ -50,10 +49,9 @@ public:
   }
 
   /// Coordinate of point n along a dimension, 0 to 1. The sequence is shifted and folded (baker's transform): the mean
-  /// of the
-  /// first 2^n points is 1/2 for every n, whereas that of the original sequence is lower by half a cell (an eighth for
-  /// four
-  /// points). The shift, as a fraction of a cell, is never near 0 or 1/2, where the fold would make points coincide.
+  /// of the first 2^n points is 1/2 for every n, whereas that of the original sequence is lower by half a cell (an
+  /// eighth for four points). The shift, as a fraction of a cell, is never near 0 or 1/2, where the fold would make
+  /// points coincide.
   double At(int n, int dimension) const
   {
     int place = 0;
@@ -99,8 +97,7 @@ public:
   std::array<int, 3> First, Size;
 
   /// The point at given quantiles of the emission, voxels: along the first axis over the complete box, then along each
-  /// other
-  /// axis within the layer and row already chosen.
+  /// other axis within the layer and row already chosen.
   /// @param parts  quantiles, 0 to 1
   /// @param swapped  the third axis comes before the second
   std::array<float, 3> PointAt(const std::array<double, 3>& parts, bool swapped) const
@@ -325,8 +322,7 @@ private:
   }
 
   /// Whether all voxels of a fan's part of space are mirror images of others, so that the fan is not traced. Not if the
-  /// grid
-  /// has an odd number of voxels along the mirrored axis: then the fan also lights the voxels in the middle.
+  /// grid has an odd number of voxels along the mirrored axis: then the fan also lights the voxels in the middle.
   bool IsImage(const FanInfo& fan) const
   {
     int even = 0;

@@ -32,10 +32,8 @@ struct FanLight
 };
 
 /// Computes the light of a localised emission in voxels far from it (numerics.md, Eqs. (40a), (40b)). Rays from points
-/// in
-/// the emitting box cross the whole grid, and every voxel that a ray crosses uses it. The cost is that of a few rays
-/// per
-/// voxel, whereas rays traced for each voxel separately would all have to cross the grid to the emission.
+/// in the emitting box cross the whole grid, and every voxel that a ray crosses uses it. The cost is that of a few rays
+/// per voxel, whereas rays traced for each voxel separately would all have to cross the grid to the emission.
 FanLight GatherByFans(Device& device, const FanScene& scene, const Monitor& monitor);
 
 /// Minimum distance, in half voxels along an axis, between the centre of the emitting box and a voxel that uses fans of

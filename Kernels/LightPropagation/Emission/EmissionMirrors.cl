@@ -1,6 +1,5 @@
 // Kernels of EmissionMirrors: find mirror symmetries of a scene, and copy light to mirror images. `mirrored` is a bit
-// mask
-// of the axes across which the scene is symmetric.
+// mask of the axes across which the scene is symmetric.
 
 #include "LightPropagation/Emission/EmissionRaysShared.h"
 

@@ -9,8 +9,7 @@ namespace tyndall
 {
 /// Mirror symmetries of a medium with a localised emission: planes through the centres of the grid and of the emitting
 /// box, across which extinction and emission are symmetric. The light has the same symmetry, so it is computed on the
-/// low
-/// side of each plane and copied to the high side.
+/// low side of each plane and copied to the high side.
 class EmissionMirrors
 {
 public:
@@ -22,8 +21,7 @@ public:
   /// Bit mask of the axes that are normal to a plane of symmetry.
   int Axes() const { return this->Mirrored; }
   /// Sets to 1 the entries of `voxels` and `cells` (index: FanFaceFirst) that are mirror images of others, so that
-  /// their
-  /// light is not computed.
+  /// their light is not computed.
   void MarkImages(const Buffer<float>& voxels, const Buffer<float>& cells) const;
   /// Copies the light of voxels to their mirror images.
   /// @param path  path integrals, [channel][stride]

@@ -37,9 +37,9 @@ std::size_t IndexOf(const Grid& grid, const Voxel& v)
 /// Voxels that emit far more than the mean of all other voxels.
 struct BrightVoxels
 {
-  std::vector<std::size_t> voxels; ///< in ascending order
+  std::vector<std::size_t> voxels; ///< indices of the bright voxels, ascending
   double limit = 0.0;              ///< brightness, W / (length^3 sr): emission above it belongs to a peak
-  double all = 0.0;                ///< sum of all voxels' brightness
+  double all = 0.0;                ///< sum of the brightness of all voxels of the medium
   double Above(const Field& emission, std::size_t voxel) const
   {
     return EmissionBrightness(emission, voxel) - this->limit;

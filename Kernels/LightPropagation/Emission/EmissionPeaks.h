@@ -25,11 +25,10 @@ struct EmissionPeak
 };
 
 /// A medium's emission as the sum of a smooth field, which a coarse quadrature can sweep, and localised peaks, whose
-/// light
-/// such a quadrature would carry through vacuum along a few rays only (ray effects).
+/// light such a quadrature would carry through vacuum along a few rays only (ray effects).
 struct SplitEmission
 {
-  std::vector<EmissionPeak> peaks; ///< at most 16
+  std::vector<EmissionPeak> peaks; ///< localised emission, at most 16 peaks
   std::vector<float> smooth;       ///< emission minus peaks, laid out as Medium::emission; empty if there are no peaks
 
   /// The medium's emission without the peaks, W / (length^3 sr).

@@ -77,8 +77,8 @@ static void trace(const turned_scene* s, const lit_voxel* voxel, const real* poi
 }
 
 // Solid angle, seen from the voxel's centre, of each side of the emitting box through which light arrives; 0 for the
-// other
-// sides. At least an eighth of the largest one, since a side's solid angle is larger from other points of the voxel.
+// other sides. At least an eighth of the largest one, since a side's solid angle is larger from other points of the
+// voxel.
 static void find_sides(const turned_scene* s, const lit_voxel* voxel, float* solid_angles)
 {
   float largest = 0.0f;
@@ -219,7 +219,7 @@ static bool goes_before(const EmissionInfo* s, const lit_voxel* voxel, const int
 static void find_ways(const EmissionInfo* s, const lit_voxel* voxel, ways_to_turn* ways)
 {
   const int all[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
-  int distance[3]; // half voxels
+  int distance[3]; // of the voxel from the emitting box's centre, half voxels
   ways->count = ways->turned = ways->either = 0;
   for (int a = 0; a < 3; ++a)
   {
@@ -296,8 +296,7 @@ static bool is_close(const EmissionInfo* s, const lit_voxel* voxel)
 }
 
 // Gathers light in a voxel or through a face with as many rays as the accepted error requires, in each transformation
-// of
-// the scene: half of a lattice in two transformations is less accurate than the complete lattice in one.
+// of the scene: half of a lattice in two transformations is less accurate than the complete lattice in one.
 static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {

@@ -31,9 +31,8 @@ constexpr double CloseRays = 0x1p20; ///< the same number, for voxels in the emi
 const double UsualError = PropagationSettings().emissionError;
 
 /// Generating vector of a rank-1 lattice in five dimensions, found component by component for 32 to 2048 points; with
-/// 4096
-/// the largest error at the points of Kobayashi's benchmark at 20^3 fell from 0.5% to 0.3%. For each n the first 2^n
-/// points, in bit-reversed order, are a lattice, too.
+/// 4096 the largest error at the points of Kobayashi's benchmark at 20^3 fell from 0.5% to 0.3%. For each n the first
+/// 2^n points, in bit-reversed order, are a lattice, too.
 constexpr std::array<std::uint32_t, 5> LatticeVector = { 1, 807, 303, 119, 445 };
 
 /// Lattice points, [dimension][MostRays], coordinates between 0 and 1.
@@ -119,7 +118,7 @@ private:
     // Most of the emitted power may be lost through the nearest faces. An error there would be compensated by all other
     // light, because powers are normalised to add up.
     const std::array<int, 3>& size = this->Peak.size;
-    const double close = (size[0] + 2.0) * (size[1] + 2.0) * (size[2] + 2.0); // voxels
+    const double close = (size[0] + 2.0) * (size[1] + 2.0) * (size[2] + 2.0); // number of voxels in and next to the box
     this->Scene.fewestClose = FewestFor(close, CloseRays, this->Scene.fewest);
     this->Scene.uneven = static_cast<float>(this->Error);
     this->Scene.near = FarFrom(this->Peak.size);
@@ -135,8 +134,7 @@ private:
   }
 
   /// Whether the peak's emission has the same distribution in all channels, up to a factor. All channels can then share
-  /// one
-  /// set of fans, whose origins are distributed in proportion to emission.
+  /// one set of fans, whose origins are distributed in proportion to emission.
   bool ShineAlike() const
   {
     const std::size_t voxels = this->OfChannels.size() / this->Volume.channels;
@@ -195,8 +193,7 @@ private:
   }
 
   /// Gathers light by fans in all channels. Channels with the same distribution of emission share one set of fans;
-  /// otherwise
-  /// each channel has a separate one.
+  /// otherwise each channel has a separate one.
   void GatherByFansFor(const Monitor& monitor)
   {
     const SweepVolume& volume = this->Volume;
@@ -231,7 +228,7 @@ private:
       }
       keep("take_least", light.found, this->Found, 0, 1, 1.0f);
       keep("take_least", light.cellsFound, this->CellsFound, 0, 1, 1.0f);
-      this->TheDevice.Finish(); // the fans' light is released
+      this->TheDevice.Finish(); // the kernels must end before `light` is released
     }
   }
 
@@ -271,8 +268,7 @@ private:
   }
 
   /// Stores the escaped power of a face's cells in EscapedByCell, in the order of BoxFaces.h; in `power` the cells
-  /// along the
-  /// axis after the face's normal are contiguous.
+  /// along the axis after the face's normal are contiguous.
   void KeepCells(int face, const std::vector<float>& power)
   {
     const Grid& grid = this->Volume.grid;
@@ -309,7 +305,7 @@ private:
       With(add, escaped, cl_ulong(channel * cells), *this->Volume.deposit.faceOut,
         cl_ulong(this->Volume.faceFirst + channel * cells), static_cast<float>(factor));
       this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells));
-      this->TheDevice.Finish(); // the array is released
+      this->TheDevice.Finish(); // the kernel must end before `escaped` is released
     }
   }
 
@@ -356,7 +352,7 @@ private:
 
   std::vector<float> OfChannels;  ///< emission of the bounding box, W / (length^3 sr), [channel][voxel]
   Buffer<float> Points, Emission; ///< arguments of gather_voxels(): lattice, and emission
-  Rgb Emitted = {};               ///< W
+  Rgb Emitted = {};               ///< emitted power of the peak, W, by channel
   Buffer<float> Path, Flux;
   Buffer<float> Found;      ///< by voxel, 1: lit by fans; less: the voxel traces rays individually
   Buffer<float> CellsFound; ///< by face cell, 1: lit by fans; less: the cell traces rays individually

@@ -19,8 +19,7 @@ typedef struct
 
 /// Fans of rays from points in the emitting box into one 24th of the sphere of directions. The axes of the scene are
 /// permuted and reflected so that the voxels are farthest from the emitting box along the first axis, and all three
-/// axes
-/// point away from the box.
+/// axes point away from the box.
 typedef struct
 {
   int order[3], turned;      ///< permutation of the scene's axes, and bit mask of the reflected ones
@@ -30,8 +29,8 @@ typedef struct
   int lines, rows;           ///< number of rays of a fan along the second and third axis; lines is a multiple of 16
   float firstLine, firstRow; ///< smallest tangents along the second and third axis, voxels per layer
   float spacing;             ///< difference of tangents between adjacent lines, and between adjacent rows
-  int bandFirst, bandRows;   ///< range of rows in memory
-  int pointFirst, points;    ///< range of fans in memory
+  int bandFirst, bandRows;   ///< first row in memory, and number of rows in memory
+  int pointFirst, points;    ///< first fan in memory, and number of fans in memory
   int halfOfPoints;          ///< number of fans in the first of the two halves that are compared
   int strides[3], base;      ///< strides of the copy of sigma_t for the fans, in the permuted scene
   float emitted;             ///< integral of emission over the emitting box, W / sr
@@ -41,8 +40,7 @@ enum
 {
   FanMargin = 16, ///< unused floats before and after sigma_t's copy, which vector loads may read
   /// Floats per origin of a fan: position along the three permuted axes, voxels; depth in a layer at which light is
-  /// sampled,
-  /// 0 to 1; offsets added to the tangents of lines and of rows, in units of `spacing`.
+  /// sampled, 0 to 1; offsets added to the tangents of lines and of rows, in units of `spacing`.
   FanPointFloats = 6
 };
 SHARED_END

@@ -60,8 +60,7 @@ bool VacuumEmission::IsEmpty(double sigma_t, const Grid& grid)
 }
 
 /// Uses an even number of directions along the edge of a cube's face: then no direction is parallel to an axis, which
-/// may be
-/// periodic.
+/// may be periodic.
 std::unique_ptr<const SweptDirections> VacuumEmission::DirectionsFor(
   const Grid& whole, const PropagationSettings& settings)
 {

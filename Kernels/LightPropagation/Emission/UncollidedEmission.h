@@ -27,8 +27,7 @@ private:
 
 /// Uncollided source: light emitted in empty (transparent) voxels, swept along more directions and rays than scattered
 /// light. Since nothing attenuates this light, errors in path length are visible, and few rays make paths in the
-/// outermost
-/// emitting voxels too short (numerics.md, section 5.6).
+/// outermost emitting voxels too short (numerics.md, section 5.6).
 class VacuumEmission : public UncollidedSource
 {
 public:

@@ -65,8 +65,8 @@ public:
   double absorbed = 0.0, emitted = 0.0;
   std::array<double, 2> escaped = {}; ///< power that leaves at top and bottom, without reflected power
   LayerStack stack;
-  StackSolution even;                                 ///< azimuthal order 0
-  std::vector<std::array<StackSolution, 2>> slanting; ///< azimuthal orders 1, 2, ..., [cos, sin]
+  StackSolution even;                                 ///< solution of azimuthal order 0
+  std::vector<std::array<StackSolution, 2>> slanting; ///< solutions of azimuthal orders 1, 2, ..., [cos, sin]
 
 private:
   void AddBeams(const SlabScene& scene, const StackLight& light, int channel);

@@ -70,7 +70,7 @@ void PropagationProblem::Truncate(const DeviceMemory& memory)
       ? AngularDegreeFor(detail, this->Whole(), this->TheSettings, this->IsSlab(), most, memory)
       : 0;
   });
-  degree = -static_cast<int>(domain.Max(-1.0 * degree)); // the lowest of all ranks
+  degree = -static_cast<int>(domain.Max(-1.0 * degree)); // lowest degree of all ranks
   domain.Collective([&] {
     std::optional<DirectionKernel> kernel;
     if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, this->Whole(), this->ChannelCount, this->TheSettings.periodic))

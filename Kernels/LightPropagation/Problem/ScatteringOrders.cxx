@@ -103,7 +103,7 @@ LineSums SumAlongLines(const Grid& grid, const Value& value)
 /// it up to three times (numerics.md, Eq. (86a)).
 struct ThickLines
 {
-  ThickLines() = default; ///< vacuum
+  ThickLines() = default; ///< lines in vacuum
   /// @param sigma_t  sums of the extinction along lines (SumAlongLines), 1/length
   ThickLines(const Grid& grid, const LineSums& sigma_t);
 

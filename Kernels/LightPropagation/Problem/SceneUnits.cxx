@@ -58,7 +58,7 @@ void Copy(Field& field, std::size_t voxels, std::vector<float>& values, const Ch
 void Multiply(std::vector<float>& values, double unit, const char* name)
 {
   const auto isBeyond = [=](float value) { return std::abs(value * unit) > std::numeric_limits<float>::max(); };
-  if (std::count_if(values.begin(), values.end(), isBeyond) > 0) // vectorises, unlike any_of
+  if (std::count_if(values.begin(), values.end(), isBeyond) > 0) // count_if is vectorised, unlike any_of
   {
     const double watts = *std::max_element(values.begin(), values.end()) * unit;
     throw InvalidInput("The " + std::string(name) + " would be " + Text("%.5g", watts) +

@@ -157,7 +157,7 @@ LightField SolveParallel(Device& device, const Medium& medium, const Illuminatio
 {
   Check(medium);
   Check(illumination);
-  CheckPublished(medium, illumination); // before channels are merged
+  CheckPublished(medium, illumination); // checked before channels are merged
   const SceneChannels channels(medium, TraitsOf(medium), illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {

@@ -131,7 +131,7 @@ public:
   /// Mean at a cosine between light and patch, 1/sr.
   double At(double cosine) const
   {
-    const double place = Rows * std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0)); // by sin(angle/2)
+    const double place = Rows * std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0)); // tabulated by sin(angle / 2)
     const int row = std::min(static_cast<int>(place), static_cast<int>(Rows));
     return this->Means[row] + (place - row) * (this->Means[row + 1] - this->Means[row]);
   }
@@ -175,7 +175,7 @@ std::vector<std::vector<double>> ScatteringFactors(
   }
   for (std::size_t i = 0; i < set.directions.size(); ++i)
   {
-    if (cellSize[i] == 0.0) // more directions than patches
+    if (cellSize[i] == 0.0) // no patch lies in this cell: there are more directions than patches
     {
       addPatch({ Vector(set.directions[i].omega), set.directions[i].weight, 0 }, i);
     }

@@ -54,8 +54,9 @@ struct PublishedVolumes
   VolumeLayouts Layouts;
   bool Coloured; ///< whether sigma_t or sigma_s differs between channels
 
-  Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2]; ///< [layout]
-  Buffer<float> Totals;                                                    ///< moments of all orders, layout 0
+  /// sigma_t, sigma_s, U and moments of the current order, [layout]
+  Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2];
+  Buffer<float> Totals; ///< moments of all orders, layout 0
   Buffer<PublishedPart> Parts;
 
 private:

@@ -275,7 +275,7 @@ private:
   int Channels;
   OrderLedger Ledger;
   SweepTally Tally;   ///< incident, escaped and wrapped power of the current order
-  std::size_t Values; ///< voxels times channels
+  std::size_t Values; ///< number of voxels times number of channels
   std::vector<float> Extinction, Scattering;
   std::vector<std::vector<float>> Sources; ///< U by source direction, channels interleaved; empty if no map reads it
   /// Moments of this order, in double: thousands of rays cross a flat voxel, and sums in float were wrong by 6e-4.
@@ -291,7 +291,7 @@ LightField SolveSequential(
 {
   Check(medium);
   Check(illumination);
-  CheckPublished(medium, illumination); // before channels are merged
+  CheckPublished(medium, illumination); // checked before channels are merged
   const SceneChannels channels(medium, TraitsOf(medium), illumination);
   return SolveChannels(settings.leaveOut, channels, medium, illumination,
     [&](const Medium& ofChannels, const Illumination& light, int count) {

@@ -22,7 +22,7 @@ public:
     const std::vector<Light>& lamps);
 
   const AngularBasis& Basis() const { return this->TheBasis; }
-  const AngularValues& Values() const { return this->OfDirections; } ///< for SweepRequest::angular
+  const AngularValues& Values() const { return this->OfDirections; } ///< pass as SweepRequest::angular
   int Beams() const { return static_cast<int>(this->LampOfBeam.size()); }
   int BeamOf(std::size_t lamp) const; ///< index of a lamp's beam; -1: none
 

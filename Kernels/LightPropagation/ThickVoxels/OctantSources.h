@@ -84,8 +84,8 @@ private:
   bool IsEmpty() const { return this->The.layout.grid.VoxelCount() == 0; }
 
   Scene The;
-  Buffer<float> OfSweep, Incoming; ///< [channel][face][stride]
-  Buffer<float> Found;             ///< [channel][octant][stride]
+  Buffer<float> OfSweep, Incoming; ///< see Currents(), CameInThroughFaces()
+  Buffer<float> Found;             ///< see Sources()
   /// See LampPath(), LampMoments(); OfLamps: source by face, [channel][face][stride].
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps;
   Buffer<float> Diffuse, Falling; ///< tables of VoxelResponse

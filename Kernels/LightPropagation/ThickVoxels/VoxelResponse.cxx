@@ -14,7 +14,7 @@ namespace
 {
 constexpr int Nodes = 10;              ///< number of quadrature nodes per hemisphere
 constexpr double LeastAlbedo = 1e-3;   ///< smallest albedo, since the response is divided by it
-constexpr double LeastAbsorbed = 1e-5; ///< smallest 1 - albedo
+constexpr double LeastAbsorbed = 1e-5; ///< smallest tabulated value of 1 - albedo
 /// Maximum of beta, which is arbitrary in non-absorbing layers: all power leaves anyway.
 constexpr double MostAlike = 1.0;
 
