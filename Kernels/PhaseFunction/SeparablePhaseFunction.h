@@ -14,7 +14,7 @@ enum class PhaseFactorisation
   SphericalHarmonics ///< spherical harmonics; eigenvalues are Legendre moments of the phase function, degree by degree
 };
 
-/// Element of the phase matrix for a pair of directions.
+/// Value of the phase matrix' element for a pair of directions.
 enum class PhaseSampling
 {
   PointValues, ///< value of the phase function at the angle between the two directions, as published

@@ -15,7 +15,7 @@ class DirectionForecast
 public:
   /// Compares two solutions. Collective.
   /// @param few, more  solutions with `fewDirections` and `moreDirections` directions per cube face, for scattered and
-  ///   uncollided light alike
+  ///   for uncollided light
   DirectionForecast(
     Communicator& communicator, const LightField& few, int fewDirections, const LightField& more, int moreDirections);
 

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// arrays of fields; a deque, so that values are not moved when arrays are added
+/// Arrays to which fields refer; a deque, so that values are not moved when arrays are added.
 using Arrays = std::deque<std::vector<float>>;
 
 Field Keep(Arrays& arrays, std::vector<float>&& values, int components)

@@ -95,7 +95,7 @@ struct Seen
   std::vector<double> solidAngle; ///< solid angle of each direction's cell, sr
   /// Flux density through the cube's faces in the direction of travel, W / length^2.
   std::array<Rgb, 6> flux = {};
-  std::array<double, 6> cosines = {}; ///< the same flux density at radiance 1, sr
+  std::array<double, 6> cosines = {}; ///< flux density through the cube's faces at radiance 1, sr
 
   explicit Seen(const DirectionSet& set)
     : sum(set.directions.size(), Rgb{})

@@ -61,7 +61,7 @@ static void begin_line(const turned_scene* s, const float* point, const real* wa
 }
 
 // Radiance where a line leaves the emitting box, divided by the density of sample points along the line, W / sr. Points
-// are distributed in proportion to emission, so that this is the same for all lines if the box does not attenuate.
+// are distributed in proportion to emission, so that this power is equal for all lines if the box does not attenuate.
 static real weigh_line(const turned_scene* s, const float* point, const real* way, float emitted,
   const __global float* sigma, const __global float* emission)
 {

@@ -27,7 +27,7 @@ constexpr int FewestRays = 32; ///< smallest initial number of rays per voxel
 constexpr int MostRays = 4096; ///< largest number of rays per voxel
 /// Approximate initial number of rays in all voxels together, for the default error: about a second of work.
 constexpr double AllRays = 0x1p22;
-constexpr double CloseRays = 0x1p20; ///< the same number, for voxels in the emitting box and next to it
+constexpr double CloseRays = 0x1p20; ///< initial number of rays in all voxels in the emitting box and next to it
 const double UsualError = PropagationSettings().emissionError;
 
 /// Generating vector of a rank-1 lattice in five dimensions, found component by component for 32 to 2048 points; with

@@ -34,7 +34,7 @@ public:
   /// Whether emission from empty voxels is swept separately: not if emissionError is 0, nor in grids so large that the
   /// additional rays would cost more time than their accuracy is worth.
   static bool IsApart(const Grid& whole, const PropagationSettings& settings);
-  /// Whether a voxel counts as empty: its optical thickness along its longest edge is at most 1e-4.
+  /// Whether a voxel counts as empty: the optical thickness along its longest edge is at most 1e-4.
   /// @param sigma_t  extinction, 1/length
   static bool IsEmpty(double sigma_t, const Grid& grid);
   static std::unique_ptr<const SweptDirections> DirectionsFor(const Grid& whole, const PropagationSettings& settings);

@@ -21,7 +21,7 @@ public:
 
   explicit operator bool() const { return this->Along != 0; }
 
-  Medium Of(const Medium& medium) const; ///< the permuted medium; it refers to the same arrays
+  Medium Of(const Medium& medium) const; ///< permuted medium, which refers to the arrays of `medium`
   /// The permuted lights, faces and sky.
   Illumination Of(const Illumination& illumination) const;
   PropagationSettings Of(const PropagationSettings& settings) const;
