@@ -31,7 +31,7 @@ extern const char* const DefaultSky;      ///< no light was given: the filter us
 extern const char* const DarkOutside;     ///< neither environment nor sky nor faces emit light
 extern const char* const EvenOutside;     ///< boundary light is isotropic: it needs no separate quadrature
 extern const char* const
-  ThinVoxels; ///< all voxels are optically thin: the place of scattering within a voxel does not matter
+  ThinVoxels; ///< all voxels are optically thin: the position of scattering within a voxel does not matter
 extern const char* const NotByOctant;   ///< Source By octant was requested but cannot be used in this scene
 extern const char* const NotSideBySide; ///< the device does not run two queues concurrently
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);

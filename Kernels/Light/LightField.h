@@ -47,7 +47,8 @@ struct ConvergenceRow
   /// the rate of convergence.
   double residual = 0.0;
   double change =
-    0.0; ///< relative change of the light in this row; a poor measure of the error if light is scattered very often
+    /// Relative change of the light by this iteration; a poor measure of the error if light is scattered very often.
+    0.0;
   double absorbed = 0.0; ///< power absorbed so far, W, summed over channels
   double escaped = 0.0;
   double leftOver = 0.0;
@@ -87,16 +88,18 @@ struct SolveReport
 struct LightField : SolveReport
 {
   int channels = 1;
-  std::vector<float> fluence;       ///< W / length^2, `channels` per voxel
+  std::vector<float> fluence;       ///< fluence, W / length^2, `channels` per voxel
   std::vector<float> fluenceDirect; ///< fluence of uncollided light, W / length^2
   /// First moments of collisions of lamps' uncollided light (numerics.md, Eq. (37)), 6 * channels per voxel: for
   /// channels 0, 1, 2 one value per face -x, +x, ... +z. Each is the distance, 0 to 1/2 voxel, of the mean collision
   /// position from the voxel's centre towards the face, times the uncollided fluence, W / length^2. Empty: not
   /// requested.
   std::vector<float> firstMoments;
-  std::vector<float> fluenceError;      ///< estimated standard error of the fluence, W / length^2
-  std::vector<float> netFlux;           ///< W / length^2, 3 * channels per voxel: (x, y, z) of channel 0, 1, 2
-  std::vector<float> scatteredRadiance; ///< W / (length^2 sr), channels * storedDirections per voxel
+  std::vector<float> fluenceError; ///< estimated standard error of the fluence, W / length^2
+  /// Net flux, W / length^2, 3 * channels per voxel: (x, y, z) of channel 0, 1, 2.
+  std::vector<float> netFlux;
+  /// In-scattered radiance, W / (length^2 sr), channels * storedDirections per voxel.
+  std::vector<float> scatteredRadiance;
   std::vector<std::array<double, 3>>
     storedDirections; ///< directions of scatteredRadiance; a single (0, 0, 0) if it is isotropic
   /// Angular moments of the in-scattered radiance by outgoing direction, W / (length^2 sr): coefficients of the

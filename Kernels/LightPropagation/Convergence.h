@@ -73,7 +73,7 @@ double GoesOnAsForeseen(double before, double onTheWay, double others);
 /// @param iterations  completed iterations, including the fraction of the current one
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
 
-/// Fraction of the first iteration's progress that is attributed to uncollided light.
+/// Fraction of the first iteration's progress, for monitors, that is attributed to uncollided light.
 constexpr double UncollidedPart = 0.5;
 
 /// Adds a warning to `light.doubts` if faces reflect and uncollided light is given as input: the cells through which

@@ -146,7 +146,7 @@ std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
     return { { { first.x, first.y, first.z }, { second.x, second.y, second.z } } };
   }
   return { { { light.size[0] * ex, light.size[0] * ey, 0.0 },
-    { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // direction x first edge
+    { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // the second edge is direction x first edge
 }
 
 namespace

@@ -18,15 +18,16 @@ enum class LightType
   Rectangle = 3, ///< Lambertian emitter, on one side
 };
 
-/// One light, as a row of the LightRig's polydata.
+/// One light source other than sky, faces and environment: a row of the LightRig's polydata.
 struct Light
 {
   LightType type = LightType::Directional;
   std::array<double, 3> position = { 0.0, 0.0, 0.0 };   ///< position of the point, or centre of the rectangle
   std::array<double, 3> direction = { 0.0, 0.0, -1.0 }; ///< direction in which the light travels; any length but 0
-  Rgb power = { 1.0, 1.0, 1.0 }; ///< W; for a directional light: W / length^2 through a plane normal to `direction`
+  /// power, W; of a directional light: irradiance of a plane normal to `direction`, W / length^2
+  Rgb power = { 1.0, 1.0, 1.0 };
   std::array<double, 2> size = { 0.0, 0.0 }; ///< edge lengths of a rectangle
-  double angle = 0.0; ///< degrees; spot: full opening angle; rectangle: rotation of its edges about `direction`
+  double angle = 0.0; ///< full opening angle of a spot, or rotation of a rectangle's edges about `direction`, degrees
   /// Fineness with which grid solvers subdivide a rectangle, 0.7 to 3. At 1 the uncollided light is within 2% (root
   /// mean square) in voxels of a third of a mean free path (numerics.md, section 5.3).
   double fineness = 1.0;

@@ -43,7 +43,7 @@ inline bool IsBlack(const Rgb& rgb)
   return rgb == Rgb{};
 }
 
-/// Whether the value can be a power or radiance: not negative, and within the range of floats, which kernels use.
+/// Whether a value is valid as power or radiance: not negative, and within the range of floats, which kernels use.
 inline bool IsUsable(double value)
 {
   return value >= 0.0 && value <= std::numeric_limits<float>::max();

@@ -18,7 +18,7 @@ struct UncollidedImage
   /// Power-weighted mean direction of the uncollided light, 3 components per voxel; its length is 0 for isotropic light
   /// and 1 for a beam. Null: isotropic light.
   Field meanDirection;
-  std::array<Rgb, 6> escaped = {}; ///< uncollided power escaped through -x, +x, -y, +y, -z, +z, W
+  std::array<Rgb, 6> escaped = {}; ///< uncollided power that leaves through faces -x, +x, -y, +y, -z, +z, W
 
   bool IsThere() const { return this->fluence.values != nullptr; }
 };

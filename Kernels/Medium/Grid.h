@@ -9,8 +9,8 @@ namespace tyndall
 /// arrays over it have x fastest. Lengths are in the dataset's own unit.
 struct Grid
 {
-  std::array<int, 3> size = { 1, 1, 1 };             ///< voxels per axis, at least 1
-  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< edges of a voxel, > 0
+  std::array<int, 3> size = { 1, 1, 1 };             ///< number of voxels per axis, at least 1
+  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< edge lengths of a voxel, > 0
   std::array<double, 3> origin = { 0.0, 0.0, 0.0 };  ///< lower corner of the box
 
   std::size_t VoxelCount() const

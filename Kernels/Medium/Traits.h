@@ -22,7 +22,7 @@ public:
     return this->One;
   }                      ///< whether all colours are multiples of one colour, to rounding (3e-7 per component)
   bool IsGrey() const;   ///< whether all colours are exact multiples of white
-  int Brightest() const; ///< the channel with the largest sum
+  int Brightest() const; ///< index of the brightest channel of the common colour
   Rgb Relative() const;  ///< the common colour, scaled so that its brightest channel is 1; white if all are black
   bool IsBlack() const { return this->Sum == Rgb{}; } ///< whether all colours are black
 

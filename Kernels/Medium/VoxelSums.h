@@ -5,7 +5,8 @@
 
 namespace tyndall
 {
-/// Sum of term(voxel) over all voxels, on all of the host's cores; the order of addition is always the same.
+/// Sum of term(index of the voxel) over all voxels, on all of the host's cores; the order of addition is always the
+/// same.
 template <class Term>
 double SumOverVoxels(const Grid& grid, const Term& term)
 {

@@ -44,7 +44,7 @@ std::vector<Direction> WeightedSpiralDirections(int count)
 {
   CheckCount(count, FewestForMoments);
   std::vector<Direction> directions = SpiralDirections(count);
-  // Prescribed integrals of 1, omega and the five independent products of its components.
+  // Rows: 1, omega and five independent products of its components, whose integrals are prescribed.
   Eigen::MatrixXd moments(9, count);
   for (int i = 0; i < count; ++i)
   {

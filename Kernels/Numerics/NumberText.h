@@ -11,7 +11,7 @@
 
 namespace tyndall
 {
-/// A number as text, for users, files and kernels.
+/// Converts a number to text, for users, files and kernels.
 /// @param format  printf format for one double: "%g", "%.3g", "%.0f", "%.8e"
 inline std::string Text(const char* format, double value)
 {
@@ -36,7 +36,7 @@ inline std::string FloatLiteral(float value)
   return Text("%.8e", value) + "f";
 }
 
-/// The floating-point number at the start of a text, after blanks; none if there is no number or it is beyond doubles.
+/// Floating-point number at the start of a text, after blanks; none if there is none, or if it is beyond doubles.
 inline std::optional<double> NumberIn(std::string_view text)
 {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");

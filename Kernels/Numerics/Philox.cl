@@ -32,7 +32,7 @@ static random_numbers random_of(ulong seed, ulong stream)
   return random;
 }
 
-// State of a photon that has used `blocks` blocks, with `left` numbers of the last one unused.
+// State of the random numbers of a photon that has used `blocks` blocks, with `left` numbers of the last one unused.
 static random_numbers random_after(ulong seed, ulong stream, uint blocks, int left)
 {
   random_numbers random = random_of(seed, stream);

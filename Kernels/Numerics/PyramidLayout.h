@@ -19,7 +19,8 @@ struct PyramidLayout
   int Top() const { return this->LevelCount() - 1; } ///< index of the level with a single node
 
   std::vector<std::array<int, 3>> sizes; ///< nodes per axis of each level; level 0 is the grid
-  std::vector<std::size_t> offsets;      ///< first node of each level from 1 on; level 0 is not stored in the buffer
+  /// Index of the first node of each level from 1 on; level 0 is not stored in the buffer.
+  std::vector<std::size_t> offsets;
   /// Number of nodes of the levels from 1 on: a seventh of the voxels of a large cube.
   std::size_t nodeCount = 0;
 };

@@ -25,7 +25,7 @@ void CheckMeanCosine(double g)
   }
 }
 
-/// 1 + g^2 - 2 g c without cancellation, also for g near -1.
+/// Value of 1 + g^2 - 2 g c, with c the cosine, without cancellation, also for g near -1.
 double SquareOfHenyeyGreenstein(double g, double cosine)
 {
   const double size = std::abs(g);

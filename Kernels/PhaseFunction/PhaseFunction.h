@@ -51,7 +51,7 @@ public:
   double MeanCosine() const; ///< mean cosine g, in (-1, 1)
   /// Legendre moments 2 pi integral p(c) P_l(c) dc for l = 0 to `degree`: 1, the mean cosine, ...
   std::vector<double> Moments(int degree) const;
-  /// The cosine below which a fraction u of the light is scattered, 0 <= u <= 1: the inverse cumulative distribution.
+  /// Cosine below which a fraction u of the light is scattered, 0 <= u <= 1: inverse of the cumulative distribution.
   double CosineAt(double u) const;
 
   /// Fraction of the light scattered below a cosine in [-1, 1]: the cumulative distribution, which CosineAt inverts.

@@ -37,7 +37,7 @@ struct SeparableSettings
   bool truncatesPeak = false;
 };
 
-/// Errors of the sum of N terms against the full phase matrix.
+/// Errors of the sum of N terms relative to the full phase matrix.
 struct SeparableErrors
 {
   double frobenius = 0.0;  ///< relative Frobenius norm of the difference, weighted by solid angles
@@ -86,7 +86,7 @@ public:
   const std::vector<double>& SingularValues() const { return this->Singular; }
   /// The full phase matrix, 1/sr, [i][j], including the peak; repaired if the settings request it.
   const std::vector<double>& Matrix() const { return this->Whole; }
-  /// Errors of the sums of 1, 2, ..., Terms() terms against Matrix().
+  /// Errors of the sums of 1, 2, ..., Terms() terms relative to Matrix().
   std::vector<SeparableErrors> ErrorsByTerms() const;
 
 private:

@@ -151,7 +151,7 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
         {
           seen.Add(first + b / parts * n + a / parts, omega, weight, radiance);
         }
-        else if (a == b || a + b == n * parts - 1) // on a border between the face's eighths
+        else if (a == b || a + b == n * parts - 1) // on a border between the face's eighths: half to each of both cells
         {
           seen.Add(first + NearestOnFace(set, s * (1.0 + BorderTolerance), t), omega, 0.5 * weight, radiance);
           seen.Add(first + NearestOnFace(set, s, t * (1.0 + BorderTolerance)), omega, 0.5 * weight, radiance);

@@ -13,15 +13,15 @@ namespace tyndall
 /// and (+-along, +-across).
 struct DirectionOrbit
 {
-  double across = 0.0, along = 0.0; ///< 0 <= across <= along < 1
+  double across = 0.0, along = 0.0; ///< tangents of one direction of the orbit, 0 <= across <= along < 1
   double weight = 0.0;              ///< weight of each direction of the orbit, sr
   /// Offset that Nearest() adds to the cosine to a direction of this orbit, so that each cell's solid angle equals its
   /// weight.
   double reach = 0.0;
 };
 
-/// Quadrature with directions through the n x n cells of each of a cube's six faces. Face by face in the order -x, +x,
-/// -y, +y, -z, +z (the face the direction points through); within a face, cells row by row.
+/// Quadrature with directions through the n x n cells of each of a cube's six faces. Directions are ordered by the face
+/// through which they point, -x, +x, -y, +y, -z, +z, and within a face by cell, row by row.
 struct DirectionSet
 {
   int cellsPerEdge = 0; ///< number n of cells along the edge of a cube's face

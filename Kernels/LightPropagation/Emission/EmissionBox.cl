@@ -24,7 +24,7 @@ typedef struct
   int sourceFirst[3], sourceSize[3];
   int strides[3], base;             // of sigma_t: voxel (0, 0, 0) is at index `base`
   int sourceStrides[3], sourceBase; // of emission: lowest voxel of the box is at index `sourceBase`
-  int last, sourceLast;             // the highest index of sigma and of emission
+  int last, sourceLast;             // highest index of sigma_t and of emission
   int axis[3];                      // the original axis that corresponds to each permuted axis
   float sign[3];
 } turned_scene;
@@ -134,7 +134,7 @@ static real mean_left(real tau, real* left)
 // length.
 typedef struct
 {
-  real rate[3];       // voxels per length along each axis
+  real rate[3];       // voxels crossed along each axis per length of the ray
   real step[3];       // distance along the ray between voxel planes across each axis
   real next[3];       // position of the next voxel plane across each axis
   integer up[3];      // whether the ray propagates towards increasing index along each axis

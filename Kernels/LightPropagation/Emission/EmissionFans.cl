@@ -107,12 +107,13 @@ static bool is_wanted(
 // Current state of a packet of rays in follow_fan().
 typedef struct
 {
-  float point[2], row_tangent; // position of the origin, tangent of the row: second and third axis
-  real tangent, inverse;       // tangents of the rays along the second axis, and their inverses
-  real per_layer;              // path length of each ray per layer
-  real tau;                    // optical length from the emitting box
-  real kept;                   // transmittance at `sample`, averaged over the voxel there
-  float sample;                // distance from the origin at which light is sampled, layers
+  // position of the origin along the second and third axis; tangent of the row along the third
+  float point[2], row_tangent;
+  real tangent, inverse; // tangents of the rays along the second axis, and their inverses
+  real per_layer;        // path length of each ray per layer
+  real tau;              // optical length from the emitting box
+  real kept;             // transmittance at `sample`, averaged over the voxel there
+  float sample;          // distance from the origin at which light is sampled, layers
 } fan_lines;
 
 // Advances the rays from `from` to `to`, in layers from the origin, within one row of voxels. Requires that no ray

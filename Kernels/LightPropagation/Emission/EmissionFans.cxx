@@ -12,15 +12,15 @@ namespace tyndall
 {
 namespace
 {
-/// Initial number of fans into each part of space: two halves, each of two mirrored pairs.
+/// Initial number of fans into each of the 24 parts of space: two halves, each of two pairs of mirrored fans.
 constexpr int FewestPoints = 8;
-constexpr int MostPoints = 1024; ///< maximum number of fans into each part of space
+constexpr int MostPoints = 1024; ///< maximum number of fans into each of the 24 parts of space
 /// Maximum fraction of the voxels, per fan, whose two halves may differ without doubling the fans; these voxels trace
 /// rays individually.
 constexpr double FewLeft = 0.001;
 constexpr double LinesPerVoxel = 1.02; ///< rays per voxel edge in the last layer, so that a ray crosses every voxel
 constexpr int LineStep = 16; ///< the number of lines is a multiple of this, the width of the widest SIMD packet
-constexpr std::size_t KeptFloats = 1 << 24; ///< approximate size of the fans in memory at a time: 64 MiB
+constexpr std::size_t KeptFloats = 1 << 24; ///< approximate number of floats of the fans in memory at a time: 64 MiB
 constexpr int NearGap = 3;                  ///< voxels between the emitting box and the nearest voxel that uses fans
 
 /// Sobol's low-discrepancy sequence in six dimensions (Joe and Kuo 2008).
@@ -311,7 +311,7 @@ private:
     const auto cover = [&](int k, float& first, int& count) {
       const double low = std::min(0.0, (fan.first[k] - box.First[k] - box.Size[k]) / nearest);
       const double high = std::min(away + 0.5 * box.Size[k] + 0.5, ends[k] - box.First[k] + 0.0) / nearest;
-      first = static_cast<float>(low) - fan.spacing; // the offset of a point is at most one spacing
+      first = static_cast<float>(low) - fan.spacing; // one spacing lower, since a point's offset is at most that
       count = static_cast<int>(std::ceil((high - low) / fan.spacing)) + 3;
     };
     cover(1, fan.firstLine, fan.lines);

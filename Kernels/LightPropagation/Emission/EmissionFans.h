@@ -15,7 +15,7 @@ struct FanScene
 {
   const SweepVolume& volume;
   EmissionInfo info;
-  std::vector<float> emission; ///< W / (length^3 sr), over the emitting box, x fastest
+  std::vector<float> emission; ///< emission in the emitting box, W / (length^3 sr), x fastest
 };
 
 /// Result of GatherByFans(): light of a localised emission in each voxel and through each cell of the box's faces.

@@ -68,8 +68,8 @@ __kernel void mark_image_cells(EmissionInfo s, int mirrored, int face, ulong fir
   }
 }
 
-// Copies light to the voxels that are mirror images.
-// path  [channel][stride];  flux  [channel][x, y, z][stride], if has_flux is 1
+// Copies light to the voxels that are mirror images. One work-item per voxel.
+// path  path integrals, [channel][stride];  flux  net flux, [channel][x, y, z][stride], if has_flux is 1
 __kernel void copy_images(
   EmissionInfo s, int mirrored, int channels, ulong stride, __global float* path, __global float* flux, int has_flux)
 {

@@ -18,7 +18,8 @@ constexpr std::size_t MostPeaks = 16;
 constexpr double Widest = 0.125; ///< maximum width of a peak, relative to the box's longest edge
 constexpr double Hidden = 4.6;   ///< optical length beyond which a peak is not visible (transmittance 1%)
 constexpr double Opaque = 3e4;   ///< optical thickness of a voxel above which its emission is swept, not a peak
-constexpr double Clear = 1.5;    ///< distance, in widths of the peak, over which its surroundings must be clear
+/// Distance from a peak, in widths of the peak, over which its surroundings must be clear.
+constexpr double Clear = 1.5;
 
 using Voxel = std::array<int, 3>;
 
@@ -62,7 +63,7 @@ BrightVoxels FindBright(const Medium& medium)
     bright.all += sorted[i];
   }
   std::nth_element(sorted.begin(), sorted.begin() + most, sorted.end(), std::greater<double>());
-  // the first voxel beyond the bright 64th: brightness up to this is too common for a peak
+  // brightness of the first voxel after the brightest 64th: it is too common for a peak
   const double next = sorted[most];
   double rest = 0.0;
   for (std::size_t i = most; i < voxels; ++i)

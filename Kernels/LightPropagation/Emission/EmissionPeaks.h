@@ -13,9 +13,9 @@ namespace tyndall
 /// A small, bright emitting region of a medium: its bounding box and the emission in it.
 struct EmissionPeak
 {
-  std::array<int, 3> first = {}; ///< lowest voxel of its bounding box
+  std::array<int, 3> first = {}; ///< lowest voxel of the bounding box
   std::array<int, 3> size = {};  ///< size of the bounding box, voxels
-  std::vector<float> emission;   ///< [channel of 3][voxel of the box, x fastest], W / (length^3 sr)
+  std::vector<float> emission;   ///< emission in the bounding box, W / (length^3 sr), [channel of 3][voxel, x fastest]
 
   double Width(const Grid& grid) const ///< longest edge of the bounding box, length
   {
@@ -44,13 +44,13 @@ struct SplitEmission
 /// mean of the remaining voxels. Groups must be small (at most an eighth of the box's longest edge), in clear
 /// surroundings and not opaque, and together carry half of the power; otherwise there are no peaks (a luminous cloud, a
 /// flame). A dark solid that emits hardly more than it absorbs of the incident light is no peak either: its emission
-/// and its shadow, which sweeps cast, are accurate together if both use the same directions. Values of the limits: numerics.md,
+/// and its shadow, which sweeps cast, are accurate together if both use the same directions. Limits: numerics.md,
 /// section 5.6.
 /// @param comesIn  mean incident radiance at the domain's faces, W / (length^2 sr)
 SplitEmission Split(const Medium& medium, const Rgb& comesIn = {});
 
 // Limits that Split() and MayHaveEmissionPeaks() apply to the brightness of voxels.
-constexpr std::size_t EmissionBrightPart = 64; ///< at most one voxel in this many is part of a peak
+constexpr std::size_t EmissionBrightPart = 64; ///< at most one of this many voxels belongs to a peak
 constexpr double EmissionOutshines = 4.0; ///< peaks exceed this multiple of the mean emission of the remaining voxels
 constexpr double EmissionPartOfAll = 0.5; ///< minimum fraction of the emitted power that all peaks together carry
 

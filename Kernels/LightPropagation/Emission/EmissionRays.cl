@@ -27,7 +27,7 @@ static void begin_ray(const turned_scene* s, const lit_voxel* voxel, const real*
   }
   ray->ahead = fmin(ray->next[0], fmin(ray->next[1], ray->next[2]));
   ray->leave = fmax(ray->leave, (real)0.0f);
-  ray->enter = fmin(ray->enter, ray->leave); // rounding may put the entry behind the exit
+  ray->enter = fmin(ray->enter, ray->leave); // rounding may place the entry behind the exit
 }
 
 // Traces a ray from voxel `begin` of the grid to the emitting box. @return optical length from the point to the box
@@ -42,7 +42,7 @@ static real follow_to_box(const turned_scene* s, box_ray* ray, int begin, const 
     tau += take(sigma, index) * (end - now);
     cross_planes(ray, end, ray->enter, crossed);
     index += index_step(ray, crossed, s->strides);
-    // Rounding: a ray along a face of the grid may take a step of zero length past it.
+    // Clamped, since by rounding a ray along a face of the grid may take a step of zero length out of the grid.
     index = clamp(index, (integer)0, (integer)s->last);
     now = end;
     under_way = now < ray->enter && tau < (real)OPAQUE;
@@ -165,13 +165,13 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
     const real half_range = high_u / (away + sqrt(away * away + high_u * high_u)) - half_low;
     const real tangent = half_low + half_range * part; // tangent of half the angle
     const real squared = tangent * tangent;
-    // distance from the point to the line along which v runs
+    // distance from the point to the line on the box's side along which v varies
     const real across_u = away * (1.0f + squared) / (1.0f - squared);
     const real sin_low = low_v * rsqrt(across_u * across_u + low_v * low_v);
     const real sin_range = high_v * rsqrt(across_u * across_u + high_v * high_v) - sin_low;
     const real sine = sin_low + sin_range * load_real(i, points + MOST);
     const real solid_angle = half_range * 2.0f / (1.0f + squared) * sin_range / share;
-    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f)); // 0 would be a direction that misses the side
+    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f)); // not 0, whose direction would miss the side
     const integer ahead = voxel->inside ? high_side : ~high_side;
     const real forward = cosine * (1.0f - squared) / (1.0f + squared);
     const real turned[3] = { select(-forward, forward, ahead), cosine * 2.0f * tangent / (1.0f + squared), sine };
@@ -396,7 +396,7 @@ __kernel void take_rows(int row, const __global float* sigma, ulong sigma_first,
   taken[i] = sum;
 }
 
-// values[first + i] += factor * gathered[from + i]
+// Adds gathered light: values[first + i] += factor * gathered[from + i].
 __kernel void add_gathered(
   const __global float* gathered, ulong from, __global float* values, ulong first, float factor)
 {

@@ -48,7 +48,7 @@ std::vector<float> LatticePoints()
       {
         reversed |= (i >> bit & 1u) << (31 - bit);
       }
-      // the integer part overflows; the shift avoids 0 itself
+      // the integer part is lost by overflow; the shift avoids the coordinate 0
       const std::uint32_t place = reversed * component + (1u << 22);
       points.push_back(static_cast<float>(place >> 8) * 0x1p-24f);
     }
@@ -115,8 +115,8 @@ private:
     }
     const double all = AllRays * (UsualError / this->Error) * (UsualError / this->Error);
     this->Scene.fewest = FewestFor(static_cast<double>(grid.VoxelCount()), all, FewestRays);
-    // Most of the emitted power may be lost through the nearest faces. An error there would be compensated by all other
-    // light, because powers are normalised to add up.
+    // More rays in and next to the box: most of the emitted power may leave through the nearest faces, and an error
+    // there would change all other light, because powers are normalised to add up.
     const std::array<int, 3>& size = this->Peak.size;
     const double close = (size[0] + 2.0) * (size[1] + 2.0) * (size[2] + 2.0); // number of voxels in and next to the box
     this->Scene.fewestClose = FewestFor(close, CloseRays, this->Scene.fewest);
@@ -356,7 +356,7 @@ private:
   Buffer<float> Path, Flux;
   Buffer<float> Found;      ///< by voxel, 1: lit by fans; less: the voxel traces rays individually
   Buffer<float> CellsFound; ///< by face cell, 1: lit by fans; less: the cell traces rays individually
-  Buffer<float> FaceLight;  ///< outgoing flux density through the faces, W / length^2, [cell][channel]
+  Buffer<float> FaceLight;  ///< outgoing flux density through the box's faces, W / length^2, [cell][channel]
   Rgb Taken = {};           ///< power that the medium removes from the gathered light, W, by channel
   std::array<Rgb, 6> Escaped = {};
   std::vector<float> EscapedByCell; ///< escaped power, W, [channel][cell]; empty if not requested

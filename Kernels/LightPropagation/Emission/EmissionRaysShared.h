@@ -4,7 +4,7 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// A medium and the bounding box of a localised emission in it.
+/// A medium and the bounding box of a localised emission in it, as kernel argument.
 typedef struct
 {
   int size[3];
@@ -32,7 +32,7 @@ typedef struct
   int bandFirst, bandRows;   ///< first row in memory, and number of rows in memory
   int pointFirst, points;    ///< first fan in memory, and number of fans in memory
   int halfOfPoints;          ///< number of fans in the first of the two halves that are compared
-  int strides[3], base;      ///< strides of the copy of sigma_t for the fans, in the permuted scene
+  int strides[3], base;      ///< strides, and index of voxel (0, 0, 0), of the copy of sigma_t in the permuted scene
   float emitted;             ///< integral of emission over the emitting box, W / sr
 } FanInfo;
 

@@ -45,7 +45,7 @@ double SeriesOfMoment(int power, double r)
   return sum;
 }
 
-/// (x a - y b) (x a + y b)^-1 for diagonal a, b.
+/// Matrix (x a - y b) (x a + y b)^-1 with the modes' matrices x, y and diagonal matrices a, b.
 Eigen::MatrixXd Ratio(const LayerModes& modes, const Eigen::ArrayXd& a, const Eigen::ArrayXd& b)
 {
   const Eigen::ArrayXd scale = 1.0 / (a + b); // only the ratio a / b of each mode matters
@@ -73,8 +73,8 @@ struct BeamIntegrals
 {
   BeamIntegrals(double x, double r);
 
-  double slopeAtEntry; ///< a'(0)
-  double slopeAtExit;  ///< -a'(1)
+  double slopeAtEntry; ///< slope a'(0) where the beam enters
+  double slopeAtExit;  ///< negative slope, -a'(1), where the beam leaves
   double mean;         ///< mean of a
   double meanBeam;     ///< mean of exp(-r s)
 };
@@ -263,7 +263,7 @@ void LayerSource::AddBeam(const LayerModes& modes, const LayerOperator& layer, d
 LayerMeans MeansOf(const LayerModes& modes, const LayerSource& source, double depth, const Eigen::VectorXd& downAtTop,
   const Eigen::VectorXd& upAtTop, const Eigen::VectorXd& downAtBottom, const Eigen::VectorXd& upAtBottom)
 {
-  constexpr double thin = 1e-3; // the flux is linear in depth to 1e-6
+  constexpr double thin = 1e-3; // optical thickness below which the flux is linear in depth, to 1e-6
   const Eigen::VectorXd top = modes.inverseX * (downAtTop + upAtTop);
   const Eigen::VectorXd bottom = modes.inverseX * (downAtBottom + upAtBottom);
   const Eigen::VectorXd falloff = (0.5 * depth * modes.k.array()).unaryExpr(&TanhOver);

@@ -14,7 +14,7 @@ struct HalfRangeQuadrature
 {
   explicit HalfRangeQuadrature(int count);
 
-  std::vector<double> cosines, weights; ///< ascending; the weights sum to 1
+  std::vector<double> cosines, weights; ///< ascending cosines; weights, whose sum is 1
 };
 
 /// Values of sqrt((l - m)! / (l + m)!) P_l^m(x) for l = 0 to `degree`, m = `order`, without the sign (-1)^m; 0 where l
@@ -61,9 +61,9 @@ struct LayerOperator
 /// Light of a layer's internal sources, without incident light.
 struct LayerSource
 {
-  Eigen::VectorXd up, down;     ///< outgoing radiance at the top and at the bottom, at the nodes
-  Eigen::VectorXd meanA, meanB; ///< means over depth of the amplitudes a, b (LayerModes), for the
-                                ///< solution with a = 0 at top and bottom
+  Eigen::VectorXd up, down; ///< outgoing radiance at the top and at the bottom, at the nodes
+  /// Means over depth of the amplitudes a, b (LayerModes), for the solution with a = 0 at top and bottom.
+  Eigen::VectorXd meanA, meanB;
 
   explicit LayerSource(Eigen::Index nodes);
 

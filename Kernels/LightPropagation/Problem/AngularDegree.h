@@ -32,7 +32,8 @@ double SumOfExtinction(const Medium& medium, int channel);
 struct AngularDetail
 {
   std::vector<double> moments; ///< largest magnitude of a phase function's moment, by degree
-  Rgb extinction = {};         ///< sum over voxels, 1/length; 0 if all scattering is isotropic
+  /// Sum of the extinction over voxels, 1/length, by channel; 0 if all scattering is isotropic.
+  Rgb extinction = {};
 };
 AngularDetail AngularDetailOf(const Medium& medium, int channels);
 

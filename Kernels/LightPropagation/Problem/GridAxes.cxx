@@ -11,8 +11,8 @@ namespace tyndall
 {
 namespace
 {
-/// Width of a voxel along unvarying axes, in edges along the other axes: larger widths gain little, and flat voxels slow
-/// down the diffusion solve.
+/// Width of a voxel along unvarying axes, in edges along the other axes: larger widths gain little, and flat voxels
+/// slow down the diffusion solve.
 constexpr double Width = 10.0;
 constexpr int EdgeInSlabs = 12;
 /// Even number of directions along a cube face's edge whose quadrature has directions of cosine 0 to an axis; their
@@ -129,7 +129,7 @@ void AxisPermutation::TurnBackMoments(LightField& light, const Grid& grid) const
   {
     if (first % (harmonics * channels) >= channels)
     {
-      continue; // not the first moment of a voxel and channel
+      continue; // this is not the first moment of a voxel and channel
     }
     for (std::size_t j = 0; j < harmonics; ++j)
     {

@@ -35,7 +35,7 @@ public:
   /// @throws InvalidInput  as Check() in SceneChecks.h
   PropagationProblem(const Domain& domain, const Medium& medium, const Illumination& illumination,
     const PropagationSettings& settings, const DeviceMemory& memory = {});
-  /// Problem on a serial domain.
+  /// Checks and converts a scene on a serial domain.
   PropagationProblem(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
     const DeviceMemory& memory = {})
     : PropagationProblem(Domain(medium.grid), medium, illumination, settings, memory)

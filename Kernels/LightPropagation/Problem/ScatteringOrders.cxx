@@ -52,10 +52,10 @@ constexpr double PlainSetUp = 0.8; ///< set-up of source iteration, in orders: m
 
 /// Sums of a quantity over the lines of voxels along each axis: [axis][position on the other two axes, the lower one
 /// fastest].
-/// @param value  value(voxel); called from several threads
 using LineSums = std::array<std::vector<double>, 3>;
 
-/// @param value  value(voxel); called from several threads
+/// Sums value(voxel) along the lines of voxels of a grid.
+/// @param value  function of the voxel's index; called from several threads
 template <class Value>
 LineSums SumAlongLines(const Grid& grid, const Value& value)
 {
@@ -83,7 +83,8 @@ LineSums SumAlongLines(const Grid& grid, const Value& value)
       }
     }
   });
-  InThreads(n[1], 1, [&](std::size_t begin, std::size_t end) { // lines along z end in other planes
+  // separately, since lines along z cross the planes of the threads above
+  InThreads(n[1], 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
     {
       for (int z = 0; z < n[2]; ++z)
@@ -114,8 +115,8 @@ struct ThickLines
 /// Properties of one channel from which the number of scattering orders is estimated.
 struct ScatteringOfChannel
 {
-  ThickLines diffusing; ///< thickness for diffusing light (transport extinction)
-  ThickLines swept;     ///< thickness in the extinction that the sweeps use; unused without angular moments
+  ThickLines diffusing; ///< optical thickness by transport extinction, for diffusing light
+  ThickLines swept;     ///< optical thickness by the extinction of the sweeps; unused without angular moments
   double albedo = 0.0;  ///< mean albedo, in the coefficients that the sweeps use
 };
 

@@ -20,7 +20,7 @@ bool ScatteredManyTimes(const PropagationProblem& problem);
 enum class IterationScheme
 {
   SourceIteration, ///< one sweep per scattering order; Conservative/SourceIteration.h
-  /// Source iteration with a diffusion correction on cells of several voxels, for optically thin voxels
+  /// Source iteration with a diffusion correction on cells of several voxels, for optically thin voxels.
   CoarseMeshDsa,
   Dsa, ///< diffusion synthetic acceleration on the voxels; Conservative/Acceleration/DiffusionAcceleration.h
 };

@@ -143,7 +143,7 @@ TruncatedScattering::TruncatedScattering(
   {
     this->OfChannel[c] = TruncationsOf(medium.phase.OfChannel(c), degree, nowhereNegative);
   }
-  // The shortest edge decides: angular detail is resolved along it first.
+  // The shortest edge determines the degree: angular detail is resolved along it first.
   const double shortest = *std::min_element(medium.grid.spacing.begin(), medium.grid.spacing.end());
   this->Degrees.resize(medium.grid.VoxelCount() * channels);
   this->MostDegree = 0;

@@ -47,7 +47,7 @@ public:
   void Propagate(int batch, const Monitor& monitor = {});
   /// Adds T of a batch to the moments of the current order.
   void Collect(int batch);
-  /// Computes U of the next order, I and fluence of all orders so far, powers and convergence.
+  /// Ends an order: computes U of the next order, I and fluence of all orders so far, powers and convergence.
   void FinishOrder();
   /// Runs one scattering order: Propagate() and Collect() for each batch, then FinishOrder().
   void RunOrder(const Monitor& monitor = {});
@@ -66,7 +66,7 @@ public:
   /// first.
   void SetSource(const std::vector<float>& source);
 
-  LightField Result() const; ///< sum of all orders so far
+  LightField Result() const; ///< light of all orders so far
 
 private:
   using Batch = PublishedPlan::Batch;

@@ -30,7 +30,7 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
   for (std::size_t d = 0; d < directions.size(); ++d)
   {
     const double cosine = glm::dot(Vector(directions[d]), Vector(omega));
-    if (cosine > largest + 1e-12) // the first one wins ties
+    if (cosine > largest + 1e-12) // the first of equally near directions is taken
     {
       largest = cosine;
       best = static_cast<int>(d);
@@ -187,8 +187,8 @@ std::vector<std::vector<double>> ScatteringFactors(
   return factors;
 }
 
-/// `count` directions distributed evenly over the sphere: cell centres of the cube faces if count is 6 n^2, else
-/// Fibonacci points.
+/// Chooses `count` directions evenly over the sphere: cell centres of the cube faces if count is 6 n^2, else Fibonacci
+/// points.
 std::vector<std::array<double, 3>> EvenDirections(int count)
 {
   std::vector<std::array<double, 3>> directions;
@@ -474,7 +474,7 @@ double MapGeometry::StartOfOrder(double start, double slope, int order) const
   }
   const double position = start + slope * this->planes * order;
   const double place = position - std::floor(position);
-  const bool onBorder = std::min(place, 1.0 - place) < 1e-9; // has not yet crossed into the next voxel
+  const bool onBorder = std::min(place, 1.0 - place) < 1e-9; // the ray has not yet crossed into the next voxel
   return !onBorder ? place : slope > 0.0 ? 1.0 : slope < 0.0 ? 0.0 : start;
 }
 

@@ -97,7 +97,7 @@ void PublishedPlan::MeasureBuffers(int perBatch)
   {
     const std::size_t slots = static_cast<std::size_t>(batch.count) * this->Volumes.Channels();
     const std::size_t rows = batch.Map().sizeV;
-    this->sizes.rays = std::max(this->sizes.rays, 2 * slots * (rows + 2) * this->RayRow(batch)); // two ray maps
+    this->sizes.rays = std::max(this->sizes.rays, 2 * slots * (rows + 2) * this->RayRow(batch)); // 2: two ray maps
     this->sizes.escaped = std::max(this->sizes.escaped, slots * (2 * rows + 1));
   }
   this->sizes.contributions = perBatch * this->LargestLayout();

@@ -12,6 +12,7 @@ namespace tyndall
 /// Memory layouts of volumes. Rows always run along u of the maps that use the layout.
 struct VolumeLayouts : PublishedLayouts
 {
+  /// Computes the strides of both layouts.
   /// @param width  rows are padded to a multiple of this many floats
   VolumeLayouts(const Grid& grid, int width);
 
