@@ -46,9 +46,8 @@ struct ConvergenceRow
   /// light (numerics.md, Eqs. (43), (73)). 1 after the first row unless it is the last, since one order does not show
   /// the rate of convergence.
   double residual = 0.0;
-  double change =
-    /// Relative change of the light by this iteration; a poor measure of the error if light is scattered very often.
-    0.0;
+  /// Relative change of the light by this iteration; a poor measure of the error if light is scattered very often.
+  double change = 0.0;
   double absorbed = 0.0; ///< power absorbed so far, W, summed over channels
   double escaped = 0.0;
   double leftOver = 0.0;
