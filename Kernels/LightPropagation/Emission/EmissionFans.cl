@@ -13,7 +13,7 @@
 // Accepted difference of the two halves of the fans, in units of EmissionInfo::uneven: the mean of both halves is more
 // accurate than their difference suggests.
 #define OF_HALVES 3.0f
-#define DIM 1e-6f // transmittance below which the halves of the fans need not agree
+#define DIM 1e-6f // transmittance of the light below which the two halves of the fans need not agree
 
 static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* turned)
 {
@@ -81,7 +81,7 @@ static real weigh_line(const turned_scene* s, const float* point, const real* wa
 typedef struct
 {
   float point[3];        // origin of the rays, voxels
-  float low[2], high[2]; // smallest and largest tangent along the second and the third axis
+  float low[2], high[2]; // smallest and largest tangent of the packet's rays along the second and the third axis
 } line_packet;
 
 // Whether a packet may still reach voxels of its 24th of space, in this layer or beyond.

@@ -73,7 +73,8 @@ public:
   GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
 
 private:
-  /// [plane][index of the voxel along the ray in this plane]
+  /// Crossings of a batch's directions on one sub-map: [plane][index of the voxel along the ray in this
+  /// plane][direction].
   using CrossingsByPlane = std::vector<std::vector<std::vector<PublishedCrossing>>>;
 
   int DirectionsPerBatch(std::size_t temporaryBytes) const;
