@@ -1,7 +1,9 @@
-// Entry of rays into the box, and what they see when they leave it: part of BentView.cl and RayRounds.cl.
+// Entry of rays into the medium's box, and the radiance that they receive where they leave it. Included by BentView.cl
+// and RayRounds.cl.
 //
-// Along a bent ray L / n^2 changes only by emission, scattering and absorption (numerics.md, Eq. (109)): sources and
-// backgrounds are divided by the local n^2, and the picture is multiplied by n^2 at the ray's entry.
+// Along a bent ray L / n^2, radiance over squared refractive index, changes only by emission, scattering and absorption
+// (numerics.md, Eq. (109)): sources and backgrounds are divided by the local n^2, and the picture is multiplied by n^2
+// at the ray's entry.
 
 #pragma once
 #include "Viewing/Backdrop/Backdrop.cl"
@@ -11,9 +13,13 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-#define REACH_OF_TABLE 2e-3f // voxels; rounding error of a ray's exit point relative to the face
+// Largest distance in voxels between a ray's exit point and the table's face, due to rounding, at which the ray meets
+// the table.
+#define REACH_OF_TABLE 2e-3f
 
-// Radiance of a white table where rays meet it, interpolated between voxel centres.
+// Radiance, divided by n^2, of a white table (diffuse reflectance 1) at points of its face, interpolated between voxel
+// centres.
+//   place  points on the table, in voxels of the whole grid
 inline rgb table_light(const surroundings* s, __global const float4* backdrop, real3 place)
 {
   const real3 p = in_block(s, place);
@@ -29,7 +35,7 @@ inline rgb table_light(const surroundings* s, __global const float4* backdrop, r
   return between_four(backdrop + s->v->backdrop.w, first, first + row, across, up);
 }
 
-// Selects the rays that leave the box through the table.
+// Returns which of the rays `left_box`, which leave the box, leave it through the table's face.
 inline integer meet_table(const surroundings* s, const ray_packets* t, integer left_box)
 {
   const int axis = s->o->face.x;
@@ -40,7 +46,8 @@ inline integer meet_table(const surroundings* s, const ray_packets* t, integer l
   return left_box & (fabs(place - (real)face) < (real)REACH_OF_TABLE) & (heading * sign > (real)0.0f);
 }
 
-// Adds the table's diffuse radiance to rays that end on it; `towards` becomes their mirrored direction.
+// Adds the radiance that the table reflects diffusely to the rays `ends`, which end on it at `p`, and mirrors their
+// directions `towards` in the table.
 inline void end_on_table(
   const surroundings* s, __global const float4* backdrop, real3 p, integer ends, light* l, real3* towards)
 {
@@ -53,18 +60,19 @@ inline void end_on_table(
   *towards = chosen(ends, stretched(*towards, s->o->flip), *towards);
 }
 
-// Result accumulated over all marches of a pixel: light divided by n^2, and transmittance and depth along the primary
+// Result of all marches of a pixel: accumulated radiance divided by n^2, and transmittance and depth along the primary
 // ray.
 typedef struct
 {
   light l;
-  real entrySquare; // n^2 at the ray's entry
+  real entrySquare; // n^2 at the primary ray's entry into the box
   real left, depth;
   waiting mirrored;
 } seeing;
 
-// Initial state of camera rays at their entry into the box, with the speed |T| = n set by the index there.
-//   end  depth along the view axis at which the rays end
+// State of camera rays at their entry into the box, where their velocity T has magnitude n, the local refractive index.
+//   end  depth along the view axis at which each ray ends
+//   entry_square  receives n^2 at the entry
 inline ray_packets enter(const surroundings* s, camera_rays seen, real end, real* entry_square)
 {
   const real3 direction = stretched(seen.d, s->v->inverseSpacing);
@@ -94,11 +102,11 @@ inline spectrum mirrored_part(integer mirrors, spectrum now, spectrum before)
 #endif
 }
 
-// Adds what rays see at the end of their march: background, ground or table. A ray that never left the box sees the
-// background, with the index taken as that at its entry.
-//   ends_here  rays whose march ends now; others are not changed
-//   set_off    those of them that were in the box
-//   primary    those that come from the camera
+// Adds the radiance at the end of a march: that of background, ground or table, attenuated by the ray's transmittance.
+// A ray that never leaves the box receives the background, divided by n^2 at its entry.
+//   ends_here  rays whose march ends now; other lanes are not changed
+//   set_off    rays of `ends_here` that have been inside the box
+//   primary    rays of `ends_here` that start at the camera
 inline void arrive(const surroundings* s, const ray_packets* t, integer ends_here, integer set_off, integer primary,
   __global const float4* backdrop, crossed* half_way, seeing* to)
 {

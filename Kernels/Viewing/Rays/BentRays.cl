@@ -1,19 +1,20 @@
-// March of rays that bend where the refractive index varies.
+// March of rays that bend where the refractive index n varies.
 //
-// With dt = ds / n a ray obeys dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n, as photons do. The integrator is a leapfrog
-// (numerics.md, Eq. (91)) that takes the gradient at the midpoint of each step. Where the index is constant, steps are
-// straight and the gradient is not read.
+// With dt = ds / n, s the path length, a ray obeys dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n, as photons do. The
+// integrator is a leapfrog (numerics.md, Eq. (91)) that reads the gradient at the midpoint of each step. Where the
+// index is constant, steps are straight and the gradient is not read.
 //
-// The host gives
-//   SURFACE  reflectance of the surface where the index rises through a given value, at which primary rays are
-//                split: 0 no surface, 1 by Fresnel's equations, 2 constant
+// Macros set by the host:
+//   SURFACE  reflectance of the surface where the index rises through a given value, at which primary rays are split: 0
+//            no surface, 1 by Fresnel's equations, 2 constant
 
 #pragma once
 #include "Viewing/Rays/RayPackets.cl"
 
 #if SURFACE
-// Fresnel reflectance for unpolarised light from a medium of squared index n1 into one of squared index n2; `across` is
-// the square of n sin(theta) (numerics.md, Eq. (110)).
+// Fresnel reflectance for unpolarised light from a medium of squared index n1 into one of squared index n2
+// (numerics.md, Eq. (110)).
+//   across  (n sin(theta))^2, theta the angle to the surface's normal
 inline real fresnel(real n1, real n2, real across)
 {
   const real in = sqrt(greater(n1 - across, (real)0.0f)); // n cos(theta)
@@ -23,17 +24,17 @@ inline real fresnel(real n1, real n2, real across)
   return (real)0.5f * fma(s, s, p * p);
 }
 
-// Midpoint of the current step, velocity in its first half, half its time, and time since the midpoint of the previous
-// step.
+// A leapfrog step that crosses the surface: its midpoint, the velocity in its first half, half its duration, and the
+// time since the midpoint of the previous step.
 typedef struct
 {
   real3 middle, velocity;
   real halfTime, since;
 } met_step;
 
-// Splits the rays that meet the surface in this step (`meets`) into a transmitted and a reflected part. The
-// transmittance is known at the step's start, but the surface lies somewhat before or behind: the medium between the
-// two acts on both parts or on one.
+// Splits the rays `meets`, which meet the surface in this step, into a transmitted and a reflected part. The
+// transmittance is known at the step's start, but the surface lies somewhat before or behind that point: the medium in
+// between acts on both parts or on one of them.
 inline void split_at_surface(
   const surroundings* s, const met_step* step, integer meets, light* l, crossed* half_way, waiting* reflected)
 {

@@ -1,25 +1,28 @@
-// Renders a medium that bends rays, with a surface and a table. Three marches in turn: primary rays, rays reflected by
-// the surface, and rays mirrored by the table. One work-item is a packet of neighbouring pixels.
+// Renders a medium that bends rays, with a reflecting surface and a table. Each packet of neighbouring pixels, one per
+// work-item, is marched up to three times: primary rays, rays reflected by the surface, and rays mirrored by the table.
 
 #include "Viewing/Rays/Arrival.cl"
 #include "Viewing/Rays/BentRays.cl"
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// Starts the rays that wait for a later march; returns false if there are none.
+// Starts the march of reflected or mirrored rays `next`, which have waited for the end of an earlier march. Returns
+// false if there are none.
 inline int send_off(const waiting* next, ray_packets* t, light* l)
 {
   l->left = next->left;
   t->at = next->at;
   t->velocity = next->velocity;
   t->inside = most_left(*l) > (real)0.0f;
-  t->end = (real)ENDLESS; // opaque surfaces that end the camera's rays are not known along other rays
+  // The depths at which opaque surfaces end rays are given for camera rays only.
+  t->end = (real)ENDLESS;
   t->stopped = (integer)0;
   return any_lane(t->inside);
 }
 
-// bending  see surroundings
-// limits, picture  see View.cl
+// Renders the picture, one work-item per packet of neighbouring pixels.
+//   bending  gradient of n^2 and n^2, see surroundings in RayPackets.cl
+//   limits, picture  see ends_of and PIXELS in View.cl
 __kernel void cast_bent_rays(RayPass pass, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,

@@ -1,13 +1,14 @@
 // Radiative transfer along rays:
 //   radiance = integral over the ray of T(t) q(t) dt + T(end) background,  T(t) = exp(-integral of sigma_t)
-// with q = sigma_s times in-scattered radiance plus emission, both interpolated between voxel centres.
+// with q = sigma_s times in-scattered radiance plus emission; q and sigma_t are interpolated between voxel centres.
 //
-// The host gives
+// Macros set by the host:
 //   THIN_STEPS  1: the optical length of every step is at most 2
-//   PHASE, PHASE_CHANNELS  scattering of light of a known direction, see PhaseFunction.cl
-//   FLOW        with PHASE, what `flow` holds, as in ScatteredLight.cl
+//   PHASE, PHASE_CHANNELS  phase function for light whose mean direction is known, see PhaseFunction.cl
+//   FLOW        with PHASE, contents of the array `flow`, as in ScatteredLight.cl
 //   GLOW        1: emission is stored separately from scattered light
-//   SHOWN       0, or the value with which ShownSamples.cl packed; BEAMS 1: with lamps' light, in `flow`
+//   SHOWN       value of SHOWN with which ShownSamples.cl packed the samples, or 0 if ScatteredLight.cl did; BEAMS 1:
+//               `flow` holds the lamps' light
 //   BLOCK       1: the medium is a block of a larger grid, whose rays are straight; may be omitted
 
 #pragma once
@@ -21,16 +22,16 @@ typedef rgb spectrum;
 typedef real spectrum;
 #endif
 
-// Packed samples of the medium and its light, with a border of one voxel.
+// Packed samples of the medium and its light at voxel centres, with a border of one voxel.
 typedef struct
 {
   __global const float4*
     samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
   __global const float4* extinctions; // coloured sigma_t
-  __global const float4* flow;        // x, y, z of the light's mean direction, see FLOW
-  __global const float4* glow;        // emission
-  __global const float4* cosines;     // red, green, blue of g, see FLOW
-  __global const float* phaseRows;    // of PHASE 2 and 5
+  __global const float4* flow; // x, y, z of the light's mean direction, see FLOW
+  __global const float4* glow; // emission, W / (length^3 sr), with GLOW
+  __global const float4* cosines; // mean cosine g for red, green and blue, with FLOW 3
+  __global const float* phaseRows; // table of the phase function, with PHASE 2 and 5
   PhaseInfo phase;
 } scenery;
 
@@ -39,17 +40,17 @@ inline real product(real3 a, real3 b)
   return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
 }
 
-// Transmittance of a ray so far, and its accumulated radiance.
+// Transmittance of a ray from its start to the current point, and the radiance accumulated on this path.
 typedef struct
 {
   spectrum left;
   rgb radiance;
 #if MANY_STEPS
-  spectrum leftRest; // see add_to
+  spectrum leftRest; // compensation of rounding errors, see add_to
   rgb radianceRest;
 #endif
 #if BLOCK
-  rgb before; // transmittance in front of the block
+  rgb before; // transmittance of the blocks in front of this block
 #endif
 } light;
 
@@ -58,7 +59,7 @@ inline real mean_of(rgb s)
   return (s.r + s.g + s.b) * (real)(1.0f / 3.0f);
 }
 
-// Mean transmittance since the eye.
+// Transmittance from the eye to the current point, averaged over the channels.
 inline real mean_left(light l)
 {
 #if BLOCK && COLOURED
@@ -86,7 +87,7 @@ inline real most_left(light l)
 #endif
 }
 
-// Transmittance for light of blocks behind this one.
+// Transmittance of this block, with which it attenuates radiance from blocks behind it.
 inline rgb passed_of(light l)
 {
 #if COLOURED
@@ -98,8 +99,8 @@ inline rgb passed_of(light l)
 }
 
 #if BLOCK
-// Transmittance of the blocks in front of this one; 1 if there are none.
-//   limits  see ends_of
+// Transmittance of the blocks in front of this one, per pixel; 1 if there are none.
+//   limits  ends of rays and transmittances, see ends_of
 inline rgb starts_of(const ViewInfo* v, __global const float* limits, int column, int row)
 {
   rgb part = { (real)1.0f, (real)1.0f, (real)1.0f };
@@ -147,7 +148,7 @@ inline light unlit(real left)
   return l;
 }
 
-// Adds `part` of the radiance behind, attenuated.
+// Adds the background radiance `behind` times the factor `part`, attenuated by the ray's transmittance.
 inline void add_background(rgb behind, real part, light* l)
 {
 #if COLOURED
@@ -162,7 +163,8 @@ inline void add_background(rgb behind, real part, light* l)
 #endif
 }
 
-// Adds the surface light (Backdrop.cl), multiplied by 1 - transmittance of the ray.
+// Adds the correction `missing` for light at the surface of thick voxels (surface_light in Backdrop.cl), multiplied by
+// 1 - transmittance of the ray.
 inline void add_surface_light(rgb missing, light* l)
 {
 #if COLOURED
@@ -178,8 +180,8 @@ inline void add_surface_light(rgb missing, light* l)
 #undef MET
 }
 
-// Crosses a length of constant coefficients. Returns the radiance gained per unit of source, length (1 - exp(-tau)) /
-// tau, where the fraction is 1 in vacuum (tau = 0); `remains` receives exp(-tau).
+// Crosses a segment of constant coefficients. Returns the radiance gained per unit of source, length (1 - exp(-tau)) /
+// tau with tau = sigma length; for tau = 0 that is `length`. `remains` receives exp(-tau).
 inline real cross_length(real sigma, real length, real* remains)
 {
   if (!THIN_STEPS)
@@ -188,7 +190,7 @@ inline real cross_length(real sigma, real length, real* remains)
     const real fraction = extinguished(tau, remains) / tau;
     return length * fraction;
   }
-  // (1 - exp(-tau)) / tau on [0, 2], to 1e-7.
+  // Polynomial for (1 - exp(-tau)) / tau on [0, 2], error 1e-7.
   const real tau = sigma * length;
   real p = fma(tau, (real)-1.17129066e-05f, (real)0.000167222737f);
   p = fma(p, tau, (real)-0.00134923449f);
@@ -201,14 +203,14 @@ inline real cross_length(real sigma, real length, real* remains)
   return length * fraction;
 }
 
-// The step in which a ray's transmittance falls below 1/2: start and length (along the ray, or along the view axis),
-// and transmittance before and after.
+// The step in which a ray's transmittance falls below 1/2: its start and length along the ray or along the view axis,
+// and the transmittance before and after it.
 typedef struct
 {
   real start, length, before, after;
 } crossed;
 
-// Coefficients at the midpoint of a step.
+// Source and extinction of the medium at the midpoint of a step.
 typedef struct
 {
   rgb source;
@@ -216,8 +218,9 @@ typedef struct
 } sample;
 
 #if PHASE
-// 4 pi times the phase function for light that is itself spread about its mean direction (numerics.md, section 14.1),
-// for rays along unit vectors v away from the eye.
+// 4 pi times the phase function, averaged over light that is spread about its mean direction (numerics.md, section
+// 14.1), for scattering against v.
+//   v  unit vectors along the rays, away from the eye
 __attribute__((always_inline)) inline rgb scattered_towards_eye(
   const scenery* scene, const corners* at, int4 size, real3 v)
 {
@@ -251,7 +254,8 @@ __attribute__((always_inline)) inline rgb scattered_towards_eye(
 #else
 #define SIGMA_OF(c) s->sigma
 #endif
-// Converts the sampled ratios of source to extinction to sources.
+// Multiplies the ratios of source to extinction, which samples hold with SHOWN, by the interpolated extinction: `s`
+// then holds sources.
 __attribute__((always_inline)) inline void multiply_by_extinction(
   const scenery* scene, const corners* at, int4 size, sample* s)
 {
@@ -285,8 +289,9 @@ __attribute__((always_inline)) inline void multiply_by_extinction(
 #undef SIGMA_OF
 #endif
 
-// Samples source and extinction at each ray's point.
-//   v  unit vectors along the rays, away from the eye
+// Interpolates source and extinction at the point of each ray.
+//   at  the eight voxel centres around the points, with their weights
+//   v   unit vectors along the rays, away from the eye
 __attribute__((always_inline)) inline sample take_sample(const scenery* scene, const corners* at, int4 size, real3 v)
 {
   sample s;
@@ -320,7 +325,9 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
 }
 
 #if MANY_STEPS
-// Subtracts the light that a step removes instead of multiplying by what remains: in single precision 1 - 1e-9 is 1.
+// Subtracts from the transmittance `left` the fraction `part` of it that a step removes. Multiplying by the remaining
+// fraction is less exact: in single precision 1 - 1e-9 is 1.
+//   rest  compensation of rounding errors, see add_to
 inline void lose(real* left, real* rest, real part)
 {
   add_to(left, rest, -lesser(part, (real)1.0f) * *left);
@@ -328,9 +335,12 @@ inline void lose(real* left, real* rest, real part)
 }
 #endif
 
-// Crosses one step of `length`. `start` is the step's position and `gain` its extent, along the ray or the view axis.
-// Rays whose transmittance is at most `enough` stop. Only the last product depends on the transmittance before the
-// step, so that consecutive steps overlap.
+// Crosses one step with the coefficients s: accumulates radiance, reduces the transmittance, and records in half_way
+// the step in which it falls below 1/2. Only the last product depends on the transmittance before the step, so that
+// successive steps overlap in the processor.
+//   length  path length of the step
+//   start, gain  position of the step and its extent, along the ray or along the view axis
+//   enough  rays whose transmittance is at most this are not changed
 __attribute__((always_inline)) inline void cross_sample(
   sample s, real length, real start, real gain, float enough, light* l, crossed* half_way)
 {
@@ -394,7 +404,7 @@ __attribute__((always_inline)) inline void cross_sample(
   half_way->after = crossing ? after : half_way->after;
 }
 
-// Records that the transmittance falls below 1/2 at one place.
+// Records for the rays `where` that the transmittance falls from 1 to 0 at the depth `place`.
 inline void lose_half(integer where, real place, crossed* half_way)
 {
   half_way->start = where ? place : half_way->start;
@@ -403,7 +413,8 @@ inline void lose_half(integer where, real place, crossed* half_way)
   half_way->after = where ? (real)0.0f : half_way->after;
 }
 
-// Distance at which the transmittance is 1/2, with ln(a/b) = 2 (a-b)/(a+b) up to terms of third order.
+// Distance at which the transmittance is 1/2, by interpolation within a step: ln(a/b) = 2 (a-b)/(a+b) up to terms of
+// third order, a and b being transmittances.
 inline real distance_to_half(crossed c)
 {
   const real part = (c.before - (real)0.5f) * (c.before + c.after) /

@@ -10,32 +10,34 @@ struct Picture
   int width = 0;
   int height = 0;
   std::vector<float> radiance; ///< 3 per pixel, W / (length^2 sr)
-  /// 1 - transmittance (mean over the channels) of the medium and of a surface's reflection, for what is behind. 1
-  /// where the table is seen.
+  /// Opacity for what is behind the medium, one per pixel: 1 - transmittance of the medium and of a surface's
+  /// reflection, averaged over the channels. 1 where the table is seen.
   std::vector<float> alpha;
-  /// Distance from the camera along the view axis at which the mean transmittance falls to 1/2, also for bent rays;
-  /// `farDepth` if it does not.
+  /// Distance from the camera along the view axis at which the mean transmittance falls to 1/2, one per pixel, also for
+  /// bent rays; `farDepth` if it does not.
   std::vector<float> depth;
-  float farDepth = 0.0f; ///< a depth beyond every point of the box
-  /// For a block of a larger grid only, 3 per pixel: transmittance for radiance from behind the block.
+  float farDepth = 0.0f; ///< depth beyond every point of the box, for rays whose transmittance stays above 1/2
+  /// Only for a block of a larger grid, 3 per pixel: transmittance of the block for radiance from behind it.
   std::vector<float> transmittance;
-  /// For a block only, 3 per pixel: transmittance for the unscattered light of the scene behind. Differs from
-  /// `transmittance` only if the light has angular moments. Its mean is 1 - alpha, except where the block shows the
-  /// background and alpha is therefore 1.
+  /// Only for a block, 3 per pixel: transmittance for light from behind that is not scattered at all. Differs from
+  /// `transmittance` only if the light is given by angular moments. Its mean over the channels is 1 - alpha, except
+  /// where the block shows the background and alpha is therefore 1.
   std::vector<float> sceneTransmittance;
-  /// For a block only, 3 per pixel, may be empty: radiance that blocks in front attenuate by sceneTransmittance,
-  /// because it passes them unscattered; not included in `radiance`.
+  /// Only for a block, 3 per pixel, may be empty: radiance that passes the blocks in front unscattered, so that they
+  /// attenuate it by their sceneTransmittance. Not included in `radiance`.
   std::vector<float> sharp;
-  /// For a block only, 3 per pixel: surface light at the ray's entry into the domain. It is added multiplied by 1 -
-  /// transmittance of all blocks along the ray.
+  /// Only for a block, 3 per pixel: correction for light at the surface of thick voxels (Backdrop::SurfaceLight) where
+  /// the ray enters the domain. It is added to the radiance, multiplied by 1 - transmittance of all blocks along the
+  /// ray.
   std::vector<float> missing;
 };
 
 /// Transmittance of the blocks in front of a block that is rendered again, 3 per pixel of the picture; 0 for pixels
-/// that are skipped. Empty: no blocks are in front.
+/// that are not rendered again. Empty: there are no blocks in front.
 struct Starts
 {
-  std::vector<float> transmittance, seen; ///< as Picture's transmittance and sceneTransmittance
+  /// Transmittances like Picture::transmittance and Picture::sceneTransmittance.
+  std::vector<float> transmittance, seen;
 
   bool IsEmpty() const { return this->seen.empty(); }
 };

@@ -22,14 +22,16 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RoundsAtMost = 16;                   ///< longest path of a ray, in units of the sum of the box's edges
-constexpr double BentStretch = 4.0;                ///< voxels between checks whether rays still bend
-constexpr double SurfacePrecision = 1.0e-3;        ///< voxels
-constexpr std::size_t PixelsStartedAtOnce = 65536; ///< each takes 140 bytes
-/// size of the first launch; its run time determines the size of the next
+constexpr int RoundsAtMost = 16; ///< longest path of a ray, in units of the sum of the box's edges
+/// Distance in voxels that rays march between two checks whether the index is constant around them.
+constexpr double BentStretch = 4.0;
+constexpr double SurfacePrecision = 1.0e-3; ///< voxels; accuracy of the point at which a ray is split by the surface
+/// Number of rays that are created in one launch, 140 bytes each.
+constexpr std::size_t PixelsStartedAtOnce = 65536;
+/// Number of rays in the first launch of march_rays; its run time determines the number of rays in the next launch.
 constexpr std::size_t RaysMarchedFirst = 4096;
 
-/// Largest depth of the box's corners along the view axis.
+/// Largest depth of the box's corners along the view axis, relative to the eye.
 double FarDepth(const Grid& grid, const glm::dvec3& eye, const glm::dvec3& forward)
 {
   double farDepth = 0.0;
@@ -42,7 +44,7 @@ double FarDepth(const Grid& grid, const glm::dvec3& eye, const glm::dvec3& forwa
   return farDepth;
 }
 
-/// Width and height of a packet in pixels, as in View.cl.
+/// Width and height in pixels of a packet of `width` rays, as in View.cl.
 std::array<int, 2> PacketPixels(int width)
 {
   return width == 16 ? std::array<int, 2>{ 4, 4 }
@@ -52,7 +54,8 @@ std::array<int, 2> PacketPixels(int width)
 }
 }
 
-/// Parameters of the picture, its camera and the phase function.
+/// Kernel parameters of the picture, its camera and the phase function.
+/// @param block  block of a larger grid that the medium is; null: the medium is the whole domain
 ViewInfo RayCasting::ViewOf(const Camera& camera, const GridBlock* block) const
 {
   const ViewTraits& traits = this->Traits;
@@ -79,7 +82,8 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const GridBlock* block) const
   {
     view.block = BlockInfoOf(*block);
   }
-  if (block && !traits.OnlyStraight()) // rays that travel between blocks
+  // Bent rays travel between blocks: their positions refer to the whole grid.
+  if (block && !traits.OnlyStraight())
   {
     view.held = view.size;
     view.size = view.block.whole;
@@ -90,7 +94,7 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const GridBlock* block) const
   return view;
 }
 
-/// Parameters of surface, table and bent rays.
+/// Kernel parameters of the surface, the table and bent rays.
 OpticsInfo RayCasting::OpticsOf() const
 {
   const ViewTraits& traits = this->Traits;
@@ -125,12 +129,13 @@ RayPass RayCasting::PassOf(const Camera& camera, const GridBlock* block, bool sh
   this->Behind.Describe(this->Settings, sharp, pass.view);
   if (this->Traits.ShowsMoments() && sharp == this->Behind.IsSky())
   {
-    // A sky is scattered light, and a background colour that is not a sky does not light the medium.
+    // A sky is shown by the pass for scattered light only, a background colour by the pass for unscattered light only.
     pass.view.background = { { 0.0f, 0.0f, 0.0f, pass.view.background.s[3] } };
   }
   if (sharp)
   {
-    pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f; // already in the first pass
+    // The pass for scattered light already includes the table's diffuse radiance.
+    pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f;
   }
   return pass;
 }
@@ -139,7 +144,8 @@ std::string RayCasting::Options(const std::string& ofKernel) const
 {
   const ViewTraits& traits = this->Traits;
   const ViewSettings& settings = this->Settings;
-  // Largest optical length of a step; up to 2 the kernel uses a faster formula. Bent steps can be slightly longer.
+  // Largest optical length of a step; up to 2 the kernels use a faster formula (THIN_STEPS). Bent steps can be slightly
+  // longer than stepSize.
   const double longest = traits.largestSigmaT * settings.stepSize *
     *std::max_element(traits.grid.spacing.begin(), traits.grid.spacing.end());
   return traits.PacketOptions() + Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) +
@@ -160,7 +166,10 @@ cl::Kernel RayCasting::Kernel(bool ofBlock) const
     : this->TheDevice.Kernel("cast_bent_rays", kernel_source::BentView, this->BentOptions(false));
 }
 
-/// Allocates the picture, and uploads what ends rays or is in front of them; buffers of the same size are reused.
+/// Allocates the picture, and uploads the depths at which rays end and the transmittances of the blocks in front.
+/// Buffers that have the right size are reused.
+/// @param values  number of floats of the picture
+/// @param ends, starts  as in Cast
 void RayCasting::Reserve(std::size_t values, const std::vector<float>& ends, const std::vector<float>& starts)
 {
   if (this->Pixels.Size() != values)
@@ -176,7 +185,8 @@ void RayCasting::Reserve(std::size_t values, const std::vector<float>& ends, con
   this->Limits.Write(limits.data());
 }
 
-/// @param missing  whether the picture has surface light
+/// Reads the picture from the device.
+/// @param missing  whether the picture includes the correction for light at the surface, Picture::missing
 Picture RayCasting::Read(const ViewInfo& view, bool missing) const
 {
   Picture picture;
@@ -208,14 +218,16 @@ Picture RayCasting::Cast(RayPass pass, const std::vector<float>& ends, const std
   Require(ends.empty() || ends.size() == pixels,
     "There are ends of " + std::to_string(ends.size()) + " rays for a picture of " + std::to_string(pixels) +
       " pixels.");
-  this->Reserve((5 + (ofBlock ? 3 : 0) + (hasMissing ? 3 : 0)) * pixels, ends, starts); // see View.cl
+  // Radiance 3, alpha 1, depth 1; transmittance 3 and surface light 3 for a block (View.cl).
+  this->Reserve((5 + (ofBlock ? 3 : 0) + (hasMissing ? 3 : 0)) * pixels, ends, starts);
   view.has.s[0] = !ends.empty();
   view.has.s[1] = !starts.empty();
   view.has.s[2] = this->Behind.HasSurfaceLight();
   const PackedSamples& s = this->Samples;
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
   cl::Kernel cast = this->Kernel(ofBlock);
-  // Batches consist of whole work-groups; otherwise the next batch would render the last rows again.
+  // Each batch consists of complete work-groups of 4 x 4 packets; otherwise the next batch would render the last rows
+  // again.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
   const std::size_t rows = RoundUp<std::size_t>(view.picture.s[1], group * packet[1]) / (group * packet[1]);
@@ -242,7 +254,7 @@ Picture RayCasting::Cast(RayPass pass, const std::vector<float>& ends, const std
   return this->Read(view, hasMissing);
 }
 
-/// Largest number of rays that are split off one ray while it is in a block.
+/// Largest number of rays that the surface and the table split off one ray while it is in a block.
 std::size_t RayCasting::MostSplitOff() const
 {
   return (this->Traits.Reflects(this->Settings) ? 1 : 0) + (this->Traits.hasTable ? 1 : 0);
@@ -251,7 +263,8 @@ std::size_t RayCasting::MostSplitOff() const
 std::size_t RayCasting::CountThatFits() const
 {
   const std::size_t limit = this->TheDevice.MemoryLimit(), taken = this->TheDevice.BytesInUse();
-  const std::size_t kinds = 1 + this->MostSplitOff(); // of rays of a pixel; each has room for all that it may split
+  // Number of rays per pixel; each ray also has space for the rays that may be split off it.
+  const std::size_t kinds = 1 + this->MostSplitOff();
   return std::max<std::size_t>((limit - std::min(taken, limit)) / (4 * kinds * kinds * sizeof(RayOnItsWay)), 1);
 }
 

@@ -24,13 +24,13 @@ struct PixelRows
   int begin, end;
 };
 
-/// Marches straight or bent rays through every pixel of a picture, and accumulates the packed sources and the
+/// Renders a picture: marches a straight or bent ray through every pixel and accumulates the packed sources and the
 /// background.
 class RayCasting
 {
 public:
   /// All arguments must outlive this object.
-  /// @param part  the medium's place in a larger grid; null: the medium is the whole domain
+  /// @param part  position of the medium in a larger grid; null: the medium is the whole domain
   RayCasting(Device& device, const SceneOnDevice& scene, const PackedSamples& samples, const Backdrop& backdrop,
     const ViewTraits& traits, const ViewSettings& settings, const BlockOfScene* part)
     : TheDevice(device)
@@ -44,31 +44,37 @@ public:
   {
   }
 
-  /// @param block  set if the picture is that of a block of a larger grid
-  /// @param sharp  the pass for unscattered light, which alone shows a sharp background, and which gives the picture's
-  ///   alpha and depth (numerics.md, section 14.7)
+  /// Kernel parameters of a picture.
+  /// @param camera  camera of the picture
+  /// @param block  block of a larger grid that the picture shows; null: the picture shows the whole domain
+  /// @param sharp  true for the pass for unscattered light, which shows the environment's peaks and determines the
+  ///   picture's alpha and depth (numerics.md, section 14.7)
   /// @throws InvalidInput for a degenerate camera or one too far away
   RayPass PassOf(const Camera& camera, const GridBlock* block, bool sharp) const;
 
   /// Renders a picture from the current samples.
-  /// @param ends    depths at which rays end (MediumRayCaster::Render)
+  /// @param pass  parameters from PassOf
+  /// @param ends  depths at which opaque surfaces end the rays, one per pixel (MediumRayCaster::Render); empty: no ray
+  ///   ends
   /// @param starts  transmittance of the blocks in front, 3 per pixel; empty: 1
-  /// @param from, to  progress that is reported at the begin and the end, in [0, 1]
+  /// @param from, to  progress that is reported at the start and at the end, in [0, 1]
   /// @throws InvalidInput if `ends` does not have one value per pixel; DeviceError if memory does not suffice; Aborted
   Picture Cast(RayPass pass, const std::vector<float>& ends, const std::vector<float>& starts, double from, double to,
     const Monitor& monitor);
 
-  // For bent rays, and rays that meet a table or a surface, through a block of a larger grid: they travel from block to
-  // block.
-  /// Number of primary rays, with all rays that may be split off them, that fit into a quarter of the device's free
-  /// memory; at least 1.
+  // The following functions march bent rays, and rays that meet a table or a surface, through a block of a larger grid;
+  // such rays travel from block to block.
+  /// Number of primary rays that fit into a quarter of the device's free memory, together with all rays that may be
+  /// split off them; at least 1.
   std::size_t CountThatFits() const;
-  /// @param rows  rows up to the picture's end, or a multiple of four rows
-  /// @return the rays through these pixels that enter the domain in this block, or that miss it and show the background
-  ///   here
+  /// Creates the primary rays that enter the domain in this block, and those that miss the domain if this block shows
+  /// the background.
+  /// @param rows  rows of pixels: a multiple of four, or all rows up to the picture's upper edge
+  /// @return these rays
   std::vector<RayOnItsWay> Start(RayPass pass, const PixelRows& rows) const;
   /// Marches each ray to the block's boundary or to its end.
-  /// @return rays that were split off on the way
+  /// @param rays  rays in this block; receive their new states
+  /// @return rays that the surface or the table split off them
   /// @throws Aborted
   std::vector<RayOnItsWay> March(RayPass pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
 
@@ -89,7 +95,7 @@ private:
   const ViewTraits& Traits;
   const ViewSettings& Settings;
   const BlockOfScene* Part;
-  Buffer<float> Pixels; ///< the picture, see View.cl
-  Buffer<float> Limits; ///< ends of rays, and transmittance of the blocks in front of each
+  Buffer<float> Pixels; ///< the picture, in the layout of View.cl
+  Buffer<float> Limits; ///< depths at which rays end, then transmittances of the blocks in front
 };
 }

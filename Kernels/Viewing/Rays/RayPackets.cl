@@ -1,7 +1,7 @@
-// State of packets of rays that march through a medium with bending, and the inputs of the march.
+// State of packets of rays that march through a medium whose refractive index varies, and inputs of the march.
 //
-// The host gives
-//   BENDS   1: the index varies
+// Macros set by the host:
+//   BENDS   1: the refractive index varies
 //   ROUNDS  1: the medium is a block of a larger grid, and rays travel from block to block
 
 #pragma once
@@ -10,42 +10,43 @@
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Position of rays (voxels), velocity (voxels per unit of t) and whether they are inside the box.
+// State of rays: position in voxels, velocity T in voxels per unit of t (dt = ds / n), and whether they are inside the
+// box.
 typedef struct
 {
   real3 at, velocity;
   integer inside;
 #if ROUNDS
-  integer steps; // number of steps so far
+  integer steps; // number of steps since the ray's entry into the domain
 #endif
-  real end;        // depth at which they end; ENDLESS: they do not
-  integer stopped; // they have ended there
+  real end; // depth along the view axis at which an opaque surface ends the rays; ENDLESS: none does
+  integer stopped; // whether the rays have reached the depth `end`
 } ray_packets;
 
-// Rays that are marched later; lanes with zero transmittance hold no ray.
+// Reflected or mirrored rays, which are marched after the current ones; lanes with zero transmittance hold no ray.
 typedef struct
 {
   real3 at, velocity;
   spectrum left;
 } waiting;
 
-// Memory of primary rays of n^2, to detect the surface; and the rays reflected there.
+// Values of n^2 along primary rays, with which the surface is detected; and the rays reflected by the surface.
 typedef struct
 {
-  integer met;       // the surface was met, or is not searched for
-  real square;       // n^2 at the midpoint of the last bent step
-  real since;        // time since that midpoint
-  integer forgotten; // n^2 must be sampled first
+  integer met; // whether the ray has met the surface already, or is not to be split by it
+  real square; // n^2 at the midpoint of the last bent step
+  real since; // time t since that midpoint
+  integer forgotten; // whether `square` is unknown, so that n^2 must be sampled first
   waiting reflected;
 } watch;
 
-// Inputs of each march, besides the rays.
+// Inputs of a march: parameters, packed samples, bending field and map of empty bricks.
 typedef struct
 {
   const ViewInfo* v;
   const OpticsInfo* o;
   scenery scene;
-  __global const float4* bending; // half the gradient of n^2 by squared spacing (x, y, z), n^2 (w)
+  __global const float4* bending; // x, y, z: half the gradient of n^2, divided by the squared spacing; w: n^2
   __global const char* bricks;
 } surroundings;
 
@@ -61,7 +62,8 @@ inline real3 kept_within(real3 p, int4 size)
   return q;
 }
 
-// Size of the arrays of samples and of the bending field, and the voxel of the whole grid at which they begin.
+// Number of voxels in the arrays of samples and of the bending field, and the voxel of the whole grid at which each
+// array begins.
 #if ROUNDS
 #define SAMPLES_SIZE(s) (s)->v->held
 #define SAMPLES_FIRST(s) (s)->v->block.first
@@ -75,7 +77,7 @@ inline real3 kept_within(real3 p, int4 size)
 #endif
 
 #if ROUNDS
-// Clamps points to the array: rays in another block must not read outside it.
+// Clamps points to the box of an array: rays in another block must not read outside it.
 inline real3 kept_in_array(real3 p, int4 first, int4 size)
 {
 #define KEPT(c) lesser(greater(p.c, (real)(float)first.c), (real)(float)(first.c + size.c))
@@ -84,7 +86,7 @@ inline real3 kept_in_array(real3 p, int4 first, int4 size)
   return q;
 }
 
-// Converts voxel coordinates of the whole grid to those of the block's arrays.
+// Converts voxel coordinates of the whole grid to voxel coordinates of the block's arrays.
 inline real3 in_block(const surroundings* s, real3 p)
 {
   const int4 first = s->v->block.first;
@@ -93,7 +95,7 @@ inline real3 in_block(const surroundings* s, real3 p)
   return q;
 }
 
-// Whether points lie in the block's own voxels.
+// Whether points lie in voxels that the block owns, ghost cells excluded.
 inline integer is_own(const surroundings* s, real3 p)
 {
   const BlockInfo* b = &s->v->block;
@@ -106,7 +108,8 @@ inline integer is_own(const surroundings* s, real3 p)
 #define in_block(s, p) (p)
 #endif
 
-// Finds the corners around points in arrays that begin at voxel `first` of the whole grid.
+// Finds the eight voxel centres around points, and their weights, in arrays that begin at voxel `first` of the whole
+// grid.
 inline void corners_in(real3 p, int4 first, int4 size, corners* at)
 {
 #if ROUNDS
@@ -136,7 +139,7 @@ inline real3 chosen(integer first, real3 a, real3 b)
   return c;
 }
 
-// Time until each ray, continued in a straight line, leaves the box.
+// Time t until each ray, continued in a straight line, leaves the box.
 inline real time_to_face(real3 p, real3 velocity, int4 size)
 {
   const real3 v = { at_least_tiny(velocity.x), at_least_tiny(velocity.y), at_least_tiny(velocity.z) };
@@ -146,7 +149,7 @@ inline real time_to_face(real3 p, real3 velocity, int4 size)
 }
 
 #if ROUNDS
-// Midpoint of each ray's next step, which decides the block that takes the step. Bent and straight steps have the same
+// Midpoint of each ray's next step; the block that contains it computes the step. Bent and straight steps have equal
 // length.
 inline real3 middle_of_next(const surroundings* s, const ray_packets* t)
 {
@@ -155,7 +158,7 @@ inline real3 middle_of_next(const surroundings* s, const ray_packets* t)
   return kept_within(further(t->at, (real)0.5f * time, t->velocity), s->v->size);
 }
 
-// Length of the straight steps whose midpoints are in the block; at least one step.
+// Length of the next straight steps whose midpoints lie in the block's own voxels; at least one step.
 inline real own_stretch(const surroundings* s, real3 p, real3 direction, real step)
 {
   const BlockInfo* b = &s->v->block;
@@ -183,7 +186,7 @@ inline real depth_of(real3 p, const ViewInfo* v, float4 spacing)
   return product(from_eye, forward);
 }
 
-// Time until each ray, continued in a straight line, reaches its end.
+// Time t until each ray, continued in a straight line, reaches the depth `t->end`.
 inline real time_to_end(const ray_packets* t, real3 velocity, const surroundings* s)
 {
   const real3 forward = { (real)s->v->forward.x, (real)s->v->forward.y, (real)s->v->forward.z };
