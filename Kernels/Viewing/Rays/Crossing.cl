@@ -28,10 +28,10 @@ typedef struct
   __global const float4*
     samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
   __global const float4* extinctions; // coloured sigma_t
-  __global const float4* flow; // x, y, z of the light's mean direction, see FLOW
-  __global const float4* glow; // emission, W / (length^3 sr), with GLOW
-  __global const float4* cosines; // mean cosine g for red, green and blue, with FLOW 3
-  __global const float* phaseRows; // table of the phase function, with PHASE 2 and 5
+  __global const float4* flow;        // x, y, z of the light's mean direction, see FLOW
+  __global const float4* glow;        // emission, W / (length^3 sr), with GLOW
+  __global const float4* cosines;     // mean cosine g for red, green and blue, with FLOW 3
+  __global const float* phaseRows;    // table of the phase function, with PHASE 2 and 5
   PhaseInfo phase;
 } scenery;
 

@@ -19,7 +19,7 @@ typedef struct
 #if ROUNDS
   integer steps; // number of steps since the ray's entry into the domain
 #endif
-  real end; // depth along the view axis at which an opaque surface ends the rays; ENDLESS: none does
+  real end;        // depth along the view axis at which an opaque surface ends the rays; ENDLESS: none does
   integer stopped; // whether the rays have reached the depth `end`
 } ray_packets;
 
@@ -33,9 +33,9 @@ typedef struct
 // Values of n^2 along primary rays, with which the surface is detected; and the rays reflected by the surface.
 typedef struct
 {
-  integer met; // whether the ray has met the surface already, or is not to be split by it
-  real square; // n^2 at the midpoint of the last bent step
-  real since; // time t since that midpoint
+  integer met;       // whether the ray has met the surface already, or is not to be split by it
+  real square;       // n^2 at the midpoint of the last bent step
+  real since;        // time t since that midpoint
   integer forgotten; // whether `square` is unknown, so that n^2 must be sampled first
   waiting reflected;
 } watch;

@@ -1,9 +1,9 @@
-// Marches rays that bend, are reflected by a surface or mirrored by a table through one block of a larger grid, each up
-// to the block's boundary. The entry, each step and the exit are processed by the block that contains the entry point,
-// the step's midpoint or the exit point. Positions are in voxels of the whole grid, so that a block computes the same
-// numbers as a serial run.
+// Marches rays that bend, are reflected by a surface or mirrored by a table through one block of a larger grid, each to
+// the block's boundary. The entry into the domain, each step and the exit are computed by the block that contains the
+// entry point, the step's midpoint or the exit point. Positions are in voxels of the whole grid, so that the results
+// equal those of a serial run.
 //
-// The host gives
+// Macros set by the host:
 //   ROUNDS  1
 
 #include "Viewing/Rays/Arrival.cl"
@@ -11,9 +11,10 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-#define BORN(s) ((SURFACE > 0) + (s)->o->face.w) // largest number of rays that are split off one ray
+// Largest number of rays that are split off one ray: by the surface and by the table.
+#define BORN(s) ((SURFACE > 0) + (s)->o->face.w)
 
-// State of a ray that sets off: the caller sets `pixel`, `where`, `at`, `velocity` and `left`.
+// Initialises the state of a ray that starts here; the caller sets `pixel`, `where`, `at`, `velocity` and `left`.
 inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, float entry_square, float far_depth)
 {
   ray->kind = kind;
@@ -30,7 +31,7 @@ inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, flo
   ray->depth = far_depth;
 }
 
-// Three components of a lane of a real3, into an array of a ray and back.
+// Store the components of one lane n of a real3 in an array member of a ray, and load them from it.
 #define STORE_TRIPLE(array, from, n) \
   ray->array[0] = LANE((from).x, n); \
   ray->array[1] = LANE((from).y, n); \
@@ -44,10 +45,9 @@ inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, flo
   ray->where[1] = (int)LANE((from).y, n); \
   ray->where[2] = (int)LANE((from).z, n);
 
-// Starts the rays through pixels that enter the domain in this block, or that miss it while this block shows the
-// background to them; for other pixels there is no ray (pixel -1). A work-item is a packet of pixels in rows from
-// pass.view.picture.z on.
-//   rays  one for each pixel of these rows
+// Creates the rays through pixels that enter the domain in this block, and those that miss the domain if this block
+// shows the background. One work-item per packet of pixels, in rows from pass.view.picture.z on.
+//   rays  one per pixel of these rows; `pixel` is -1 where no ray is created
 __kernel void start_rays(RayPass pass, __global const float4* restrict bending, __global RayOnItsWay* restrict rays)
 {
   const ViewInfo* v = &pass.view;
@@ -79,7 +79,7 @@ __kernel void start_rays(RayPass pass, __global const float4* restrict bending, 
 #undef START
 }
 
-// A packet of rays that have arrived in this block.
+// State of a packet of rays that this block receives.
 typedef struct
 {
   integer pixel, kind, state;
@@ -143,7 +143,7 @@ inline arrivals load(__global const RayOnItsWay* rays, int first, int count)
   return a;
 }
 
-// Stores a packet where it was loaded from.
+// Stores a packet of rays in the elements from which `load` read it.
 //   middle  midpoint of the next step, for rays that continue
 inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, int first, int count)
 {
@@ -176,8 +176,8 @@ inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, i
 #undef STORE
 }
 
-// Stores the rays that were split off from a packet; pixel -1 where a split-off ray carries no light.
-//   slot  index among the rays split off each ray
+// Stores the rays that were split off the rays of a packet; `pixel` is -1 where a split-off ray has zero transmittance.
+//   slot  index among the BORN(s) rays that may be split off each ray
 inline void store_born(const surroundings* s, const arrivals* a, const waiting* born, int kind, int slot,
   __global RayOnItsWay* rays, int first, int count)
 {
@@ -203,9 +203,9 @@ inline void store_born(const surroundings* s, const arrivals* a, const waiting* 
 #undef STORE
 }
 
-// Marches the rays [range.x, range.y) of the view up to the block's boundary or their end. A work-item is a packet of
-// rays.
-//   born  receives BORN rays per ray, see store_born
+// Marches the rays with indices [range.x, range.y) of pass.view to the block's boundary or to their end. One work-item
+// per packet of rays.
+//   born  receives the split-off rays, BORN elements per ray (store_born)
 __kernel void march_rays(RayPass pass, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,

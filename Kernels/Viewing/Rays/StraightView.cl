@@ -1,6 +1,7 @@
-// Primary rays through a medium of constant index, one work-item per packet of neighbouring pixels.
+// Renders a picture by primary rays through a medium of constant refractive index, one work-item per packet of
+// neighbouring pixels.
 //
-// The host gives
+// Macros set by the host:
 //   BLOCK  1: the medium is a block of a larger grid
 
 #include "Viewing/Backdrop/Backdrop.cl"
@@ -8,7 +9,9 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// limits, picture  see View.cl
+// Renders the medium.
+//   limits   depths at which rays end, and transmittances of the blocks in front, see ends_of in View.cl
+//   picture  receives the picture in the layout of View.cl
 __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
@@ -26,7 +29,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
     seen.d.z * (real)v.inverseSpacing.z };
   const real end = v.has.x ? ends_of(&v, limits, column, row) : (real)ENDLESS;
-  const integer open = end >= (real)ENDLESS; // no opaque surface hides what is behind
+  const integer open = end >= (real)ENDLESS; // no opaque surface ends the ray
   real before;
 #if BLOCK
   integer enters, leaves;
@@ -38,7 +41,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const integer sees_behind = open;
 #endif
 
-  // The march.
+  // March of the packet through the medium.
   const real step = step_length(direction, v.marching.x);
 #if !BRICKED
   const real soon = step_length(direction, 5.0f);
@@ -73,7 +76,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
     stop = min(stop, steps);
     for (; n < stop; ++n)
     {
-      // Sampling does not depend on the transmittance so far, so that it overlaps the previous step.
+      // Sampling does not depend on the transmittance, so that it overlaps the previous step in the processor.
       const real start = step * (real)(float)n;
       const real length = lesser(greater(packet.length - start, (real)0.0f), step);
       corners at;
@@ -90,12 +93,13 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
     }
   }
 
-  // Background, and output.
+  // Background, and output to the picture.
   const real left = mean_left(l);
   if (v.has.z)
   {
 #if BLOCK
-    // How much of it is visible depends on all that the ray meets, in other blocks too.
+    // The factor of the surface light, 1 - transmittance, depends on all blocks along the ray and is applied when
+    // blocks are composited.
     paint_triple(&v, picture + MISSING_LIGHT(&v), column, row,
       surface_light(&v, backdrop, packet, seen.d, enters ? before : (real)0.0f, v.size));
 #else
@@ -111,7 +115,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   add_background(behind, sees_behind ? (real)v.background.w : (real)0.0f, &l);
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
 #if BLOCK
-  // The background hides all blocks behind it: alpha is 1 there.
+  // Transmittance of the background: 0 where a block shows it, which hides all that is behind, so that alpha is 1.
   const real kept = sees_behind ? (real)(1.0f - v.background.w) : (real)1.0f;
   paint_triple(&v, picture + PASSED_PART(&v), column, row, passed_of(l));
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left * kept, where);

@@ -1,10 +1,10 @@
-// Camera rays through the pixels of a packet, and output to the picture.
+// Camera rays through the pixels of a packet, and output of their radiance, alpha and depth to the picture.
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Shape of a packet in pixels.
+// Shape of a packet of REAL_WIDTH rays, in pixels.
 #if REAL_WIDTH == 16
 #define PACKET_WIDTH 4
 #define PACKET_HEIGHT 4
@@ -27,7 +27,8 @@
 #define UPWARDS 0.0f
 #endif
 
-// Camera rays of a packet: start (voxels), unit vectors in world coordinates, and cosine to the view axis.
+// Camera rays of a packet: start in voxels, unit vectors in world coordinates, and cosine of the angle to the view
+// axis.
 typedef struct
 {
   real3 from, d;
@@ -57,9 +58,10 @@ inline camera_rays rays_through(const ViewInfo* v, int column, int row)
   return r;
 }
 
-#define ENDLESS 1e30f // larger than any depth
+#define ENDLESS 1e30f // depth larger than any other: no opaque surface ends the ray
 
-// Pixel indices of a packet whose first pixel is (column, row), clamped to the picture.
+// Indices in the picture of the pixels of a packet whose first pixel is (column, row); pixels outside are replaced by
+// the nearest pixels of the picture.
 inline integer nearest_pixels(const ViewInfo* v, int column, int row)
 {
   const integer i = to_integer(lesser(ACROSS + (real)(float)column, (real)(float)(v->picture.x - 1)));
@@ -67,7 +69,7 @@ inline integer nearest_pixels(const ViewInfo* v, int column, int row)
   return j * v->picture.x + i;
 }
 
-// Depths along the view axis at which a packet's rays end; ENDLESS for rays that do not.
+// Depths along the view axis at which opaque surfaces end a packet's rays; ENDLESS for other rays.
 //   limits  these depths, one per pixel if v.has.x, then the transmittance of the blocks in front, three per pixel if
 //           v.has.y
 inline real ends_of(const ViewInfo* v, __global const float* limits, int column, int row)
@@ -80,7 +82,8 @@ inline real ends_of(const ViewInfo* v, __global const float* limits, int column,
   return end;
 }
 
-// Pixel indices of a packet whose first pixel is (column, row). See in_picture for those outside the picture.
+// Indices in the picture of the pixels of a packet whose first pixel is (column, row); valid only for pixels that are
+// in_picture.
 inline integer pixels_of(const ViewInfo* v, int column, int row)
 {
   return (integer)(row * v->picture.x + column) + to_integer(UPWARDS) * v->picture.x + to_integer(ACROSS);
@@ -91,16 +94,16 @@ inline integer in_picture(const ViewInfo* v, int column, int row)
   return (to_integer(ACROSS) + column < (integer)v->picture.x) & (to_integer(UPWARDS) + row < (integer)v->picture.y);
 }
 
-// A picture is one array, in parts of a value or three per pixel, one part after the other:
+// A picture is one array that consists of several images, each with one or three values per pixel:
 //   radiance  3, W / (length^2 sr)
-//   alpha     1 - mean transmittance
-//   depth     along the view axis, where the mean transmittance falls to 1/2
+//   alpha     1, 1 - mean transmittance
+//   depth     1, along the view axis, where the mean transmittance falls to 1/2
 //   for a block of a larger grid: 3, its transmittance; with surface light 3, that light
 #define PIXELS(v) ((size_t)(v)->picture.x * (v)->picture.y)
 #define PASSED_PART(v) (5 * PIXELS(v))
 #define MISSING_LIGHT(v) (8 * PIXELS(v))
 
-// Writes a part of three values per pixel.
+// Writes three values for each pixel of a packet to an image of the picture.
 inline void paint_triple(const ViewInfo* v, __global float* part, int column, int row, rgb triple)
 {
   const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);
