@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr float Half = 0.5f; ///< transmittance that defines the depth
+constexpr float Half = 0.5f; ///< mean transmittance at which the depth of a pixel is defined
 
 /// Calls act(column, row, number) for each pixel of a rectangle.
 template <class Act>
@@ -128,7 +128,7 @@ void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels)
       pixels.pixels[number] = PixelOf(again, pixel);
       if (before <= Half)
       {
-        pixels.pixels[number].depth = BlockPixel::FarAway; // the depth lies in a block in front
+        pixels.pixels[number].depth = BlockPixel::FarAway; // the transmittance falls below 1/2 in a block in front
       }
     }
   });
@@ -144,7 +144,7 @@ std::vector<double> SaidByAll(Communicator& communicator, const std::vector<doub
 std::optional<SeenBlocks> ExchangePixels(
   const Domain& domain, const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera)
 {
-  constexpr std::size_t words = 8; // corners of both rectangles
+  constexpr std::size_t words = 8; // numbers per rank: corners of two rectangles
   if (domain.Any(failed))
   {
     return std::nullopt;

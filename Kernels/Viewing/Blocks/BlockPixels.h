@@ -31,31 +31,31 @@ struct PixelRect
 
 PixelRect Overlap(const PixelRect& a, const PixelRect& b);
 
-/// Contribution to one pixel by a block of a larger grid, or by several blocks one behind the other.
+/// Contribution of a block of a larger grid, or of several blocks one behind the other, to one pixel.
 struct BlockPixel
 {
   std::array<float, 3> radiance = {};                        ///< W / (length^2 sr)
-  std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< for radiance from behind
-  /// unscattered transmittance for the scene behind, through the medium
+  std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< transmittance for radiance from behind
+  /// transmittance for light from behind that is not scattered at all, as Picture::sceneTransmittance
   std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };
-  std::array<float, 3> sharp = {};   ///< radiance that blocks in front attenuate by their `seen`
-  std::array<float, 3> missing = {}; ///< see Picture
-  float open = 1.0f;                 ///< 0 if the background, which hides all behind it, is included
-  float depth = FarAway;             ///< as Picture::depth; FarAway or more: none
+  std::array<float, 3> sharp = {};   ///< unscattered radiance, which blocks in front attenuate by their `seen`
+  std::array<float, 3> missing = {}; ///< correction for light at the surface, as Picture::missing
+  float open = 1.0f; ///< transmittance of the background: 0 if the pixel includes it, which hides all behind it; else 1
+  float depth = FarAway; ///< depth as Picture::depth; FarAway or more: the transmittance stays above 1/2
 
   static constexpr float FarAway = 1e30f;
 
-  /// Mean transmittance of the medium.
+  /// Transmittance of the medium for unscattered light, averaged over the channels.
   float Left() const { return (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
 
-  /// largest of the channels
+  /// Largest transmittance of a channel for unscattered light; MostThrough: for radiance.
   float MostLeft() const { return std::max({ this->seen[0], this->seen[1], this->seen[2] }); }
   float MostThrough() const
   {
     return std::max({ this->transmittance[0], this->transmittance[1], this->transmittance[2] });
   }
 
-  /// Total radiance if nothing is in front.
+  /// Total radiance of the pixel if no block is in front, W / (length^2 sr).
   std::array<float, 3> All() const
   {
     std::array<float, 3> all;
@@ -70,7 +70,7 @@ struct BlockPixel
     return all;
   }
 
-  /// Opacity for the scene behind, including the background.
+  /// Opacity for what is behind the pixel, including that of the background.
   float Hidden() const { return 1.0f - this->open * this->Left(); }
 
   /// Composites this pixel over the pixel `behind`.
@@ -89,13 +89,13 @@ struct BlockPixel
   }
 };
 
-/// The part of a picture that a block covers. The values of its pixels are what ranks exchange.
+/// Pixels of the rectangle in which a block contributes to a picture. Ranks exchange the values of `pixels`.
 struct BlockPixels
 {
   PixelRect rect;
-  std::vector<BlockPixel> pixels; ///< row by row
+  std::vector<BlockPixel> pixels; ///< row by row, from bottom to top
 
-  /// Returns an empty pixel outside the rectangle.
+  /// The block's contribution to a pixel of the picture; an empty pixel outside the rectangle.
   BlockPixel At(int column, int row) const
   {
     const int width = this->rect.end[0] - this->rect.begin[0];
@@ -114,43 +114,44 @@ BlockPixels SeenPart(const Picture& picture);
 /// Crops pixels to a rectangle.
 BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 
-/// Finds the pixels for which a block must be rendered again because of the blocks in front of it: pixels whose
-/// transmittance, accumulated over all blocks, falls below 1/2 in this block (the block's own depth is then wrong), and
-/// pixels whose transmittance falls below `minimum` in this block or before it.
+/// Transmittances of the blocks in front of a block, for the pixels that this block must render again: pixels whose
+/// transmittance, accumulated over all blocks, falls below 1/2 in this block (its own depth is then wrong), and pixels
+/// whose transmittance falls below `minimum` in this block or in front of it.
 /// @param own      index of the block in `frontToBack`
-/// @param size     of the picture, pixels
+/// @param size     width and height of the picture, pixels
 /// @param minimum  transmittance at which rays end
 Starts StartsBehind(
   const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum);
 
-/// Replaces the pixels that `starts` selects by those of the picture `again`, which was rendered with these starts.
+/// Replaces the pixels that `starts` selects by those of the picture `again`, which the block rendered with these
+/// starts.
 void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels);
 
-/// Pixels of the blocks that are in view.
+/// Pixels of all blocks in view of the camera.
 struct SeenBlocks
 {
   std::vector<BlockPixels> frontToBack;
-  std::size_t own = 0; ///< index of this rank's block, if it has one
+  std::size_t own = 0; ///< index of this rank's block in frontToBack, if the rank has a block
 };
 
-/// Exchanges pixels: this rank receives the other blocks' pixels within `wanted`. Each rank sends to each only the
-/// pixels that it wants. Collective.
-/// @param own     this block's pixels; empty if it is out of view, or this rank has no block
-/// @param wanted  the pixels that this rank needs
-/// @param failed  this rank failed to render its block
-/// @return nothing, on all ranks, if one of them failed
+/// Exchanges pixels: this rank receives the pixels of all blocks within `wanted`. Each rank sends to each other rank
+/// only the pixels that the other rank wants. Collective.
+/// @param own     pixels of this rank's block; empty if it is out of view, or if the rank has no block
+/// @param wanted  rectangle of the pixels that this rank needs
+/// @param failed  whether this rank failed to render its block
+/// @return nothing on all ranks if `failed` is true on any
 std::optional<SeenBlocks> ExchangePixels(
   const Domain& domain, const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera);
 
-/// Gathers numbers from all ranks, in the order of ranks (allgather). Collective, with the same count of numbers on all
-/// ranks.
+/// Gathers numbers from all ranks (allgather), in rank order. Collective, with the same count of numbers on all ranks.
 /// @throws InvalidInput on all ranks, if the counts differ
 std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own);
 
 /// Crops radiance, alpha and depth of a picture to a rectangle.
 Picture PartOf(Picture&& picture, const PixelRect& rect);
 
-/// Composites all blocks in a rectangle: radiance, alpha (of the medium, without the background) and depth.
+/// Composites the pixels of all blocks in a rectangle to a picture: radiance, alpha (of the medium, without the
+/// background) and depth.
 /// @param farDepth  Picture::farDepth of the blocks' pictures
 Picture PictureOfAll(const std::vector<BlockPixels>& frontToBack, const PixelRect& rect, float farDepth);
 }

@@ -13,14 +13,15 @@ namespace tyndall
 {
 namespace
 {
-constexpr int TileEdge = 4; ///< edge in pixels of a tile whose rays are marched together
-/// a value that no rank has, for maxima over the ranks that have voxels
+constexpr int TileEdge = 4; ///< edge, in pixels, of a square of pixels whose rays are adjacent in memory
+/// Value, in maxima over the ranks, of a rank without voxels: smaller than that of any rank with voxels.
 constexpr double Unknown = -std::numeric_limits<double>::infinity();
-/// relative tolerance between the ranks' lights, which each rank computes for its own block
+/// Relative tolerance within which the lights of all ranks must agree; each rank computes them for its own block.
 constexpr double MostApart = 1e-5;
 constexpr std::size_t NumbersOfLight = sizeof(SmallLight) / sizeof(float);
 
-/// Empty picture, for an invisible block.
+/// Empty picture: transmittance 1, no radiance.
+/// @param size  width and height, pixels
 Picture Nothing(const std::array<int, 2>& size)
 {
   const std::size_t pixels = static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
@@ -35,8 +36,8 @@ Picture Nothing(const std::array<int, 2>& size)
   return picture;
 }
 
-/// Adds the result of a ray that has ended to the picture.
-/// @param tells  whether this ray also sets transmittance and depth
+/// Adds the radiance of a ray that has ended to the picture.
+/// @param tells  whether a primary ray also sets the picture's alpha, depth and transmittance
 void Add(const RayOnItsWay& ray, bool tells, Picture& picture)
 {
   const auto pixel = static_cast<std::size_t>(ray.pixel);
@@ -52,7 +53,8 @@ void Add(const RayOnItsWay& ray, bool tells, Picture& picture)
   }
 }
 
-/// Sorts rays so that those of neighbouring pixels are adjacent.
+/// Sorts rays by kind and such that rays of neighbouring pixels are adjacent.
+/// @param width  width of the picture, pixels
 void InOrder(int width, std::vector<RayOnItsWay>& rays)
 {
   const auto place = [width](const RayOnItsWay& ray) {
@@ -62,7 +64,8 @@ void InOrder(int width, std::vector<RayOnItsWay>& rays)
   std::sort(rays.begin(), rays.end(), [&](const RayOnItsWay& a, const RayOnItsWay& b) { return place(a) < place(b); });
 }
 
-/// Splits a box into consecutive portions: some of its slices each, or some rows of one slice.
+/// Splits a box into consecutive portions of at most `voxels` voxels: several slices, or several rows of one slice, at
+/// least one row.
 std::vector<VoxelBox> PortionsOf(const VoxelBox& box, std::size_t voxels)
 {
   std::vector<VoxelBox> portions;
@@ -85,8 +88,8 @@ std::vector<VoxelBox> PortionsOf(const VoxelBox& box, std::size_t voxels)
 }
 
 /// Whether shadow rays from the centres of the voxels `from` to a light can cross a block: tests whether the box around
-/// all of these rays meets the block.
-/// @param grid  the whole domain, to which the indices of both boxes refer
+/// all of these rays overlaps the block.
+/// @param grid  grid of the whole domain, to which the indices of both boxes refer
 /// @param from, block  boxes of voxels; the result is false if one is empty
 bool MayLeadThrough(const SmallLight& light, const Grid& grid, const VoxelBox& from, const VoxelBox& block)
 {
@@ -97,7 +100,7 @@ bool MayLeadThrough(const SmallLight& light, const Grid& grid, const VoxelBox& f
     if (light.place.s[3] > 0.0f)
     {
       const double place = light.place.s[axis] / grid.spacing[axis];
-      low = std::min(low, place - 1.0); // rounding
+      low = std::min(low, place - 1.0); // margin for rounding errors
       high = std::max(high, place + 1.0);
     }
     else
@@ -110,7 +113,9 @@ bool MayLeadThrough(const SmallLight& light, const Grid& grid, const VoxelBox& f
   return may;
 }
 
-/// The lights, from the ranks that have a block. Throws if they differ between ranks. Collective.
+/// The lights for shadow rays, the same on all ranks: taken from the ranks that have a block. Collective.
+/// @param own  lights of this rank; null: it has no block
+/// @throws InvalidInput on all ranks, if the lights differ between ranks
 std::vector<SmallLight> LightsOfAll(const Domain& domain, const std::vector<SmallLight>* own)
 {
   const Grid& whole = domain.Whole();
@@ -123,7 +128,8 @@ std::vector<SmallLight> LightsOfAll(const Domain& domain, const std::vector<Smal
   require(counts[0] == Unknown || counts[0] == -counts[1]);
   std::vector<SmallLight> lights(counts[0] > Unknown ? static_cast<std::size_t>(counts[0]) : 0);
   const std::size_t numbers = NumbersOfLight * lights.size();
-  std::vector<double> most(2 * numbers, Unknown); // the numbers, and their negatives
+  std::vector<double> most(
+    2 * numbers, Unknown); // maxima over the ranks of the lights' numbers, and of their negatives
   for (std::size_t i = 0; own && i < numbers; ++i)
   {
     most[i] = reinterpret_cast<const float*>(own->data())[i];
@@ -133,7 +139,7 @@ std::vector<SmallLight> LightsOfAll(const Domain& domain, const std::vector<Smal
   for (std::size_t i = 0; i < numbers; ++i)
   {
     const double large = most[i], small = -most[numbers + i];
-    const double scale = i % NumbersOfLight < 3 ? extent : 1.0; // the first are the place
+    const double scale = i % NumbersOfLight < 3 ? extent : 1.0; // the first three numbers of a light are its position
     require(large - small <= MostApart * std::max({ std::abs(large), std::abs(small), scale }));
     reinterpret_cast<float*>(lights.data())[i] = static_cast<float>(large);
   }
@@ -175,9 +181,10 @@ PictureInBlocks::PictureInBlocks(
   this->Between.emplace(domain.Comm(), domain.Partition(), 1 + static_cast<int>(std::ceil(any[2])));
 }
 
-/// Computes the light of one lamp in a portion of each rank's voxels: every rank finds the section of the shadow rays
-/// that lies in its block, and the owner of the voxels sums up the sections in the order of ranks.
-/// @param portions  of each rank's voxels; empty: none is left
+/// Computes the light of one lamp in a portion of each rank's voxels: every rank computes the optical length of the
+/// shadow rays within its block, and the owner of the voxels sums these lengths in rank order. Collective.
+/// @param light     index of the lamp
+/// @param portions  the portion of each rank, by rank; empty: all voxels of the rank are done
 void PictureInBlocks::Follow(
   int light, const std::vector<VoxelBox>& portions, const Camera& camera, const Monitor& monitor)
 {
@@ -221,7 +228,7 @@ void PictureInBlocks::Follow(
   });
 }
 
-/// Computes the lamps' light in the voxels of all blocks: shadow rays cross the blocks of other ranks.
+/// Computes the lamps' light in the voxels of all blocks; shadow rays also cross the blocks of other ranks. Collective.
 void PictureInBlocks::FindShadows(const Camera& camera, const Monitor& monitor)
 {
   this->Over.Collective([&] {
@@ -239,7 +246,8 @@ void PictureInBlocks::FindShadows(const Camera& camera, const Monitor& monitor)
     portions.push_back(PortionsOf(empty ? VoxelBox() : this->Held[rank], this->AtOnce.voxels / ranks));
     steps = std::max(steps, portions.back().size());
   }
-  steps = static_cast<std::size_t>(this->Over.Max(static_cast<double>(steps))); // a rank without voxels knows no boxes
+  // A rank without voxels may not know the other ranks' boxes, and hence their number of portions.
+  steps = static_cast<std::size_t>(this->Over.Max(static_cast<double>(steps)));
   const auto all = static_cast<double>(this->Lights.size() * steps);
   double done = 0.0;
   for (std::size_t light = 0; light < this->Lights.size(); ++light)
@@ -274,8 +282,10 @@ void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
   });
 }
 
-/// Marches rays until they have ended or left this rank's block.
-/// @return the rays that are now in other blocks
+/// Marches rays until they end or leave this rank's block.
+/// @param sharp  whether the pass is that for unscattered light
+/// @param picture  receives the radiance of rays that have ended
+/// @return the rays that continue in other blocks
 std::vector<RayOnItsWay> PictureInBlocks::Follow(
   const RayPass& pass, std::vector<RayOnItsWay> rays, bool sharp, Picture& picture, const Monitor& monitor)
 {
@@ -289,7 +299,8 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(
     std::vector<RayOnItsWay> here;
     for (RayOnItsWay& ray : rays)
     {
-      for (int axis = 0; axis < 3; ++axis) // a ray on the upper face of the domain
+      // A ray on the upper face of the domain lies in the last voxel.
+      for (int axis = 0; axis < 3; ++axis)
       {
         ray.where[axis] = std::clamp(ray.where[axis], 0, this->Over.Whole().size[axis] - 1);
       }
@@ -307,7 +318,8 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(
   return gone;
 }
 
-/// Renders rows of pixels in groups; only the rays of one group travel between ranks at a time.
+/// Renders the picture in groups of pixel rows; only the rays of one group travel between ranks at a time. Collective.
+/// @param sharp  whether the pass is that for unscattered light
 void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor)
 {
   RayPass pass = {};
@@ -339,7 +351,9 @@ void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& pi
   }
 }
 
-/// Renders the pixels of this rank's block, or those of the rays that end in it.
+/// Renders this rank's contribution to the picture: pixels of its block for straight rays, else pixels of the rays that
+/// end on this rank. Collective.
+/// @param size  width and height of the picture, pixels
 Picture PictureInBlocks::CastOwn(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor)
 {
   const double seen = this->Lights.empty() ? 0.0 : 0.5;
@@ -364,8 +378,9 @@ Picture PictureInBlocks::CastOwn(const Camera& camera, const std::array<int, 2>&
   return picture;
 }
 
-/// Casts again those rays whose start depends on the blocks in front of this one, which was not known in the first
-/// pass.
+/// Renders those pixels of this rank's block again that depend on the transmittance of the blocks in front
+/// (StartsBehind), which was unknown in the first pass. Collective.
+/// @param own  pixels of the block from the first pass; corrected
 void PictureInBlocks::LookAgain(
   const Camera& camera, const std::array<int, 2>& size, BlockPixels& own, const Monitor& monitor)
 {

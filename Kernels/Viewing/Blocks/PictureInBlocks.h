@@ -15,55 +15,57 @@
 
 namespace tyndall
 {
-/// Upper limits of the work in progress on a rank, in addition to its block: the memory for it does not grow with the
+/// Upper limits of a rank's work in progress, in addition to its block: the memory for this work does not grow with the
 /// medium, the picture or the number of ranks.
 struct WorkAtOnce
 {
-  /// Voxels for which shadow rays are traced at a time, summed over all ranks: at least one row of each. 12 bytes each.
+  /// Voxels for which shadow rays are traced at a time, summed over all ranks, 12 bytes each; at least one row of
+  /// voxels per rank.
   std::size_t voxels = 65536;
-  /// Primary rays that travel between ranks at a time, summed over all ranks: at least those of four rows of pixels,
-  /// fewer if a device has too little memory. Rays split off from them are not counted. 140 bytes each.
+  /// Primary rays that travel between ranks at a time, summed over all ranks, 140 bytes each: at least those of four
+  /// rows of pixels, fewer than this number if a device has too little memory. Rays split off from them are not
+  /// counted.
   std::size_t rays = 131072;
 };
 
-/// A picture of a domain, of which each rank holds its own block with halos only (numerics.md, section 14.9). On one
-/// rank it is the picture that the caster renders.
+/// Picture of a domain of which each rank holds its own block with halo (numerics.md, section 14.9). On one rank it is
+/// the picture that MediumRayCaster renders.
 ///
-///  - Straight rays: each rank renders its block, and the pictures are composited (BlockPixels.h). Rays whose start
-///    depends on the blocks in front are cast again.
+///  - Straight rays: each rank renders its block, and the pictures are composited (BlockPixels.h). Rays that depend on
+///    the transmittance of the blocks in front are cast again.
 ///  - Rays that bend, or meet a table: they travel from rank to rank in rounds, as photons do, a few rows of pixels at
-///    a time. A step is taken on the rank whose block contains its midpoint; entry into and exit from the grid are
-///    computed with the coordinates of the whole domain, so that the rays do not depend on the decomposition.
+///    a time. The rank whose block contains the midpoint of a step computes the step; entry into and exit from the grid
+///    are computed with the coordinates of the whole domain, so that the rays do not depend on the decomposition.
 ///  - Shadow rays: each rank computes the optical length, within its block, of the paths from other blocks' voxels to a
-///    light; these are summed.
+///    light; these lengths are summed.
 ///
-/// The constructor and Take are collective; ranks without voxels take part.
+/// The constructor and Take are collective; ranks without voxels also call them.
 class PictureInBlocks
 {
 public:
-  /// Combines the ranks' shared scene properties, before they construct their casters; the result is the same on all
-  /// ranks. Collective.
+  /// Reduces the scene properties of all blocks to those of the domain; each rank needs them to construct its caster.
+  /// The result is the same on all ranks. Collective.
   /// @param own  properties of this rank's block; null: it has no voxels
   static SharedScene Shared(const Domain& domain, const SharedScene* own);
 
   /// @param domain, held  must outlive this object
-  /// @param held  for each rank, the voxels its arrays cover, ghost cells included
+  /// @param held  by rank, the voxels that the rank's arrays cover, ghost cells included
   /// @param own   caster of this rank's block, for the medium in the box held[rank]; null: it has no voxels. On one
-  ///   rank a caster of the whole domain, without a block
-  /// @param atOnce  the same on all ranks
+  ///   rank: a caster of the whole domain, without a block
+  /// @param atOnce  limits of the work in progress, the same on all ranks
   /// @throws InvalidInput  on all ranks, if the lights differ between ranks
   PictureInBlocks(
     const Domain& domain, const std::vector<VoxelBox>& held, MediumRayCaster* own, const WorkAtOnce& atOnce = {});
 
   /// Renders the picture together with the other ranks. Collective.
-  /// @param size  of the picture, pixels
-  /// @param part  the pixels that this rank wants
-  /// @return these pixels: radiance, alpha (of the medium, without the background) and depth
+  /// @param size  width and height of the picture, pixels
+  /// @param part  rectangle of the pixels that this rank wants
+  /// @return pixels of `part`: radiance, alpha (of the medium, without the background) and depth
   /// @throws  collective error: what one rank throws, all throw
   Picture Take(
     const Camera& camera, const std::array<int, 2>& size, const PixelRect& part, const Monitor& monitor = {});
 
-  /// Rays that this rank has sent to others so far.
+  /// Number and bytes of the rays that this rank has sent to other ranks so far.
   const RoundsTraffic& Traffic() const { return this->Between->Traffic(); }
 
 private:

@@ -10,11 +10,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t RowsOfThread = 16; ///< smallest number of rows per thread
-/// in units of 1/255: rounding error when whole numbers are divided and multiplied in floats
+/// Smallest number of picture rows per thread.
+constexpr std::size_t RowsOfThread = 16;
+/// Rounding error, in units of 1/255, of dividing and multiplying integers as floats.
 constexpr float RoundingOfByte = 1e-3f;
 
-using Shown = std::array<float, 3>; ///< [0, 255]
+using Shown = std::array<float, 3>; ///< display value of red, green, blue, [0, 255]
 
 Shown ShownOf(const std::array<float, 3>& radiance, const ToneMapping& tones)
 {
@@ -25,15 +26,17 @@ Shown ShownOf(const std::array<float, 3>& radiance, const ToneMapping& tones)
   return shown;
 }
 
-/// State of the display picture while blocks are composited from front to back. The contribution of each block behind
-/// the first is truncated to an integer; ParaView's compositor IceT truncates in the same way.
+/// State of one pixel of the display while blocks are composited from front to back. The contribution of each block
+/// behind the first is truncated to an integer, as ParaView's compositor IceT does.
 struct Screen
 {
   Shown shown = {};
-  float open = 1.0f; ///< transmittance for blocks behind
+  float open = 1.0f; ///< transmittance of the blocks so far for blocks behind them
 
-  /// @param wanted    display value after this block
-  /// @param openThen  transmittance after this block
+  /// Adds a block behind the blocks so far.
+  /// @param wanted    display value of all blocks up to and including this one
+  /// @param openThen  transmittance of all blocks up to and including this one
+  /// @return RGBA that the block must contribute
   std::array<std::uint8_t, 4> Lay(const Shown& wanted, float openThen)
   {
     std::array<std::uint8_t, 4> share = {};
@@ -51,7 +54,7 @@ struct Screen
 };
 }
 
-/// Display values of the first 0, 1, ... blocks, and the transmittance after each block.
+/// The blocks at one pixel: display value of the first k blocks for k = 0, 1, ..., and transmittance after each block.
 struct ShownBlock::Column
 {
   std::vector<Shown> shown;
@@ -68,7 +71,7 @@ struct ShownBlock::Column
       this->shown.push_back(ShownOf(all.All(), tones));
       this->open.push_back(1.0f - all.Hidden());
     }
-    float brightest = 0.0f; // largest display value that a block behind adds
+    float brightest = 0.0f; // largest display value that a block behind block i adds
     for (std::size_t i = blocks.size(); i-- > 0;)
     {
       this->open[i] = std::max(this->open[i], brightest / 255.0f);
@@ -89,7 +92,8 @@ ShownBlock::ShownBlock(
 {
 }
 
-/// @param ended  pixel of this block if an opaque surface ends the ray in it; else null
+/// RGBA that this block must contribute to one pixel.
+/// @param ended  pixel of this block up to an opaque surface that ends the ray in it; null: no surface does
 std::array<std::uint8_t, 4> ShownBlock::Share(Column& blocks, int column, int row, const BlockPixel* ended) const
 {
   blocks.Find(this->Blocks, column, row, this->Tones);
