@@ -15,8 +15,8 @@ namespace tyndall
 {
 namespace
 {
-/// Distance in voxels, behind the midpoint of a step, from which the splitting of a ray at a surface reads values: the
-/// surface lies between this midpoint and the previous one.
+/// Distance in voxels, behind the midpoint of a step, up to which the splitting of a ray at the surface reads samples:
+/// the surface lies between this midpoint and the previous one. 0 without a surface.
 double ReachOfSplit(const ViewSettings& settings)
 {
   return settings.surfaceReflection == SurfaceReflection::None ? 0.0 : settings.stepSize;
@@ -55,10 +55,10 @@ std::vector<float> HeldIndex(const Field& known, const BlockOfScene& block, cons
 
 VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& settings, bool moments, bool surface)
 {
-  constexpr int Between = 1; // voxel centres around any point of the block
-  // a layer reaches half a voxel beyond its centres
+  constexpr int Between = 1; // ghost layers for interpolation at any point of the block
+  // A layer of ghost cells reaches half a voxel beyond its centres.
   const int split = static_cast<int>(std::ceil(ReachOfSplit(settings) - 0.5));
-  // A voxel that does not scatter shows the light of its neighbours.
+  // With moments, a voxel that does not scatter shows the mean light of its neighbours.
   VoxelBox held = Grown(own, Between + std::max(split, moments ? 1 : 0), whole);
   for (int axis = 0; surface && axis < 3; ++axis)
   {
@@ -74,7 +74,9 @@ VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& set
 
 VoxelBox KnownBox(const VoxelBox& own, const VoxelBox& held, const Grid& whole, const ViewSettings& settings)
 {
-  constexpr int OfSpline = 3; // a centre beyond the point, the coefficients of its neighbours, and theirs
+  // Layers for the spline of n^2: a voxel centre beyond the point, the spline coefficients of its neighbours, and those
+  // of their neighbours.
+  constexpr int OfSpline = 3;
   const double reach = ReachOfSplit(settings);
   const int layers = OfSpline + static_cast<int>(std::ceil(reach > 0.0 ? reach + VoxelsBesideSurface : 0.0));
   return Hull(Grown(own, layers, whole), { held });
@@ -128,8 +130,8 @@ std::vector<float> FacesOfBlock(
 
 namespace
 {
-/// Whether a camera ray can pass from block b into block a: it must be able to cross, in this direction, the separating
-/// plane along every axis that has one.
+/// Whether a camera ray can pass from block b into block a: tests whether rays can cross, in this direction, the plane
+/// that separates the blocks along each axis that has one.
 bool CanHide(const GridBlock& b, const GridBlock& a, const Camera& camera)
 {
   for (int axis = 0; axis < 3; ++axis)

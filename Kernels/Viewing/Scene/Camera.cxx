@@ -15,7 +15,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double FarthestCamera = 1e15; ///< lengths or voxels; their squares do not overflow a float
+constexpr double FarthestCamera = 1e15; ///< largest distance, lengths or voxels; its square does not overflow a float
 
 std::array<double, 3> Array(const glm::dvec3& v)
 {
@@ -49,7 +49,8 @@ std::array<std::array<double, 3>, 3> Axes(const Camera& camera)
   Require(!camera.parallelProjection || (camera.parallelScale > 0.0 && std::isfinite(camera.parallelScale)),
     "The camera's parallel scale is " + Text("%g", camera.parallelScale) +
       "; it is half the picture's height and must be positive.");
-  const glm::dvec3 view = Scaled(0.5 * Vector(camera.focalPoint) - 0.5 * Vector(camera.position)); // avoids overflow
+  // Halving both positions avoids overflow of their difference.
+  const glm::dvec3 view = Scaled(0.5 * Vector(camera.focalPoint) - 0.5 * Vector(camera.position));
   Require(view != glm::dvec3(0.0),
     "The camera's position and focal point are the same; move one, so that it is clear where it looks.");
   const glm::dvec3 forward = glm::normalize(view);
@@ -93,7 +94,7 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle, const std::a
   camera.position = Array(centre + glm::length(half) * out);
   const auto axes = Axes(camera);
 
-  // The smallest distance at which every corner is inside the picture.
+  // The smallest distance of the camera at which every corner of the box is inside the picture.
   const double margin = 1.05;
   const double upperEdge = TangentOfHalf(viewAngle);
   double distance = 0.0;

@@ -10,7 +10,7 @@ namespace tyndall
 struct Camera
 {
   std::array<double, 3> position = { 0.0, 0.0, 1.0 };
-  std::array<double, 3> focalPoint = { 0.0, 0.0, 0.0 }; ///< projected to the picture's centre
+  std::array<double, 3> focalPoint = { 0.0, 0.0, 0.0 }; ///< point that is projected to the picture's centre
   std::array<double, 3> viewUp = { 0.0, 0.0, 1.0 }; ///< up direction of the picture; not parallel to the view direction
   double viewAngle = 30.0;                          ///< full vertical angle of view, degrees, in (0, 180)
   bool parallelProjection = false;                  ///< parallel rays instead of rays from `position`

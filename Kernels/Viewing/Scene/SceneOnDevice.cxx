@@ -6,7 +6,7 @@ namespace tyndall
 {
 namespace
 {
-/// g of each voxel and channel; empty if the phase function is not evaluated or g does not vary.
+/// Mean cosine g of each voxel and channel; empty if the phase function is not evaluated or g does not vary.
 std::vector<float> MeanCosines(const PhaseOfMedium& phase, const ViewTraits& traits)
 {
   std::vector<float> g;

@@ -11,13 +11,13 @@
 
 namespace tyndall
 {
-/// A read-only array for kernels: a copy on the device, or memory lent by its owner, which a CPU reads without a copy.
+/// Read-only array for kernels: a copy on the device, or the caller's memory, which a CPU reads without a copy.
 class ViewedArray
 {
 public:
   ViewedArray() = default;
 
-  /// @param lent  `values` outlive this object, so no copy is needed
+  /// @param lent  whether `values` outlive this object, so that no copy is made
   ViewedArray(Device& device, const float* values, std::size_t count, bool lent, const char* what)
     : Copy(device, lent ? nullptr : values, lent ? 0 : count, what)
     , Lent(lent ? std::make_unique<HostMappedBuffer<float>>(device, values, count, what) : nullptr)
@@ -31,27 +31,29 @@ private:
   std::unique_ptr<HostMappedBuffer<float>> Lent;
 };
 
-/// Arrays of a medium and its light on a device, voxel by voxel; those that the picture does not need are empty.
+/// Arrays of a medium and its light on a device, one element per voxel; arrays that the picture does not need are
+/// empty.
 struct SceneOnDevice
 {
   /// If samples are packed only once (ViewTraits::PacksOnce), no copies are made: medium and light must then outlive
   /// the call of GiveBackWhatIsPacked.
-  /// @throws DeviceError if they do not fit
-  /// @param block  the medium's place in a larger grid, with `ior` covering BlockOfScene::known; null: the medium is
-  ///   the whole domain
+  /// @param block  position of the medium in a larger grid, with `ior` covering BlockOfScene::known; null: the medium
+  ///   is the whole domain
+  /// @throws DeviceError if the arrays do not fit the device
   SceneOnDevice(Device& device, const Medium& medium, const SolvedLight& light, const Field& ior,
     const ViewTraits& traits, const BlockOfScene* block);
 
-  /// Frees the arrays that are read only while samples are packed.
+  /// Frees the arrays that only the packing of samples reads.
   void GiveBackWhatIsPacked();
 
-  Buffer<float> moments, straightOn; ///< if moments are shown
-  std::array<ViewedArray, 5> arrays; ///< ViewedFields
+  /// Angular moments and straightOn as in SolvedLight; empty if moments are not shown.
+  Buffer<float> moments, straightOn;
+  std::array<ViewedArray, 5> arrays; ///< arrays of ViewedFields
   ViewedArray meanDirection;
-  Buffer<float> phaseRows;   ///< tables of the phase function, see Samples/PhaseFunction.cl
-  Buffer<float> meanCosines; ///< g by voxel, with the components that the picture needs
-  Buffer<float> ior;         ///< refractive index; 1 if rays could bend but no index is given
-  /// for a block: refractive index of the larger box KnownBox, from which the bending is computed
+  Buffer<float> phaseRows;   ///< table of the phase function, see Samples/PhaseFunction.cl
+  Buffer<float> meanCosines; ///< mean cosine g by voxel, with the components that the picture needs
+  Buffer<float> ior;         ///< refractive index; 1 if kernels expect one but none is given
+  /// For a block: refractive index of the larger box KnownBox, from which the gradient of n^2 is computed.
   Buffer<float> knownIor;
 };
 }

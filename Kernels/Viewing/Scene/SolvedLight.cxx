@@ -43,7 +43,8 @@ void CheckLightField(const Field& field, const char* name, const Grid& grid)
   CheckFinite(field, name, grid);
 }
 
-/// Requires finite values on the box's faces.
+/// Checks an array on the cells of the box's faces.
+/// @throws InvalidInput unless all values are finite
 void CheckFaces(const Field& faces, const char* name, const Grid& grid)
 {
   for (std::size_t i = 0; faces.values && i < BoxFaceCellCount(grid) * faces.components; ++i)
@@ -84,7 +85,8 @@ void Check(const SolvedLight& light, const Grid& grid, const ViewSettings& setti
   }
   CheckFaces(light.surface, "surface_radiance", grid);
   CheckFaces(light.facePower, "face_power", grid);
-  const bool separates = settings.shadowRays != settings.singleScatteringOnly; // separates direct light from the rest
+  // Whether uncollided light must be separated from the total fluence.
+  const bool separates = settings.shadowRays != settings.singleScatteringOnly;
   const bool byMoments = light.scatteredMoments.values && !settings.singleScatteringOnly;
   if (byMoments)
   {

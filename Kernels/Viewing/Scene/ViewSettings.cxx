@@ -10,9 +10,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< voxels
-constexpr double LargestRadiance = 1e37;               ///< W / (length^2 sr); sums of it do not overflow a float
-constexpr double MostPixels = 7e8;                     ///< with three values per pixel, indices stay below 2^31
+constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< step sizes, voxels
+constexpr double LargestRadiance = 1e37; ///< W / (length^2 sr); a sum of radiances does not overflow a float
+constexpr double MostPixels = 7e8; ///< largest number of pixels; with three values per pixel, indices stay below 2^31
 
 void CheckPart(double part, const char* what)
 {

@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Dilates a set of bricks along one axis: includes the neighbours of the bricks in `bricks`.
+/// Dilates a set of bricks by one brick in both directions along an axis.
 std::vector<unsigned char> Widened(const std::vector<unsigned char>& bricks, const std::array<int, 3>& count, int axis)
 {
   const std::size_t stride = axis == 0 ? 1
@@ -41,7 +41,7 @@ SeenBricks SeenBricksOf(const FilledBricks& filled, bool everywhere)
     return bricks;
   }
   bricks.seen = filled.filled;
-  for (int axis = 0; axis < 3; ++axis) // includes diagonal neighbours
+  for (int axis = 0; axis < 3; ++axis) // the three axes in succession also include diagonal neighbours
   {
     bricks.seen = Widened(bricks.seen, filled.count, axis);
   }
@@ -54,9 +54,12 @@ namespace
 using Kind = PhaseFunction::Kind;
 using Functions = std::array<PhaseFunction, 3>;
 
-constexpr int MomentCount = 1024; ///< for functions without a formula; resolves 0.2 degrees
-constexpr double NoMore = 1e-7;   ///< moments times the power of the anisotropy below this are dropped
-constexpr double Resolved = 1e-6; ///< fraction of the light that the quadrature of the moments may miss
+/// Number of Legendre moments of phase functions without a formula; resolves 0.2 degrees.
+constexpr int MomentCount = 1024;
+/// Moments times the power of the anisotropy are dropped below this value.
+constexpr double NoMore = 1e-7;
+/// Fraction of the scattered light that the quadrature of the moments may miss.
+constexpr double Resolved = 1e-6;
 constexpr int RowLength = CosineRows + 2;
 
 bool AllOf(const Functions& functions, std::initializer_list<Kind> kinds)
@@ -78,7 +81,7 @@ ViewedPhase::Formula FormulaOf(const Functions& functions)
                                            : ViewedPhase::Rows;
 }
 
-/// k/g of Schlick's function with mean cosine g, tabulated over sqrt(1 - g).
+/// Table of k/g of Schlick's function with mean cosine g, over sqrt(1 - g).
 std::vector<float> RowsOfSchlick()
 {
   std::vector<float> rows;
@@ -94,15 +97,15 @@ std::vector<float> RowsOfSchlick()
   return rows;
 }
 
-/// The cosine of a table entry, as in PhaseFunction.cl.
+/// Cosine of the scattering angle of a table entry, as in PhaseFunction.cl.
 double CosineOfRow(int row)
 {
   const double aside = 2.0 * std::min(row, CosineRows - row) / CosineRows;
   return 2 * row < CosineRows ? 1.0 - aside * aside : aside * aside - 1.0;
 }
 
-/// (2 l + 1) times the Legendre moments of a function, by a quadrature that resolves all that the tables can show. The
-/// part of a narrower peak that the quadrature misses is added as a beam in the mean direction.
+/// (2 l + 1) times the Legendre moments of a phase function, by a quadrature that resolves all that the tables can
+/// show. The fraction of a narrow peak that the quadrature misses is added as a beam in the forward direction.
 std::vector<double> WeightedMoments(const PhaseFunction& function)
 {
   static const GaussLegendre rule(MomentCount);
@@ -130,8 +133,8 @@ std::vector<double> WeightedMoments(const PhaseFunction& function)
   return moments;
 }
 
-/// 4 pi times the phase function, averaged over light spread about its mean direction: sum of (2 l + 1) chi_l a^l
-/// P_l(c), numerics.md, Eq. (108a).
+/// Appends to `rows` a table of 4 pi times the phase function, averaged over light that is spread about its mean
+/// direction: sum of (2 l + 1) chi_l a^l P_l(c), numerics.md, Eq. (108a).
 void AddSpreadRows(const PhaseFunction& function, std::vector<float>& rows)
 {
   const std::vector<double> moments = WeightedMoments(function);
@@ -151,7 +154,7 @@ void AddSpreadRows(const PhaseFunction& function, std::vector<float>& rows)
   {
     const double cosine = CosineOfRow(std::min<int>(column, CosineRows));
     const std::vector<double> p = LegendrePolynomials(MomentCount - 1, cosine);
-    rows[first + column] = static_cast<float>(4.0 * Pi * function.Value(cosine)); // light of one direction
+    rows[first + column] = static_cast<float>(4.0 * Pi * function.Value(cosine)); // row 0: light of a single direction
     for (int row = 1; row <= SpreadRows + 1; ++row)
     {
       const std::vector<double>& factor = factors[std::min<int>(row, SpreadRows)];
@@ -203,7 +206,8 @@ std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase)
 
 namespace
 {
-/// fraction of filled bricks; above it the duplicated samples at brick faces cost more memory than bricks save
+/// Largest fraction of filled bricks for storage in bricks; above it the duplicated samples at brick faces cost more
+/// memory than bricks save.
 constexpr double FilledAtMost = 0.25;
 
 void FindMoments(const PhaseOfMedium& phase, const SolvedLight& light, ViewTraits& traits)
@@ -218,7 +222,7 @@ void FindMoments(const PhaseOfMedium& phase, const SolvedLight& light, ViewTrait
   traits.moments.aureoleChannels = traits.shadowRays && !phase.Varies() ? traits.phase.channels : 0;
 }
 
-/// Removes arrays that the mode does not show.
+/// Number of components of each of ViewedFields that the picture reads; 0 for arrays that its mode does not show.
 std::array<int, 5> ComponentsRead(const std::array<Field, 5>& fields, const ViewTraits& traits)
 {
   const bool shadows = traits.shadowRays;
@@ -269,7 +273,7 @@ ViewTraits ViewTraitsOf(const Medium& medium, const FilledBricks& filled, const 
     anisotropic && light.meanDirection.values && light.fluence.values && !settings.shadowRays && !traits.ShowsMoments();
   traits.coloured = !settings.leaveOut || !traits.medium.greyExtinction || traits.moments.straightOnChannels == 3 ||
     (shared && shared->coloured);
-  // With directions of the light, single-channel sources do not pay off.
+  // Samples with one channel do not pay off if the light's directions are read as well.
   traits.grey = !traits.coloured && traits.medium.grey && !traits.knowsFlow && !traits.shadowRays &&
     !traits.ShowsMoments() && light.fluence.components == 1 && light.fluenceDirect.components == 1 &&
     (!traits.medium.emits || traits.medium.emission.IsGrey());
@@ -279,7 +283,7 @@ ViewTraits ViewTraitsOf(const Medium& medium, const FilledBricks& filled, const 
   }
   traits.sourcesDependOnCamera = (traits.shadowRays && anisotropic) || traits.ShowsMoments();
   traits.components = ComponentsRead(ViewedFields(medium, light), traits);
-  // Not for shadow rays or moments, whose results are stored in the order of voxels.
+  // Samples for shadow rays or moments are not stored in bricks, since their light is stored in the order of voxels.
   traits.bricked =
     !shared && traits.OnlyStraight() && traits.PacksOnce() && !traits.bricks.all && filled.FilledPart() <= FilledAtMost;
   return traits;

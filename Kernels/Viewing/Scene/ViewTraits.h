@@ -15,23 +15,24 @@
 
 namespace tyndall
 {
-/// Bricks that rays must sample: the filled ones and their neighbours, into which interpolation between voxel centres
-/// reaches. All other bricks are treated as empty.
+/// Bricks that rays must sample: filled bricks and their neighbours, into which interpolation between voxel centres
+/// reaches. Rays treat all other bricks as empty.
 struct SeenBricks
 {
   std::array<int, 3> count = { 0, 0, 0 };
   std::vector<unsigned char> seen; ///< 1 or 0 for each brick, x fastest
-  bool all = true;                 ///< all bricks are seen
+  bool all = true;                 ///< whether all bricks are seen
 };
 
-/// @param everywhere  do not skip empty bricks: all bricks are seen
+/// Finds the bricks that rays must sample.
+/// @param everywhere  whether to sample all bricks, empty ones included
 SeenBricks SeenBricksOf(const FilledBricks& filled, bool everywhere);
 
-/// How the kernels evaluate the medium's phase function (Samples/PhaseFunction.cl): by a formula where one exists for
-/// light with angular spread about its mean direction, else by a table.
+/// How kernels evaluate the medium's phase function (Samples/PhaseFunction.cl): by a formula where one exists for light
+/// that is spread about its mean direction, else by a table.
 struct ViewedPhase
 {
-  enum Formula ///< the kernels' PHASE
+  enum Formula ///< values of the kernels' macro PHASE
   {
     Even = 0,
     HenyeyGreenstein = 1,
@@ -42,69 +43,72 @@ struct ViewedPhase
   };
 
   Formula formula = Even;
-  int channels = 1;    ///< 3 if the channels scatter differently
-  bool varies = false; ///< g varies by voxel
+  int channels = 1;    ///< 3 if the phase function differs between the channels, else 1
+  bool varies = false; ///< whether g varies by voxel
   PhaseInfo parameters = {};
 };
 
 ViewedPhase ViewedPhaseOf(const PhaseOfMedium& phase);
 
-/// Tables for the formulas Schlick and Rows; empty for others.
+/// Tables of the phase function for the formulas Schlick and Rows; empty for others.
 std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase);
 
-/// The light's angular moments, as they are shown.
+/// The light's angular moments as the picture uses them.
 struct ShownMoments
 {
-  int degree = -1; ///< -1: moments are not shown
+  int degree = -1; ///< degree of the moments; -1: moments are not shown
   int channels = 0, straightOnChannels = 0;
-  int aureoleChannels = 0; ///< channels of the table of repeated forward scattering; 0: none
-  /// smallest fraction of scattering treated as unscattered, per channel
+  /// Channels of the tables of repeated forward scattering (AureoleTable); 0: none.
+  int aureoleChannels = 0;
+  /// Per channel, smallest fraction of scattering that the solver treats as unscattered.
   std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
 };
 
-/// Features of a scene that pictures depend on: what varies, is coloured or depends on the camera. Determined once;
-/// kernels are compiled for them. Independent of the settings that MediumRayCaster::Adopt changes.
+/// Features of a scene on which kernels depend: whether properties vary, differ between the channels or depend on the
+/// camera. Determined once; kernels are compiled for them. Independent of the settings that MediumRayCaster::Adopt
+/// changes.
 struct ViewTraits
 {
   Grid grid;
-  int packetWidth = 1; ///< rays marched together
+  int packetWidth = 1; ///< number of rays marched together
   bool leaveOut = true;
   bool singleScatteringOnly = false;
-  bool shadowRays = false; ///< there are lamps, and their light is computed by shadow rays
+  bool shadowRays = false; ///< whether there are lamps, whose light is computed by shadow rays
   bool hasTable = false;
 
   MediumTraits medium;
   SeenBricks bricks;
-  bool bricked = false;       ///< samples are stored in bricks, because few bricks are filled
+  bool bricked = false;       ///< whether samples are stored in bricks, because few bricks are filled
   double largestSigmaT = 0.0; ///< upper bound of sigma_t, 1/length
   ViewedPhase phase;
   IndexRange index;
-  bool bends = false; ///< the refractive index varies
+  bool bends = false; ///< whether the refractive index varies
 
   ShownMoments moments;
-  bool knowsFlow = false;             ///< the mean direction is known and the phase function is anisotropic
-  bool coloured = false;              ///< extinction differs between the channels
-  bool grey = false;                  ///< neither extinction nor source differ between the channels
-  bool sourcesDependOnCamera = false; ///< the light that voxels send depends on the direction to the camera
+  bool knowsFlow = false; ///< whether the mean direction is known and the phase function is anisotropic
+  bool coloured = false;  ///< whether extinction differs between the channels
+  bool grey = false;      ///< whether neither extinction nor source differs between the channels
+  /// Whether the light that voxels emit and scatter depends on the direction to the camera.
+  bool sourcesDependOnCamera = false;
   std::array<int, 5> components = {}; ///< components of each of ViewedFields on the device; 0: not read
 
   bool ShowsMoments() const { return this->moments.degree >= 0; }
   bool ShowsBeams() const { return this->ShowsMoments() && this->shadowRays; }
-  /// Whether emission is packed separately, because it is not multiplied by the phase function.
+  /// Whether emission is packed separately from scattered light, because the phase function does not multiply it.
   bool GlowsApart() const { return (this->knowsFlow || this->ShowsMoments()) && this->components[2] > 0; }
-  /// Whether the mean direction is stored multiplied by g; g is then the same for all channels.
+  /// Whether the light's mean direction is packed multiplied by the mean cosine g; g is then equal for all channels.
   bool FlowHasG() const
   {
     return this->phase.channels == 1 &&
       (this->phase.formula == ViewedPhase::HenyeyGreenstein || this->phase.formula == ViewedPhase::Schlick);
   }
   bool PacksCosines() const { return this->knowsFlow && this->phase.varies && !this->FlowHasG(); }
-  /// What is packed of the light's mean direction: the kernels' option FLOW, see ScatteredLight.cl.
+  /// Value of the kernels' macro FLOW: what is packed of the light's mean direction, see ScatteredLight.cl.
   int Flow() const { return !this->knowsFlow ? 0 : this->FlowHasG() ? 2 : this->PacksCosines() ? 3 : 1; }
-  /// Whether the phase function is evaluated for light of a known direction.
+  /// Whether the phase function is evaluated, for light whose mean direction is known or for lamps.
   bool ReadsPhase() const { return this->knowsFlow || this->shadowRays; }
-  bool ReadsMeanCosines() const { return this->ReadsPhase() && this->phase.varies; } ///< g by voxel
-  /// Whether all rays are straight; these have their own kernel.
+  bool ReadsMeanCosines() const { return this->ReadsPhase() && this->phase.varies; } ///< whether g by voxel is read
+  /// Whether all rays are straight and do not meet a table; StraightView.cl marches these.
   bool OnlyStraight() const { return !this->bends && !this->hasTable; }
 
   /// Whether samples are independent of the camera, so that they are packed only once.
@@ -118,10 +122,10 @@ struct ViewTraits
   bool Reflects(const ViewSettings& settings) const;
   bool SkipsBricks(const ViewSettings& settings) const { return settings.skipEmptyBricks && this->leaveOut; }
 
-  // Compiler options of the kernels.
+  // Compiler options, as "-DNAME=value", of the kernels.
   std::string PacketOptions() const;
-  std::string SampleOptions() const; ///< for the kernels that pack samples
-  /// @param needed  whether the phase function is evaluated in this kernel
+  std::string SampleOptions() const; ///< options of the kernels that pack samples
+  /// @param needed  whether the kernel evaluates the phase function
   std::string PhaseOptions(bool needed) const;
 };
 
@@ -129,14 +133,15 @@ struct ViewTraits
 /// @throws InvalidInput as DegreeOf
 int ShownDegree(const SolvedLight& light, const ViewSettings& settings);
 
-/// Absorption, scattering, emission, fluence and fluenceDirect, in the order of ViewTraits::components.
+/// Absorption, scattering, emission, fluence and fluenceDirect of a scene, in the order of ViewTraits::components.
 std::array<Field, 5> ViewedFields(const Medium& medium, const SolvedLight& light);
 
-/// @param filled    the medium's bricks
+/// Determines the features of a scene.
+/// @param filled    filled bricks of the medium
 /// @param settings  with shadowRays only if there are lamps
 /// @param ior       refractive index; null: constant
 /// @param kernelWidth  packet width that is fastest on the device
-/// @param shared       properties of the whole domain, if the medium is one of several blocks
+/// @param shared       properties of the whole domain, if the medium is one of several blocks; else null
 ViewTraits ViewTraitsOf(const Medium& medium, const FilledBricks& filled, const SolvedLight& light, const Field& ior,
   const ViewSettings& settings, int kernelWidth, const SharedScene* shared = nullptr);
 }
