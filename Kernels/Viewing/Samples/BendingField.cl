@@ -1,20 +1,21 @@
-// Packs the field that bends rays: half the gradient of n^2, and n^2, of the tricubic spline that photons follow too,
-// at voxel centres with a border of one voxel that repeats the outermost voxels.
+// Packs the field that bends rays, n the refractive index: half the gradient of n^2, and n^2, of the tricubic spline
+// that photons also follow, at voxel centres with a border of one voxel that repeats the outermost voxels.
 //
-// Between centres both are interpolated linearly; rays through a plane layer then leave it according to Snell's law,
-// for any gradient (numerics.md, section 14.3).
+// Between voxel centres, gradient and n^2 are interpolated linearly; rays through a plane layer then leave it according
+// to Snell's law, for any gradient (numerics.md, section 14.3).
 
 #include "Refraction/Index/SquaredIndex.cl"
 
-#define FLAT 2e-6f // relative to n^2: gradients up to this are rounding errors of a constant
+// Gradients up to this fraction of n^2 are rounding errors of a constant index.
+#define FLAT 2e-6f
 
-// Value and slope of the cubic spline at the middle of three coefficients.
+// Value and slope of a cubic B-spline at the middle of three adjacent coefficients.
 #define SPLINE_VALUE(low, middle, high) (((low) + (high)) * (1.0f / 6.0f) + (middle) * (2.0f / 3.0f))
 #define SPLINE_SLOPE(low, high) (0.5f * ((high) - (low)))
 
-// bending  x, y, z: half the gradient in voxels, divided by the squared spacing, which is the acceleration in voxels
-//          per time squared; w: n^2
-// There are no loops or branches, so that PoCL vectorises over voxels.
+// Computes `bending`, one element per voxel with border: x, y, z is half the gradient of n^2 in voxels, divided by the
+// squared spacing, i.e. the acceleration of a ray in voxels per time squared; w is n^2. Written without loops or
+// branches, so that PoCL vectorises over voxels.
 __kernel void pack_bending(IndexGrid grid, float4 inverse_spacing, __global const float* restrict coefficients,
   __global float4* restrict bending)
 {

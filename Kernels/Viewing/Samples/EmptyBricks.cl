@@ -1,16 +1,17 @@
-// Finds empty bricks, which rays may skip. A program of its own, because it needs few of the options with which samples
+// Finds empty bricks, which rays may skip. A separate program, because it needs few of the options with which samples
 // are packed.
 //
-// The host gives
+// Macros set by the host:
 //   COLOURED, GREY, BRICKED  as in Sampling.cl
-//   GLOW         1: emission is packed separately
-//   BENDS        1: the refractive index varies
-//   SHOWN        nonzero: samples were packed by ShownSamples.cl, and only the extinction tells whether they are empty
+//   GLOW   1: emission is packed separately
+//   BENDS  1: the refractive index varies
+//   SHOWN  nonzero: samples were packed by ShownSamples.cl, and only the extinction tells whether they are empty
 
 #include "Viewing/Samples/SampleLayout.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Whether a sample has extinction or a source.
+// Whether a packed sample has extinction or a source.
+//   place  index of the sample; -1: there is none
 static int is_filled(
   int place, __global const float4* samples, __global const float4* extinctions, __global const float4* glow)
 {
@@ -32,7 +33,8 @@ static int is_filled(
   return filled;
 }
 
-// Index of a sample, given its position in the grid with its border; -1 if it belongs to a record without voxels.
+// Index of a packed sample; -1 if it belongs to a brick without record, which is empty.
+//   x, y, z  position of the sample in the grid with its border
 //   records  with BRICKED: index of the first sample of each brick's record
 static int place_of(int x, int y, int z, int4 size, __global const int* records)
 {
@@ -46,8 +48,8 @@ static int place_of(int x, int y, int z, int4 size, __global const int* records)
 #endif
 }
 
-// Classifies each brick: 1 if it is empty, -1 if it, or a neighbouring sample that is interpolated into it, has
-// extinction or a source, 0 with BENDS if rays bend in it. Bricks that are not `seen` (ViewTraits.h) are empty.
+// Classifies each brick of voxels: 1 if it is empty, -1 if a sample that is interpolated inside it has extinction or a
+// source, 0 with BENDS if rays bend in it. Bricks that are not in SeenBricks::seen (ViewTraits.h) are empty.
 __kernel void find_empty_bricks(PackInfo info, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict glow,
   __global const float4* restrict bending, __global const uchar* restrict seen, __global const int* restrict records,

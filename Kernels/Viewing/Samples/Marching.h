@@ -12,7 +12,7 @@
 namespace tyndall
 {
 /// Number of steps of the longest straight ray through the grid.
-/// @param stepSize  voxels
+/// @param stepSize  length of a step, voxels
 inline double LongestSteps(const Grid& grid, double stepSize)
 {
   return std::hypot(grid.size[0], grid.size[1], grid.size[2]) / stepSize + 1.0;
@@ -21,17 +21,19 @@ inline double LongestSteps(const Grid& grid, double stepSize)
 /// Compiler option that sets MANY_STEPS in the marching kernels, for rays of up to `longestSteps` steps.
 inline std::string StepOption(double longestSteps)
 {
-  constexpr double ManySteps = 4096.0; // from which accumulated rounding errors reach 1e-4
+  // Number of steps from which accumulated rounding errors reach 1e-4.
+  constexpr double ManySteps = 4096.0;
   return Define("MANY_STEPS", longestSteps > ManySteps);
 }
 
-/// Splits a grid of work (rows of cells) into batches: whole rows, or parts of rows where a whole row would run too
-/// long to be aborted.
+/// Splits a grid of work, `rows` rows of `cells` cells, into batches: complete rows, or sections of a row where a row
+/// would run too long to be aborted.
 /// @param samples  largest number of samples per cell
-/// @param from, to  progress that is reported at the begin and the end, in [0, 1]
+/// @param from, to  progress that is reported at the start and at the end, in [0, 1]
 inline Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples, double from, double to)
 {
-  constexpr double SamplesAtOnce = 3.2e7; // between two progress reports: under a second on one old core
+  // Samples between two progress reports: under a second on one old core.
+  constexpr double SamplesAtOnce = 3.2e7;
   const double atOnce = std::max(SamplesAtOnce / std::max(samples, 1.0), 1.0);
   Batches batches;
   batches.count = rows * cells;
@@ -43,15 +45,15 @@ inline Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples
   return batches;
 }
 
-/// A rectangular part of such a batch.
+/// A rectangle of the cells of a batch.
 struct Patch
 {
   int column, row;
   std::size_t columns, rows;
 };
 
-/// Splits cells [begin, begin + size), numbered row by row in rows of `cells`, into rectangles and calls launch(patch)
-/// for each.
+/// Splits cells [begin, begin + size), numbered row by row in rows of `cells` cells, into rectangles and calls
+/// launch(patch) for each.
 template <class Launch>
 void InPatches(std::size_t begin, std::size_t size, std::size_t cells, const Launch& launch)
 {

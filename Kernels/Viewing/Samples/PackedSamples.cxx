@@ -19,8 +19,9 @@ namespace tyndall
 {
 namespace
 {
-/// Whether a brick's record holds the sample of any filled voxel: voxels of its own brick, and the last ones of the
-/// preceding bricks, because the border shifts samples by one voxel.
+/// Whether the record of a brick holds the sample of any filled voxel: the border shifts samples by one voxel, so that
+/// a record also holds the last voxels of the preceding bricks.
+/// @param cells  indices of the brick of cells along each axis
 bool IsFilled(const FilledBricks& filled, const std::array<int, 3>& cells)
 {
   std::array<int, 3> low, high;
@@ -72,9 +73,9 @@ SampleBricks SampleBricksOf(const FilledBricks& filled, const Grid& grid, bool p
 
 namespace
 {
-/// Multiplies each brick's kind (1 empty, -1 filled, 0 where rays bend) by the number of king's moves to the nearest
-/// brick of another kind, at most 127: two sweeps that propagate distances from neighbours, the second backwards, find
-/// it exactly.
+/// Multiplies the class of each brick (1 empty, -1 filled, 0 where rays bend) by the number of king's moves to the
+/// nearest brick of another class, at most 127. Two passes that propagate distances from neighbours, the second
+/// backwards, are exact.
 void FindDistances(std::vector<cl_char>& bricks, const std::array<int, 3>& count)
 {
   const auto total = static_cast<std::ptrdiff_t>(bricks.size());
@@ -86,7 +87,8 @@ void FindDistances(std::vector<cl_char>& bricks, const std::array<int, 3>& count
     {
       const std::ptrdiff_t here = side > 0 ? n : total - 1 - n;
       const std::ptrdiff_t i = here % row, j = here / row % count[1], k = here / slice;
-      for (int neighbour = 0; neighbour < 13; ++neighbour) // those before it in memory, or after it
+      // the neighbours that precede the brick in memory in the first pass, and those that follow it in the second
+      for (int neighbour = 0; neighbour < 13; ++neighbour)
       {
         const int x = side * (neighbour % 3 - 1), y = side * (neighbour / 3 % 3 - 1), z = side * (neighbour / 9 - 1);
         if (i + x >= 0 && i + x < row && j + y >= 0 && j + y < count[1] && k + z >= 0 && k + z < count[2])
@@ -106,9 +108,9 @@ std::size_t PaddedCount(const Grid& grid)
   return static_cast<std::size_t>(grid.size[0] + 2) * (grid.size[1] + 2) * (grid.size[2] + 2);
 }
 
-constexpr int PackedAlong = 64; ///< voxels of a row that a work-group packs
+constexpr int PackedAlong = 64; ///< number of voxels of a row that a work-group packs
 
-/// For each work-group in the rows of a brick: whether any of its voxels is seen. The first sample of a row belongs to
+/// For each work-group in the rows of a brick: whether rays see any of its voxels. The first sample of a row belongs to
 /// the border.
 std::vector<cl_uchar> SeenGroups(const SeenBricks& bricks, const Grid& grid)
 {
@@ -168,8 +170,8 @@ PackedSamples::PackedSamples(Device& device, const FilledBricks& filled, const S
   }
 }
 
-/// Launches a packing kernel over all voxels with their border, or over all samples of the records. Work-groups have a
-/// fixed shape, because PoCL compiles a kernel anew for every shape.
+/// Launches a packing kernel over all voxels with their border, or, with bricks, over all samples of the records.
+/// Work-groups have a fixed shape, because PoCL compiles a kernel anew for every shape.
 void PackedSamples::Launch(cl::Kernel& kernel, const std::array<int, 3>& size)
 {
   if (this->Traits.bricked)
@@ -212,7 +214,7 @@ void PackedSamples::Pack(
   }
 }
 
-/// Kernel parameters of packing.
+/// Parameters of the kernels that pack samples.
 PackInfo PackedSamples::InfoOf(const ViewedComponents& components) const
 {
   PackInfo info = {};

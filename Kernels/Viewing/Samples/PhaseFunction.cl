@@ -1,15 +1,16 @@
 // Evaluates 4 pi times the phase function for scattering towards the eye, averaged over the directions of light that is
 // spread about a mean direction (numerics.md, section 14.1).
 //
-// The host gives
+// Macros set by the host:
 //   PHASE           0 isotropic, 1 Henyey-Greenstein, 2 Schlick, 3 two Henyey-Greenstein lobes, 4 Rayleigh, 5 tabulated
-//   PHASE_CHANNELS  1, or 3: red, green and blue scatter differently
+//   PHASE_CHANNELS  1, or 3: the phase function differs between red, green and blue
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Linear interpolation in a table at `place`, clamped to [0, last]; the table has one more entry after the last.
+// Interpolates linearly in the table `rows` at `place`, clamped to [0, last]; the table has one more entry after the
+// last.
 inline real between_rows(__global const float* rows, real place, int last)
 {
   const real at = lesser(greater(place, (real)0.0f), (real)(float)last);
@@ -24,8 +25,8 @@ inline real between_rows(__global const float* rows, real place, int last)
   return fma(part, high - low, low);
 }
 
-// Bilinear interpolation in a table, at row `spread` and at the column of a cosine c. The `columns` intervals have
-// equal width in sqrt(1 - c) for c > 0 and in 2 - sqrt(1 + c) else; each row has two additional entries.
+// Interpolates bilinearly in a table at row `spread` and at the column of a cosine c. The `columns` intervals of a row
+// have equal width in sqrt(1 - c) for c > 0 and in 2 - sqrt(1 + c) else; each row has two additional entries.
 inline real between_cosines(__global const float* rows, real spread, real cosine, int columns)
 {
   const real c = lesser(greater(cosine, (real)(-1.0f)), (real)1.0f);
@@ -50,7 +51,7 @@ inline real between_cosines(__global const float* rows, real spread, real cosine
   return fma(part, fma(beside, far_high - far_low, far_low) - near, near);
 }
 
-// Henyey-Greenstein function of mean cosine |b|, Eq. (107).
+// 4 pi times the Henyey-Greenstein function of mean cosine |b|, numerics.md, Eq. (107).
 //   square  b.b, b the light's mean direction times g
 //   along   b.v, v the ray's direction, away from the eye
 inline real henyey_greenstein(real square, real along)
@@ -60,7 +61,8 @@ inline real henyey_greenstein(real square, real along)
 }
 
 #if PHASE == 2
-// Schlick's function of mean cosine |b|, Eq. (108).
+// 4 pi times Schlick's function of mean cosine |b|, numerics.md, Eq. (108).
+//   square, along  as for henyey_greenstein
 //   rows  table of k/|b| over sqrt(1 - |b|)
 inline real schlick(real square, real along, __global const float* rows)
 {
@@ -72,9 +74,10 @@ inline real schlick(real square, real along, __global const float* rows)
 #endif
 
 #if PHASE == 5
-// A tabulated phase function, interpolated bilinearly.
-//   rows  columns over the cosine c of the scattering angle: sqrt(1 - c) forwards and 2 - sqrt(1 + c) backwards; rows
-//         of CosineRows + 2 entries over sqrt(1 - |m|)
+// 4 pi times a tabulated phase function, averaged over the light's directions and interpolated bilinearly.
+//   square, along  m.m and m.v, m the light's mean direction, v the ray's direction away from the eye
+//   rows  table with columns over the cosine c of the scattering angle, sqrt(1 - c) forwards and 2 - sqrt(1 + c)
+//         backwards, and rows of CosineRows + 2 entries over sqrt(1 - |m|)
 inline real spread_rows(real square, real along, __global const float* rows)
 {
   const real size = lesser(sqrt(square), (real)1.0f);
@@ -83,15 +86,17 @@ inline real spread_rows(real square, real along, __global const float* rows)
 }
 #endif
 
-// Parameters of a phase function, for red, green and blue.
+// Parameters of the phase function of a packet's voxels, for red, green and blue.
 typedef struct
 {
-  rgb first, second, part; // see PhaseInfo
+  rgb first, second, part; // as in PhaseInfo (ViewShared.h)
 } phase_parameters;
 
-// Evaluates one channel.
+// 4 pi times the phase function of one channel.
 //   square  m.m, m the light's mean direction
 //   along   m.v, v the ray's direction, away from the eye
+//   first, second, part  parameters as in PhaseInfo
+//   rows    table of the phase function, with PHASE 2 and 5
 inline real scattered_of_channel(
   real square, real along, real first, real second, real part, __global const float* rows)
 {
@@ -116,7 +121,7 @@ inline rgb scattered_of_channels(real square, real along, phase_parameters p, __
   rgb f;
   f.r = scattered_of_channel(square, along, p.first.r, p.second.r, p.part.r, rows);
 #if PHASE_CHANNELS == 3
-  // With a tabulated function each channel has its own table.
+  // Distance between the tables of two channels: with PHASE 5 each channel has a table.
   const int apart = PHASE == 5 ? (SpreadRows + 2) * (CosineRows + 2) : 0;
   f.g = scattered_of_channel(square, along, p.first.g, p.second.g, p.part.g, rows + apart);
   f.b = scattered_of_channel(square, along, p.first.b, p.second.b, p.part.b, rows + 2 * apart);

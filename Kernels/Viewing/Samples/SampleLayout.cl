@@ -1,10 +1,10 @@
-// Memory layout of samples: in the order of voxels with a border of one voxel, or in bricks (SampleBricks).
+// Memory layout of packed samples: in the order of voxels with a border of one voxel, or in bricks (SampleBricks).
 
 #pragma once
 #include "Viewing/Scene/ViewShared.h"
 
 #if BRICKED
-#define SAMPLE_ROWS (GREY ? BrickEdge : SampleEdge) // with GREY a sample holds that of the next row as well
+#define SAMPLE_ROWS (GREY ? BrickEdge : SampleEdge) // with GREY a sample also holds the sample of the next row
 #define ROW_LENGTH(size) SampleEdge
 #define SLICE_LENGTH(size) (SampleEdge * SAMPLE_ROWS)
 #else
@@ -12,14 +12,15 @@
 #define SLICE_LENGTH(size) (((size).x + 2) * ((size).y + 2))
 #endif
 
-// Indexing of samples, which have a border of one voxel that repeats the outermost voxels: the sample of a work-item,
-// and the voxel whose values it holds.
+// Indices of samples, which have a border of one voxel that repeats the outermost voxels: padded_index is the index of
+// a work-item's sample, voxel_of that of the voxel whose values a sample holds.
 
 inline int padded_index(int4 size)
 {
   return ((int)get_global_id(2) * (size.y + 2) + (int)get_global_id(1)) * (size.x + 2) + (int)get_global_id(0);
 }
-// @param sample  index in the grid with its border
+// Index of the voxel whose values a sample holds.
+// @param sample  indices of the sample along each axis of the grid with its border
 inline int voxel_of(int3 sample, int4 size)
 {
   const int i = clamp(sample.x - 1, 0, size.x - 1);
@@ -35,8 +36,9 @@ inline int voxel_index(int4 size)
 {
   return voxel_of(sample_of_item(), size);
 }
-// Whether rays can see voxels of this work-group, which is PackedAlong voxels of a row.
-// @param seen  1 for each seen group in blocks of 8 x 8 rows, the cross-section of a brick (PackedSamples.cxx)
+// Whether rays see any voxel of this work-group, which packs PackedAlong voxels of a row.
+// @param seen  one flag per work-group along x and per 8 x 8 rows, the cross-section of a brick (SeenGroups in
+//   PackedSamples.cxx)
 inline int is_seen(__global const uchar* seen, int4 size)
 {
   const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1) >> BrickBits;
@@ -46,13 +48,14 @@ inline int is_seen(__global const uchar* seen, int4 size)
 }
 
 #if BRICKED
-// Work-items are the samples of records: x along a row of SampleEdge samples, y over rows, z over the slices of all
-// records in turn.
+// Index of a work-item's sample in the records: work-items have x along a row of SampleEdge samples, y over the rows of
+// a slice, z over the slices of all records.
 inline int place_in_records()
 {
   return ((int)get_global_id(2) * SAMPLE_ROWS + (int)get_global_id(1)) * SampleEdge + (int)get_global_id(0);
 }
-// Finds the grid index of a work-item's sample. @param bricks  the brick of each record
+// Finds the indices of a work-item's sample in the grid with its border.
+// @param bricks  index of the brick of each record
 // @return false if the record belongs to no brick; the sample is then zero
 inline int find_sample_in_brick(__global const int* bricks, int4 size, int3* sample)
 {

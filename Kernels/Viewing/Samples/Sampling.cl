@@ -1,18 +1,18 @@
-// Packets of REAL_WIDTH rays, and interpolation of the samples along them.
+// Packets of REAL_WIDTH rays, and interpolation of samples along them.
 //
-// The host gives
-//   COLOURED  1: extinction differs between red, green and blue; 0: one extinction for all three
-//   GREY      1: the source is the same in all channels too; `samples` then hold source and extinction of a voxel, and
-//             those of the next voxel along y
-//   BRICKED   1: samples are stored in bricks (SampleBricks); 0: in the order of voxels
-//   MANY_STEPS 1: rays take so many steps that rounding errors accumulate noticeably
+// Macros set by the host:
+//   COLOURED    1: extinction differs between red, green and blue; 0: one extinction for all three
+//   GREY        1: the source does not differ between the channels either; an element of `samples` then holds source
+//               and extinction of a voxel and of the next voxel along y
+//   BRICKED     1: samples are stored in bricks (SampleBricks); 0: in the order of voxels
+//   MANY_STEPS  1: rays take so many steps that rounding errors accumulate noticeably
 //
-// Floating-point contraction is off: the compiler would fuse multiply and add in some places only, and two variants of
-// a kernel (skipping bricks or not) would give pictures that differ in the last bit.
+// Floating-point contraction is off: the compiler would fuse multiply and add in some expressions only, and two
+// variants of a kernel (with or without skipping of bricks) would render pictures that differ in the last bit.
 //
-// Positions are in voxels from the box's lower corner, so that voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1].
-// Arrays named `samples` and `extinctions` have a border of one voxel that repeats the outermost voxels: interpolation
-// needs no bounds checks, and the medium ends at the faces of the box, not half a voxel inside.
+// Positions are in voxels from the box's lower corner: voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1]. Arrays
+// named `samples` and `extinctions` have a border of one voxel that repeats the outermost voxels: interpolation needs
+// no bounds checks, and the medium ends at the faces of the box, not half a voxel inside.
 
 #pragma once
 #include "Numerics/Numerics.cl"
@@ -36,11 +36,11 @@
 #endif
 #endif
 
-// min and max as single vector instructions; wrong for NaN.
+// Minimum and maximum as single vector instructions; wrong for NaN.
 #define lesser(a, b) ((a) < (b) ? (a) : (b))
 #define greater(a, b) ((a) > (b) ? (a) : (b))
 
-// Combines the two halves of a vector until four lanes are left.
+// Combines the upper and the lower half of a vector by `operation` until four lanes are left.
 #if REAL_WIDTH == 16
 #define REDUCED_TO_FOUR(type, v, operation)    \
   const type##8 eight = operation(v.lo, v.hi); \
@@ -61,7 +61,7 @@ inline float least_lane(real v)
   const float2 two = lesser(four.lo, four.hi);
   return lesser(two.x, two.y);
 }
-// PoCL's any() tests lane by lane, which is slow.
+// Whether the condition holds in any lane. PoCL's any() tests lane by lane, which is slow.
 inline int any_lane(integer condition)
 {
   REDUCED_TO_FOUR(int, condition, either)
@@ -82,7 +82,7 @@ typedef struct
   real r, g, b;
 } rgb;
 
-// Adds `more` to a sum; with MANY_STEPS by Kahan summation (1965), with the compensation in `rest`.
+// Adds `more` to a sum; with MANY_STEPS by Kahan summation (1965), whose compensation is `rest`.
 inline void add_to(real* sum, real* rest, real more)
 {
 #if MANY_STEPS
@@ -115,7 +115,7 @@ inline real within(real v, int size)
   return lesser(greater(v, (real)0.0f), (real)(float)size);
 }
 
-// Clips rays to the box.
+// Clips rays to the box of `size` voxels.
 //   from      start of the rays, voxels
 //   farthest  length at which the rays end
 //   before    receives the length from the start to the entry
@@ -132,7 +132,7 @@ inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, r
   const real z1 = ((real)(float)size.z - from.z) * iz;
   const real in = greater(greater(lesser(x0, x1), lesser(y0, y1)), greater(lesser(z0, z1), (real)0.0f));
   const real out = lesser(lesser(greater(x0, x1), greater(y0, y1)), lesser(greater(z0, z1), farthest));
-  // Rounding errors of a distant camera must not move the entry point out of the box.
+  // Entry points are clamped: rounding errors of a distant camera must not move them out of the box.
   rays result;
   result.direction = direction;
   result.entry.x = within(fma(in, direction.x, from.x), size.x);
@@ -147,7 +147,7 @@ inline rays clip_to_box(real3 from, real3 direction, real farthest, int4 size, r
   return result;
 }
 
-// Length along each ray that corresponds to `step` voxels.
+// Length along each ray in which it advances by `step` voxels.
 inline real step_length(real3 direction, float step)
 {
   return (real)step / sqrt(fma(direction.x, direction.x, fma(direction.y, direction.y, direction.z * direction.z)));
@@ -155,7 +155,7 @@ inline real step_length(real3 direction, float step)
 
 inline real3 along(rays packet, real distance)
 {
-  // Rays that have left the box stay at their exit point.
+  // A ray that has left the box remains at its exit point.
   const real d = lesser(distance, packet.length);
   real3 p;
   p.x = fma(d, packet.direction.x, packet.entry.x);
@@ -164,23 +164,24 @@ inline real3 along(rays packet, real distance)
   return p;
 }
 
-// The eight voxel centres around each point of a packet: twice the index of the first one; the interpolation weights of
-// the four pairs along x; and the weight of the upper centre of each pair.
+// The eight voxel centres around each point of a packet: twice the index of the first centre; the interpolation weights
+// of the four pairs along x; and the weight of the upper centre of each pair.
 typedef struct
 {
   integer twiceFirst;
   real nearLow, nearHigh, farLow, farHigh;
   real x;
 #if GREY
-  real y, near, far; // weights of the upper along y, and of the two along z
+  real y, near, far; // weights of the upper centre along y, and of the two centres along z
 #endif
 } corners;
 
-// Computes the weights, and the first centre's indices; j and k are whole numbers stored as real.
+// Computes the interpolation weights at points p, and the indices of the lower voxel centre: first_i, and j and k as
+// integers stored as real.
 __attribute__((always_inline)) inline void weigh_corners(real3 p, corners* at, integer* first_i, real* j, real* k)
 {
-  // Truncation equals floor here, because points in the box are at least half a voxel above the border's centres; PoCL
-  // compiles floor to eleven instructions.
+  // Conversion to integer truncates, which equals floor here, because points in the box are at least half a voxel above
+  // the border's centres; PoCL compiles floor to eleven instructions.
   const real px = p.x + (real)0.5f;
   const real py = p.y + (real)0.5f;
   const real pz = p.z + (real)0.5f;
@@ -204,13 +205,13 @@ __attribute__((always_inline)) inline void weigh_corners(real3 p, corners* at, i
 #endif
 }
 
-// Finds the corners in arrays of `size` voxels that begin at voxel `first`.
+// Finds the eight voxel centres around points p in arrays of `size` voxels that begin at voxel `first`.
 __attribute__((always_inline)) inline void find_corners_from(real3 p, int4 first, int4 size, corners* at)
 {
   integer i;
   real j, k;
   weigh_corners(p, at, &i, &j, &k);
-  // Row indices are computed in floats, which represent integers up to 16 million exactly.
+  // Row indices are computed in float, which represents integers up to 16 million exactly.
   const integer row = to_integer(fma(k - (real)(float)first.z, (real)(float)(size.y + 2), j - (real)(float)first.y));
   at->twiceFirst = (row * (size.x + 2) + (i - first.x)) * 2;
 }
@@ -221,7 +222,8 @@ __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corn
 }
 
 #if BRICKED
-// find_corners for samples in bricks. @param records  index of the first sample of each brick's record
+// Finds the eight voxel centres around points p in samples that are stored in bricks.
+// @param records  index of the first sample of each brick's record
 __attribute__((always_inline)) inline void find_corners_in_bricks(
   real3 p, int4 size, __global const int* records, corners* at)
 {
@@ -232,7 +234,7 @@ __attribute__((always_inline)) inline void find_corners_in_bricks(
   const integer brick =
     ((k >> BrickBits) * (size.y / BrickEdge + 1) + (j >> BrickBits)) * (size.x / BrickEdge + 1) + (i >> BrickBits);
   integer first = (integer)records[LANE(brick, 0)];
-  if (any_lane(brick != (integer)LANE(brick, 0))) // neighbouring rays are mostly in the same brick
+  if (any_lane(brick != (integer)LANE(brick, 0))) // rays of a packet are mostly in one brick
   {
 #define RECORD(n) LANE(first, n) = records[LANE(brick, n)];
     EACH_LANE(RECORD)
@@ -244,7 +246,8 @@ __attribute__((always_inline)) inline void find_corners_in_bricks(
 #endif
 
 #if REAL_WIDTH > 1
-// Prefetches the rows of samples around a point that the packet will reach. Any address is allowed.
+// Prefetches the rows of samples around a point p that the packet will reach. Any address is allowed, also outside the
+// array.
 inline void fetch_ahead(__global const float4* samples, real3 p, int4 size)
 {
   const int row = size.x + 2;
@@ -274,13 +277,13 @@ inline void fetch_ahead(__global const float4* samples, real3 p, int4 size)
 inline float8 neighbours(__global const float2* row, uint twice_first)
 {
   __global const float4* at = (__global const float4*)(row + twice_first);
-  return (float8)(at[0], at[1]); // 16 bytes are aligned, 32 are not
+  return (float8)(at[0], at[1]); // a float4 is aligned to 16 bytes, but not to the 32 bytes of a float8
 }
 
 #if REAL_WIDTH == 16
-// Interpolates along x for four rays. Each v holds (a at the lower x, a at the upper x) of one ray, a being four
-// values; the rays are lanes 0, 4, 8, c of x. Result: 16 lanes with the four values of the first ray, of the second,
-// ...
+// Interpolates along x for four rays. Each argument v holds four values at the lower x and four at the upper x of one
+// ray; the weights of the rays are lanes 0, 4, 8, c of x. Returns 16 lanes: the four values of the first ray, those of
+// the second, ...
 inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 x)
 {
   const float16 left = (float16)(v0, v4);
@@ -291,11 +294,11 @@ inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 
 }
 #endif
 
-// Interpolates values trilinearly at each ray's point: colour and w. Neighbours along x are adjacent in memory, so four
-// loads of eight floats fetch all corners of a ray. If `paired` (a compile-time constant), each value holds two numbers
-// and those of the next voxel along y; then two loads suffice, and the interpolation along y is left to the caller.
-// size.w is 0, which the compiler cannot know: this keeps `at` in memory, from where a CPU broadcasts single lanes at
-// no cost.
+// Interpolates values trilinearly at each ray's point: their xyz to `colour`, their w to `w`. Neighbours along x are
+// adjacent in memory, so four loads of eight floats read all corners of a ray. If `paired` (a compile-time constant),
+// each element holds two numbers of a voxel and two of the next voxel along y; then two loads suffice, and the caller
+// interpolates along y. size.w is 0, which the compiler cannot know: this keeps `at` in memory, from which a CPU
+// broadcasts single lanes at no cost.
 __attribute__((always_inline)) inline void gather_values(
   __global const float4* values, const corners* at, int4 size, const int paired, rgb* colour, real* w)
 {
@@ -333,7 +336,7 @@ __attribute__((always_inline)) inline void gather_values(
   FETCH(1) FETCH(5) FETCH(9) FETCH(d) const float16 b = four_between(v1, v5, v9, vd, x.s111155559999dddd);
   FETCH(2) FETCH(6) FETCH(a) FETCH(e) const float16 c = four_between(v2, v6, va, ve, x.s22226666aaaaeeee);
   FETCH(3) FETCH(7) FETCH(b) FETCH(f) const float16 d = four_between(v3, v7, vb, vf, x.s33337777bbbbffff);
-  // All following permutations stay within quarters of a register.
+  // All following permutations stay within quarters of a register, which is fast.
   const float16 ab_low =
     (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd);
   const float16 cd_low =
@@ -342,7 +345,7 @@ __attribute__((always_inline)) inline void gather_values(
     (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf);
   const float16 cd_high =
     (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se, c.sf, d.sf);
-  // Pairs are moved as longs; otherwise PoCL makes ten instructions of each of these.
+  // Pairs of floats are moved as longs; otherwise PoCL compiles each of these expressions to ten instructions.
 #define FIRST_PAIRS(p, q)                                                                                            \
   as_float16((long8)(as_long8(p).s0, as_long8(q).s0, as_long8(p).s2, as_long8(q).s2, as_long8(p).s4, as_long8(q).s4, \
     as_long8(p).s6, as_long8(q).s6))
@@ -384,7 +387,7 @@ inline void gather(__global const float4* values, const corners* at, int4 size, 
   gather_values(values, at, size, 0, colour, w);
 }
 
-// Interpolates source and grey extinction.
+// Interpolates source and grey extinction at each ray's point.
 inline void gather_samples(__global const float4* samples, const corners* at, int4 size, rgb* source, real* sigma)
 {
 #if GREY
@@ -398,7 +401,7 @@ inline void gather_samples(__global const float4* samples, const corners* at, in
 #endif
 }
 
-// Bilinear interpolation in a table for each ray: between two adjacent values from index `lower` on and two from
+// Interpolates bilinearly in a table for each ray: between two adjacent values from index `lower` on and two from
 // `upper` on; x is the weight of the second value of a pair, y that of the upper pair.
 inline rgb between_four(__global const float4* values, integer lower, integer upper, real x, real y)
 {
@@ -419,12 +422,13 @@ inline rgb between_four(__global const float4* values, integer lower, integer up
   return seen;
 }
 
-// Each brick has a signed distance: its absolute value is the number of king's moves to the nearest brick of another
-// kind. It is positive for empty bricks, negative for bricks with extinction or emission, and 0 where rays bend.
+// `bricks` holds a signed distance per brick: its absolute value is the number of king's moves to the nearest brick of
+// another class. It is positive for empty bricks, negative for bricks with extinction or emission, and 0 where rays
+// bend (FindDistances in PackedSamples.cxx).
 
-// What lies ahead of a packet: `steps`, how many steps from the sample at p every ray can take before one of them
-// leaves the surrounding bricks of the same kind; `empty`, whether all those steps are through empty bricks; `bends`,
-// whether a ray bends. Finished rays are ignored.
+// The bricks ahead of a packet at p. `steps`: number of steps that every ray can take before one of them leaves the
+// surrounding bricks of its class; `empty`: whether all these steps are in empty bricks; `bends`: whether a ray bends.
+// Finished rays are ignored.
 typedef struct
 {
   int steps, empty, bends;
@@ -438,7 +442,7 @@ __attribute__((always_inline)) inline stretch stretch_ahead(
   const integer bz = min(to_integer(p.z * (real)(1.0f / BrickEdge)), brick_count.z - 1);
   const integer brick = (bz * brick_count.y + by) * brick_count.x + bx;
   integer distance = (integer)(int)bricks[LANE(brick, 0)];
-  if (any_lane(brick != (integer)LANE(brick, 0))) // neighbouring rays are mostly in the same brick
+  if (any_lane(brick != (integer)LANE(brick, 0))) // rays of a packet are mostly in one brick
   {
 #define DISTANCE(n) LANE(distance, n) = bricks[LANE(brick, n)];
     EACH_LANE(DISTANCE)
@@ -469,11 +473,13 @@ inline real3 strides_per_voxel(real3 direction, real step)
 // Clips rays to one block of a larger grid.
 //
 // A ray takes the same steps as through the whole grid; each step belongs to the block that contains its midpoint.
-// Samples thus lie at the same places as in the whole grid, and every step is taken exactly once.
+// Samples thus lie at the same points as in the whole grid, and every step is taken exactly once.
 
-#define BEYOND 1e30f // longer than any ray
+#define BEYOND 1e30f // length beyond the end of every ray
 
 // Number of steps of a ray whose midpoints are closer than `distance` to its entry into the whole grid.
+//   steps        number of steps through the whole grid
+//   last_middle  distance of the last step's midpoint from the entry
 inline real steps_before(real distance, real step, real steps, real last_middle)
 {
   const real nominal = ceil(distance / step - (real)0.5f);
@@ -482,9 +488,9 @@ inline real steps_before(real distance, real step, real steps, real last_middle)
   return full + (all ? (real)1.0f : (real)0.0f);
 }
 
-// Computes the section of each ray that belongs to the block, in the block's voxel coordinates.
+// Computes the section of each ray whose steps belong to the block, in voxel coordinates of the block.
 //   from    start of the rays, voxels of the whole grid
-//   stride  step, voxels
+//   stride  length of a step, voxels
 //   before  receives the length of the ray in front of the block
 //   enters  whether the ray enters the whole grid in this block
 //   leaves  whether it leaves the whole grid from this block, or misses the grid while this block shows the background
@@ -497,7 +503,7 @@ inline rays clip_to_block(real3 from, real3 direction, real farthest, const Bloc
   const real steps = ceil(whole.length / step);
   const real last_middle = (real)0.5f * (whole.length + (steps - (real)1.0f) * step);
 
-  // Distances from the entry to the planes between blocks: bitwise the same in both adjacent blocks.
+  // Distances from the entry to the planes between blocks: bitwise equal in both adjacent blocks.
   real in = (real)-BEYOND, out = (real)BEYOND;
 #define CLIP(c)                                                                                            \
   {                                                                                                        \

@@ -1,9 +1,9 @@
-// Packs the samples for camera rays: every voxel's source radiance per unit length and its extinction, from the
-// medium's arrays and from the light that a solver computed or that shadow rays find.
+// Packs the samples for camera rays: source radiance per unit length and extinction of every voxel, from the medium's
+// arrays and from light that a solver or shadow rays computed.
 //
-// The host gives
-//   FLOW     what is packed of the light's mean direction: 0 nothing; 1 the direction; 2 times g, length at most
-//            LARGEST_FLOW; 3 the direction, and g by voxel separately
+// Macros set by the host:
+//   FLOW     what is packed of the light's mean direction: 0 nothing; 1 the direction; 2 the direction times g, length
+//            at most LARGEST_FLOW; 3 the direction, and g by voxel in a separate array
 //   GLOW     1: emission is packed separately
 //   BENDS    1: the refractive index varies
 //   BRICKED  1: samples are stored in bricks
@@ -28,8 +28,9 @@ typedef struct
   const PackInfo* info;
 } ingredients;
 
-// In-scattered radiance of one channel. `fluence` is the total fluence, `unscattered` its uncollided part; what shadow
-// rays show of the lamps is subtracted from the fluence, so that it does not count twice.
+// In-scattered radiance of one channel, W / (length^2 sr), isotropic except for the lamps' light that shadow rays
+// computed (`direct`). The fluence that this light accounts for is subtracted from the total fluence, so that it does
+// not count twice.
 inline float in_scattered(const ingredients* from, int voxel, int channel)
 {
   const int single = from->info->single;
@@ -44,8 +45,10 @@ inline float in_scattered(const ingredients* from, int voxel, int channel)
   return (single ? first : whole) * PER_SPHERE;
 }
 
-// Source of a voxel (red, green, blue) and its grey extinction; with BENDS divided by n^2. Also returns the extinction
-// of all channels, and the emission, which with GLOW is not included in the source.
+// Source of a voxel, W / (length^3 sr) (red, green, blue), and its grey extinction in w; with BENDS the source is
+// divided by n^2.
+//   sigma_t  receives the extinction of all channels
+//   emitted  receives the emission, which with GLOW is not included in the source
 inline float4 source_of(const ingredients* from, int voxel, float4* sigma_t, float4* emitted)
 {
   const ViewedComponents of = from->info->components;
@@ -74,7 +77,7 @@ inline float4 source_of(const ingredients* from, int voxel, float4* sigma_t, flo
 }
 
 #if BRICKED
-// Prefetches the rows of the brick's next slice, by the ends of each row, because rows of a brick are far apart in
+// Prefetches the voxels of the brick's next slice, at both ends of each row, because rows of a brick are far apart in
 // memory.
 static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
 {
@@ -89,14 +92,13 @@ static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
 #endif
 
 // Packs samples. Voxels that rays do not see (ViewTraits.h) are skipped.
-//
-// bricks   with BRICKED: the brick of each record (SampleBricks)
-// samples  source (red, green, blue) and grey extinction; with GREY source and extinction here and at the next voxel
-//          along y
-// flow     the light's mean direction, see FLOW
-// cosines  with FLOW 3: g of red, green, blue
-// glow     with GLOW: emission, which is then not part of `samples`
-// ior      with BENDS: sources are divided by its square
+//   bricks   with BRICKED: index of the brick of each record (SampleBricks)
+//   samples  source (red, green, blue) and grey extinction; with GREY source and extinction of this voxel and of the
+//            next voxel along y
+//   flow     the light's mean direction, see FLOW
+//   cosines  with FLOW 3: g of red, green, blue
+//   glow     with GLOW: emission, which is then not part of `samples`
+//   ior      refractive index; with BENDS sources are divided by its square
 __kernel void pack_samples(PackInfo info, __global const float* restrict absorption,
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict fluence, __global const float* restrict unscattered,
@@ -109,7 +111,8 @@ __kernel void pack_samples(PackInfo info, __global const float* restrict absorpt
 #if BRICKED
   int3 sample;
   const int place = place_in_records();
-  const float there = find_sample_in_brick(bricks, size, &sample) ? 1.0f : 0.0f; // record 0 is zero
+  // record 0, of all empty bricks, is zero
+  const float there = find_sample_in_brick(bricks, size, &sample) ? 1.0f : 0.0f;
 #else
   if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))
   {
@@ -139,7 +142,7 @@ __kernel void pack_samples(PackInfo info, __global const float* restrict absorpt
 #endif
 #if FLOW
   const float3 mean = (float3)(direction[3 * voxel], direction[3 * voxel + 1], direction[3 * voxel + 2]);
-  // A mean direction is at most 1 long.
+  // A mean direction longer than 1 is shortened to length 1.
   const float3 held = mean / fmax(length(mean), 1.0f);
 #if FLOW == 2
   const float here = info.components.meanCosines ? mean_cosines[voxel] : info.g;

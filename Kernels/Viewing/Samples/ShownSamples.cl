@@ -1,12 +1,12 @@
-// Packs the samples for camera rays if scattered light is known by direction: instead of a source, the ratio of source
-// to extinction. It varies slowly where both decay steeply, as behind the surface of a cloud; it is multiplied by the
-// interpolated extinction during the march (numerics.md, section 14.7).
+// Packs the samples for camera rays if scattered light is known by direction (angular moments): instead of a source,
+// the ratio of source to extinction. The ratio varies slowly where source and extinction decay steeply, as behind the
+// surface of a cloud; the march multiplies it by the interpolated extinction (numerics.md, section 14.7).
 //
-// The host gives
-//   SHOWN        0 no source; 1 diffuse light and first-scattered light of lamps; 2 repeated forward scattering of
-//                lamps' light
-//   BEAMS        1: `direct` holds light of lamps
-//   AUREOLE      0: `direct` has no values for SHOWN 2
+// Macros set by the host:
+//   SHOWN    0 no source; 1 diffuse light and first-scattered light of lamps; 2 repeated forward scattering of lamps'
+//            light
+//   BEAMS    1: `direct` holds light of lamps
+//   AUREOLE  0: `direct` has no values for SHOWN 2
 //   COLOURED, BENDS, GLOW  as in ScatteredLight.cl
 
 #include "Viewing/Samples/SampleLayout.cl"
@@ -15,7 +15,7 @@
 
 #define DARKEST 80.0f
 
-// Extinction of a voxel, and its ratio of scattering to extinction.
+// Extinction of a voxel, and ratio of its scattering to its extinction.
 typedef struct
 {
   float4 sigma_t, albedo;
@@ -45,9 +45,9 @@ inline float4 triple(__global const float* values, int voxel)
   return (float4)(values[3 * voxel], values[3 * voxel + 1], values[3 * voxel + 2], 0.0f);
 }
 
-// Packs the samples from each voxel's light: `diffuse` with 3 values a voxel and `direct` with 6 (ShadowRays.cl), W /
-// (length^2 sr). A voxel without scattering gets the mean light of its scattering neighbours, and their mean albedo if
-// it does not absorb either.
+// Packs the samples from the light of each voxel, W / (length^2 sr): `diffuse` with 3 values per voxel and `direct`
+// with 6 (ShadowRays.cl). A voxel without scattering receives the mean light of its scattering neighbours, and their
+// mean albedo if it does not absorb either.
 //   samples  SHOWN 1: diffuse light times albedo; SHOWN 2: ratio of lamps' light scattered more than once to that
 //            scattered once; w: grey extinction
 //   beams    -ln of (lamps' light times albedo)
@@ -88,7 +88,7 @@ __kernel void pack_shown(PackInfo info, __global const float* restrict absorptio
   count += 1.0f;
     FOR_SCATTERING_AROUND(voxel, size, scattering, of.scattering, ADD)
 #undef ADD
-    // A voxel that absorbs but does not scatter is black.
+    // The albedo of a voxel that absorbs but does not scatter is 0.
     albedo = any(here.sigma_t.xyz > (float3)(0.0f)) ? here.albedo : albedos / fmax(count, 1.0f);
 #if SHOWN == 1
     light = lights / fmax(count, 1.0f);

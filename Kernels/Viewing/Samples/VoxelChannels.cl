@@ -1,4 +1,4 @@
-// Access to voxel arrays in the host's layout, with 1 or 3 channels, or without values (0 components).
+// Access to voxel arrays in the host's layout, with 1 or 3 components per voxel, or without values (0 components).
 
 #pragma once
 
@@ -9,10 +9,8 @@ inline float channel_of(__global const float* values, int voxel, int components,
   return components == 0 ? 0.0f : values[voxel * components + (components == 3 ? channel : 0)];
 }
 
-// Finds scattering voxels in the 3 x 3 x 3 neighbourhood of a voxel.
-
-// Calls DO(neighbour) for all voxels of the 3 x 3 x 3 neighbourhood, including the voxel itself, that scatter in any
-// channel.
+// Calls DO(neighbour) for all voxels that scatter in any channel in the 3 x 3 x 3 neighbourhood of a voxel, the voxel
+// itself included.
 #define FOR_SCATTERING_AROUND(voxel, size, scattering, components, DO)                                      \
   {                                                                                                         \
     const int3 at = { (voxel) % (size).x, (voxel) / (size).x % (size).y, (voxel) / ((size).x * (size).y) }; \
