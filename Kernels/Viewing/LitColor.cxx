@@ -18,14 +18,17 @@ namespace
 {
 constexpr std::size_t VoxelsOfThread = 16384; ///< smallest number of voxels per thread
 constexpr int ColumnsOfView = 64;             ///< largest number of columns along each edge of a view
-constexpr double ResolvedDepth = 2.0;         ///< lower bound of k sigma_t distance of the most opaque voxel
-constexpr double PartOfVeil = 0.25;     ///< fraction of a ray's most light at which the displayed value is matched too
-constexpr double AsGoodAsOpaque = 0.95; ///< opacities above this count as 1
+/// Smallest value of k sigma_t distance of the most opaque voxel (k, distance: LitColor.h), so that 8 bits resolve
+/// opacities.
+constexpr double ResolvedDepth = 2.0;
+/// Fraction of the largest radiance that a ray shows of a voxel at which its display value is matched as well.
+constexpr double PartOfVeil = 0.25;
+constexpr double AsGoodAsOpaque = 0.95; ///< opacity from which on a voxel counts as opaque
 
-/// Source function of the voxels: the light they send to the eye.
+/// Source function of the voxels: (sigma_s fluence / (4 pi) + emission) / sigma_t.
 struct SourceFunction
 {
-  std::vector<float> radiance;   ///< 3 per voxel, W/(length^2 sr)
+  std::vector<float> radiance;   ///< source function, 3 per voxel, W / (length^2 sr)
   std::vector<float> extinction; ///< mean of the channels, 1/length
 };
 
@@ -46,8 +49,9 @@ double ShortestEdge(const Grid& grid)
   return *std::min_element(grid.spacing.begin(), grid.spacing.end());
 }
 
-/// Computes the source function of a voxel. With coloured extinction each channel is weighted by its own opacity,
-/// because one alpha serves all three.
+/// Computes the source function and the extinction of one voxel. With coloured extinction each channel is weighted by
+/// its own opacity, because one alpha serves all three.
+/// @param edge  shortest edge of a voxel, length
 void FindSource(const Medium& medium, const Field& fluence, std::size_t voxel, double edge, SourceFunction& found)
 {
   std::array<double, 3> sigma_t, opacity;
@@ -78,7 +82,7 @@ SourceFunction SourceFunctionOf(const Medium& medium, const Field& fluence)
   return found;
 }
 
-/// Radiance and transmittance of a column of voxels, or of a part of it.
+/// Radiance and transmittance of a column of voxels, or of a section of it.
 struct SeenColumn
 {
   std::array<double, 3> radiance = {};
@@ -112,7 +116,8 @@ SeenColumn LookAlong(const SourceFunction& source, double edge, std::size_t firs
   return seen;
 }
 
-/// Calls act(u, v) for a regular subset of the columns along an axis of the grid, restricted to those in a box.
+/// Calls act(u, v) for the columns along an axis that a view shows, a regular subset of those of the grid, as far as
+/// they lie in a box.
 template <class Act>
 void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Act& act)
 {
@@ -132,7 +137,8 @@ void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Ac
   }
 }
 
-/// Radiance and transmittance of the view columns in a block, along an axis; for each column from below and from above.
+/// Radiance and transmittance of the columns of a view within this rank's block; for each column from below and from
+/// above.
 std::vector<SeenColumn> SeenInBlock(const Domain& domain, int axis, const SourceFunction& source)
 {
   const Grid grid = domain.OwnGrid();
@@ -150,14 +156,14 @@ std::vector<SeenColumn> SeenInBlock(const Domain& domain, int axis, const Source
   return seen;
 }
 
-/// Pixels of several views.
+/// Pixels of several views: radiance, 3 per pixel, and alpha.
 struct SeenPixels
 {
   std::vector<float> radiance, alpha;
 };
 
-/// Composites the columns of all blocks.
-/// @param byRank  columns of each block, from SeenInBlock
+/// Pixels of the two views along an axis: composites the columns of all blocks.
+/// @param byRank  columns of each rank's block, from SeenInBlock
 SeenPixels BehindEachOther(
   const BlockPartition& partition, int axis, const std::vector<std::vector<SeenColumn>>& byRank)
 {
@@ -166,7 +172,8 @@ SeenPixels BehindEachOther(
   std::sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b) { return partition.blocks[a].first[axis] < partition.blocks[b].first[axis]; });
   const std::size_t width = static_cast<std::size_t>(partition.whole.size[AcrossAxis(axis).u]);
-  std::map<std::size_t, std::array<SeenColumn, 2>> columns; // by position in the plane
+  // columns from below and from above, by position in the plane across the axis
+  std::map<std::size_t, std::array<SeenColumn, 2>> columns;
   for (int side = 0; side < 2; ++side)
   {
     for (const std::size_t rank : order)
@@ -191,8 +198,8 @@ SeenPixels BehindEachOther(
   return seen;
 }
 
-/// Exposure by AutomaticExposure for parallel views along the axes from both sides, with a subset of the columns. The
-/// first rank composites the views. Collective.
+/// Exposure by AutomaticExposure for six parallel views, along each axis from both sides, of a subset of the columns.
+/// The first rank composites the views. Collective.
 double ExposureAlongAxes(const Domain& domain, const SourceFunction& source)
 {
   Communicator& others = domain.Comm();
@@ -216,9 +223,10 @@ double ExposureAlongAxes(const Domain& domain, const SourceFunction& source)
   return others.Sum({ others.Rank() == 0 ? AutomaticExposure(seen.radiance, seen.alpha) : 0.0 })[0];
 }
 
-/// Sets an empty voxel's radiance to the mean of its neighbours', weighted by their extinction.
+/// Sets the radiance of a voxel without extinction to the mean of its neighbours' radiance, weighted by their
+/// extinction.
 /// @param grid    grid of `around`, which includes the voxel and its neighbours
-/// @param place   the voxel, in this grid
+/// @param place   indices of the voxel in this grid
 /// @param around  source function on this grid
 void FillFromNeighbours(
   const Grid& grid, const std::array<int, 3>& place, const SourceFunction& around, float* radiance)
@@ -238,7 +246,7 @@ void FillFromNeighbours(
       for (int i = low[0]; i <= high[0]; ++i)
       {
         const std::size_t neighbour = grid.IndexOf({ i, j, k });
-        const double weight = around.extinction[neighbour]; // 0 for empty neighbours
+        const double weight = around.extinction[neighbour]; // 0 for neighbours without extinction
         weights += weight;
         for (std::size_t c = 0; c < 3 && weight > 0.0; ++c)
         {
@@ -253,7 +261,7 @@ void FillFromNeighbours(
   }
 }
 
-/// Source function of a block and its ghost cells. Collective.
+/// Source function of this rank's block and its ghost cells. Collective.
 SourceFunction WithNeighbours(const Domain& domain, const SourceFunction& own)
 {
   std::vector<VoxelBox> wanted;
@@ -286,7 +294,8 @@ void FillEmptyVoxels(const Domain& domain, SourceFunction& source)
   });
 }
 
-/// Optical depths of all columns of the whole grid along an axis, row by row in the plane across it. Collective.
+/// Optical depths of all columns of the whole grid along an axis, row by row in the plane across the axis. Collective.
+/// @param extinction  mean extinction of this rank's voxels, 1/length
 std::vector<double> ColumnDepths(const Domain& domain, int axis, const std::vector<float>& extinction)
 {
   const PlaneAxes plane = AcrossAxis(axis);
@@ -312,8 +321,9 @@ std::vector<double> ColumnDepths(const Domain& domain, int axis, const std::vect
   return domain.Sum(depths);
 }
 
-/// Opacity of the densest of the three axis-parallel columns through each voxel: about the largest opacity that a ray
-/// through the voxel has.
+/// Largest opacity of the three axis-parallel columns through each voxel of this rank, about the largest opacity along
+/// any ray through the voxel; 1 from AsGoodAsOpaque on. Collective.
+/// @param extinction  mean extinction of this rank's voxels, 1/length
 std::vector<float> LargestOpacities(const Domain& domain, const std::vector<float>& extinction)
 {
   std::array<std::vector<double>, 3> depths;
@@ -340,9 +350,10 @@ std::vector<float> LargestOpacities(const Domain& domain, const std::vector<floa
   return opacities;
 }
 
-/// Computes k of Eq. (112d) for each voxel.
-/// @param radiance  largest radiance shown of the voxel, where opacity reaches `most`
+/// Factor k of numerics.md, Eq. (112d), of each voxel.
+/// @param radiance  largest radiance that a ray shows of the voxel, 3 per voxel
 /// @param colour    tone-mapped radiance, 4 per voxel
+/// @param most      largest opacity along a ray through the voxel
 std::vector<float> VeilFactors(const std::vector<float>& radiance, const std::vector<std::uint8_t>& colour,
   const std::vector<float>& most, const ToneMapping& tones)
 {

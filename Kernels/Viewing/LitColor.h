@@ -9,35 +9,37 @@
 
 namespace tyndall
 {
-/// Colour and opacity of a lit medium, for volume mappers that blend display colours of voxels and do not compute
+/// Colours and opacities of a lit medium, for volume mappers that blend display colours of voxels and do not compute
 /// light.
 struct LitColor
 {
-  std::vector<std::uint8_t> rgba; ///< 4 per voxel; colours are not multiplied by alpha
+  std::vector<std::uint8_t> rgba; ///< red, green, blue, alpha per voxel; colours are not multiplied by alpha
   double distance = 1.0;          ///< path length to which alpha refers, length
   double exposure = 1.0;          ///< factor applied to radiance before tone mapping
 };
 
-/// Computes for each voxel the colour of the light it sends to the eye, and its opacity (numerics.md, section 14.8).
+/// Computes the colour of the light that each voxel scatters and emits, and the voxel's opacity (numerics.md, section
+/// 14.8).
 ///
 /// Colour: the tone-mapped source function (sigma_s fluence / (4 pi) + emission) / sigma_t; where the medium is too
-/// thin to become opaque along any ray, reduced to the brightness it can reach. Scattering is taken as isotropic, so
-/// the colour does not depend on the position of the eye. A voxel without extinction gets the mean colour of its
-/// neighbours, so that interpolation at the medium's rim does not darken it. Emission from voxels without extinction is
-/// not shown.
+/// thin to become opaque along any ray, reduced to the brightness that a ray can reach. Scattering is taken as
+/// isotropic, so the colour does not depend on the position of the eye. A voxel without extinction receives the mean
+/// colour of its neighbours, so that interpolation at the medium's rim does not darken it. Emission from voxels without
+/// extinction is not shown.
 ///
 /// Alpha: 1 - exp(-k sigma_t distance), with sigma_t averaged over the channels. k compensates for blending in display
-/// (gamma-encoded) values, which shows a thin veil darker than its radiance: it is chosen such that a quarter of the
-/// most light that a ray shows of the voxel, over black, looks as after ToneMap, Eq. (112d). In opaque media k is 1 for
+/// (gamma-encoded) values, which makes a thin veil darker than its radiance: a quarter of the largest light that a ray
+/// shows of the voxel, over black, has the display value that ToneMap gives it, Eq. (112d). In opaque media k is 1 for
 /// dark voxels, and 4.3 where exposed radiance is 1.
 ///
 /// Distance: the voxel's shortest edge, or more where the medium is so thin that 8 bits would not resolve its opacity.
 ///
-/// On a domain that is decomposed into blocks each rank computes the colours of its own voxels, with the exposure and
-/// distance of the whole domain. A rank stores a ghost layer and the optical depths of the whole grid's columns; the
-/// first rank also stores what the columns show. Collective.
+/// On a domain that is decomposed into blocks, each rank computes the colours of its own voxels, with the exposure and
+/// distance of the whole domain. A rank stores one layer of ghost cells and the optical depths of the whole grid's
+/// columns; the first rank also stores the pixels of the views. Collective.
 ///
-/// @param medium, fluence  of the rank's block; ignored if it has no voxels. fluence: 1 or 3 components, W / length^2
+/// @param medium, fluence  medium and fluence of the rank's block; ignored if it has no voxels. fluence: 1 or 3
+///   components, W / length^2
 /// @param tones  the same on all ranks; exposure 0: chosen by AutomaticExposure from parallel views along the axes,
 ///   from both sides
 /// @throws InvalidInput for an exposure out of its range

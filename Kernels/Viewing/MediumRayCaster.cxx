@@ -19,7 +19,9 @@ namespace
 {
 constexpr float LeastViewedIndex = 1e-3f;
 constexpr float LargestViewedIndex = 1e3f;
-constexpr float FacesAlike = 1e-3f; ///< relative tolerance, for smoothing of structures near the border
+/// Relative tolerance within which the index on the box's faces counts as constant: structures near the border are
+/// smoothed.
+constexpr float FacesAlike = 1e-3f;
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
 {
@@ -31,7 +33,8 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
     {
       const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
       const float* row = ior.values + grid.IndexOf({ 0, j, k });
-      const int step = wholeRow ? 1 : std::max(size[0] - 1, 1); // otherwise only the row's two ends
+      // Rows inside a face in y and z touch the faces in x only, with their two ends.
+      const int step = wholeRow ? 1 : std::max(size[0] - 1, 1);
       for (int i = 0; i < size[0]; i += step)
       {
         range.least = std::min(range.least, row[i]);
@@ -42,10 +45,10 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
   return range;
 }
 
-/// Warnings about what may not look as intended, a sentence each: an unlit table, a surface index that the medium never
-/// has, an index that varies over the box's faces.
+/// Warnings about parts of the scene that may not look as intended, a sentence each: a table without light, a surface
+/// index that does not occur in the medium, an index that varies over the box's faces.
 /// @param ior    refractive index; null: constant
-/// @param index  the range of `ior`
+/// @param index  range of `ior`
 std::vector<std::string> DoubtsAbout(
   const ViewSettings& settings, const SolvedLight& light, const Field& ior, const IndexRange& index, const Grid& grid)
 {
@@ -75,8 +78,9 @@ std::vector<std::string> DoubtsAbout(
   return doubts;
 }
 
-/// @throws InvalidInput for a refractive index that is not finite, lies outside [1e-3, 1e3] or does not have exactly
-///   one component
+/// Checks the refractive index.
+/// @throws InvalidInput for an index that is not finite, lies outside [1e-3, 1e3] or does not have exactly one
+///   component
 void CheckViewedIndex(const Field& ior, const Grid& grid)
 {
   Require(!ior.values || ior.components == 1,
@@ -92,7 +96,7 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
   }
 }
 
-/// The lights for which shadow rays are traced.
+/// The lights to which shadow rays are traced: with angular moments lampsApart, else the illumination's lights.
 const std::vector<Light>& LampsOf(const SolvedLight& light, const Illumination& illumination, const ViewSettings& asked)
 {
   return ShownDegree(light, asked) >= 0 ? light.lampsApart : illumination.lights;
@@ -103,7 +107,8 @@ bool Shine(const std::vector<Light>& lamps)
   return std::any_of(lamps.begin(), lamps.end(), [](const Light& lamp) { return !IsBlack(lamp.power); });
 }
 
-/// Switches shadow rays off without lamps, and on with moments, which exclude the first scattering of lamps.
+/// The settings with shadow rays off without lamps, and on with angular moments, which do not include the first
+/// scattering of lamps.
 ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
 {
   asked.shadowRays = (asked.shadowRays || showsMoments) && lampsShine;
@@ -111,6 +116,7 @@ ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
 }
 
 /// Checks all inputs except the medium's own values.
+/// @return the settings, by Needed
 /// @throws InvalidInput as the constructor
 ViewSettings Checked(const Medium& medium, const SolvedLight& light, const Illumination& illumination,
   const ViewSettings& asked, const Field& ior, const BlockOfScene* block, bool lampsShine)
@@ -154,7 +160,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Fil
 {
   if (this->Traits.PacksOnce())
   {
-    this->PrepareSources({}, {}); // now, while the caller's arrays exist
+    this->PrepareSources({}, {}); // now, because the caller's arrays may not outlive the constructor
   }
 }
 
@@ -204,7 +210,7 @@ bool MediumRayCaster::Adopt(const ViewSettings& asked)
   {
     return false;
   }
-  // shadow rays depend on the step size
+  // Light computed by shadow rays depends on the step size.
   this->SourcesReady &= !this->Traits.shadowRays || settings.stepSize == now.stepSize;
   this->Settings = settings;
   this->AskedForShadowRays = asked.shadowRays;
@@ -217,7 +223,7 @@ bool MediumRayCaster::ShowsBackgroundColor() const
   return this->Settings.showBackground && !this->Behind.IsSky() && !this->Behind.HasEnvironment();
 }
 
-/// Packs the samples for a pass, if they are packed for another.
+/// Packs the samples for a pass of the picture, unless they are already packed for it.
 void MediumRayCaster::Pack(Packing what)
 {
   if (this->Samples.PackedFor() != what)
@@ -236,13 +242,13 @@ void MediumRayCaster::PrepareSources(const Camera& camera, const Monitor& monito
   this->FinishSources(camera);
 }
 
-/// Packs the samples again: for shadow rays, once their light has changed or the picture's passes are to follow.
+/// Packs the samples for shadow rays.
 void MediumRayCaster::PackForShadowRays()
 {
   this->Samples.Pack(Packing::ForShadowRays, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
 }
 
-/// Completes the sources, once the light of all lamps is known.
+/// Completes the sources for camera rays, once the light of all lamps is known: angular moments, and packing.
 void MediumRayCaster::FinishSources(const Camera& camera)
 {
   if (this->Traits.ShowsMoments())
@@ -250,7 +256,7 @@ void MediumRayCaster::FinishSources(const Camera& camera)
     this->Sources.SeeMoments(camera);
   }
   this->Samples.Pack(Packing::Scattered, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
-  this->Omitted = this->LeftOutNow(); // empty bricks are known now
+  this->Omitted = this->LeftOutNow(); // now that empty bricks are known
   this->SourcesReady = true;
   if (this->Traits.PacksOnce())
   {
@@ -258,7 +264,8 @@ void MediumRayCaster::FinishSources(const Camera& camera)
   }
 }
 
-/// @param from  progress that is reported at the begin, in [0, 1]
+/// Renders one picture, or with angular moments its two passes, from the packed samples.
+/// @param from  progress that is reported at the start, in [0, 1]
 Picture MediumRayCaster::Cast(const Camera& camera, const GridBlock* block, const std::vector<float>& ends,
   const Starts& starts, double from, const Monitor& monitor)
 {
@@ -282,7 +289,7 @@ Picture MediumRayCaster::Render(
 {
   Require(!block || this->CastsBlocks(),
     "Rays that bend or meet a table cannot be cast through blocks of the medium one by one.");
-  this->Rays.PassOf(camera, block, false); // checks the camera
+  this->Rays.PassOf(camera, block, false); // throws for an invalid camera
   Report(monitor, 0.0);
   const bool prepares = this->NeedsSources();
   if (prepares)

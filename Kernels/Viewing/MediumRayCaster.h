@@ -46,9 +46,9 @@ namespace tyndall
 /// rays already account for, so that no light counts twice. The sum over lights is evaluated at voxel centres. With
 /// shadow rays all other light is taken to scatter isotropically. Shadow rays are straight, also through glass.
 ///
-/// Where the voxels at a face of the box are thicker than a mean free path, rays that enter through this face show the
-/// outgoing radiance that the solver computed there (`surface`), see Backdrop.cxx. This applies to straight rays
-/// that show all light, without shadow rays, mean directions or a table.
+/// Where the voxels at a face of the box are thicker than a mean free path, rays that enter through this face receive
+/// the outgoing radiance that the solver computed there (`surface`), see SurfaceLight in Backdrop.cxx. This applies to
+/// straight rays that show all light, without shadow rays, mean directions or a table.
 ///
 /// Every term uses the medium's own sigma_s and sigma_t, even if the solver worked with sigma_s (1 - g).
 /// `scattered_radiance`, which solvers store for chosen directions, is for analysis and is not used here: a camera
@@ -57,10 +57,10 @@ namespace tyndall
 /// Where the light has angular moments (scatteredMoments) and singleScatteringOnly is off, the moments replace the
 /// table above (numerics.md, section 14.7, Eqs. (112a) to (112c)). The picture is then the sum of scattered light, from
 /// its moments in each voxel in the direction of the camera; the first scattering of lampsApart, by shadow rays with
-/// the whole phase function, whether or not shadowRays is set; and the part of that light that was scattered forwards
-/// more than once. The part of scattering that the solver treated as unscattered does not attenuate the camera's rays
-/// either, but alpha, depth, backgroundColor and the environment's peaks refer to light that is not scattered at all.
-/// The illumination's lights are not used then.
+/// the whole phase function, whether or not shadowRays is set; and the light of lampsApart that was scattered forwards
+/// more than once. The fraction of scattering that the solver treated as unscattered does not attenuate the camera's
+/// rays either, but alpha, depth, backgroundColor and the environment's peaks refer to light that is not scattered at
+/// all. The illumination's lights are not used.
 ///
 /// Refraction (Pfeuti 2009, section 3.1.6 and listing A.4, which uses Euler steps). Where the refractive index n
 /// varies, rays bend: they are integrated by a second-order leapfrog on the same spline of n^2 that photons use
@@ -89,7 +89,7 @@ class MediumRayCaster
 {
 public:
   /// Copies medium and light to the device.
-  /// @param illumination  its lights cast shadow rays, its environment and sky are the background
+  /// @param illumination  its lights are the targets of shadow rays, its environment and sky are the background
   /// @param ior  refractive index, one component per voxel; null or constant: rays are straight
   /// @param block  set if the medium is one of several blocks of a grid whose pictures are composited
   ///   (Blocks/PictureInBlocks.h); `ior` then covers the voxels of BlockOfScene::known. Null: the medium is the whole
@@ -98,7 +98,7 @@ public:
   ///   have 1 or 3 components (a direction: 3); for an index outside [1e-3, 1e3] or without exactly one component; if
   ///   the settings need an array that is missing; for a setting out of its range
   /// @throws DeviceError if the samples do not fit: 16 bytes per voxel (for a mostly empty medium, only for bricks in
-  ///   and around the filled ones; on a GPU only where PackedSamples.h applies), and as much again for each of coloured
+  ///   and around the filled ones; on a GPU only where PackedSamples.h applies), and 16 more for each of coloured
   ///   extinction, the light's direction, separate emission, a coloured g by voxel, and a varying refractive index;
   ///   with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
@@ -107,18 +107,17 @@ public:
   MediumRayCaster& operator=(const MediumRayCaster&) = delete;
 
   /// Changes settings that need no new device data, so that the caster can be reused while medium, light and
-  /// illumination stay the same: imageSize, stepSize, backgroundColor, minimumTransmittance, those of the surface,
-  /// tableColor, tableReflectance.
+  /// illumination stay the same: imageSize, stepSize, backgroundColor, minimumTransmittance, the settings of the
+  /// surface, tableColor and tableReflectance.
   /// @return false, with nothing changed, if any other setting differs: a new caster is needed then
   /// @throws InvalidInput as the constructor
   bool Adopt(const ViewSettings& settings);
 
-  /// Whether backgroundColor is visible: the background is shown and nothing else (environment or sky) is behind the
-  /// medium.
+  /// Whether backgroundColor is visible: the background is shown, and neither environment nor sky is behind the medium.
   bool ShowsBackgroundColor() const;
 
-  /// Renders the picture. Samples are packed by the constructor, but here if there are shadow rays or if the sources
-  /// depend on the camera.
+  /// Renders the picture. The constructor packs the samples, except with shadow rays or if the sources depend on the
+  /// camera; then this function packs them.
   /// @param ends  distance along the view axis at which an opaque surface ends each pixel's ray, length; 1e30 if no
   ///   surface does; empty: no ray ends. What the surface hides, including the background, is left out: alpha is 1 -
   ///   transmittance up to the surface. Reflected and mirrored rays are not ended.
@@ -132,19 +131,20 @@ public:
   /// table. Shadow rays end at the block's faces.
   bool CastsBlocks() const { return this->Traits.OnlyStraight(); }
 
-  /// Renders a block again, after Render with the same camera, taking into account the blocks in front of it: rays end
-  /// where their total transmittance falls below the minimum, and depth is where it falls to 1/2.
+  /// Renders a block again, after Render with the same camera, with the transmittance of the blocks in front of it:
+  /// rays end where their total transmittance falls below the minimum, and depth is where it falls to 1/2.
+  /// @param starts  transmittance of the blocks in front
   /// @throws Aborted
   Picture RenderBehind(const Camera& camera, const GridBlock& block, const Starts& starts, const Monitor& monitor = {});
 
-  /// Descriptions of the features that were left out because the scene does not need them.
+  /// Descriptions of the features that the kernels omit because the scene does not need them.
   const std::vector<std::string>& LeftOut() const { return this->Omitted; }
 
   /// Warnings about parts of the scene that may not look as intended, a sentence each.
   const std::vector<std::string>& Warnings() const { return this->Doubts; }
 
 private:
-  friend class PictureInBlocks; // takes the steps of Render together with other ranks
+  friend class PictureInBlocks; // calls the steps of Render together with other ranks
 
   MediumRayCaster(Device& device, const Medium& medium, const FilledBricks& filled, const SolvedLight& light,
     const Illumination& illumination, const ViewSettings& settings, const Field& ior, const BlockOfScene* block);
@@ -159,10 +159,10 @@ private:
 
   std::optional<BlockOfScene> Part; ///< set if the medium is one block of a larger grid
   bool LampsShine = false;
-  bool AskedForShadowRays = false; ///< the caller's setting, even if there is no lamp
-  ViewSettings Settings;           ///< without what the scene does not need
+  bool AskedForShadowRays = false; ///< the caller's setting shadowRays, even if there is no lamp
+  ViewSettings Settings;           ///< the caller's settings, with shadow rays as the scene needs them (Needed)
   ViewTraits Traits;
-  SceneOnDevice Scene; ///< freed once packed if it is not read again
+  SceneOnDevice Scene; ///< arrays that are not read again are freed once the samples are packed
   PackedSamples Samples;
   SeenSources Sources;
   Backdrop Behind;

@@ -18,7 +18,8 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t PixelsOfThread = 32768; ///< smallest number of pixels per thread
-constexpr double LargestExposure = 1e30;      ///< products with it may overflow a float, but never become NaN
+/// Products of radiance with it may overflow a float to infinity, but never become NaN.
+constexpr double LargestExposure = 1e30;
 
 double EncodeSrgb(double linear)
 {
@@ -35,15 +36,15 @@ double DecodeSrgb(double encoded)
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-/// Inverse of the Filmic curve for y in [0, 1]: the positive root of a quadratic equation.
+/// Inverse y -> x of the curve Filmic, for y in [0, 1]: the positive root of a quadratic equation.
 double FilmicInverse(double y)
 {
   const double a = 2.51 - 2.43 * y, b = 0.03 - 0.59 * y;
   return (-b + std::sqrt(b * b + 0.56 * a * y)) / (2.0 * a);
 }
 
-/// Table of display values, 0 to 255, for exposed radiance, indexed by the leading bits of the float: 4096 entries per
-/// factor of two between Darkest and Brightest.
+/// Table of display values, 0 to 255, over exposed radiance. The index consists of the leading bits of the float: 4096
+/// entries per factor of two between Darkest and Brightest.
 class ScreenValues
 {
 public:
@@ -67,8 +68,8 @@ public:
 
 private:
   static constexpr int Shift = 23 - 12;
-  static constexpr float Darkest = 1.0f / (1 << 17); // shown as 0
-  static constexpr float Brightest = 64.0f;          // white by every curve
+  static constexpr float Darkest = 1.0f / (1 << 17); // exposed radiance that is displayed as 0
+  static constexpr float Brightest = 64.0f;          // exposed radiance that every curve displays as white
 
   static std::uint32_t Index(float value)
   {
@@ -97,8 +98,8 @@ void Check(const ToneMapping& settings)
 
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
-  constexpr float Parts = 16.0f; // per pixel
-  constexpr int Shift = 23 - 8;  // to the leading bits of a float
+  constexpr float Parts = 16.0f; // counts per fully covered pixel
+  constexpr int Shift = 23 - 8;  // shift from the bits of a float to its leading bits
   std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;
   InThreads(radiance.size() / 3, PixelsOfThread, [&](std::size_t begin, std::size_t end) {
@@ -124,11 +125,11 @@ std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::
 double ExposureOfCounts(const std::vector<int>& count)
 {
   const double lit = std::accumulate(count.begin(), count.end(), 0.0);
-  const auto logarithm = [](std::size_t entry) { // at the class's centre
+  const auto logarithm = [](std::size_t entry) { // binary logarithm of the luminance at the centre of a class
     return static_cast<double>(entry >> 8) - 127.0 + std::log2(1.0 + ((entry & 255) + 0.5) / 256.0);
   };
 
-  // Mean over the classes that are not much darker than the bright ones.
+  // Mean logarithm over the classes that are not much darker than the 95th percentile.
   const double darkest = std::log2(1e-3);
   double sum = 0.0;
   double counted = 0.0;

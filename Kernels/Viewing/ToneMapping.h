@@ -9,40 +9,43 @@ namespace tyndall
 enum class ToneCurve
 {
   Linear = 0, ///< radiance times exposure, cut at 1: for comparing numbers
-  Filmic = 1, ///< K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015: the fit to the Academy's reference transform
+  /// K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015: fit to the reference transform of the Academy (AMPAS).
+  Filmic = 1,
 };
 
 struct ToneMapping
 {
-  /// Factor applied to radiance before the curve; 0: chosen such that the picture's logarithmic mean luminance becomes
-  /// 0.18, that of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction", equations 1 and
-  /// 2).
+  /// Factor applied to radiance before the tone curve; 0: chosen such that the picture's logarithmic mean luminance
+  /// becomes 0.18, the value of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction",
+  /// equations 1 and 2).
   double exposure = 0.0; ///< [0, 1e30]
   ToneCurve curve = ToneCurve::Filmic;
 };
 
+/// Checks the settings of tone mapping.
 /// @throws InvalidInput for an exposure out of its range
 void Check(const ToneMapping& settings);
 
-/// The exposure that is used if `exposure` is 0. It is determined by lit pixels, not by the black background: a pixel
-/// that the medium covers in part counts with that part as weight and with the radiance of that part, so that thin
-/// smoke is exposed like thick smoke or like smoke in front of an equally bright background. Coverage below
-/// ThinnestPart counts as ThinnestPart, because such a pixel may show a bright emitter. Lit pixels darker than a
-/// thousandth of the 95th percentile do not count: nearly black pixels would overexpose the rest. Returns 1 if no pixel
-/// is lit.
+/// The exposure that ToneMap uses if ToneMapping::exposure is 0. It is determined by lit pixels, not by the black
+/// background: a pixel that the medium covers in part is weighted by its coverage, with the radiance of the covered
+/// part, so that thin smoke is exposed like thick smoke or like smoke in front of an equally bright background.
+/// Coverage below ThinnestPart counts as ThinnestPart, because such a pixel may show a bright emitter. Lit pixels
+/// darker than a thousandth of the 95th percentile do not count: nearly black pixels would overexpose the others.
+/// Returns 1 if no pixel is lit.
 /// @param radiance  3 per pixel, >= 0
-/// @param alpha     one per pixel in [0, 1]; empty: all pixels are fully covered, as by a background
+/// @param alpha     coverage, one per pixel in [0, 1]; empty: all pixels are fully covered, as by a background
 double AutomaticExposure(const std::vector<float>& radiance, const std::vector<float>& alpha);
 constexpr float ThinnestPart = 0.2f;
 
-/// Luminance histogram of a picture: covered area in sixteenths of a pixel, with 256 classes per factor of two.
-/// Histograms of parts of a picture can be added.
+/// Luminance histogram of a picture: covered area, in sixteenths of a pixel, per class of luminance, with 256 classes
+/// per factor of two. Histograms of parts of a picture can be added.
+/// @param radiance, alpha  as in AutomaticExposure
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha);
 
-/// AutomaticExposure from a histogram of LuminanceCounts.
+/// AutomaticExposure from a histogram by LuminanceCounts.
 double ExposureOfCounts(const std::vector<int>& luminanceCounts);
 
-/// Inverse of the tone curve: the exposed radiance (radiance times exposure) that is displayed as `shown`.
+/// Exposed radiance (radiance times exposure) that is displayed as `shown`: inverse of the tone curve.
 /// @param shown  display value in [0, 1], sRGB-encoded; ToneMap writes 255 times this value
 double ExposedAs(double shown, ToneCurve curve);
 

@@ -1,11 +1,12 @@
-// What rays see where they leave or enter the box: environment or colour, reflecting faces, light at the surface of
-// optically thick voxels. The tables are in one array, `backdrop`, from the indices ViewInfo::backdrop on (Backdrop.h).
+// Radiance that rays receive where they leave or enter the box: environment or background colour, reflecting faces,
+// correction for light at the surface of optically thick voxels. The tables are in one array, `backdrop`, at the
+// indices ViewInfo::backdrop (Backdrop.h).
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Angle of (x, y) from +x, in [-pi, pi], to 1e-7. PoCL's atan2 is scalar and costs ten times this.
+// Angle of (x, y) from +x, in [-pi, pi], accurate to 1e-7. PoCL's atan2 is scalar and takes ten times as long.
 inline real angle_of(real y, real x)
 {
   const real ax = fabs(x);
@@ -24,8 +25,8 @@ inline real angle_of(real y, real x)
   return copysign(p, y);
 }
 
-// Radiance of the environment in each direction, given in the environment's axes; the same as Lookup in Lights.h. The
-// picture has an additional column on either side, for periodic interpolation around z.
+// Radiance of the environment in each direction d, which is given in the environment's axes; equals Lookup in Lights.h.
+// The picture `environment` has an additional column on either side, for periodic interpolation around z.
 inline rgb look_up(__global const float4* environment, real3 d, int4 size)
 {
   const real polar = angle_of(sqrt(fma(d.x, d.x, d.y * d.y)), d.z);
@@ -44,7 +45,7 @@ inline rgb look_up(__global const float4* environment, real3 d, int4 size)
   return between_four(environment, j0, j1, x, y);
 }
 
-// Background radiance seen in each direction d, in world coordinates.
+// Background radiance in each direction d, which is given in world coordinates.
 inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* backdrop)
 {
   rgb behind = { (real)v->background.x, (real)v->background.y, (real)v->background.z };
@@ -61,21 +62,22 @@ inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* backdr
   return behind;
 }
 
-// Finds the point at which a ray crosses a face of the box, in tables over the face cells: [face][row][cell of the
-// row], faces -x to +z, each with a border of one cell that repeats the outermost cells.
+// Interpolation in tables over the cells of the box's faces: [face][row][cell of the row], faces -x to +z, each face
+// with a border of one cell that repeats the outermost cells.
 
 typedef struct
 {
   integer by_x, by_y; // whether the face's normal is along x, along y; neither: along z
-  integer face;       // -x, +x, -y, +y, -z, +z
-  integer at, row;    // index of the cell below and to the left, and cells per row
+  integer face;       // index of the face: -x, +x, -y, +y, -z, +z
+  integer at, row;    // index of the lower left of the four cells around the point, and cells per row
   real a, b;          // interpolation weights of the next cell along the row, and of the next row
 } face_place;
 
-// Finds the face that a ray through point p, traced back against its direction, meets first.
+// Finds the face of the box that a ray through point p, traced back against its direction, meets first, and the cells
+// around the point p there.
 inline face_place face_behind(real3 p, real3 direction, int4 size)
 {
-  // The face with the shortest time since the ray crossed its plane.
+  // The face is that with the shortest time since the ray crossed its plane.
 #define SINCE(c) \
   ((direction.c > (real)0.0f ? p.c : (real)(float)size.c - p.c) / greater(fabs(direction.c), (real)1e-20f))
   const real x = SINCE(x), y = SINCE(y), z = SINCE(z);
@@ -103,11 +105,12 @@ inline face_place face_behind(real3 p, real3 direction, int4 size)
   return to;
 }
 
-// Reflecting faces of the box, seen from inside: matt ground, snow, a table.
+// Reflecting faces of the box, seen from inside, such as matt ground or snow.
 
-// Radiance that rays see behind the medium: that of a reflecting face if they leave through one, else `behind`.
+// Radiance from behind the medium: that of a reflecting face for rays `leaves`, if they leave the box through one, else
+// `behind`.
 //   p     a point, in voxels, from which the ray leaves the box in a straight line
-//   size  voxels of the box of which the table has the faces
+//   size  voxels of the box whose faces the table describes
 inline rgb ground_or_behind(
   const ViewInfo* v, __global const float4* backdrop, real3 p, real3 direction, integer leaves, int4 size, rgb behind)
 {
@@ -115,7 +118,8 @@ inline rgb ground_or_behind(
   const face_place to = face_behind(p, back, size);
   const integer is_ground = leaves & (((integer)v->environment.z >> to.face & (integer)1) != (integer)0);
 #if SHOWN == 2
-  const rgb seen = { (real)0.0f, (real)0.0f, (real)0.0f }; // it is in the picture already
+  // Reflecting faces are black in the pass for unscattered light: the other pass already shows their light.
+  const rgb seen = { (real)0.0f, (real)0.0f, (real)0.0f };
 #else
   const rgb seen = between_four(backdrop + v->backdrop.y, to.at, to.at + to.row, to.a, to.b);
 #endif
@@ -123,15 +127,16 @@ inline rgb ground_or_behind(
   return light;
 }
 
-// Surface light of optically thick voxels, added where rays enter the box.
+// Correction for light at the surface of optically thick voxels, added where rays enter the box.
 
-// Lagrange basis polynomial at cosine x, for the node a among the cosines 0.05, 0.25, 0.6 and 1 (SurfaceCosines in
-// BoxFaces.h).
+// Lagrange basis polynomial at the cosine x that is 1 at the node a and 0 at b, c and d; the nodes are the cosines
+// 0.05, 0.25, 0.6 and 1 (SurfaceCosines in BoxFaces.h).
 #define PART_AT(x, a, b, c, d) (((x)-b) * ((x)-c) * ((x)-d) * (1.0f / ((a - b) * (a - c) * (a - d))))
 
-// Correction for the march of rays that enter the box: radiance at the eye; 0 for rays that start inside.
-//   d       unit vectors along the rays, world
-//   before  length in front of the entry; 0 for rays that do not enter
+// Correction (SurfaceLight in Backdrop.cxx) for rays that enter the box, W / (length^2 sr); 0 for rays that start
+// inside.
+//   d       unit vectors along the rays, world coordinates
+//   before  length of the ray in front of the entry; 0 for rays that do not enter
 inline rgb surface_light(
   const ViewInfo* v, __global const float4* backdrop, rays packet, real3 d, real before, int4 size)
 {

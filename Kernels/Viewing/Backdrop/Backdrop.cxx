@@ -23,8 +23,8 @@ std::array<int, 2> FaceSize(const Grid& grid, int face)
 
 namespace
 {
-/// Adds to each face of a table over the box's face cells (BoxFaces.h) a border of one cell that repeats the outermost
-/// cells.
+/// Adds a border of one cell, which repeats the outermost cells, to each face of a table over the cells of the box's
+/// faces (BoxFaces.h).
 std::vector<cl_float4> WithBorders(const Grid& grid, const std::vector<cl_float4>& cells)
 {
   std::vector<cl_float4> padded;
@@ -56,9 +56,9 @@ int GroundFaces(const SolvedLight& light)
   return faces;
 }
 
-/// Radiance of the reflecting faces, seen from inside (numerics.md, Eq. (111a)): albedo / pi times the power per area
-/// that leaves through each cell. W / (length^2 sr), [face][row][cell of the row] with borders (WithBorders). Empty if
-/// no face reflects or facePower is not known.
+/// Radiance of the reflecting faces, seen from inside, W / (length^2 sr): albedo / pi times the power per area that
+/// leaves through each cell (numerics.md, Eq. (111a)). [face][row][cell of the row] with borders (WithBorders). Empty
+/// if no face reflects or facePower is not known.
 std::vector<cl_float4> GroundLight(const Grid& grid, const SolvedLight& light)
 {
   if (GroundFaces(light) == 0)
@@ -76,12 +76,11 @@ std::vector<cl_float4> GroundLight(const Grid& grid, const SolvedLight& light)
   return WithBorders(grid, cells);
 }
 
-/// Radiance of a white table on a face of the box: irradiance by the light in the voxels at the face, divided by pi and
-/// n^2. With a border of one voxel that repeats the outermost ones.
-///
-/// Computed from fluence and mean direction by numerics.md, Eq. (111).
+/// Radiance of a white table on a face of the box, W / (length^2 sr), divided by n^2: irradiance by the light in the
+/// voxels at the face, divided by pi. One value per cell of the face, with a border of one cell that repeats the
+/// outermost cells. Computed from fluence and mean direction by numerics.md, Eq. (111).
 /// @param ior        refractive index; null: 1
-/// @param fromBelow  light may enter through the table's face, because there is an environment
+/// @param fromBelow  whether light may enter through the table's face, because there is an environment
 std::vector<cl_float4> TableLight(
   const Grid& grid, const Field& fluence, const Field& meanDirection, const Field& ior, int face, bool fromBelow)
 {
@@ -114,14 +113,17 @@ std::vector<cl_float4> TableLight(
   return lit;
 }
 
-constexpr double AllOfIt = 2.0; ///< thickness of full correction, in units of ThickAtSurface
-/// optical thickness behind a cell at which the correction begins and is complete, mean free paths
+/// Optical thickness of a voxel at which the correction SurfaceLight is complete, in units of ThickAtSurface.
+constexpr double AllOfIt = 2.0;
+/// Optical thickness, in mean free paths, of the medium behind a cell at which the correction SurfaceLight begins and
+/// is complete.
 constexpr double Translucent = 1.5, Opaque = 3.0;
-constexpr double EnoughLeft = 1e-5; ///< transmittance at which a march ends
+constexpr double EnoughLeft = 1e-5; ///< transmittance at which the march for the correction ends
 constexpr int MostSteps = 200;
-constexpr double FinestStep = 0.1; ///< voxels; smaller steps give the same result
+/// Smallest step of the march, voxels; smaller steps give equal results.
+constexpr double FinestStep = 0.1;
 
-/// Coefficients of one channel, as in the march.
+/// Extinction and source of one channel, as the march of rays uses them.
 struct Coefficients
 {
   double sigma, source;
@@ -134,20 +136,20 @@ Coefficients CoefficientsOf(const Medium& medium, const SolvedLight& light, std:
   return { sigma, scatters * light.fluence.At(voxel, channel) / (4.0 * Pi) + medium.emission.At(voxel, channel) };
 }
 
-/// Smooth step from 0 at `low` to 1 at `high`.
+/// Smooth step: 0 for x below `low`, 1 above `high`, 3 t^2 - 2 t^3 in between.
 double Between(double low, double high, double x)
 {
   const double part = std::clamp((x - low) / (high - low), 0.0, 1.0);
   return part * part * (3.0 - 2.0 * part);
 }
 
-/// Optical thickness with the solver's transport coefficient, mean free paths.
+/// Optical thickness of a path of `length` in a voxel, with the solver's transport coefficient, mean free paths.
 double Thickness(const Medium& medium, std::size_t voxel, int channel, double length)
 {
   return length * medium.TransportSigmaT(voxel, channel);
 }
 
-/// Fraction of the correction to apply, in [0, 1].
+/// Fraction, in [0, 1], of the correction SurfaceLight that is applied in a cell of a face.
 double PartAt(const Medium& medium, const BoxFaceCell& cell, int channel)
 {
   const int axis = cell.face / 2;
@@ -163,15 +165,15 @@ double PartAt(const Medium& medium, const BoxFaceCell& cell, int channel)
   return thick * Between(Translucent, Opaque, all);
 }
 
-/// The voxels behind a face cell, for one channel; the last one is continued.
+/// Coefficients of the three voxels behind a cell of a face, for one channel; the last voxel is continued inwards.
 struct Column
 {
   std::array<Coefficients, 3> voxels;
-  double edge;   ///< of a voxel along the face's normal, length
+  double edge;   ///< edge of a voxel along the face's normal, length
   double across; ///< mean edge of a voxel along the face, length
 
-  /// Interpolates between voxel centres at a depth in voxels from the face; constant between the face and the first
-  /// centre.
+  /// Coefficients at a depth, in voxels from the face: interpolated between voxel centres, constant between the face
+  /// and the first centre.
   Coefficients At(double depth) const
   {
     const double place = std::clamp(depth - 0.5, 0.0, 2.0);
@@ -183,8 +185,9 @@ struct Column
   }
 };
 
-/// Radiance that the march finds there along a ray at cosine mu to the normal, divided by 1 - transmittance of its
-/// path.
+/// Outgoing radiance, divided by 1 - transmittance of the path, that the march of rays computes at the face along a ray
+/// at cosine mu to the normal.
+/// @param step  step of the march, voxels
 double Marched(const Column& column, double mu, double step)
 {
   const double voxelsPerLength = std::hypot(mu / column.edge, std::sqrt(1.0 - mu * mu) / column.across);
@@ -217,7 +220,8 @@ Column ColumnBehind(const Medium& medium, const SolvedLight& light, const BoxFac
   return column;
 }
 
-/// Correction of one cell and channel, for each of SurfaceCosines.
+/// Correction SurfaceLight of one cell and channel, for each of SurfaceCosines, W / (length^2 sr).
+/// @param step  step of the march, voxels
 std::array<double, 4> Missing(
   const Medium& medium, const SolvedLight& light, const BoxFaceCell& cell, int channel, double step)
 {
@@ -239,17 +243,17 @@ std::array<double, 4> Missing(
 }
 
 /// Correction for rays that enter the box through optically thick voxels (numerics.md, Eq. (112)): the outgoing
-/// radiance that the solver computed there (`surface`), minus the radiance that the march finds at the same place with
-/// the thick voxels' light interpolated from centre to centre. It is applied gradually from an optical thickness
+/// radiance that the solver computed there (`surface`), minus the radiance that the march computes there by
+/// interpolation of the light between the centres of thick voxels. It is applied gradually from an optical thickness
 /// ThickAtSurface of the voxel on, and fully at twice that, and only where the medium behind is some mean free paths
-/// thick: light through a thin medium is not that of a half-space.
-///
-/// W / (length^2 sr), [cosine][face][row][cell of the row], each face with a border of one cell that repeats the
-/// outermost. Empty if no correction is needed.
+/// thick: the light of a thin medium is not that of a half-space.
 ///
 /// @param step   step of the march, voxels
-/// @param block  the medium's place in a larger grid: only its faces on the domain's boundary are corrected. Its arrays
-///   must cover VoxelsBehindSurface voxels behind them, or all of the domain. Null: the medium is the whole domain
+/// @param block  position of the medium in a larger grid: only its faces on the domain's boundary are corrected. Its
+///   arrays must cover VoxelsBehindSurface voxels behind them, or all of the domain. Null: the medium is the whole
+///   domain
+/// @return W / (length^2 sr), [cosine][face][row][cell of the row], each face with a border of one cell that repeats
+///   the outermost cells. Empty if no correction is needed
 std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& light, double step, const GridBlock* block)
 {
   const Grid& grid = medium.grid;
@@ -280,10 +284,10 @@ std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& lig
   return table;
 }
 
-/// number of directions per face that separates the environment's peaks from the rest
+/// Number of directions per face with which Split separates the environment's peaks from its smooth part.
 constexpr int DirectionsOfPeaks = 25;
 
-/// The environment with an additional column on either side.
+/// Pixels of the environment with an additional column on either side, for periodic interpolation.
 std::vector<cl_float4> ClosedEnvironment(const Environment& environment)
 {
   const int width = environment.width;
@@ -308,8 +312,8 @@ std::vector<cl_float4> LightOnTable(
     traits.bends ? ior : Field{}, settings.tableFace, fromBelow);
 }
 
-/// Whether the surface light is known and applicable: all light is shown, without shadow rays, mean directions or a
-/// table.
+/// Whether the correction SurfaceLight is possible and valid: `surface` is known, and the picture shows all light,
+/// without shadow rays, mean directions or a table.
 bool ShowsSurface(const SolvedLight& light, const ViewTraits& traits)
 {
   const bool plain = !traits.singleScatteringOnly && !traits.shadowRays && !traits.knowsFlow &&
@@ -338,7 +342,7 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
     std::vector<cl_float4> shown = ClosedEnvironment(environment);
     if (traits.ShowsMoments())
     {
-      // Small bright parts are treated as lamps: their unscattered light is shown separately (numerics.md, section
+      // Peaks of the environment are treated as lamps: the pass for unscattered light shows them (numerics.md, section
       // 14.7).
       std::vector<cl_float4> sharp = std::move(shown);
       shown = ClosedEnvironment(Split(environment, EquiangularDirections(DirectionsOfPeaks)).smooth);

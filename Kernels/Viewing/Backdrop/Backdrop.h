@@ -13,38 +13,41 @@
 
 namespace tyndall
 {
-/// Voxels per row and number of rows of a face: along y and z, x and z, or x and y.
+/// Number of voxels per row and number of rows of a face of the box; axes are y and z, x and z, or x and y.
+/// @param face  0 to 5: -x, +x, -y, +y, -z, +z
 std::array<int, 2> FaceSize(const Grid& grid, int face);
 
-/// What rays see when they leave or enter the medium: environment and sky, ground, table, and surface light of
-/// optically thick voxels.
+/// Radiance that rays receive where they leave or enter the medium: environment and sky, ground, table, and correction
+/// for light at the surface of optically thick voxels.
 class Backdrop
 {
 public:
-  /// @throws DeviceError if it does not fit
+  /// @throws DeviceError if the tables do not fit the device
+  /// @param block  position of the medium in a larger grid; null: the medium is the whole domain
   Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const Field& ior, const ViewSettings& settings, const ViewTraits& traits, const BlockOfScene* block = nullptr);
 
-  /// Whether the background is the illumination's sky and not the settings' background colour.
+  /// Whether the background is the illumination's environment or sky and not the settings' background colour.
   bool IsSky() const { return this->UnderSky; }
   bool HasEnvironment() const { return this->Size[0] > 0; }
   bool HasGround() const { return this->GroundBits != 0; }
   bool HasSurfaceLight() const { return this->HasSurface; }
 
-  /// All tables one after the other; empty if there is none.
+  /// All tables in one array, at the indices ViewInfo::backdrop; empty if there is none.
   const Buffer<cl_float4>& Tables() const { return this->Cells; }
-  /// Sets what the kernels need to know of the background and the tables.
-  /// @param sharp  only what unscattered light shows of the environment, if moments are shown
+  /// Sets the parameters of background, environment, reflecting faces and tables.
+  /// @param sharp  whether the pass is that for unscattered light: with moments, the environment then has its peaks
+  ///   only
   void Describe(const ViewSettings& settings, bool sharp, ViewInfo& view) const;
 
 private:
   bool UnderSky = false, HasSurface = false;
   Rgb Sky = {};
-  std::array<int, 2> Size = {}; ///< pixels of the environment
-  Rotation Turn = {};           ///< from world axes to the environment's axes
-  int GroundBits = 0;           ///< bit mask of the reflecting faces
+  std::array<int, 2> Size = {}; ///< width and height of the environment, pixels
+  Rotation Turn = {};           ///< rotation from world axes to the environment's axes
+  int GroundBits = 0;           ///< bit mask of the reflecting faces that are shown
   cl_int4 First = {};           ///< ViewInfo::backdrop
-  int FirstSharp = 0;           ///< index of the environment's peaks
+  int FirstSharp = 0;           ///< index in Cells of the environment's peaks
   Buffer<cl_float4> Cells;
 };
 }

@@ -1,16 +1,16 @@
 // Computes the radiance that each voxel scatters towards the eye from the angular moments of scattered light.
 //
-// The host gives
-//   DEGREE           degree of the moments
+// Macros set by the host:
+//   DEGREE  degree of the moments
 
 #include "Numerics/SphericalHarmonics.cl"
 #include "Viewing/Scene/ViewShared.h"
 
 #define HARMONICS ((DEGREE + 1) * (DEGREE + 1))
 
-// One work-item per voxel.
+// Evaluates the moments of each voxel in the direction of the eye, one work-item per voxel.
 //   moments  W / (length^2 sr), [voxel][harmonic][channel]
-//   seen     radiance towards the eye, 3 per voxel
+//   seen     receives the radiance towards the eye, 3 per voxel
 __kernel void see_moments(ShadowInfo info, __global const float* restrict moments, __global float* restrict seen)
 {
   const int i = get_global_id(0);

@@ -23,12 +23,16 @@ namespace
 {
 struct RectangleSample
 {
-  glm::dvec3 place; ///< relative to the grid's corner
-  double share;     ///< fraction of the power
+  glm::dvec3 place; ///< position relative to the grid's lower corner, length
+  double share;     ///< fraction of the light's power
 };
 
-/// Appends samples of a rectangular light: `perEdge` along each edge, at the centres of equal parts. A rectangle larger
-/// than the box and than its distance from the box is quartered recursively, so that nearer parts get more samples.
+/// Appends samples of a rectangular light: `perEdge` along each edge, at the centres of equal parts. A rectangle longer
+/// than the box and than its distance from the box is divided into quarters recursively, so that parts near the box get
+/// more samples.
+/// @param middle  centre of the rectangle relative to the grid's lower corner, length
+/// @param share   fraction of the light's power
+/// @param whole   true for the light, false for a quarter of it
 void AddSamples(const Grid& grid, const glm::dvec3& middle, const std::array<glm::dvec3, 2>& edges, int perEdge,
   double share, bool whole, std::vector<RectangleSample>& samples)
 {
@@ -52,7 +56,7 @@ void AddSamples(const Grid& grid, const glm::dvec3& middle, const std::array<glm
   }
 }
 
-/// Replaces the lights by point lights and parallel beams.
+/// Point lights and parallel beams that represent the lights in shadow rays; lights of zero power are left out.
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
 {
   std::vector<SmallLight> small;
@@ -83,7 +87,7 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
     }
     else
     {
-      // Lambertian: radiant intensity along the axis is power / pi.
+      // The light is Lambertian: its radiant intensity along the axis is power / pi.
       const auto edges = RectangleEdges(light);
       std::vector<RectangleSample> samples;
       AddSamples(grid, place, { Vector(edges[0]), Vector(edges[1]) }, rectangleSamples, 1.0, true, samples);
@@ -97,10 +101,11 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
 }
 
 constexpr int MostMoments = 1024;
-constexpr double Negligible = 1e-5; ///< Legendre moments below this are dropped
+/// Trailing Legendre moments with smaller absolute value are dropped.
+constexpr double Negligible = 1e-5;
 
-/// The highest degree that was solved for: straightOn is the moment of the next degree. Returns `otherwise` if
-/// straightOn equals no moment, as for functions that scatter backwards.
+/// The highest degree of the moments that were solved for: straightOn is the moment of the next degree. Returns
+/// `otherwise` if straightOn equals no moment, as for functions that scatter backwards.
 int DegreeOf(const std::vector<double>& moments, double straightOn, int otherwise)
 {
   for (std::size_t l = 1; l < moments.size() && straightOn > 0.0; ++l)
@@ -113,8 +118,12 @@ int DegreeOf(const std::vector<double>& moments, double straightOn, int otherwis
   return otherwise;
 }
 
-/// Legendre moments of the light that was scattered at least twice, per unit of the unscattered beam's light and per
-/// optical length of scattering.
+/// Legendre moments of the light that was scattered at least twice, per unit of unscattered light of the beam and per
+/// optical length of scattering (numerics.md, Eq. (112c)).
+/// @param moments     Legendre moments of the phase function
+/// @param straightOn  fraction of scattering that the solver treats as unscattered
+/// @param degree      highest degree of the moments that the solver computed
+/// @param depth       optical length of scattering along the beam's path
 std::vector<double> MomentsBeyondFirst(const std::vector<double>& moments, double straightOn, int degree, double depth)
 {
   std::vector<double> beyond;
@@ -168,8 +177,8 @@ std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn
 
 namespace
 {
-/// Aureole tables of each channel, for the smallest straightOn of the scattering voxels; the voxels that matter have
-/// this value.
+/// Tables by AureoleTable, one per channel, for the smallest straightOn of the scattering voxels; voxels with other
+/// values contribute little.
 std::vector<float> TablesOfAureole(const Medium& medium, const ViewTraits& traits)
 {
   std::vector<float> tables;
@@ -230,7 +239,7 @@ ShadowInfo SeenSources::MakeShadowInfo(const Camera& camera) const
   return info;
 }
 
-/// A kernel that follows shadow rays.
+/// Builds one of the kernels of ShadowRays.cl.
 cl::Kernel SeenSources::Kernel(const char* name) const
 {
   const ViewTraits& traits = this->Traits;
@@ -240,9 +249,10 @@ cl::Kernel SeenSources::Kernel(const char* name) const
       Define("AUREOLE", traits.moments.aureoleChannels));
 }
 
-/// Launches a kernel over a box of voxels, a packet of a row each work-item, in batches that can be aborted.
-/// @param size     of the box, voxels
-/// @param samples  of a row of voxels
+/// Launches a kernel over a box of voxels, one work-item per packet of voxels of a row, in batches that can be aborted.
+/// @param size     voxels of the box along each axis
+/// @param samples  number of samples for a row of voxels
+/// @param to       progress at the end, in [0, 1]
 /// @param launch   sets the kernel's arguments for a part of the box
 void SeenSources::Launch(cl::Kernel& kernel, const std::array<int, 3>& size, double samples, double to,
   const Monitor& monitor, const std::function<void(const Patch& part)>& launch) const

@@ -22,38 +22,41 @@
 namespace tyndall
 {
 /// Light that each voxel scatters towards the eye: the lamps' direct light, computed by shadow rays, and scattered
-/// light given by angular moments. Arrays that the scene does not need are empty.
+/// light from angular moments. Arrays that the scene does not need are empty.
 class SeenSources
 {
 public:
   /// Settings, traits, scene, samples and block must outlive this object.
-  /// @param lamps   lights for shadow rays; used if ViewTraits::shadowRays
-  /// @param block   the medium's place in a larger grid; null: the medium is the whole domain
-  /// @throws DeviceError if they do not fit
+  /// @param lamps   lights to which shadow rays are traced; used if ViewTraits::shadowRays
+  /// @param block   position of the medium in a larger grid; null: the medium is the whole domain
+  /// @throws DeviceError if the arrays do not fit the device
   SeenSources(Device& device, const Medium& medium, const std::vector<Light>& lamps, const ViewSettings& settings,
     const ViewTraits& traits, const SceneOnDevice& scene, const PackedSamples& samples, const BlockOfScene* block);
 
-  /// Computes Direct() by shadow rays, through samples that are packed for them. Reports progress from 0 to 1/2 of a
-  /// picture.
+  /// Computes Direct() by shadow rays through the samples, which must be packed for shadow rays. Reports progress from
+  /// 0 to 1/2.
   /// @throws Aborted
   void SeeLights(const Camera& camera, const Monitor& monitor);
   void SeeMoments(const Camera& camera);
 
-  // SeeLights split by light and by part of the block, for a medium that is one of several blocks: each block computes
-  // the optical length of its own section of each shadow ray, and the sections are summed in between.
+  // The following functions are the steps of SeeLights, by light and by part of the block, for a medium that is one of
+  // several blocks: each block computes the optical length of its own section of each shadow ray, and the caller sums
+  // the sections over the blocks.
   const std::vector<SmallLight>& LightsOfBlock() const { return this->Small; }
-  /// Optical length, within this block, of the paths from the voxels `asked` (indices of the whole grid) to a light, 3
-  /// per voxel.
+  /// Optical length, within this block, of the paths from the centres of the voxels `asked` to a light, 3 per voxel.
+  /// @param asked  box of voxels, in indices of the whole grid
   /// @throws Aborted
   std::vector<float> DepthsTowards(int light, const VoxelBox& asked, const Monitor& monitor);
+  /// Adds the light of one lamp in some voxels to Direct().
   /// @param part    voxels (indices of the whole grid) that are contiguous in the medium's arrays: some rows along x of
   ///   one slice, or some slices
   /// @param depths  total optical length from each of these voxels to the light, 3 per voxel
   void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths);
 
-  /// Six values per voxel: light scattered towards the eye (3), and irradiance by the lights (3).
+  /// Six values per voxel: light of the lamps scattered towards the eye, W / (length^2 sr) (3), and irradiance by the
+  /// lamps, W / length^2, or, with AUREOLE, radiance added by repeated forward scattering (3), see ShadowRays.cl.
   const Buffer<float>& Direct() const { return this->OfLights; }
-  /// Three values per voxel: radiance scattered towards the eye, from the angular moments.
+  /// Three values per voxel: radiance scattered towards the eye, from the angular moments, W / (length^2 sr).
   const Buffer<float>& Diffuse() const { return this->OfMoments; }
 
 private:
@@ -71,18 +74,18 @@ private:
   const PackedSamples& Samples;
   const BlockOfScene* Block;
   std::vector<SmallLight> Small;
-  Buffer<float> AureoleTables; ///< only if moments are shown and g does not vary
+  Buffer<float> AureoleTables; ///< tables by AureoleTable; empty unless moments are shown and g does not vary
   Buffer<float> OfLights, OfMoments;
   Buffer<SmallLight> Lights;
 };
 
-/// Radiance that repeated forward scattering adds to the first scattering of a parallel beam (with the whole phase
-/// function), where the solver treats a part of scattering as unscattered (numerics.md, Eq. (112c)). Values are per
-/// steradian, per unit of beam irradiance and per optical length of scattering along the beam's path, tabulated by
-/// scattering angle and that optical length. Negative near the beam: the light treated as unscattered is in fact spread
-/// in angle.
+/// Table of the light that repeated forward scattering adds to the first scattering of a parallel beam (with the whole
+/// phase function), where the solver treats a fraction of scattering as unscattered (numerics.md, Eq. (112c)). Values
+/// are per steradian, per unit of beam irradiance and per optical length of scattering along the beam's path, tabulated
+/// by scattering angle and optical length. They are negative near the beam, because the light treated as unscattered is
+/// in fact spread in angle.
 ///
-/// The table has AureoleRows + 2 rows of AureoleColumns + 2 numbers, see ShadowRays.cl.
+/// The table has AureoleRows + 2 rows of AureoleColumns + 2 numbers, see aureole_at in ShadowRays.cl.
 /// @param straightOn  fraction of scattering that is treated as unscattered
 /// @param degree      degree of the moments that were solved for, used where straightOn is not a moment of the function
 std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn, int degree);

@@ -1,14 +1,16 @@
-// Direct light of the lamps in each voxel, and the part of it that is scattered towards the eye. The host gives
+// Direct light of the lamps in each voxel, and its scattering towards the eye.
+//
+// Macros set by the host:
 //   PHASE, PHASE_CHANNELS  see PhaseFunction.cl
-//   AUREOLE      number of tables of repeated forward scattering: 0, 1, or 3 for red, green and blue
+//   AUREOLE  number of tables of repeated forward scattering: 0, 1, or 3 for red, green and blue
 
 #include "Viewing/Samples/PhaseFunction.cl"
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Samples/VoxelChannels.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Shadow rays of a packet: unit vectors to the light and distances (world), and the irradiance per unit of power that
-// would arrive through vacuum.
+// Shadow rays of a packet: unit vectors to the light and distances to it (world coordinates), and irradiance without
+// attenuation per unit of SmallLight::power.
 typedef struct
 {
   real3 d;
@@ -28,7 +30,8 @@ inline way_to_light towards(const SmallLight* light, real3 place, real scatters,
   const real to_axis = -fma(d.x, (real)light->axis.x, fma(d.y, (real)light->axis.y, d.z * (real)light->axis.z));
   real arriving = point > (real)0.0f ? (real)1.0f / greater(square, (real)nearest_square) : (real)1.0f;
   arriving *= light->power.w > 0.0f ? greater(to_axis, (real)0.0f) : (real)1.0f;
-  // Uses tan(angle / 2) = sine / (1 + cosine): the cosine alone does not resolve small angles.
+  // The cone's boundary is tested with tan(angle / 2) = sine / (1 + cosine): the cosine alone does not resolve small
+  // angles.
   const real3 across = { fma(d.y, (real)light->axis.z, -d.z * light->axis.y),
     fma(d.z, (real)light->axis.x, -d.x * light->axis.z), fma(d.x, (real)light->axis.y, -d.y * light->axis.x) };
   const real sine = sqrt(fma(across.x, across.x, fma(across.y, across.y, across.z * across.z)));
@@ -44,7 +47,7 @@ inline way_to_light towards(const SmallLight* light, real3 place, real scatters,
 #else
 #define PASS(sigma, sum, rest) sum = fma(sigma, length, sum);
 #endif
-// Direction of shadow rays, voxels per unit length.
+// Directions of shadow rays, voxels per unit length.
 inline real3 direction_of(const ShadowInfo* info, const way_to_light* way)
 {
   const real3 direction = { way->d.x / (real)info->spacing.x, way->d.y / (real)info->spacing.y,
@@ -52,10 +55,10 @@ inline real3 direction_of(const ShadowInfo* info, const way_to_light* way)
   return direction;
 }
 
-// Optical length along the shadow rays, by channel with COLOURED, else in `r`; the march stops above 30, where nothing
-// arrives.
-//   packet  the section of the rays that counts
-//   sigma   packed samples: the coloured extinction with COLOURED, else source and extinction
+// Optical length along the shadow rays, by channel with COLOURED, else in `r`; the march stops above 30, where the
+// transmittance is negligible.
+//   packet  section of the rays to march through
+//   sigma   packed samples: coloured extinctions with COLOURED, else sources and extinctions
 inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, rays packet, __global const float4* sigma,
   __global const char* bricks)
 {
@@ -63,7 +66,7 @@ inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, ra
   const real3 strides = strides_per_voxel(packet.direction, stride);
   const int steps = (int)ceil(most_lanes(way->arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
   rgb depths = { (real)0.0f, (real)0.0f, (real)0.0f };
-  rgb rests = depths; // see add_to
+  rgb rests = depths; // compensation of rounding errors, see add_to
   for (int m = 0; m < steps;)
   {
     const real so_far = stride * (real)(float)m;
@@ -103,7 +106,9 @@ inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, ra
 }
 #undef PASS
 
-// Irradiance that arrives from a light through the medium, W / length^2.
+// Irradiance by a light after attenuation by the medium, W / length^2.
+//   arriving  irradiance without attenuation per unit of power
+//   depths    optical lengths along the shadow rays
 inline rgb arriving_through(const SmallLight* light, real arriving, rgb depths)
 {
   rgb left;
@@ -120,7 +125,9 @@ inline rgb arriving_through(const SmallLight* light, real arriving, rgb depths)
   return power;
 }
 
-// Phase function of one channel, per steradian, for a cosine of the scattering angle.
+// Phase function of one channel, per steradian, at a cosine of the scattering angle.
+//   first, second, part  parameters as in PhaseInfo
+//   rows  table of the phase function, with PHASE 2 and 5
 inline real phase_of_channel(real cosine, real first, real second, real part, __global const float* rows)
 {
 #if PHASE == 1
@@ -146,16 +153,16 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
 }
 
 #if AUREOLE
-// Value of a table of AureoleTable times the optical length: interpolated over the cosine and the square root of the
-// length.
+// Optical length of scattering `depth` times the value of a table by AureoleTable, interpolated over the cosine of the
+// scattering angle and the square root of the optical length.
 inline real aureole_at(real cosine, real depth, __global const float* rows)
 {
   const real deep = sqrt(lesser(depth * (real)(1.0f / AureoleDepth), (real)1.0f)) * (real)(float)AureoleRows;
   return depth * between_cosines(rows, deep, cosine, AureoleColumns);
 }
 
-// Ratio of the optical length of all scattering (including the part treated as unscattered) to the optical length of
-// the extinction with which rays are marched; the voxel's own ratio is used along the whole ray.
+// Ratio of the optical length of all scattering (including the fraction treated as unscattered) to the optical length
+// of the extinction with which rays are marched; the voxel's own ratio is used along the whole ray.
 inline real scattering_over_depth(__global const float* absorption, __global const float* scattering,
   __global const float* straight_on, const ViewedComponents* of, integer voxel, int channel)
 {
@@ -173,12 +180,12 @@ inline real scattering_over_depth(__global const float* absorption, __global con
 }
 #endif
 
-// Phase function parameters of a packet's voxels.
+// Parameters of the phase function in a packet's voxels.
 inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __global const float* mean_cosines)
 {
   phase_parameters p = parameters_of(&info->phase);
   const int components = info->components.meanCosines;
-  if (components > 0) // g differs by voxel
+  if (components > 0) // g varies by voxel
   {
 #define READ(n)                                                                 \
   LANE(p.first.r, n) = channel_of(mean_cosines, LANE(voxel, n), components, 0); \
@@ -190,8 +197,8 @@ inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __globa
   return p;
 }
 
-// Voxel indices of a packet along x. Lanes beyond the row's end repeat its last voxel, so that several lanes write the
-// same values.
+// Indices along x of a packet's voxels. Lanes beyond the row's end repeat its last voxel, so that several lanes write
+// equal values.
 inline integer packet_along_x(int first, int size)
 {
 #if REAL_WIDTH == 16
@@ -205,7 +212,7 @@ inline integer packet_along_x(int first, int size)
 #endif
 }
 
-// Reads three adjacent numbers for each voxel of a packet.
+// Reads three adjacent numbers, from index `first` on, of the `stride` numbers of each voxel of a packet.
 inline rgb triples_of(__global const float* values, integer voxel, int stride, int first)
 {
   rgb found;
@@ -218,7 +225,7 @@ inline rgb triples_of(__global const float* values, integer voxel, int stride, i
   return found;
 }
 
-// Writes three adjacent numbers for each voxel of a packet.
+// Writes three adjacent numbers, from index `first` on, of the `stride` numbers of each voxel of a packet.
 inline void put_triples(__global float* values, integer voxel, int stride, int first, rgb triple)
 {
 #define WRITE(n)                                                   \
@@ -229,8 +236,8 @@ inline void put_triples(__global float* values, integer voxel, int stride, int f
 #undef WRITE
 }
 
-// Computes the block's part of the optical lengths between the voxels of a box of the whole grid and the light
-// `firstLight`. One work-item per packet of a slice.
+// Computes the optical lengths, within this block, of the paths between the voxels of a box of the whole grid and the
+// light `firstLight`. One work-item per packet of voxels.
 //   depths  3 per voxel, see depths_on_the_way
 __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float4* restrict sigma, __global const char* restrict bricks, __global float* restrict depths)
@@ -258,13 +265,13 @@ __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict l
 }
 
 // Computes the direct light of the lamps at each voxel's centre, and its scattering towards the eye. One work-item per
-// packet of a slice.
+// packet of voxels.
 //   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
 //           length^2; with AUREOLE, in place of the irradiance, the radiance added by repeated forward scattering, W /
-//           (length^2 sr). Added to the present values if firstLight > 0
-//   sigma   see depths_on_the_way
-//   given   if info.isGiven: optical lengths towards the only light, summed over all blocks of a larger grid, 3 for
-//           each voxel from the launch's first row on
+//           (length^2 sr). The light is added to the present values if firstLight > 0
+//   sigma   packed samples, see depths_on_the_way
+//   given   if info.isGiven: optical lengths towards the single light, summed over all blocks of a larger grid, 3 per
+//           voxel from the launch's first row on
 __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float* restrict scattering, __global const float* restrict mean_cosines,
   __global const float* restrict phase_rows, __global const float4* restrict sigma,
@@ -300,7 +307,7 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
   }
   const int4 begin = info.block.first;
   const real3 centre = { to_real(i + begin.x) + (real)0.5f, (real)((float)(j + begin.y) + 0.5f),
-    (real)((float)(k + begin.z) + 0.5f) }; // in the whole grid
+    (real)((float)(k + begin.z) + 0.5f) }; // in voxels of the whole grid
   const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
     centre.z * (real)info.spacing.z };
   // Direction towards the eye; opposite to the view axis in a parallel projection.
@@ -338,7 +345,7 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
       depths = depths_on_the_way(&info, &way, packet, sigma, bricks);
     }
     const rgb arrived = arriving_through(&light, way.arriving, depths);
-    // The light travels along -d.
+    // The light travels along -way.d.
     const real cosine = -(fma(way.d.x, out.x, fma(way.d.y, out.y, way.d.z * out.z))) * out_scale;
     const rgb phase = phase_at(cosine, scatters_by, phase_rows);
 #if AUREOLE
