@@ -8,20 +8,22 @@
 
 namespace tyndall
 {
-/// A long computation split into batches, so that it reports progress and can be aborted about ten times a second, by
-/// the device's clock.
+/// A long computation split into batches whose run times, by the device's clock, are so short that it reports progress
+/// and can be aborted about ten times a second.
 struct Batches
 {
   std::size_t count = 0; ///< number of items to compute
-  std::size_t first = 1; ///< items in the first batch; its run time determines the size of the next
-  std::size_t whole = 1; ///< batch sizes are multiples of this
-  double seconds = 0.05; ///< target run time of a batch
+  std::size_t first = 1; ///< items in the first batch; its run time determines the size of the next batch
+  std::size_t whole = 1; ///< number of which all batch sizes are multiples
+  double seconds = 0.05; ///< target run time of a batch, seconds
   double growth = 4.0;   ///< largest ratio of successive batch sizes
-  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< upper limit of the batch size
-  double from = 0.0, to = 1.0;                                ///< range of the reported progress
+  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< largest size of a batch
+  double from = 0.0, to = 1.0; ///< progress that is reported at the start and at the end, in [0, 1]
 };
 
-/// Calls queue(begin, size) for each batch, waits for it and reports progress. @throws Aborted
+/// For each batch of items, calls queue(begin, size), which queues work on the device, waits for the device and reports
+/// progress.
+/// @throws Aborted
 template <class Queue>
 void InBatches(Device& device, const Batches& batches, const Monitor& monitor, const Queue& queue)
 {

@@ -8,15 +8,15 @@
 
 namespace tyndall
 {
-/// An array of T on a device. Movable, not copyable; the destructor frees the memory.
+/// Array of T in a device's memory. Movable, not copyable; the destructor frees the memory.
 template <class T>
 class Buffer
 {
 public:
   Buffer() = default;
 
-  /// @param what  what the array holds, for the message when it does not fit
-  /// @throws DeviceError if it does not fit
+  /// @param what  description of the array's content, for the message when the array does not fit
+  /// @throws DeviceError if the array does not fit the device
   Buffer(Device& device, std::size_t count, const char* what, cl_mem_flags flags = CL_MEM_READ_WRITE,
     Residence residence = Residence::AsBudgetSays)
     : Owner(&device)
@@ -57,9 +57,9 @@ public:
   std::size_t Size() const { return this->Count; }
   const cl::Buffer& Handle() const { return this->Memory.memory; }
 
-  /// Waits for the device and copies `Size()` values to or from it.
+  /// Waits for the device, then copies all values of the array from or to the host.
   void Write(const T* values) { this->Write(values, this->Count); }
-  void Write(const T* values, std::size_t count) ///< the first `count` values
+  void Write(const T* values, std::size_t count) ///< copies the first `count` values
   {
     if (count > 0)
     {
@@ -68,8 +68,9 @@ public:
       this->Owner->Queue().enqueueWriteBuffer(this->Memory.memory, CL_TRUE, 0, count * sizeof(T), values);
     }
   }
-  /// Waits for the device, then calls set(T* values), which must set all `Size()` values; in place on a CPU, without a
-  /// copy. Work queued afterwards sees the values; other queues must wait for this one.
+  /// Waits for the device, then calls set(T* values), which must set all `Size()` values. On a CPU, `values` is the
+  /// device's memory and nothing is copied. Commands queued on Device::Queue afterwards see the values; other queues
+  /// must wait for that queue.
   template <class Set>
   void WriteInPlace(const Set& set)
   {
@@ -81,8 +82,8 @@ public:
       mapping.GiveBack();
     }
   }
-  /// Waits for the device, then calls look(const T* values) with all `Size()` values; in place on a CPU, without a
-  /// copy.
+  /// Waits for the device, then calls look(const T* values) with all `Size()` values. On a CPU, `values` is the
+  /// device's memory and nothing is copied.
   template <class Look>
   void ReadInPlace(const Look& look) const
   {
@@ -93,14 +94,14 @@ public:
       mapping.GiveBack();
     }
   }
-  /// Copies the same range of values from another buffer.
+  /// Copies `count` values from `other`, from index `first` on in both buffers.
   void CopyFrom(const Buffer& other, std::size_t first, std::size_t count) const
   {
     const std::size_t begin = first * sizeof(T);
     this->Owner->Queue().enqueueCopyBuffer(other.Memory.memory, this->Memory.memory, begin, begin, count * sizeof(T));
   }
   void Read(T* values) const { this->Read(values, this->Count); }
-  void Read(T* values, std::size_t count) const ///< the first `count` values
+  void Read(T* values, std::size_t count) const ///< copies the first `count` values
   {
     if (count > 0)
     {
@@ -134,7 +135,7 @@ public:
   }
 
 private:
-  /// Maps a buffer that is not empty to host memory during its lifetime.
+  /// Maps a buffer, which must not be empty, to host memory during the lifetime of this object.
   struct Mapping
   {
     Mapping(const Buffer& of, cl_map_flags how)
@@ -147,7 +148,7 @@ private:
     void GiveBack() { this->owner.Queue().enqueueUnmapMemObject(this->memory, std::exchange(this->values, nullptr)); }
     ~Mapping()
     {
-      if (this->values) // an exception in flight already reports the failure
+      if (this->values) // an exception was thrown, which already reports the failure
       {
         clEnqueueUnmapMemObject(this->owner.Queue()(), this->memory(), this->values, 0, nullptr, nullptr);
       }
@@ -160,7 +161,8 @@ private:
     T* values;
   };
 
-  /// Called the first time that the whole buffer is written.
+  /// Allocates the memory pages of the buffer (Device::TakePages) when all of its values are written for the first
+  /// time.
   void TakePages(std::size_t first, std::size_t count)
   {
     if (!this->HasPages && first == 0 && count == this->Count)
@@ -170,13 +172,14 @@ private:
     }
   }
 
-  /// OpenCL has no empty buffers; an empty array allocates one value, so that it can still be passed to a kernel.
+  /// Size of the allocation, bytes. OpenCL has no empty buffers: an empty array allocates one value, so that it can be
+  /// passed to a kernel.
   std::size_t Bytes() const { return (this->Count > 0 ? this->Count : 1) * sizeof(T); }
 
   Device* Owner = nullptr;
   std::size_t Count = 0;
   Device::Allocation Memory;
-  bool HasPages = false; ///< tyndall::TakePages was called for the whole buffer
+  bool HasPages = false; ///< whether Device::TakePages was called for the buffer
 };
 
 namespace detail
@@ -193,14 +196,14 @@ void SetArgument(cl::Kernel& kernel, cl_uint index, const Buffer<T>& buffer)
 }
 }
 
-/// Sets kernel arguments in order, from index `first` on; a Buffer is passed as its memory object.
+/// Sets the arguments of a kernel in order, from index `first` on; a Buffer is passed as its memory object.
 template <class... Arguments>
 void SetFrom(cl::Kernel& kernel, cl_uint first, const Arguments&... arguments)
 {
   (detail::SetArgument(kernel, first++, arguments), ...);
 }
 
-/// Sets all arguments of a kernel.
+/// Sets all arguments of a kernel, and returns the kernel.
 template <class... Arguments>
 cl::Kernel& With(cl::Kernel& kernel, const Arguments&... arguments)
 {

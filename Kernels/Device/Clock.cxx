@@ -48,7 +48,8 @@ struct Compiling
 {
   std::mutex Guard;
   int Threads = 0;
-  double Since = 0.0, Before = 0.0; ///< start time of the first active thread; accumulated seconds of earlier ones
+  /// Start time of the current period in which any thread compiles; seconds of all earlier periods.
+  double Since = 0.0, Before = 0.0;
 };
 
 Compiling& TheCompiling()

@@ -6,26 +6,27 @@
 
 namespace tyndall
 {
-/// A monotonic clock: seconds since an arbitrary start. Work that is distributed by measured run times takes its clock
-/// as a parameter, so that tests can control it.
+/// Clock: monotonic time in seconds since an arbitrary start. Code that distributes work by measured run times has its
+/// clock as a parameter, so that tests can control it.
 using Clock = std::function<double()>;
 
-/// The machine's clock.
+/// Monotonic time of the machine, seconds.
 inline double ClockSeconds()
 {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Number of kernels that this process's devices have created for the first time. Each is compiled, or read from a
-/// cache, at its first run; a timing during which this number does not change includes no compilation.
+/// Number of different kernels that this process's devices have created. A kernel is compiled, or read from a cache,
+/// when it is first run; a timing during which this number does not change includes no compilation.
 std::size_t KernelsMade();
-/// Called by devices when a kernel of a program, which must not be destroyed, is created.
+/// Counts a kernel that a device has created.
+/// @param program  program of the kernel, which must not be destroyed
 void NoteKernel(const void* program, const char* name);
 
-/// ClockSeconds less the time spent compiling kernels: this process's work clock.
+/// Time of this process without compilation, seconds: ClockSeconds minus the time spent compiling kernels.
 double WorkSeconds();
 
-/// WorkSeconds stands still during the lifetime of such an object.
+/// Stops WorkSeconds during the lifetime of this object.
 class WhileCompiling
 {
 public:
@@ -35,23 +36,24 @@ public:
   WhileCompiling& operator=(const WhileCompiling&) = delete;
 };
 
-/// During its lifetime, `call` runs about ten times a second in the thread that created it, whenever that thread waits
-/// for a device's compiler (seconds, if the kernels are not cached). If a thread has several listeners, the latest one
-/// is called.
+/// Callback during compilation. During the lifetime of this object, its `call` runs about ten times a second in the
+/// thread that created it, whenever that thread waits for a device's compiler (seconds, if the kernels are not cached).
+/// If a thread has several listeners, the latest one is called.
 class CompilationListener
 {
 public:
-  using Call = std::function<void()>; ///< must not throw
+  using Call = std::function<void()>; ///< function that must not throw
 
   explicit CompilationListener(Call call);
   ~CompilationListener();
   CompilationListener(const CompilationListener&) = delete;
   CompilationListener& operator=(const CompilationListener&) = delete;
 
-  /// The listener of this thread, or null.
+  /// The latest listener of this thread, or null.
   static const CompilationListener* OfThisThread();
 
-  /// Waits until isDone(duration) returns true, and calls the listener each time it returns false.
+  /// Waits until isDone(duration), which waits for at most `duration`, returns true; calls the listener after each
+  /// false.
   /// @return whether the listener was called
   template <class IsDone>
   bool Wait(const IsDone& isDone) const
@@ -66,7 +68,7 @@ public:
   }
 
 private:
-  /// Reading from the compiler's cache takes less than this.
+  /// Time between calls; programs are read from the compiler's cache within less.
   static constexpr std::chrono::milliseconds Patience{ 150 };
 
   Call TheCall;

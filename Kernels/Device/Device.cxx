@@ -16,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-const char* const Pocl = "portable computing language"; ///< part of PoCL's platform name
+const char* const Pocl = "portable computing language"; ///< text that PoCL's platform name contains
 
 std::string Lower(std::string text)
 {
@@ -31,23 +31,25 @@ struct Candidate
   std::string Label;
 };
 
-/// State shared by the whole process.
+/// State shared by all threads of the process.
 struct Shared
 {
   std::mutex Guard; ///< protects all members
   std::map<std::string, std::shared_ptr<Device>> Devices;
-  std::optional<PoclCache> Cache; ///< set once PoCL has been asked for devices
+  std::optional<PoclCache> Cache; ///< cache folder of PoCL; set once PoCL has been asked for devices
   std::vector<std::string> Warnings;
 };
 
-/// Never destroyed: an OpenCL platform may be unloaded before our statics are destroyed, and must not be called then.
+/// The shared state, which is never destroyed: an OpenCL platform may be unloaded before static objects are destroyed,
+/// and must not be called then.
 Shared& TheShared()
 {
   static auto& shared = *new Shared;
   return shared;
 }
 
-/// Called at the end of the process, so that the next one can detect files that were damaged since.
+/// Notes the checksums of compiled programs. Called at the end of the process, so that the next process can detect
+/// files that were damaged in the meantime.
 void NoteWhatWasCompiled()
 {
   if (KernelPrograms::HaveCompiled())
@@ -61,8 +63,8 @@ bool IsPocl(const cl::Platform& platform)
   return Lower(platform.getInfo<CL_PLATFORM_NAME>()).find(Pocl) != std::string::npos;
 }
 
-/// Lists the devices of a platform.
-/// @throws cl::Error; DeviceError if PoCL has no folder to write to, in which case it must not be used
+/// The devices of a platform.
+/// @throws cl::Error; DeviceError if PoCL finds no folder to write to, in which case it must not be used
 std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
 {
   if (IsPocl(platform) && !shared.Cache)
@@ -79,7 +81,7 @@ std::vector<cl::Device> DevicesOf(const cl::Platform& platform, Shared& shared)
   return devices;
 }
 
-/// Memory limit of this process, MiB; none if it is unlimited.
+/// Memory limit of this process, MiB; no value if it is unlimited.
 std::optional<std::size_t> LimitOfMemory()
 {
   struct rlimit limit = {};
@@ -87,7 +89,7 @@ std::optional<std::size_t> LimitOfMemory()
   return limited ? std::optional<std::size_t>(limit.rlim_cur >> 20) : std::nullopt;
 }
 
-/// Text for an error: OpenCL drivers include a compiler, which needs memory.
+/// Text of an error message: OpenCL drivers include a compiler, which needs memory.
 std::string NeedsMemory()
 {
   const std::optional<std::size_t> limit = LimitOfMemory();
@@ -112,7 +114,7 @@ std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
   }
   if (platforms.empty())
   {
-    // If memory is short, the loader also reports that there is no driver.
+    // If memory is short, the OpenCL loader reports as well that there is no driver.
     troubles += tooLittleMemory || LimitOfMemory() ? NeedsMemory() + " If there is no driver, install one:"
                                                    : std::string(" Install one:");
     troubles += " Debian's package pocl-opencl-icd runs OpenCL on the CPU.";
@@ -203,7 +205,7 @@ std::vector<std::string> Device::TakeWarnings()
 
 namespace
 {
-/// Limit for all buffers on a device together, bytes.
+/// Limit for all buffers on a device together, bytes; at least three quarters of the machine's memory on a CPU.
 std::size_t MemoryOf(const cl::Device& device)
 {
   const std::size_t said = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
@@ -211,8 +213,8 @@ std::size_t MemoryOf(const cl::Device& device)
   return cpu ? std::max<std::size_t>(said, HostMemory() / 4 * 3) : said;
 }
 
-/// Whether kernels are organised for a CPU. The environment variable TYNDALL_AS_GPU selects the GPU variants on a CPU,
-/// for tests.
+/// Whether kernels have their CPU variants on a device. The environment variable TYNDALL_AS_GPU selects the GPU
+/// variants on a CPU, for tests.
 bool IsTakenAsCpu(const cl::Device& device)
 {
   return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 && !std::getenv("TYNDALL_AS_GPU");
@@ -265,7 +267,8 @@ Device::Device(Device& whole, const MemoryBudget& budget)
 
 namespace
 {
-/// Whether the environment variable TYNDALL_WITHOUT names a property that a device shall be taken not to have.
+/// Whether the environment variable TYNDALL_WITHOUT, for tests, names a property (extension, host_memory, cache) that
+/// devices are assumed not to have.
 bool IsHidden(const std::string& name)
 {
   const char* hidden = std::getenv("TYNDALL_WITHOUT");
@@ -309,8 +312,8 @@ std::string NameWithStreaming(const Device& ofSolve)
 
 namespace
 {
-/// A CPU buffer in pages of 2 MB, if available: otherwise marching across a large grid is limited by address
-/// translation (TLB misses).
+/// A buffer of a CPU device in memory pages of 2 MB, if available; with small pages, address translation (TLB misses)
+/// limits marches across a large grid.
 cl::Buffer InHugePages(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
 {
   void* memory = nullptr;
@@ -363,7 +366,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
     try
     {
       Allocation allocation = this->Whole->Allocate(bytes, flags, what, residence);
-      if (allocation.onHost) // `Whole` is itself a view
+      if (allocation.onHost) // the parent device is a view and placed the buffer in host memory
       {
         this->Memory.GiveBack(bytes);
         this->OnHost.Take(bytes);
@@ -380,7 +383,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   {
     Complain(*this, what, bytes, "the largest single allocation is " + std::to_string(this->LargestAllocation), Advice);
   }
-  if (!this->Memory.Take(bytes)) // before the allocation, so that another thread cannot reserve the same bytes
+  if (!this->Memory.Take(bytes)) // reserved before the allocation, so that another thread cannot reserve these bytes
   {
     Complain(*this, what, bytes, left() + " are left", Advice);
   }
@@ -396,7 +399,8 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   }
 }
 
-/// If kernels use host memory in place, it is like any other memory, and counts towards the whole device's.
+/// Allocates a buffer of a view in host memory. If kernels use host memory in place, the bytes count towards the memory
+/// of the device.
 Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags, const char* what)
 {
   constexpr const char* Advice = "a coarser grid or fewer directions";
@@ -442,7 +446,7 @@ void Device::Release(std::size_t bytes, bool onHost)
 
 void Device::Finish()
 {
-  this->SecondsQueued = 0.0; // reset first, so that work that other threads queue meanwhile is counted
+  this->SecondsQueued = 0.0; // reset first, so that work that other threads queue during the wait is counted
   this->AwaitFirstRuns();
   this->TheQueue.finish();
 }

@@ -16,101 +16,105 @@
 
 namespace tyndall
 {
-/// One OpenCL device: its context, one in-order queue, the programs built for it, and a count of the allocated memory.
+/// An OpenCL device: its context, one in-order queue, the programs built for it, and a count of the allocated memory.
 ///
-/// Thread-safe if each thread has its own buffers and kernels: commands of all threads run in some order, one after the
-/// other. A thread that waits may also wait for other threads' work, and PeakBytes covers all threads.
+/// Thread-safe if each thread has its own buffers and kernels: the queue runs the commands of all threads in some
+/// order. A thread that waits may also wait for the commands of other threads, and PeakBytes covers all threads.
 class Device
 {
 public:
-  /// The device whose name or platform contains `name` (case-insensitive). If `name` is empty: the one that the
+  /// The device whose name or platform contains `name` (case-insensitive). If `name` is empty: the device that the
   /// environment variable TYNDALL_DEVICE names, else PoCL's CPU device, else the first device. Later calls return the
   /// same object, so that programs are built once per process.
-  /// @throws DeviceError if there is no such device; the text lists the available ones
+  /// @throws DeviceError if there is no such device; the text lists the available devices
   static std::shared_ptr<Device> Find(const std::string& name = {});
 
-  /// Warnings about how devices were opened, e.g. that compiled programs are cached elsewhere than the user asked. Each
-  /// is returned once.
+  /// Warnings about how devices were opened since the last call, e.g. that compiled programs are cached elsewhere than
+  /// the user asked.
   static std::vector<std::string> TakeWarnings();
 
   /// @param cacheFolder  folder to which the platform writes compiled programs, if known; checked for free space before
   ///   a build
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
-  /// A view of a device for one solve: its allocations count towards those of `whole`, which must outlive this, and are
-  /// limited by `budget`.
+  /// Creates a view of the device `whole` for one solve: allocations by the view are limited by `budget` and also count
+  /// towards those of `whole`, which must outlive the view.
   Device(Device& whole, const MemoryBudget& budget);
 
   const std::string& Name() const { return this->DeviceName; }
   bool IsCpu() const { return this->Cpu; }
   int ComputeUnits() const { return this->Units; }
-  /// Number of floats that a work-item should process at once. On a CPU: as many as a register holds, within the range
-  /// from `least` to `most` for which the kernel is written. On a GPU, which vectorises across work-items:
+  /// Number of floats that a work-item should process at once. On a CPU: the number that a register holds, within the
+  /// range from `least` to `most` for which the kernel is written. On a GPU, which vectorises across work-items:
   /// `leastOnGpu`.
   int KernelWidth(int least = 4, int most = 16, int leastOnGpu = 1) const
   {
     return this->Cpu ? std::clamp(this->VectorWidth, least, most) : leastOnGpu;
   }
-  /// False for extensions named in the environment variable TYNDALL_WITHOUT (separated by blanks), which serves to test
-  /// the code for devices without them.
+  /// Whether the device has an OpenCL extension. False for extensions named in the environment variable TYNDALL_WITHOUT
+  /// (separated by blanks), which serves to test the code for devices without them.
   bool HasExtension(const std::string& name) const;
 
-  /// Bytes that all buffers on this device may take together: what OpenCL reports, but on a CPU at least three quarters
-  /// of the machine's memory (PoCL reports only a part of what is available).
+  /// Limit, in bytes, for all buffers on this device together: the memory that OpenCL reports, but on a CPU at least
+  /// three quarters of the machine's memory (PoCL reports only a part of what is available).
   std::size_t MemoryLimit() const { return this->Memory.Limit(); }
-  std::size_t AllocationLimit() const { return this->LargestAllocation; } ///< largest single buffer, bytes
-  /// Whether large arrays lie in host memory, so that sweeps must stream them.
+  std::size_t AllocationLimit() const { return this->LargestAllocation; } ///< largest size of a single buffer, bytes
+  /// Whether the budget places large arrays in host memory (MemoryBudget::hostFrom), so that sweeps must stream them.
   bool Streams() const { return this->Budget.hostFrom != MemoryBudget::NoLimit; }
-  /// Whether kernels use host memory in place, so that copies would gain nothing. False if TYNDALL_WITHOUT names
-  /// `host_memory`.
+  /// Whether kernels access host memory directly, so that copies to the device have no advantage. False if the
+  /// environment variable TYNDALL_WITHOUT names `host_memory`.
   bool SharesHostMemory() const;
-  /// Approximate cache size per core, bytes: its own caches and its share of the common ones. 0 if TYNDALL_WITHOUT
-  /// names `cache`.
+  /// Approximate cache size per core, bytes: private caches and the core's share of the common ones. 0 if the
+  /// environment variable TYNDALL_WITHOUT names `cache`.
   std::size_t CacheBytes() const;
-  std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< arrays in host memory
+  std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< bytes of buffers in host memory
   std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest HostBytes
   std::size_t BytesInUse() const { return this->Memory.InUse(); }
   std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest BytesInUse since ResetPeak
   void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program `source`. Programs are cached, so that a second call with the same source and options
-  /// costs nothing. The kernel belongs to the caller: two threads get two objects, since OpenCL does not let them set
-  /// arguments of the same one.
+  /// costs nothing. The kernel belongs to the caller: two threads receive two objects, since OpenCL does not allow them
+  /// to set the arguments of one kernel object.
+  /// @param name  name of the kernel function
   /// @param source  text of a .cl file with its includes expanded (kernel_source::...)
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
   /// @throws DeviceError with the build log
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options = {});
 
-  /// The memory of a buffer.
+  /// Memory of a Buffer.
   struct Allocation
   {
     cl::Buffer memory;
-    bool onHost = false; ///< in host memory, which does not count towards a budget
+    bool onHost = false; ///< whether the buffer is in host memory, which does not count towards a budget
   };
-  /// @throws DeviceError if `bytes` more do not fit; `what` describes their use in the message
+  /// Allocates memory for a Buffer.
+  /// @param what  description of the content, for the error message
+  /// @throws DeviceError if `bytes` more do not fit
   Allocation Allocate(
     std::size_t bytes, cl_mem_flags flags, const char* what, Residence residence = Residence::AsBudgetSays);
   void Release(std::size_t bytes, bool onHost);
 
   const cl::Context& Context() const { return this->TheContext; }
   cl::CommandQueue& Queue() { return this->TheQueue; }
-  /// Another in-order queue, with profiling events. Commands on both queues may run concurrently.
+  /// Creates another in-order queue, with profiling events. Commands on both queues may run concurrently.
   cl::CommandQueue AnotherQueue() const { return { this->TheContext, this->TheDevice, CL_QUEUE_PROFILING_ENABLE }; }
   void Finish();
-  /// Call this before any other wait for queued commands, e.g. a blocking read. If a program was compiled since the
-  /// last wait, it waits itself and notifies this thread's CompilationListener. PoCL compiles the rest of a kernel at
-  /// its first run.
+  /// Must be called before any other wait for queued commands, e.g. a blocking read. PoCL completes the compilation of
+  /// a kernel at its first run: if a program was compiled since the last wait, this function waits for all queued
+  /// commands and notifies this thread's CompilationListener.
   void AwaitFirstRuns();
 
-  /// Calls tyndall::TakePages for a buffer of `bytes` bytes that will be written completely. Does nothing if the device
-  /// has its own memory, or for a few pages.
+  /// Calls tyndall::TakePages for the memory of a buffer of `bytes` bytes that will be written completely. Does nothing
+  /// if the device has its own memory, or for a few pages.
   void TakePages(const cl::Buffer& memory, std::size_t bytes) const;
 
-  /// Notes that work of about `seconds` seconds was queued, and waits for all queued work once that amounts to a tenth
-  /// of a second: progress is then reported and aborts are noticed that often, while short kernels follow each other
-  /// without the host.
+  /// Adds `seconds`, the estimated run time of work that was queued, and waits for all queued work once the sum reaches
+  /// a tenth of a second: progress is then reported and aborts are noticed that often, while short kernels follow each
+  /// other without the host.
   void Queued(double seconds);
 
-  /// Seconds of the clock by which work is distributed: WorkSeconds, or a test's clock, set before work begins.
+  /// Seconds of the clock by which work is distributed: WorkSeconds, or a test's clock, which must be set before work
+  /// begins.
   double Now() const { return this->TheClock(); }
   void SetClock(Clock clock) { this->TheClock = std::move(clock); }
 
@@ -126,28 +130,28 @@ private:
   int Units = 1;
   int VectorWidth = 1;
   std::size_t LargestAllocation = 0;
-  Device* Whole = nullptr; ///< the device that this is a view of; null: none
+  Device* Whole = nullptr; ///< device of which this is a view; null: this is not a view
   MemoryBudget Budget;     ///< budget of a view
   MemoryCount Memory;
   MemoryCount OnHost;
   std::atomic<double> SecondsQueued{ 0.0 };
   Clock TheClock = WorkSeconds;
-  std::shared_ptr<KernelPrograms> Programs; ///< shared by all views of the device
+  std::shared_ptr<KernelPrograms> Programs; ///< programs, shared by all views of the device
 };
 
-/// The device's name for the user, followed, if a solve used host memory, by how much lay on the device and how much in
-/// host memory.
-/// @param ofSolve  the device with the solve's budget
+/// The device's name for the user, followed, if a solve used host memory, by the amounts of memory used on the device
+/// and in host memory.
+/// @param ofSolve  the view of the device with the solve's budget
 std::string NameWithStreaming(const Device& ofSolve);
 
-/// A compiler option that defines a macro for a kernel.
+/// Compiler option " -Dname=value", which defines a macro for a kernel.
 inline std::string Define(const char* name, int value)
 {
   return std::string(" -D") + name + "=" + std::to_string(value);
 }
 
-/// Work-group size for work-items that each process much data, a row or more. CPU: 1, so that all threads get some.
-/// GPU: the driver's choice, since groups of one would leave most lanes idle.
+/// Work-group size for work-items that each process a row or more. CPU: 1, so that all threads receive work. GPU: the
+/// driver's choice, since groups of one work-item would leave most lanes idle.
 /// @param dimensions  dimensions of the range, 1 to 3
 inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
 {
@@ -157,7 +161,7 @@ inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
                          : cl::NDRange(1, 1, 1);
 }
 
-/// Runs a kernel over a range of work-items; over an empty range nothing.
+/// Queues a kernel over a range of work-items; does nothing if the range is empty.
 inline void Launch(
   Device& device, const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group = cl::NullRange)
 {
@@ -168,19 +172,19 @@ inline void Launch(
   }
 }
 
-/// Work-items per group in sums by groups (Numerics/GroupSum.cl); 1 on a CPU.
+/// Number of work-items per work-group in kernels that compute sums (Numerics/GroupSum.cl); 1 on a CPU.
 inline int SummingGroup(const Device& device)
 {
   return device.IsCpu() ? 1 : 128;
 }
 
-/// Compiler option that defines GROUP for kernels that sum by groups.
+/// Compiler option that defines GROUP, the work-group size, for kernels that compute sums.
 inline std::string SummingOption(const Device& device)
 {
   return Define("GROUP", SummingGroup(device));
 }
 
-/// Runs a summing kernel with `groups` groups per channel.
+/// Queues a kernel that computes sums, with `groups` work-groups per channel.
 inline void RunSummingGroups(Device& device, const cl::Kernel& kernel, std::size_t groups, std::size_t channels = 1)
 {
   const auto items = static_cast<std::size_t>(SummingGroup(device));

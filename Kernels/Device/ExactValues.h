@@ -7,7 +7,7 @@
 
 namespace tyndall
 {
-/// An array on the device, in double precision if the device has it, else in float.
+/// Array on the device, in double precision if the device has it, else in float.
 class ExactValues
 {
 public:
@@ -18,14 +18,14 @@ public:
   const cl::Buffer& Handle() const { return this->InDouble() ? this->Doubles.Handle() : this->Floats.Handle(); }
   void Fill(double value);
   std::vector<double> Read() const;
-  void Write(const std::vector<double>& values); ///< values must have the size of the array
+  void Write(const std::vector<double>& values); ///< `values` must have the size of the array
 
 private:
   Buffer<double> Doubles;
   Buffer<float> Floats;
 };
 
-/// Sets an argument that a kernel declares as `exact`.
+/// Sets a kernel argument of type `exact`, which is double if the device has double precision, else float.
 void SetExact(const Device& device, cl::Kernel& kernel, cl_uint index, double value);
 
 /// Compiler option that defines DOUBLES: 1 if the device has double precision.

@@ -8,13 +8,13 @@
 
 namespace tyndall
 {
-/// The caller's array for use by kernels: the same memory on a CPU, elsewhere a copy on the device. The array must
-/// outlive this, and must not be accessed between a kernel's start and the device's next Finish (or Fetch).
+/// The caller's array for use by kernels: the caller's memory itself on a CPU, else a copy on the device. The array
+/// must outlive this object, and must not be accessed between a kernel's start and the device's next Finish (or Fetch).
 template <class T>
 class HostMappedBuffer
 {
 public:
-  /// An array that kernels only read.
+  /// Wraps an array that kernels only read.
   HostMappedBuffer(Device& device, const T* values, std::size_t count, const char* what)
     : HostMappedBuffer(device, const_cast<T*>(values), count, what, CL_MEM_READ_ONLY)
   {
@@ -24,7 +24,7 @@ public:
     }
   }
 
-  /// An array that kernels write completely; call Fetch() when they are done.
+  /// Wraps an array that kernels write completely; call Fetch() after they have been queued.
   HostMappedBuffer(Device& device, T* values, std::size_t count, const char* what)
     : HostMappedBuffer(device, values, count, what, CL_MEM_READ_WRITE)
   {
@@ -33,7 +33,7 @@ public:
   HostMappedBuffer(const HostMappedBuffer&) = delete;
   HostMappedBuffer& operator=(const HostMappedBuffer&) = delete;
 
-  /// Waits for the device: after a failure, kernels queued before may still access the array, which now belongs to the
+  /// Waits for the device: after a failure, kernels queued before may still access the array, which then belongs to the
   /// caller again.
   ~HostMappedBuffer()
   {
@@ -43,7 +43,7 @@ public:
       {
         this->Owner->Finish();
       }
-      catch (const cl::Error&) // the error will occur again where it can be reported
+      catch (const cl::Error&) // the error will occur again in a later call, which can report it
       {
       }
     }
@@ -51,7 +51,7 @@ public:
 
   const cl::Buffer& Handle() const { return this->Copy.Size() > 0 ? this->Copy.Handle() : this->Memory; }
 
-  /// Waits for the device; afterwards the array holds what the kernels wrote.
+  /// Waits for the device; afterwards the array contains the values that the kernels wrote.
   void Fetch() const
   {
     if (this->Copy.Size() > 0)
@@ -101,16 +101,16 @@ private:
   Buffer<T> Copy;
 };
 
-/// An array on a device that is zero where nothing was written. On a CPU, parts that are never written take no memory,
-/// since the system maps new pages to a single page of zeros; only the written part must fit.
+/// Array on a device that is zero where nothing was written. On a CPU, parts that are never written use no memory,
+/// since the system maps new pages to a single page of zeros; only the written parts must fit.
 template <class T>
 class ZeroedBuffer
 {
 public:
   ZeroedBuffer() = default;
 
-  /// @param everywhere  kernels write the whole array before it is read, so that no zeros are needed
-  /// @throws DeviceError if it does not fit
+  /// @param everywhere  whether kernels write the whole array before it is read, so that no zeros are needed
+  /// @throws DeviceError if the array does not fit the device
   ZeroedBuffer(Device& device, std::size_t count, bool everywhere, const char* what)
   {
     if (count == 0 || everywhere || !device.IsCpu())
@@ -139,7 +139,7 @@ private:
     void operator()(T* pages) const { std::free(pages); }
   };
   std::unique_ptr<T, Free> Pages;
-  std::unique_ptr<HostMappedBuffer<T>> Mapped; // destroyed before its pages
+  std::unique_ptr<HostMappedBuffer<T>> Mapped; // must be destroyed before Pages
   Buffer<T> Whole;
 };
 }

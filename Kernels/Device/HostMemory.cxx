@@ -38,10 +38,11 @@ void TakePages(void* memory, std::size_t bytes)
   {
     return;
   }
-  madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // may fail, which only makes it slower
+  madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // may fail, which only makes access slower
 #ifdef MADV_POPULATE_WRITE
   InThreads((end - begin) / page, 16, [begin](std::size_t first, std::size_t last) {
-    madvise(reinterpret_cast<void*>(begin + first * page), (last - first) * page, MADV_POPULATE_WRITE); // as above
+    // may fail, which only makes access slower
+    madvise(reinterpret_cast<void*>(begin + first * page), (last - first) * page, MADV_POPULATE_WRITE);
   });
 #endif
 #endif
@@ -52,7 +53,7 @@ void MakeZeros(std::vector<ZeroedArray> arrays)
   std::sort(arrays.begin(), arrays.end(), [](const ZeroedArray& a, const ZeroedArray& b) { return a.count > b.count; });
   for (const ZeroedArray& array : arrays)
   {
-    *array.values = std::vector<float>(); // frees the old contents first
+    *array.values = std::vector<float>(); // frees the old contents before the new ones are allocated
     *array.values = RoomFor(array.count);
   }
   std::atomic<std::size_t> next(0);

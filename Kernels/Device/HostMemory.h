@@ -9,21 +9,23 @@ namespace tyndall
 /// Memory of the machine, bytes.
 std::size_t HostMemory();
 
-/// Checks that arrays fit before they are allocated, since a machine that swaps does not report that they do not.
+/// Checks that arrays fit the machine's memory before they are allocated: a machine that swaps does not report that
+/// they do not.
 /// @param bytes  total size of the arrays
 /// @param what  description of the arrays, e.g. "A medium of 4 x 4 x 4 voxels (28 bytes each)"
 /// @param advice  a sentence that says what to do if they do not fit
 /// @throws DeviceError if they exceed three quarters of the machine's memory
 void RequireHostMemory(double bytes, const std::string& what, const std::string& advice);
 
-constexpr std::size_t LargePage = std::size_t(1) << 21; ///< bytes, where the system has pages larger than 4 kB
+/// size of a large memory page, bytes, where the system has pages larger than 4 kB
+constexpr std::size_t LargePage = std::size_t(1) << 21;
 
-/// Makes the system allocate the pages of a memory range now, on all cores and in pages of 2 MB if available: page
-/// faults of a single core, 4 kB each, can take longer than filling the memory. Contents are preserved. Use it for
-/// memory that will be written completely.
+/// Allocates the pages of a memory range now, on all cores and in pages of 2 MB if available: page faults of a single
+/// core, 4 kB each, can take longer than filling the memory. Contents are preserved. Use it for memory that will be
+/// written completely.
 void TakePages(void* memory, std::size_t bytes);
 
-/// An empty vector with capacity for `count` values, in such pages.
+/// An empty vector with capacity for `count` values, whose pages are allocated by TakePages.
 template <class T = float>
 std::vector<T> RoomFor(std::size_t count)
 {
@@ -33,7 +35,7 @@ std::vector<T> RoomFor(std::size_t count)
   return values;
 }
 
-/// A vector of `count` zeros, in such pages.
+/// A vector of `count` zeros, whose pages are allocated by TakePages.
 template <class T = float>
 std::vector<T> Zeros(std::size_t count)
 {
@@ -42,7 +44,7 @@ std::vector<T> Zeros(std::size_t count)
   return values;
 }
 
-/// An array to be filled with `count` zeros.
+/// A vector that MakeZeros fills with `count` zeros.
 struct ZeroedArray
 {
   std::vector<float>* values;

@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t ThreadsAtMost = 16; ///< so many cores saturate any memory
+constexpr std::size_t ThreadsAtMost = 16; ///< largest number of threads; so many cores saturate any memory
 }
 
 void InThreads(std::size_t count, std::size_t least, const std::function<void(std::size_t, std::size_t)>& work)
@@ -38,7 +38,7 @@ void InThreads(std::size_t count, std::size_t least, const std::function<void(st
     {
       others.emplace_back(run, part);
     }
-    catch (const std::system_error&) // no more threads are available
+    catch (const std::system_error&) // no more threads are available: the caller's thread runs the part
     {
       run(part);
     }

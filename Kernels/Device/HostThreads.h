@@ -8,20 +8,22 @@ namespace tyndall
 {
 /// Parallel loop over a large array on all of the host's cores; a single core cannot use the full memory bandwidth.
 ///
-/// Calls work(begin, end) concurrently for parts that together are [0, count), and waits for all of them. Results must
-/// not depend on where a part begins, so that they are the same on any number of cores.
-/// @param least  smallest number of elements per part; below some hundred kilobytes a thread costs more than it saves
-/// @throws what a part threw, after all parts have ended; if several did, the error of the first of them
+/// Calls work(begin, end) concurrently for ranges that together are [0, count), and waits for all of them. Results must
+/// not depend on where a range begins, so that they are the same on any number of cores.
+/// @param least  smallest number of elements per range; below some hundred kilobytes a thread costs more time than it
+///   saves
+/// @throws the error that `work` threw, after all ranges have ended; if it threw for several, the error of the first
+///   range
 void InThreads(
   std::size_t count, std::size_t least, const std::function<void(std::size_t begin, std::size_t end)>& work);
 
-/// The sum of term(begin, end) over pieces that together are [0, count). The terms are evaluated concurrently and added
+/// The sum of term(begin, end) over ranges that together are [0, count). The terms are evaluated concurrently and added
 /// in order, so that the sum is the same on any number of cores.
-/// @param piece  elements per piece; the last may have fewer
+/// @param piece  elements per range; the last range may have fewer
 double SumInThreads(
   std::size_t count, std::size_t piece, const std::function<double(std::size_t begin, std::size_t end)>& term);
 
-/// Whether is(i) is true for any i in [0, count). Optimised for the case that none is; does not tell which.
+/// Whether is(i) is true for any i in [0, count). Fastest if none is; does not tell for which i.
 /// @param is  predicate without branches, so that it is vectorised
 template <class Is>
 bool AnyInThreads(std::size_t count, const Is& is)

@@ -12,13 +12,13 @@ namespace tyndall
 {
 namespace
 {
-/// Prepended to every source. Clang warns that the calling convention of wide vectors depends on the target; kernel
-/// functions are never called from outside, so it does not matter.
+/// Text prepended to every source. Clang warns that the calling convention of wide vectors depends on the target;
+/// kernel functions are never called from outside, so the warning does not matter.
 const char* const WideVectors = "#ifdef __clang__\n#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n";
 
 std::atomic<bool> AnyCompiled{ false };
 
-/// Advice for failures without a reported reason; empty if the platform has no known cache.
+/// Advice to the user for failures without a reported reason; empty if the platform's cache folder is not known.
 std::string AdviceOnCache(const std::string& folder)
 {
   return folder.empty()
@@ -40,7 +40,8 @@ std::unique_lock<std::timed_mutex> LockHeard(std::timed_mutex& mutex)
   return lock;
 }
 
-/// @return whether it took too long to have been read from a cache; false without a listener
+/// Calls `build` and notifies this thread's CompilationListener while it runs.
+/// @return whether it ran longer than reading from a cache takes; false without a listener
 bool CallHeard(const std::function<void()>& build)
 {
   const CompilationListener* listener = CompilationListener::OfThisThread();
@@ -57,7 +58,8 @@ bool CallHeard(const std::function<void()>& build)
 }
 
 /// Builds a program.
-/// @return the compiler's log if it fails; empty if it succeeds
+/// @param tookLong  set to true if the build ran longer than reading from a cache takes
+/// @return the compiler's log if the build fails; empty if it succeeds
 std::string LogOfFailure(cl::Program& program, const cl::Device& device, const std::string& options, bool& tookLong)
 {
   try

@@ -11,22 +11,22 @@
 
 namespace tyndall
 {
-/// The programs built for one device, shared by all views of it. Thread-safe.
+/// Programs built for one device, shared by all of its views. Thread-safe.
 class KernelPrograms
 {
 public:
-  /// @param cacheFolder  see Device
+  /// @param cacheFolder  as in Device's constructor
   KernelPrograms(const cl::Context& context, const cl::Device& device, std::string deviceName, std::string cacheFolder);
 
-  /// See Device::Kernel.
+  /// Creates a kernel; the same as Device::Kernel.
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options);
 
-  /// Whether a program was compiled, slowly enough for a CompilationListener, since the last call.
+  /// Whether a program was compiled since the last call, in a build so slow that it notified a CompilationListener.
   bool TakeCompiled() { return this->CompiledSince.exchange(false); }
   static bool HaveCompiled(); ///< whether this process has compiled a program rather than read it from a cache
 
 private:
-  /// A program, built by the thread that needs it first. Only threads that need the same program wait.
+  /// A program, built by the first thread that needs it. Other threads wait only if they need the same program.
   struct KeptProgram
   {
     std::timed_mutex Building;

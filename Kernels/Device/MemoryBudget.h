@@ -11,20 +11,22 @@ struct MemoryBudget
 {
   static constexpr std::size_t NoLimit = std::numeric_limits<std::size_t>::max();
 
-  std::size_t bytes = NoLimit; ///< limit for all buffers on the device together
-  /// Whether buffers that do not fit are placed in host memory, from which the device reads them; false: an error.
+  std::size_t bytes = NoLimit; ///< limit for all buffers on the device together, bytes
+  /// Whether buffers that do not fit are placed in host memory, from which the device reads them; false: DeviceError.
   bool spills = false;
-  std::size_t hostFrom = NoLimit; ///< arrays of at least this many bytes are always placed in host memory and streamed
+  /// Arrays of at least this many bytes are always placed in host memory, and sweeps stream them to the device.
+  std::size_t hostFrom = NoLimit;
 };
 
-/// Where an array should be placed.
+/// Memory in which an array is placed.
 enum class Residence
 {
   AsBudgetSays,
-  Device ///< as long as there is room: what kernels work in all the time
+  /// on the device as long as there is room: for arrays that kernels access all the time
+  Device
 };
 
-/// Lock-free, thread-safe count of the bytes allocated out of a limit.
+/// Lock-free, thread-safe count of the bytes that are allocated out of a limit.
 class MemoryCount
 {
 public:
@@ -39,7 +41,8 @@ public:
   std::size_t Peak() const { return this->Largest; } ///< largest InUse since ResetPeak
   void ResetPeak() { this->Largest = this->InUse(); }
 
-  /// @return whether enough bytes were left; if not, none are taken
+  /// Reserves bytes.
+  /// @return whether enough bytes were left; if not, none are reserved
   bool Take(std::size_t bytes)
   {
     std::size_t before = this->Taken;
@@ -57,7 +60,7 @@ public:
     return true;
   }
 
-  /// Returns bytes obtained by Take.
+  /// Releases bytes that were reserved by Take.
   void GiveBack(std::size_t bytes) { this->Taken -= bytes; }
 
 private:

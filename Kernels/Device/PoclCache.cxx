@@ -18,7 +18,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t LongestName = 800; ///< PoCL's file names in it are limited to 1024 characters
+/// Largest length of the cache folder's name: PoCL limits the names of files in the folder to 1024 characters.
+constexpr std::size_t LongestName = 800;
+/// Size, in bytes, of the files with which free space is tested.
 constexpr std::size_t Piece = std::size_t(1) << 20;
 
 std::string Megabytes(std::size_t bytes)
@@ -35,10 +37,10 @@ std::string Advice()
 struct FolderChoice
 {
   std::string folder;
-  std::string chosenBy; ///< what makes PoCL choose it
+  std::string chosenBy; ///< name of the environment variable, or of the program, that determines PoCL's choice
 };
 
-/// The folder that PoCL would choose.
+/// The cache folder that PoCL chooses by its environment variables.
 FolderChoice FolderOfEnvironment()
 {
   if (const char* said = std::getenv("POCL_CACHE_DIR"))
@@ -59,7 +61,7 @@ FolderChoice FolderOfEnvironment()
   return { "/tmp" + below, "PoCL itself" };
 }
 
-/// Warning text; empty if nothing was damaged.
+/// Warning about damaged files; empty if there are none.
 std::string Told(const DamagedFiles& damaged, const std::string& folder)
 {
   return damaged.count == 0 ? std::string()
@@ -70,7 +72,7 @@ std::string Told(const DamagedFiles& damaged, const std::string& folder)
       " and can be deleted.";
 }
 
-/// A folder that only the user can write, since files in it are executed.
+/// A folder that only the user can write, since the files in it are executed.
 std::string PrivateFolder(std::string& trouble)
 {
   std::error_code error;
@@ -118,13 +120,14 @@ std::string WhyNotWritable(const std::string& folder, std::size_t bytes)
     return error.message();
   }
   int failed = 0;
-  std::vector<int> files; // in pieces, since file sizes may be limited; PoCL's files are far smaller
+  // Several files, since the system may limit file sizes; PoCL's files are far smaller.
+  std::vector<int> files;
   for (std::size_t reserved = 0; reserved < bytes && failed == 0; reserved += Piece)
   {
     std::string name = folder + "/tyndall-room-XXXXXX";
     files.push_back(mkstemp(name.data()));
     failed = files.back() < 0 ? errno : posix_fallocate(files.back(), 0, Piece);
-    unlink(name.c_str()); // the system frees the file once it is closed
+    unlink(name.c_str()); // the system frees the file's space once the file is closed
   }
   for (const int file : files)
   {
@@ -139,7 +142,7 @@ std::string WhyNotWritable(const std::string& folder, std::size_t bytes)
 
 namespace
 {
-/// PoCL's default folder if it is writable; else a private one.
+/// The cache folder: PoCL's own choice if it is writable; else a private folder.
 PoclCache ChooseCache()
 {
   const FolderChoice own = FolderOfEnvironment();

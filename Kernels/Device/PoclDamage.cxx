@@ -27,7 +27,7 @@ namespace
 {
 constexpr const char* Aside = PoclCache::Damaged;
 
-/// LLVM bitcode: a signature and blocks, each of which states its number of words.
+/// Whether the bytes are complete LLVM bitcode: a signature and blocks, each of which states its number of words.
 bool IsWholeBitcode(const std::string& bytes)
 {
   const auto word = [&bytes](std::size_t at) {
@@ -48,14 +48,14 @@ bool IsWholeBitcode(const std::string& bytes)
   return at == bytes.size();
 }
 
-/// A library is whole if all of its sections lie within the file.
+/// Whether the bytes are a complete library: all of its sections must lie within the file.
 bool IsWholeLibrary(const std::string& bytes)
 {
   Elf64_Ehdr header = {};
   std::memcpy(&header, bytes.data(), std::min(sizeof(header), bytes.size()));
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64)
   {
-    return header.e_ident[EI_CLASS] == ELFCLASS32; // 32-bit headers differ and are not checked
+    return header.e_ident[EI_CLASS] == ELFCLASS32; // headers of 32-bit libraries differ and are not checked
   }
   const auto lies = [&bytes](std::uint64_t from, std::uint64_t size) {
     return from <= bytes.size() && size <= bytes.size() - from;
@@ -82,7 +82,7 @@ std::optional<std::string> BytesOf(const fs::path& file)
   return stream.eof() && !stream.bad() ? std::optional<std::string>(std::move(bytes)) : std::nullopt;
 }
 
-/// Recorded state of a file or folder.
+/// Recorded state of a file or folder, by which changes are detected.
 struct Note
 {
   std::uint64_t number = 0; ///< inode number
@@ -98,7 +98,7 @@ struct Note
   }
 };
 
-/// State of a file or folder, without its checksum.
+/// Current state of a file or folder, without its checksum; no value if it does not exist.
 std::optional<Note> NoteOf(const std::string& path)
 {
   struct stat found = {};
@@ -111,7 +111,8 @@ std::optional<Note> NoteOf(const std::string& path)
     nanoseconds(found.st_ctim), 0 };
 }
 
-std::uint64_t SumOf(const std::string& bytes) // FNV-1a
+// Checksum FNV-1a.
+std::uint64_t SumOf(const std::string& bytes)
 {
   std::uint64_t sum = 14695981039346656037u;
   for (const char byte : bytes)
@@ -121,7 +122,7 @@ std::uint64_t SumOf(const std::string& bytes) // FNV-1a
   return sum;
 }
 
-/// Checksums of the files in a folder, by relative path, stored in a file of that folder.
+/// Recorded states and checksums of the files in a folder, by relative path, stored in a file of that folder.
 class Notes
 {
 public:
@@ -152,7 +153,7 @@ public:
   }
   void Forget(const std::string& path) { this->IsNew = this->Known.erase(path) > 0 || this->IsNew; }
 
-  /// Writes a file of its own and renames it, since other processes may write at the same time.
+  /// Writes the notes to a new file and renames it, since other processes may write at the same time.
   void Write() const
   {
     if (!this->IsNew)
@@ -179,12 +180,13 @@ private:
   bool IsNew = false;
 };
 
-/// Inspects PoCL's cache folder with as few system calls as possible: looks at noted files, and into program folders
+/// Inspection of PoCL's cache folder with as few system calls as possible: it checks noted files, and program folders
 /// that have changed since they were noted.
 class CacheInspection
 {
 public:
-  /// Receives a damaged file, by its path in the folder, and how it is damaged. @return whether the file was removed
+  /// Function that is called for each damaged file, with its path in the folder and how it is damaged. It returns
+  /// whether the file was removed.
   using Report = std::function<bool(const std::string& path, const std::string& how)>;
 
   /// @param folder  without a trailing slash
@@ -233,7 +235,8 @@ public:
 private:
   static bool IsOfKernels(const fs::path& path) { return path.extension() == ".bc" || path.extension() == ".so"; }
   static bool CanBeUsed(const fs::path& folder) { return access(folder.c_str(), R_OK | W_OK | X_OK) == 0; }
-  /// Whether a name is part of a hash that names a program; the folder might contain other files.
+  /// Whether a name may be part of a program's hash: `least` to `most` capital letters; the folder might contain other
+  /// files.
   static bool IsOfHash(const fs::path& path, std::size_t least, std::size_t most)
   {
     const std::string name = path.filename().string();
@@ -284,7 +287,7 @@ private:
       return;
     }
     const std::optional<Note> found =
-      NoteOf(folder.string()); // taken before the inspection, so that later changes are seen next time
+      NoteOf(folder.string()); // state before the inspection, so that later changes are detected next time
     std::vector<std::string> files, unusable;
     std::error_code none;
     for (fs::recursive_directory_iterator entry(folder, none), end; entry != end; entry.increment(none))
@@ -311,21 +314,22 @@ private:
     {
       report(path, "cannot be used");
     }
-    const bool rests =
-      found && std::time(nullptr) - found->changed / 1000000000 > 1; // time stamps of file systems are coarse
-    if (sound && rests)                                              // else it is looked into again
+    // Whether the last change is more than a second ago: time stamps of file systems are coarse.
+    const bool rests = found && std::time(nullptr) - found->changed / 1000000000 > 1;
+    if (sound && rests) // otherwise the next run inspects the folder again
     {
       this->Known.Set(program, *found);
     }
   }
 
+  /// Inspects a file of kernels, and reports it if it is damaged.
   /// @return whether the file is intact
   bool LookAtFile(const std::string& path, const Report& report)
   {
     const std::string file = this->Folder + path;
     const Note* const before = this->Known.Find(path);
     std::optional<Note> found = NoteOf(file);
-    if (!found) // renamed, perhaps by another process
+    if (!found) // the file was renamed, perhaps by another process
     {
       this->Known.Forget(path);
       return true;
@@ -347,7 +351,9 @@ private:
     return true;
   }
 
-  /// @param found  receives its checksum. @return how it is damaged; empty if no damage was found
+  /// @param before  recorded state of the file; null: it is new
+  /// @param found  current state of the file; receives its checksum
+  /// @return how the file is damaged; empty if no damage was found
   static std::string HowDamaged(const fs::path& file, const Note* before, Note& found)
   {
     const std::optional<std::string> bytes = BytesOf(file);
@@ -360,7 +366,8 @@ private:
       return "is cut off or overwritten";
     }
     found.sum = SumOf(*bytes);
-    // Ranks that compile the same program at once replace each other's bitcode, which may differ in some bytes.
+    // Bitcode that was replaced is not damaged: ranks that compile the same program at once replace each other's file,
+    // which may differ in some bytes.
     const bool replaced = before && before->number != found.number && file.extension() == ".bc";
     return before && before->sum != found.sum && !replaced ? "was changed" : "";
   }
@@ -371,15 +378,15 @@ private:
 
 constexpr const char* PrefixOfMarks = "tyndall-building-";
 
-/// Approximate start time of this process; ranks of one job start together.
+/// Approximate start time of this process; ranks of one job start together and have nearly equal times.
 const std::time_t Begun = std::time(nullptr);
 
-/// Whether two or more runs that started at different times ended while they were building programs. Deletes their
-/// marks, and marks older than an hour. A mark that can be locked belongs to a process that has ended.
+/// Whether two or more runs that started at least ten seconds apart ended while they were building programs. Deletes
+/// the marks of such runs, and marks older than an hour. A mark that can be locked belongs to a process that has ended.
 bool EndedWhileBuilding(const std::string& folder)
 {
   constexpr std::int64_t second = 1000000000, apart = 10 * second, old = 3600 * second;
-  std::vector<std::pair<std::string, int>> ended; // with its file descriptor
+  std::vector<std::pair<std::string, int>> ended; // names of the marks of ended processes, with file descriptors
   std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = 0;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none))
@@ -488,6 +495,6 @@ void NoteChecksums(const std::string& folder)
 {
   CacheInspection(WithoutSlash(folder)).Run([](const std::string&, const std::string&) {
     return false;
-  }); // left to the next process
+  }); // damaged files are left to the next process
 }
 }

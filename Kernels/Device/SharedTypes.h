@@ -1,7 +1,7 @@
-// What C++ and OpenCL C share, a struct or a constant, is written once, in a header that both compile: its name ends in
-// Shared.h and it includes this one. Members are int, float, uint, ulong, int2, int4 and float4, which have the same
-// size and alignment on both sides; constants are enumerators. All stands between SHARED_BEGIN and SHARED_END, which
-// put it into C++'s namespace.
+// Types for structures and constants that C++ and OpenCL C share. These are defined once, in a header that both
+// compile: its name ends in Shared.h and it includes this header. Members are int, float, uint, ulong, int2, int4 and
+// float4, which have the same size and alignment in both languages; constants are enumerators. All definitions are
+// between SHARED_BEGIN and SHARED_END, which put them into C++'s namespace tyndall.
 #pragma once
 
 #ifdef __OPENCL_C_VERSION__
@@ -13,7 +13,8 @@
   {
 #define SHARED_END }
 
-#include <Device/OpenCL.h> // in these brackets: EmbedKernels.cmake leaves it where it is
+// In angle brackets, so that EmbedKernels.cmake does not expand the include.
+#include <Device/OpenCL.h>
 
 namespace tyndall
 {

@@ -10,7 +10,8 @@ constexpr std::size_t Count(int number)
   return static_cast<std::size_t>(number);
 }
 
-/// `value` rounded up to a multiple of `step`, e.g. rows to whole vectors, ranges to whole work-groups. Both positive.
+/// `value` rounded up to a multiple of `step`, both positive: e.g. rows to complete vectors, ranges to complete
+/// work-groups.
 template <class Integer>
 constexpr Integer RoundUp(Integer value, Integer step)
 {
