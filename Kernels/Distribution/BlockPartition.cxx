@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Cuts a box into `parts` blocks, for the ranks from `first` on.
+/// Divides a box into `parts` blocks, for the ranks from `first` on, by recursive bisection.
 void Cut(const VoxelBox& box, int parts, int first, std::vector<VoxelBox>& blocks)
 {
   const int axis = static_cast<int>(std::max_element(box.size.begin(), box.size.end()) - box.size.begin());

@@ -8,37 +8,39 @@
 
 namespace tyndall
 {
-/// A partition of a grid into blocks, one per rank; blocks may be empty.
+/// Partition of a grid into blocks, one per rank; blocks may be empty.
 struct BlockPartition
 {
   Grid whole;
-  std::vector<VoxelBox> blocks; ///< by rank, in voxels of the whole grid
+  std::vector<VoxelBox> blocks; ///< block of each rank, in voxels of the whole grid
 
+  /// Checks the partition.
   /// @throws InvalidInput if a block reaches beyond the grid, two blocks overlap, or a voxel is in no block
   void Check() const;
 
-  /// The grid of a rank's block; without voxels if the block is empty.
+  /// Grid of a rank's block; without voxels if the block is empty.
   Grid OwnGrid(int rank) const;
 
-  /// Recursive bisection of the grid across its longest edge, as evenly as whole voxels allow. If there are fewer
-  /// voxels than ranks, the last blocks are empty.
+  /// Creates a partition by recursive bisection of the grid across its longest edge, as evenly as integer numbers of
+  /// voxels allow. If there are fewer voxels than ranks, the last blocks are empty.
   static BlockPartition Even(const Grid& whole, int ranks);
 };
 
-/// One past the last voxel of a box along an axis.
+/// Index along an axis of the first voxel beyond the upper end of a box.
 inline int EndOf(const VoxelBox& box, int axis)
 {
   return box.first[axis] + box.size[axis];
 }
 
-/// Whether a voxel (three indices) is in a box.
+/// Whether a box contains a voxel.
+/// @param voxel  three indices
 bool Holds(const VoxelBox& box, const int* voxel);
 
 /// The box grown by `by` voxels on each side, clipped to the grid.
 VoxelBox Grown(const VoxelBox& box, int by, const Grid& whole);
 
 /// The ranks whose blocks touch a rank's block at a face, an edge or a corner.
-/// @param reach  voxels; blocks less than this distance away count too
+/// @param reach  voxels; blocks at less than this distance count as well
 /// @param periodic  periodic axes, whose ends touch
 std::vector<int> NeighboursOf(
   const BlockPartition& partition, int rank, int reach = 1, const std::array<bool, 3>& periodic = {});

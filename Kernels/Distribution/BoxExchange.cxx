@@ -7,7 +7,8 @@ namespace tyndall
 {
 namespace
 {
-/// Calls act(place) for each row along x of a part, with the index of its first value in an array over the box.
+/// Calls act(place) for each row along x of the box `part` within the box `box`; `place` is the index of the row's
+/// first value in an array over `box`.
 template <class Act>
 void ForRows(const VoxelBox& box, const VoxelBox& part, int components, const Act& act)
 {
@@ -21,7 +22,7 @@ void ForRows(const VoxelBox& box, const VoxelBox& part, int components, const Ac
   }
 }
 
-/// Extracts the values of a part from those of a box.
+/// Extracts the values in the box `part` from an array over the box `box`, `components` per voxel.
 template <class T>
 std::vector<T> TakeFrom(const std::vector<T>& values, const VoxelBox& box, const VoxelBox& part, int components)
 {

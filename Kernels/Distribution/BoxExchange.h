@@ -10,19 +10,20 @@
 
 namespace tyndall
 {
-/// Copies the values of a part of a box, `components` per voxel, x fastest.
+/// Extracts the values in the box `part` from an array over the box `box`, `components` per voxel (default 1), x
+/// fastest.
 std::vector<float> PartOf(const std::vector<float>& values, const VoxelBox& box, const VoxelBox& part, int components);
 std::vector<std::int64_t> PartOf(const std::vector<std::int64_t>& values, const VoxelBox& box, const VoxelBox& part);
 std::vector<std::uint8_t> PartOf(const std::vector<std::uint8_t>& values, const VoxelBox& box, const VoxelBox& part);
 
-/// Writes the values of a part back into those of the box.
+/// Writes the values `taken` of the box `part` to an array over the box `box`, `components` per voxel, x fastest.
 void PutPart(const std::vector<float>& taken, std::vector<float>& values, const VoxelBox& box, const VoxelBox& part,
   int components);
 
-/// Gathers the values of the box that each rank wants, which may reach into other ranks' blocks. Collective.
-/// @param wanted  the box that each rank wants, within the grid; may be empty
-/// @param own  `components` per voxel of this rank's block, x fastest
-/// @return `components` per voxel of the box that this rank wants
+/// Gathers, on each rank, the values in a box that may reach into other ranks' blocks. Collective.
+/// @param wanted  by rank, the box whose values the rank needs, within the grid; may be empty
+/// @param own  values of this rank's block, `components` per voxel, x fastest
+/// @return values of this rank's box `wanted`, `components` per voxel, x fastest
 std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition& partition,
   const std::vector<VoxelBox>& wanted, const std::vector<float>& own, int components);
 }

@@ -7,10 +7,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::int32_t NotYet = 256; ///< a brick into which nothing has been stored
+constexpr std::int32_t NotYet = 256; ///< number for a brick into which nothing has been stored
 constexpr std::uint32_t LongestRun = 1u << 24;
 
-/// Run-length encoding: bytes with, in the upper bits, their number of repetitions less one.
+/// Run-length encoding of bytes: each number holds a byte and, in the upper bits, its number of repetitions minus one.
 std::vector<std::uint32_t> RunsOf(const std::vector<std::uint8_t>& numbers)
 {
   std::vector<std::uint32_t> runs;
@@ -37,7 +37,8 @@ std::vector<std::uint8_t> NumbersIn(const std::vector<std::uint32_t>& runs)
   return numbers;
 }
 
-/// Calls act for each row of a part, with the index of its first byte in an array over the box, and with the row.
+/// Calls act(place, row) for each row along x of the box `part` within the box `box`; `place` is the index of the row's
+/// first byte in an array over `box`, `row` the number of the row in `part`.
 template <class Act>
 void ForRows(const VoxelBox& part, const VoxelBox& box, const Act& act)
 {

@@ -10,8 +10,8 @@
 
 namespace tyndall
 {
-/// One byte per voxel of a grid, stored in bricks of 8^3 voxels: a uniform brick takes 4 bytes, any other 516. Meant
-/// for data that are piecewise constant, such as octree levels, so that every rank can hold those of the whole grid.
+/// One byte per voxel of a grid, stored in bricks of 8^3 voxels: a uniform brick needs 4 bytes, any other 516. For data
+/// that are piecewise constant, such as octree levels, so that every rank can store those of the whole grid.
 class BrickedBytes
 {
 public:
@@ -29,9 +29,10 @@ public:
     return static_cast<std::uint8_t>(brick >= 0 ? brick : this->Uneven[Begin(brick) + Within(voxel)]);
   }
 
-  /// Per brick, x fastest: its byte if it is uniform; else -1 - n, where n is the index of the brick in Dense().
+  /// Value per brick, x fastest: the brick's byte if it is uniform; else -1 - n, where n is the index of the brick in
+  /// Dense().
   const std::vector<std::int32_t>& Table() const { return this->Bricks; }
-  /// Bytes of the bricks that are not uniform, Voxels per brick, x fastest.
+  /// Bytes of the bricks that are not uniform, one per voxel, x fastest within a brick.
   const std::vector<std::uint8_t>& Dense() const { return this->Uneven; }
 
 private:
@@ -47,19 +48,20 @@ private:
   }
   void PutInBrick(const VoxelBox& part, const VoxelBox& box, const std::vector<std::uint8_t>& numbers);
 
-  std::array<std::size_t, 3> Count; ///< bricks per axis
+  std::array<std::size_t, 3> Count; ///< number of bricks along each axis
   std::vector<std::int32_t> Bricks;
   std::vector<std::uint8_t> Uneven;
 };
 
-/// Gathers the bytes of the box that each rank wants, which may reach into other ranks' blocks; voxels outside the box
-/// stay unset. Runs of equal bytes are sent once. Collective.
+/// Gathers, on each rank, the bytes in a box that may reach into other ranks' blocks; voxels outside the box remain
+/// unset. Messages are run-length encoded. Collective.
 /// @param own  bytes of this rank's block, x fastest
-/// @param wanted  the box that each rank wants, within the grid; may be empty
+/// @param wanted  by rank, the box whose bytes the rank needs, within the grid; may be empty
 BrickedBytes BytesOfBoxes(Communicator& communicator, const BlockPartition& partition,
   const std::vector<std::uint8_t>& own, const std::vector<VoxelBox>& wanted);
 
-/// The same for all voxels of the grid, on every rank.
+/// Gathers the bytes of all voxels of the grid on every rank. Collective.
+/// @param own  bytes of this rank's block, x fastest
 BrickedBytes BytesOfAll(
   Communicator& communicator, const BlockPartition& partition, const std::vector<std::uint8_t>& own);
 }

@@ -9,16 +9,17 @@
 
 namespace tyndall
 {
-/// A distributed grid and a coarser grid over the same box (Coarsening.h), which is distributed too: a rank owns the
-/// coarse voxels whose centres lie in its block. A coarse voxel that straddles two blocks needs fine voxels of the
-/// neighbour. A rank with a thin or empty block may own no coarse voxels. On one rank both grids are whole.
+/// A distributed grid and a distributed coarser grid over the same box (Coarsening.h): a rank owns the coarse voxels
+/// whose centres lie in its block. A coarse voxel that straddles two blocks averages fine voxels of both ranks. A rank
+/// with a thin or empty block may own no coarse voxels. On one rank, the blocks are the whole grids.
 class CoarseBlocks
 {
 public:
-  /// @param communicator  must outlive this
-  /// @param coarse  grid over the same box, nowhere finer
+  /// @param communicator  must outlive this object
+  /// @param fine    partition of the fine grid
+  /// @param coarse  grid over the same box, along no axis finer than the fine grid
   CoarseBlocks(Communicator& communicator, const BlockPartition& fine, const Grid& coarse);
-  /// Coarsens by two along each axis.
+  /// Creates the coarse grid by coarsening the fine grid by two along each axis.
   CoarseBlocks(Communicator& communicator, const BlockPartition& fine)
     : CoarseBlocks(communicator, fine, Coarsening(fine.whole).Coarse())
   {
@@ -27,26 +28,27 @@ public:
   Communicator& Comm() const { return this->TheCommunicator; }
   const BlockPartition& Fine() const { return this->FinePartition; }
   const BlockPartition& Coarse() const { return this->CoarsePartition; }
-  /// The coarsening ratio of the whole grids.
+  /// Smallest ratio of coarse to fine spacing (Coarsening::Ratio) of the whole grids.
   double Ratio() const { return this->Whole.Ratio(); }
-  /// The coarsening from the fine voxels that overlap this rank's coarse voxels, some of which other ranks may own, to
-  /// these coarse voxels.
+  /// Coarsening to this rank's coarse voxels from the fine voxels that they overlap, some of which other ranks may own.
   const Coarsening& Own() const { return this->OwnPart; }
   bool HasOwn() const { return this->OwnBox().VoxelCount() > 0; } ///< whether this rank owns coarse voxels
 
-  /// Whether some coarse voxel straddles two ranks' blocks; the same on all ranks.
+  /// Whether any coarse voxel of the grid straddles two ranks' blocks; the same on all ranks.
   bool Straddle() const { return this->AnyStraddles; }
-  /// Values of the fine voxels that Own() averages over. Collective.
-  /// @param values  `components` per voxel of this rank's block
+  /// Values of the fine voxels that this rank's coarse voxels overlap (Own()), gathered from the ranks that own them.
+  /// Collective.
+  /// @param values  values of this rank's block, `components` per fine voxel
   std::vector<float> Around(const std::vector<float>& values, int components) const;
-  /// Means over this rank's coarse voxels. Collective.
+  /// Means of fine values over this rank's coarse voxels. Collective.
+  /// @param values  values of this rank's block, `components` per fine voxel
   std::vector<float> Average(const std::vector<float>& values, int components) const;
 
-  /// The coarsening from this rank's fine voxels to the coarse voxels that contain them (Parent) and one layer of
-  /// coarse voxels around these, between which refinement interpolates.
+  /// Coarsening from this rank's fine voxels to the coarse voxels that contain them (Parent) and one layer of coarse
+  /// voxels around these, between which refinement interpolates.
   const Coarsening& Seen() const { return this->SeenPart; }
-  /// Values of the coarse voxels of Seen(). Collective.
-  /// @param values  `components` per coarse voxel of this rank
+  /// Values of the coarse voxels of Seen(), gathered from the ranks that own them. Collective.
+  /// @param values  values of this rank's coarse voxels, `components` per voxel
   std::vector<float> SeenOf(const std::vector<float>& values, int components) const;
 
 private:
@@ -55,7 +57,8 @@ private:
   Communicator& TheCommunicator;
   BlockPartition FinePartition, CoarsePartition;
   Coarsening Whole;
-  std::vector<VoxelBox> AroundBoxes, SeenBoxes; ///< by rank
+  /// boxes of fine voxels of Own() and of coarse voxels of Seen(), by rank
+  std::vector<VoxelBox> AroundBoxes, SeenBoxes;
   bool AnyStraddles = false;
   Coarsening OwnPart, SeenPart;
 };

@@ -14,11 +14,11 @@ namespace tyndall
 {
 namespace
 {
-/// Kinds of failure that ranks report to each other, in order of increasing severity.
+/// Classes of failure that ranks report to each other, in order of increasing severity.
 enum class Trouble : char
 {
   None,
-  OfOthers, ///< MissingMessage
+  OfOthers, ///< MissingMessage, a consequence of another rank's failure
   Stopped,  ///< Aborted
   OfInput,  ///< InvalidInput
   OfDevice,
@@ -26,7 +26,7 @@ enum class Trouble : char
   Other
 };
 
-/// The failure of this rank and its text.
+/// Result of a rank's work: the failure and its text, if there was one.
 struct Outcome
 {
   Trouble trouble = Trouble::None;
@@ -102,7 +102,7 @@ void Communicator::CountAndSend(int to, int tag, std::vector<char> bytes)
   this->Give(to, tag, std::move(bytes));
 }
 
-/// Removes the message that was sent first.
+/// Removes and returns the oldest message with this tag that the rank sent to itself.
 std::vector<char> Communicator::TakeOwn(int tag)
 {
   std::deque<std::vector<char>>& sent = this->ToItself[tag];
@@ -115,8 +115,9 @@ std::vector<char> Communicator::TakeOwn(int tag)
   return bytes;
 }
 
-/// Rank 0 combines the values of all ranks in rank order, and sends the result to all. Ranks with different numbers of
-/// values are at different places of a computation, or have different settings: an error on all.
+/// Combines the values of all ranks in rank order: rank 0 does so, and sends the result to all.
+/// @throws InvalidInput on all ranks, if the numbers of values differ: the ranks are at different points of a
+///   computation, or have different settings
 std::vector<double> Communicator::OverRanks(const std::vector<double>& values, const Joined& join)
 {
   if (this->Rank() > 0)
@@ -138,7 +139,7 @@ std::vector<double> Communicator::OverRanks(const std::vector<double>& values, c
   }
   if (least < most)
   {
-    all.assign(most + 1, 0.0); // a number of values that no rank expects
+    all.assign(most + 1, 0.0); // a number of values that no rank expects, so that all ranks throw
   }
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {
@@ -179,7 +180,8 @@ std::vector<char> Communicator::Agree(const std::vector<char>& own)
     }
   }
   const std::string words(worst.begin() + 1, worst.end());
-  if (!alike && words.rfind("On rank ", 0) != 0) // otherwise the ranks have agreed on it before
+  // if the text begins so, an inner Collective has already named the rank
+  if (!alike && words.rfind("On rank ", 0) != 0)
   {
     const std::string where = "On rank " + std::to_string(from) + ": ";
     worst.insert(worst.begin() + 1, where.begin(), where.end());
@@ -223,7 +225,7 @@ void Communicator::RequireParcels(const std::vector<int>& with, const std::vecto
   }
 }
 
-/// A rank's parcel for itself is not sent, and not counted.
+/// Exchanges parcels by Swap, and counts messages and bytes. A rank's parcel for itself is neither sent nor counted.
 std::vector<std::vector<char>> Communicator::CountAndExchange(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {

@@ -12,27 +12,27 @@
 
 namespace tyndall
 {
-/// Tags of messages between ranks one per kind of message. Sweeps and lattice steps number their
-/// messages from 0 on, below these tags.
+/// Tags of messages between ranks, one for each purpose. Sweeps and lattice steps number their messages from 0 on,
+/// below these tags.
 namespace MessageTag
 {
-constexpr int ColumnsOfSight = 29992; ///< LitColor.cxx
-constexpr int CornersOfPaths = 29995; ///< PhotonPaths.cxx
-constexpr int RunsOfBytes = 29996;    ///< BrickedBytes.cxx
-constexpr int GhostCells = 29998;     ///< Halo.cxx
-constexpr int ValuesOfBoxes = 29999;  ///< BoxExchange.cxx
-constexpr int Sums = 30000;           ///< Communicator.cxx, as are those that follow
-constexpr int Agreements = 30001;
-constexpr int Parcels = 30002;
-constexpr int Count = 30010; ///< all tags are smaller
+constexpr int ColumnsOfSight = 29992; ///< pixels of views, LitColor.cxx
+constexpr int CornersOfPaths = 29995; ///< vertices of photon paths, PhotonPaths.cxx
+constexpr int RunsOfBytes = 29996;    ///< run-length encoded bytes, BrickedBytes.cxx
+constexpr int GhostCells = 29998;     ///< values of ghost cells, Halo.cxx
+constexpr int ValuesOfBoxes = 29999;  ///< values in boxes, BoxExchange.cxx
+constexpr int Sums = 30000;           ///< reductions, Communicator.cxx
+constexpr int Agreements = 30001;     ///< agreements about errors, Communicator.cxx
+constexpr int Parcels = 30002;        ///< parcels, Communicator.cxx
+constexpr int Count = 30010;          ///< upper limit, exclusive, of all tags
 }
 
-/// Message passing among the ranks of one solve. Each rank owns one Communicator and calls it from one thread.
-/// Messages from one rank to another with the same tag arrive in the order in which they were sent.
+/// Message passing among the ranks of one solve. Each rank owns one Communicator and calls it from one thread. Messages
+/// from one rank to another with the same tag arrive in the order in which they were sent.
 class Communicator
 {
 public:
-  /// What this rank has sent, reductions and error agreements included.
+  /// Messages and bytes that this rank has sent, including those of reductions and error agreements.
   struct Traffic
   {
     std::size_t messages = 0;
@@ -43,14 +43,15 @@ public:
   virtual int Rank() const = 0;
   virtual int Ranks() const = 0;
 
-  /// Sends without waiting for the receiver. A rank may send to itself, because light wraps around a periodic axis.
+  /// Sends values without waiting for the receiver. A rank may send to itself, because light wraps around periodic
+  /// axes.
   /// @param tag  one of MessageTag, or a non-negative number smaller than those
   template <class T>
   void Send(int to, int tag, const std::vector<T>& values)
   {
     this->CountAndSend(to, tag, BytesOf(values));
   }
-  /// Waits until the message has arrived and returns its values.
+  /// Waits for a message and returns its values.
   template <class T>
   std::vector<T> Receive(int from, int tag)
   {
@@ -59,9 +60,9 @@ public:
 
   /// Exchanges one parcel of values with each rank of `with`; parcels may be empty. Collective: ranks without partners
   /// call it too, and if rank a names rank b, then b must name a.
-  /// @param with  different ranks; this one may be among them
-  /// @param pack  makes the parcels, one per rank of `with`. If it throws on one rank, all ranks throw (Collective) and
-  ///   nothing is sent
+  /// @param with  different ranks; this rank may be among them
+  /// @param pack  creates the parcels, one per rank of `with`. If it throws on one rank, all ranks throw (Collective)
+  ///   and nothing is sent
   /// @return the received parcels, in the order of `with` whatever the order of arrival
   template <class T>
   std::vector<std::vector<T>> Exchange(
@@ -92,9 +93,9 @@ public:
   std::vector<double> Sum(const std::vector<double>& values);
   std::vector<double> Largest(const std::vector<double>& values);
 
-  /// Runs `work` on every rank. If any rank throws, all throw the most severe error, that of the lowest such rank;
-  /// aborts rank below errors. The text names the rank unless all ranks failed alike. Collective. Messages that ranks
-  /// exchange within `work` must be sent even after an error (SweepInBlocks.cxx does so).
+  /// Runs `work` on every rank. If any rank throws, all ranks throw the most severe error, that of the lowest such
+  /// rank; aborts are less severe than errors. The text names the rank unless all ranks failed alike. Collective.
+  /// Messages that ranks exchange within `work` must be sent even after an error (as SweepInBlocks.cxx does).
   /// @throws Aborted, InvalidInput, DeviceError or another error, as the failed rank threw it
   void Collective(const std::function<void()>& work);
 
@@ -104,8 +105,8 @@ protected:
   virtual void Give(int to, int tag, std::vector<char> bytes) = 0;
   virtual std::vector<char> Take(int from, int tag) = 0;
 
-  /// Exchanges parcels with other ranks. Collective; called just after all ranks have agreed that none has failed. This
-  /// default implementation sends messages.
+  /// Exchanges parcels with other ranks; this default implementation sends messages. Collective; called directly after
+  /// all ranks have agreed that none has failed.
   /// @param with  ranks to exchange with, this rank not among them
   virtual std::vector<std::vector<char>> Swap(const std::vector<int>& with, std::vector<std::vector<char>> parcels);
 
@@ -140,16 +141,16 @@ private:
   std::vector<std::vector<char>> CountAndExchange(const std::vector<int>& with, std::vector<std::vector<char>> parcels);
 
   Traffic Counted;
-  std::map<int, std::deque<std::vector<char>>> ToItself; ///< by tag
+  std::map<int, std::deque<std::vector<char>>> ToItself; ///< messages from this rank to itself, by tag
 };
 
-/// The text of the lowest rank whose `own` is not empty, the same on every rank; empty if there is none. Collective.
+/// Text of the lowest rank whose `own` is not empty, the same on every rank; empty if there is none. Collective.
 std::string WordsOfAny(Communicator& communicator, const std::string& own);
 
-/// Whether `own` is true on any rank. Collective.
+/// Whether `own` is true on any rank; the same on every rank. Collective.
 bool OnAnyRank(Communicator& communicator, bool own);
 
-/// The communicator of a serial solve: a single rank.
+/// Communicator of a serial solve: a single rank.
 class SingleRank : public Communicator
 {
 public:
@@ -161,8 +162,8 @@ protected:
   std::vector<char> Take(int from, int tag) override;
 };
 
-/// A rank received a shorter message than it expected. Communicator::Collective reports the error that caused it if
-/// another rank threw one.
+/// A message is shorter than the receiving rank expects, because the sender has failed. If another rank threw the
+/// cause, Communicator::Collective reports that error instead.
 struct MissingMessage : std::runtime_error
 {
   MissingMessage()
@@ -172,11 +173,11 @@ struct MissingMessage : std::runtime_error
   }
 };
 
-/// Holds the first error of a rank while others still wait for its messages: the rank continues, sends empty messages,
-/// and throws at the end.
+/// Holds the first error of a rank while other ranks still wait for its messages: the rank continues, sends empty
+/// messages, and throws the error at the end.
 struct HeldFailure
 {
-  /// Runs `work` and holds what it throws; does nothing after an earlier failure.
+  /// Runs `work` and holds the error that it throws; does nothing after an earlier failure.
   void Attempt(const std::function<void()>& work)
   {
     try
@@ -193,7 +194,7 @@ struct HeldFailure
     }
   }
 
-  /// Throws the held error. Call it at the end, within Communicator::Collective.
+  /// Throws the held error, if there is one. Must be called at the end, within Communicator::Collective.
   void Throw() const
   {
     if (this->error)
@@ -206,7 +207,7 @@ struct HeldFailure
     }
   }
 
-  bool broken = false; ///< this rank has failed, or one upstream of it
+  bool broken = false; ///< whether this rank has failed, or a rank whose messages it needs
   std::exception_ptr error;
 };
 }

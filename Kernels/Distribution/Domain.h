@@ -12,32 +12,32 @@ namespace tyndall
 {
 /// A distributed grid as one rank sees it: its own block, the whole grid, and reductions. On one rank the block is the
 /// whole grid, a reduction returns its argument and a collective step is a plain call, so that a solver need not know
-/// how many ranks there are. A block may have no voxels.
+/// the number of ranks. A block may have no voxels.
 class Domain
 {
 public:
-  /// The whole grid on one rank.
+  /// Creates the domain of a serial solve: the whole grid on one rank.
   explicit Domain(const Grid& grid);
-  /// One block per rank.
+  /// Creates the domain of a distributed solve: one block per rank.
   /// @param communicator  must outlive the domain
   Domain(Communicator& communicator, BlockPartition partition);
 
-  /// The same blocks of the same voxels, with another origin and spacing.
+  /// A domain of the same blocks of voxels, with the origin and spacing of `whole`.
   Domain WithGrid(const Grid& whole) const;
-  /// Another grid on the same ranks.
+  /// A domain of another partition on the same ranks.
   Domain WithBlocks(BlockPartition partition) const;
 
   const Grid& Whole() const { return this->Blocks.whole; }
   const BlockPartition& Partition() const { return this->Blocks; }
   int Rank() const { return this->Ranks->Rank(); }
-  /// This rank's block, in voxels of the whole grid, and its grid.
+  /// This rank's block, in voxels of the whole grid; OwnGrid: the block's grid.
   const VoxelBox& Own() const { return this->Blocks.blocks[this->Rank()]; }
   Grid OwnGrid() const { return this->Blocks.OwnGrid(this->Rank()); }
   bool IsEmpty() const { return this->Own().VoxelCount() == 0; }
   bool IsSerial() const { return this->Ranks->Ranks() == 1; }
   Communicator& Comm() const { return *this->Ranks; }
 
-  // Collective: all ranks call these with the same number of values.
+  // The following functions are collective: all ranks call them with the same number of values.
   double Sum(double own) const;
   Rgb Sum(const Rgb& own) const;
   std::vector<double> Sum(const std::vector<double>& own) const;

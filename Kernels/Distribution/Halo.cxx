@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Appends the indices of a part's cells in an array over a box.
+/// Appends the indices, in an array over the box `box`, of the cells in the box `part`.
 void AddPlaces(const VoxelBox& box, const VoxelBox& part, std::vector<std::size_t>& places)
 {
   for (int z = part.first[2]; z < EndOf(part, 2); ++z)
@@ -35,7 +35,7 @@ VoxelBox Moved(VoxelBox box, const std::array<int, 3>& by, int factor = 1)
   return box;
 }
 
-/// Shift, in cells, by whole periods, that moves a box beyond the grid's ends into the grid.
+/// Shift in cells, a multiple of the grid's size along each axis, that moves the first cell of a box into the grid.
 std::array<int, 3> ShiftOf(const VoxelBox& box, const std::array<int, 3>& gridSize)
 {
   std::array<int, 3> by = {};
@@ -47,7 +47,7 @@ std::array<int, 3> ShiftOf(const VoxelBox& box, const std::array<int, 3>& gridSi
   return by;
 }
 
-/// The box with its halo; empty if it is.
+/// The block with its halo, in voxels of the whole grid; empty if the block is empty.
 VoxelBox WithHalo(const VoxelBox& block, const Grid& whole, const std::array<bool, 3>& periodic, int layers)
 {
   VoxelBox box = block;
@@ -60,12 +60,12 @@ VoxelBox WithHalo(const VoxelBox& block, const Grid& whole, const std::array<boo
   return box;
 }
 
-/// The parts of a box that lie in the grid, and in its periodic images.
+/// Intersections of a box, which may reach beyond the grid, with the grid and its periodic images.
 std::vector<VoxelBox> PartsByPeriods(const VoxelBox& box, const Grid& whole)
 {
   std::vector<VoxelBox> parts;
   const VoxelBox period = { {}, whole.size };
-  const std::array<int, 3> back = ShiftOf(box, whole.size); // to the first period that the box reaches
+  const std::array<int, 3> back = ShiftOf(box, whole.size); // shift to the first period that the box reaches
   std::array<int, 3> by;
   for (by[2] = -back[2]; by[2] < EndOf(box, 2); by[2] += whole.size[2])
   {

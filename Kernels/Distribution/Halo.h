@@ -12,13 +12,14 @@
 
 namespace tyndall
 {
-/// Exchange of ghost cells: each cell of a grid is owned by one rank, and other ranks hold copies of its value.
+/// Exchange of ghost cells: each cell of a grid is owned by one rank, and other ranks have copies of its value.
 class GhostCells
 {
 public:
-  /// @param communicator  must outlive this
-  /// @param own  the box that each rank owns, disjoint; a box may be empty
-  /// @param ghosts  boxes of each rank's ghost cells; cells within the grid that the rank owns itself are left out
+  /// @param communicator  must outlive this object
+  /// @param own  by rank, the box of cells that the rank owns; boxes are disjoint and may be empty
+  /// @param ghosts  by rank, boxes of the rank's ghost cells; cells within the grid that the rank owns itself are left
+  ///   out
   /// @param held  a box that contains this rank's own cells and its ghost cells; arrays cover it, x fastest
   /// @param gridSize  cells along each axis; ghost cells beyond an end of the grid wrap around, all cells of a box by
   ///   the same number of periods, and may be images of the rank's own cells. Zeros: no ghost cells lie beyond the grid
@@ -26,42 +27,44 @@ public:
     const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held,
     const std::array<int, 3>& gridSize = { 0, 0, 0 });
 
-  /// Copies the owners' values to the ghost cells. Collective, with the same number of arrays on all ranks.
-  /// @param values  `arrays` arrays over the held box, `stride` values apart, each with `components` values per cell
+  /// Copies the owners' values to this rank's ghost cells. Collective, with the same number of arrays on all ranks.
+  /// @param values  `arrays` arrays over the box `held`, `stride` values apart, each with `components` values per cell
   template <class Value>
   void Fill(Value* values, int arrays, std::size_t stride, std::size_t components = 1) const;
   void Fill(std::vector<double>& values) const { this->Fill(values.data(), 1, 0); }
-  /// @param values  one array of `components` per cell
+  /// Copies the owners' values to this rank's ghost cells. Collective.
+  /// @param values  one array over the box `held`, `components` values per cell
   void FillComponents(std::vector<float>& values, int components) const
   {
     this->Fill(values.data(), 1, 0, static_cast<std::size_t>(components));
   }
 
-  /// Indices of own cells of which other ranks have copies, once for each of these ranks.
+  /// Indices, in arrays over the box `held`, of the rank's own cells of which other ranks have copies, once for each of
+  /// these ranks.
   std::vector<std::size_t> OwnedPlaces() const { return PlacesOf(this->Owned); }
-  /// Indices of this rank's ghost cells.
+  /// Indices, in arrays over the box `held`, of this rank's ghost cells.
   std::vector<std::size_t> CopiedPlaces() const { return PlacesOf(this->Copied); }
-  /// Exchanges values that are kept elsewhere than in arrays over the held box. Collective.
-  /// @param owned  values at OwnedPlaces(), those of several arrays in succession for each rank that has copies
-  /// @return values at CopiedPlaces(), in the same order by owner
+  /// Exchanges values that are not stored in arrays over the box `held`. Collective.
+  /// @param owned  values at OwnedPlaces(); for each rank that has copies, those of `arrays` arrays in succession
+  /// @return values at CopiedPlaces(); for each owner, those of `arrays` arrays in succession
   template <class Value>
   std::vector<Value> Exchange(const std::vector<Value>& owned, int arrays = 1) const;
 
-  /// Adds the values of the ghost cells to the owners' values, in rank order. Collective.
+  /// Adds the values of all ranks' ghost cells to the owners' values, in rank order. Collective.
   template <class Value>
   void AddToOwners(std::vector<Value>& values) const;
 
 private:
-  /// The cells exchanged with a rank, which may be this one.
+  /// Cells that this rank exchanges with a rank, which may be this rank.
   struct Shared
   {
     int rank;
-    std::vector<std::size_t> places; ///< indices into arrays over the held box
+    std::vector<std::size_t> places; ///< indices of the cells in arrays over the box `held`
   };
   static std::vector<std::size_t> PlacesOf(const std::vector<Shared>& shared);
 
   Communicator& Comm;
-  std::vector<Shared> Owned;  ///< own cells that are ghost cells of a rank
+  std::vector<Shared> Owned;  ///< own cells that are ghost cells of a rank, by that rank
   std::vector<Shared> Copied; ///< ghost cells of this rank, by their owner
 };
 
@@ -73,22 +76,26 @@ class Halo
 public:
   Halo(Communicator& communicator, const BlockPartition& partition, const std::array<bool, 3>& periodic, int layers);
 
-  /// The block, and the block with its halo, in voxels of the whole grid; the halo may reach beyond the grid's ends.
-  /// Empty if the block is empty.
+  /// The block (Own) and the block with its halo (Known), in voxels of the whole grid; the halo may reach beyond the
+  /// grid's ends. Empty if the block is empty.
   const VoxelBox& Own() const { return this->OwnBox; }
   const VoxelBox& Known() const { return this->Box; }
-  Grid KnownGrid() const; ///< without voxels if the block is empty
+  Grid KnownGrid() const; ///< grid of Known(); without voxels if the block is empty
   const std::array<bool, 3>& Periodic() const { return this->Around; }
   const Grid& Whole() const { return this->All; }
 
-  /// Extends values of the own voxels to the halo. Collective.
-  /// @param own  `components` per own voxel, x fastest
-  /// @return the same for all known voxels
+  /// Copies the values of the own voxels of all ranks to halos. Collective.
+  /// @param own  values of the own voxels, `components` per voxel, x fastest
+  /// @return values of the block with its halo, `components` per voxel, x fastest
   std::vector<float> Spread(const std::vector<float>& own, int components) const;
-  /// The same for a field, whose values go to `values`; returns `own` if it has no values.
+  /// Copies the values of a field to halos. Collective.
+  /// @param own     values of the own voxels
+  /// @param values  receives the values of the block with its halo, to which the result refers
+  /// @return the field on the block with its halo; `own` if it has no values
   Field Spread(const Field& own, std::vector<float>& values) const;
-  /// The transpose of Spread: for each own voxel, the sum over ranks of what they found for it. The numbers are
-  /// integers, so the order of ranks does not matter. Collective.
+  /// Sums, for each own voxel, the values of all ranks that have the voxel in their block or halo (transpose of
+  /// Spread). The values are integers, so that the sum does not depend on the order of ranks. Collective.
+  /// @param known  values of the block with its halo
   std::vector<std::int64_t> Gather(std::vector<std::int64_t> known) const;
 
 private:
@@ -98,12 +105,12 @@ private:
   std::optional<GhostCells> Ghosts;
 };
 
-/// The periodic axes along which the box spans the whole grid, so that it is its own neighbour.
+/// The periodic axes along which a box spans the whole grid, so that it is its own neighbour.
 std::array<bool, 3> GoesRoundAlone(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic);
 
-/// The layers of cells, one cell thick, beyond the faces of a box: within the grid, and across the ends of periodic
-/// axes unless the box is its own neighbour there. None for an empty box.
+/// The boxes of cells, one cell thick, beyond the faces of a box: within the grid, and across the ends of periodic axes
+/// unless the box is its own neighbour there. None for an empty box.
 std::vector<VoxelBox> LayersBeside(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic = {});
 

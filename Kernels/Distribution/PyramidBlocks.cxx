@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// The block and its margin, extended to multiples of `edge`.
+/// The block and its margin, extended to multiples of `edge` voxels; empty if the block is empty.
 VoxelBox BoxAround(const VoxelBox& block, const Grid& whole, int margin, int edge)
 {
   VoxelBox box = block.VoxelCount() > 0 ? Grown(block, margin, whole) : VoxelBox();

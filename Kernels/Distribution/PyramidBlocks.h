@@ -8,40 +8,41 @@
 
 namespace tyndall
 {
-/// A pyramid over a distributed grid. Each rank computes the levels up to `shared` for its block and a margin around
-/// it, and contributes its cells of the shared level; every rank that has voxels computes the levels above, which are
-/// small. On one rank the box is the whole grid.
+/// Levels of a pyramid over a distributed grid. Each rank computes the levels up to the level `shared` for its box,
+/// which is its block and a margin around it, and contributes its cells of the shared level; every rank that has voxels
+/// computes the levels above, which are small. On one rank the box is the whole grid.
 class PyramidBlocks
 {
 public:
-  /// @param domain  must outlive this
+  /// @param domain  must outlive this object
   /// @param shared  index of the shared level
   /// @param margin  width of the margin, voxels
-  /// @param edge  voxels, a multiple of the edge of a shared cell; boxes begin and, except at the grid's end, end at
-  ///   multiples of it
+  /// @param edge  voxels, a multiple of the edge of a cell of the shared level; boxes begin and, except at the grid's
+  ///   end, end at multiples of it
   PyramidBlocks(const Domain& domain, int shared, int margin, int edge);
 
   int Shared() const { return this->SharedLevel; }
-  /// The voxels that this rank works on: its block and its margin.
+  /// The voxels for which this rank computes the lower levels: its block and its margin.
   const VoxelBox& Box() const { return this->Boxes[static_cast<std::size_t>(this->TheDomain.Rank())]; }
-  /// A grid over the same box with `size` voxels or cells.
+  /// Grid of `size` voxels along each axis, with origin and spacing of the domain's grid.
   Grid GridOf(const std::array<int, 3>& size) const;
-  /// The cells of the shared level whose first voxel lies in this rank's box.
+  /// The cells of the shared level that this rank contributes: those whose first voxel lies in its box.
   VoxelBox BoxCells() const { return this->CellsIn(this->Box()); }
   /// All cells of the shared level.
   VoxelBox AllCells() const { return { {}, this->Cells.whole.size }; }
 
-  /// Values of the voxels of this rank's box, from the ranks that own them. Collective.
-  /// @param own      `components` for each voxel of this rank's block, x fastest
-  /// @param storage  holds the result, unless every rank's box is its block: then that is `own`
+  /// Values of the voxels of this rank's box, gathered from the ranks that own them. Collective.
+  /// @param own      values of this rank's block, `components` per voxel, x fastest
+  /// @param storage  receives the values, unless every rank's box is its block
+  /// @return pointer to the values: in `storage`, or `own`
   const float* Gather(const float* own, int components, std::vector<float>& storage) const;
 
-  /// Values of all cells of the shared level, from those of each rank's BoxCells. Collective.
-  /// @param made  `components` per cell of this rank's BoxCells, x fastest
-  /// @return empty on a rank without voxels
+  /// Values of all cells of the shared level, gathered from the BoxCells of all ranks. Collective.
+  /// @param made  values of this rank's BoxCells, `components` per cell, x fastest
+  /// @return `components` per cell, x fastest; empty on a rank without voxels
   std::vector<float> GatherCells(const std::vector<float>& made, int components) const;
 
-  /// Reduces an array over this rank's box to its block.
+  /// Crops an array over this rank's box to its block.
   void Crop(std::vector<float>& values, int components) const;
   void Crop(std::vector<std::uint8_t>& values) const;
 
@@ -50,8 +51,8 @@ private:
 
   const Domain& TheDomain;
   int SharedLevel;
-  std::vector<VoxelBox> Boxes; ///< by rank
+  std::vector<VoxelBox> Boxes; ///< boxes by rank, see Box()
   bool AnyMargin = false;      ///< whether some rank's box is larger than its block
-  BlockPartition Cells;        ///< cells of the shared level, by the rank that contributes them
+  BlockPartition Cells;        ///< partition of the cells of the shared level among the ranks that contribute them
 };
 }

@@ -19,7 +19,7 @@ namespace tyndall
 {
 namespace
 {
-/// Messages on their way to one rank.
+/// Queue of messages that have been sent to one rank and not yet received.
 class Mailbox
 {
 public:
@@ -47,7 +47,7 @@ public:
 private:
   std::mutex Guard;
   std::condition_variable Arrived;
-  std::map<std::pair<int, int>, std::deque<std::vector<char>>> Messages; ///< by sender and tag
+  std::map<std::pair<int, int>, std::deque<std::vector<char>>> Messages; ///< messages by sender and tag
 };
 
 class RankInThread : public Communicator

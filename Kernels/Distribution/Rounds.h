@@ -13,24 +13,26 @@
 
 namespace tyndall
 {
-/// Traffic of travellers between ranks.
+/// Counts of the travellers (photons, rays or beams) that Rounds has sent between ranks.
 struct RoundsTraffic
 {
-  std::size_t handed = 0; ///< travellers sent by this rank; one counts each time it enters another block
-  std::size_t bytes = 0;  ///< bytes sent for them
-  int rounds = 0;         ///< rounds of tracing and exchange, until no traveller was left
+  /// Travellers sent by this rank; a traveller counts each time that it enters another rank's block.
+  std::size_t handed = 0;
+  std::size_t bytes = 0; ///< bytes of the travellers sent by this rank
+  int rounds = 0;        ///< rounds of tracing and exchange, until no traveller was left
 };
 
-/// Traces travellers (photons, or beams of a lamp) through a distributed grid in rounds: each rank follows its
+/// Traces travellers (photons, rays, or beams of a lamp) through a distributed grid in rounds: each rank follows its
 /// travellers to the end of its block, then sends them to the neighbouring ranks whose blocks they enter.
 ///
-/// A traveller type needs a free function `const int* WhereIs(const Traveller&)`: the voxel of the whole grid in which
-/// it continues.
+/// A traveller type needs a free function `const int* WhereIs(const Traveller&)`, which returns the indices of the
+/// voxel of the whole grid in which the traveller continues.
 class Rounds
 {
 public:
-  /// @param communicator, partition  must outlive this; one block per rank
-  /// @param reach  voxels that a traveller may go beyond its block before it is sent on; the same on all ranks
+  /// @param communicator, partition  must outlive this object; one block per rank
+  /// @param reach  largest distance, voxels, that a traveller may go beyond its block before it is sent on; the same on
+  ///   all ranks
   /// @param periodic  periodic axes, whose ends touch
   Rounds(Communicator& communicator, const BlockPartition& partition, int reach = 1,
     const std::array<bool, 3>& periodic = {})
@@ -40,14 +42,14 @@ public:
   {
   }
 
-  /// Traces the travellers that arrived (in the first round: those that start here), and returns those that continue in
-  /// other blocks.
+  /// Function that traces the travellers that arrived in a round (in the first round: those that start in this block),
+  /// and returns the travellers that continue in other blocks.
   template <class OnItsWay>
   using Follow =
     std::function<std::vector<OnItsWay>(int round, std::vector<OnItsWay>&& arrived, const Monitor& monitor)>;
 
   /// Repeats rounds until no traveller is left on any rank. Collective.
-  /// @throws on every rank, what `follow` throws on one rank
+  /// @throws on every rank, the error that `follow` throws on one rank
   template <class OnItsWay>
   void UntilAllEnd(const Follow<OnItsWay>& follow, const Monitor& monitor)
   {
@@ -57,8 +59,8 @@ public:
     for (bool left = true; left; ++round)
     {
       const std::vector<std::vector<OnItsWay>> parcels = this->Comm.Exchange<OnItsWay>(this->Neighbours, [&] {
-        const double next =
-          this->Neighbours.empty() ? 1.0 : 0.5 * (1.0 + done); // estimated progress at the end of this round
+        /// Estimated progress at the end of this round.
+        const double next = this->Neighbours.empty() ? 1.0 : 0.5 * (1.0 + done);
         const Monitor ofRound = OfPart(monitor, done, next);
         std::vector<std::vector<OnItsWay>> gone = this->Sorted(follow(round, std::move(arrived), ofRound));
         Report(monitor, done = next);
@@ -77,7 +79,7 @@ public:
   const RoundsTraffic& Traffic() const { return this->Handed; }
 
 private:
-  /// Sorts travellers by the neighbour whose block they enter.
+  /// Sorts travellers by the neighbouring rank whose block they enter.
   template <class OnItsWay>
   std::vector<std::vector<OnItsWay>> Sorted(const std::vector<OnItsWay>& gone)
   {
@@ -104,7 +106,7 @@ private:
 
   Communicator& Comm;
   const BlockPartition& Partition;
-  std::vector<int> Neighbours; ///< ranks
+  std::vector<int> Neighbours; ///< ranks of neighbouring blocks
   RoundsTraffic Handed;
 };
 }

@@ -30,7 +30,7 @@ void ForNumbers(LightField& light, const Visit& visit)
   }
 }
 
-/// The same for integers.
+/// Calls visit(number) for each integer scalar of a LightField, in a fixed order.
 template <class Visit>
 void ForWholeNumbers(LightField& light, const Visit& visit)
 {
@@ -62,7 +62,8 @@ std::vector<std::string> ShareLines(Communicator& communicator, bool found, cons
   return shared;
 }
 
-/// Compares powers and rates of the domain, which are the same on all ranks that kept light of the same solve.
+/// Whether the light that the ranks kept is of one solve: compares the domain's powers and rates, which each rank
+/// stores with its light.
 bool IsOfOneSolve(Communicator& communicator, const KeptLight& kept)
 {
   std::vector<double> values(kept.firstScattered.begin(), kept.firstScattered.end());

@@ -11,35 +11,39 @@
 
 namespace tyndall
 {
-// Properties of a distributed medium that must agree on all ranks, and global properties. All functions but
-// IsFirstThatHas are collective.
+// Functions that check properties of a distributed medium that must agree on all ranks, and compute properties of the
+// whole medium. All but IsFirstThatHas are collective.
 
-/// @param what  what the numbers are, for the message
-/// @param has  whether this rank has numbers; if not, its values are ignored but must be as many
+/// Checks that numbers are the same on all ranks. Collective.
+/// @param what  description of the numbers, for the message
+/// @param has  whether this rank has the numbers; if not, its values are ignored but must be as many
 /// @throws InvalidInput on all ranks, if the values differ
 void RequireSame(Communicator& communicator, const char* what, bool has, std::vector<double> values);
 
-/// @throws InvalidInput on all ranks, if the ranks disagree about the grid or its partition
+/// Checks that all ranks have the same grid and partition. Collective.
+/// @throws InvalidInput on all ranks, if they do not
 void RequireSame(Communicator& communicator, const BlockPartition& partition);
 
-/// Whether this rank is the lowest one that has voxels, which counts what all ranks with voxels know. Sends no message.
+/// Whether this rank is the lowest one that has voxels: the rank that counts a quantity which all ranks with voxels
+/// know. Sends no message.
 bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& partition);
 
-/// Phase function of a distributed medium with g by voxel: if g varies among the scattering voxels of all ranks, each
-/// rank keeps g by voxel; else all get the same phase function. Collective.
-/// @param has   whether this rank has voxels
-/// @param g  g by voxel of this rank; without values, its medium stays as it is
-/// @param medium  medium of this rank, whose phase function is of the wanted kind
+/// Agrees on the phase function of a distributed medium with mean cosine g by voxel: if g varies among the scattering
+/// voxels of all ranks, each rank keeps g by voxel; else all ranks set the same phase function. Collective.
+/// @param has     whether this rank has voxels
+/// @param g       g by voxel of this rank; without values, its medium is not changed
+/// @param medium  medium of this rank, whose phase function is of the wanted type
 void AgreeOnMeanCosine(Communicator& communicator, bool has, const Field& g, Medium& medium);
 
-/// Traits of the whole distributed medium: absorbs, scatters, emits, grey and greyExtinction.
-/// @param ofBlock  traits of this rank's block; those not named above are kept
+/// Traits of the whole distributed medium: absorbs, scatters, emits, grey and greyExtinction are reduced over the
+/// ranks. Collective.
+/// @param ofBlock  traits of this rank's block; other traits than these are returned unchanged
 MediumTraits TraitsOfAll(Communicator& communicator, MediumTraits ofBlock);
 
-/// The channels of a distributed scene.
+/// The colour channels that the whole distributed scene needs. Collective.
 /// @param here  channels of this rank's block
 SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here);
 
-/// Replaces each power by its sum over ranks, in one reduction. Collective.
+/// Replaces each power by its sum over the ranks, in one reduction. Collective.
 void SumOverRanks(const Domain& domain, const std::vector<Rgb*>& powers);
 }
