@@ -1,6 +1,6 @@
 #include "Comparison/ConvergedLight.h"
 
-// The reference that a comparison computes if none is given; see SolverComparison.h.
+// Computes the reference of a comparison if none is given; see SolverComparison.h.
 
 #include "Comparison/PhotonReference.h"
 #include "Device/Errors.h"
@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-/// Settings for a converged run; the list is ordered best first.
+/// Settings of a converged run of light propagation maps. Ladder is ordered from the best to the cheapest.
 struct Rung
 {
   int refinement, directions, map;
@@ -74,7 +74,8 @@ ReferenceLight Climb(Device& device, const ComparedScene& scene, const Rung& run
   return reference;
 }
 
-/// Run time of settings, by NominalSeconds, assuming as many sweeps as with few directions.
+/// Predicted run times of converged runs, by NominalSeconds and with the number of sweeps that a run with few
+/// directions needs.
 class Forecast
 {
 public:
@@ -113,7 +114,7 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
     {
       return Climb(device, scene, rung, OfPart(monitor, 0.2, 1.0));
     }
-    catch (const DeviceError&) // does not fit; a cheaper rung may
+    catch (const DeviceError&) // the run does not fit the device; a cheaper one may
     {
       if (last)
       {
@@ -145,7 +146,7 @@ ReferenceLight ByWhatIsBetter(
     reference.text += "; not photons: " + whyNot;
     return reference;
   }
-  constexpr double toForecast = 0.3; // fraction of the progress
+  constexpr double toForecast = 0.3; // fraction of the progress at which the forecast ends
   const PhotonForecast forecast = ForecastOfPhotons(device, scene, settings, seconds, OfPart(monitor, 0.0, toForecast));
   const LightField* const maps = forecast.maps ? &*forecast.maps : nullptr;
   const Monitor rest = OfPart(monitor, toForecast, 1.0);

@@ -10,12 +10,13 @@
 
 namespace tyndall
 {
-/// Thrown out of a computation that exceeds its time limit.
+/// Thrown by a monitor when a computation exceeds its time limit.
 struct TimeIsUp
 {
 };
 
-/// Monitor for the part [from, to] of the work; throws TimeIsUp once the device's clock is past `end`.
+/// Monitor for the part of the work that covers the range [from, to] of all progress; throws TimeIsUp once the device's
+/// clock is past `end`.
 inline Monitor PartUntil(const Device& device, double end, const Monitor& monitor, double from, double to)
 {
   return [=, &device](double done) {
@@ -27,33 +28,34 @@ inline Monitor PartUntil(const Device& device, double end, const Monitor& monito
   };
 }
 
-/// Nominal run times on two slow cores, seconds. They, not a clock, determine how the reference is computed, so that it
-/// does not depend on the machine's load; a clock only stops work that takes too long nevertheless.
+/// Nominal run times on two slow cores, seconds. The computation of the reference is chosen by these numbers and not by
+/// a clock, so that it does not depend on the machine's load; a clock only stops work that takes too long nevertheless.
 struct NominalSeconds
 {
-  static constexpr double OfRayVoxel = 5e-9;   ///< sweep of one ray through one voxel, one channel
-  static constexpr double OfPhoton = 3e-6;     ///< per photon, without its path
-  static constexpr double OfCrossing = 1e-7;   ///< per voxel crossed by a photon
-  static constexpr double OfScattering = 1e-6; ///< per scattering of a photon
+  static constexpr double OfRayVoxel = 5e-9;   ///< sweep of one ray through one voxel, per channel
+  static constexpr double OfPhoton = 3e-6;     ///< emission of one photon, without its path
+  static constexpr double OfCrossing = 1e-7;   ///< crossing of one voxel by a photon
+  static constexpr double OfScattering = 1e-6; ///< one scattering of a photon
 };
 
-/// The reference that other results are compared with.
+/// Reference light with which the results of all methods are compared.
 struct ReferenceLight
 {
-  Grid grid; ///< the scene's grid, or one finer or coarser by integer factors; comparisons use the coarser of both
+  /// The scene's grid, or one finer or coarser by integer factors; errors are computed on the coarser of both.
+  Grid grid;
   int channels = 1;
   std::vector<float> fluence;       ///< W / length^2, `channels` per voxel; empty: unknown; NaN: unknown in this voxel
-  std::vector<float> fluenceDirect; ///< uncollided part of the fluence
+  std::vector<float> fluenceDirect; ///< fluence of uncollided light, otherwise as `fluence`
   std::string text;                 ///< description of the reference
 };
 
-/// Computes a reference. With a constant refractive index, depending on ComparedSettings::monteCarloReference: Monte
-/// Carlo photons (PhotonReference.h), or a converged run of the best method, with 256 directions per face, two rays per
-/// voxel edge and tolerance 1e-6 on the doubled grid; less of it if that would take more than `seconds`, by
-/// NominalSeconds. With a varying index: photons, of uncollided light or of all light
-/// (ComparedSettings::scattersReference).
-/// @throws InvalidInput if photons are always asked for but cannot simulate this scene; what the monitor throws, if the
-///   machine is far slower than NominalSeconds
+/// Computes reference light. With a constant refractive index, depending on ComparedSettings::monteCarloReference:
+/// Monte Carlo photons (PhotonReference.h), or a converged run of the best method, with 256 directions per face, two
+/// rays per voxel edge and tolerance 1e-6 on the grid with halved voxel edges; a run with fewer directions, rays or
+/// voxels if that one would take more than `seconds`, by NominalSeconds. With a varying index: photons, of uncollided
+/// light or of all light (ComparedSettings::scattersReference).
+/// @throws InvalidInput if MonteCarloReference::Always is set but photons cannot simulate this scene; what the monitor
+///   throws, if the machine is far slower than NominalSeconds
 ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   double seconds, const Monitor& monitor = {});
 }

@@ -9,9 +9,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Lattices[] = { 18, 6 }; ///< directions
+constexpr int Lattices[] = { 18, 6 }; ///< numbers of directions of the lattices
 
-/// Uncollided light by photons, and the lattice solve of its scattered light: the whole time that a user waits for.
+/// Computes uncollided light by photons and scattered light by the lattice: the run time is that of both.
 LightField SolveWithPhotons(
   Device& device, const ComparedScene& scene, int photons, const LatticeSettings& settings, const Monitor& monitor)
 {
@@ -56,7 +56,7 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     {
       continue;
     }
-    // Lattices on coarser grids have a constant refractive index.
+    // On coarser grids the refractive index is constant.
     const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination,
       coarse ? Field() : scene.ior };
     const auto scaled = coarse ? std::make_shared<CoarseScene>(given, grid) : nullptr;

@@ -12,22 +12,29 @@ namespace tyndall
 {
 namespace
 {
-/// Index, in an array with `has` channels, of the value with this index in an array with `wanted` channels.
+/// Index, in an array with `has` channels per voxel, of the value that has the index `index` in an array with `wanted`
+/// channels; `has` is `wanted` or 1.
 std::size_t PlaceOf(std::size_t index, int has, int wanted)
 {
   return has == wanted ? index : index / static_cast<std::size_t>(wanted);
 }
 
-constexpr int FewestSets = 16, MostSets = 64;
-constexpr int FewestToForecast = 4, MostToForecast = 64;           ///< sets
-constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000; ///< photons of a set
-constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;         ///< a hundred megabytes
-constexpr double Beats = 1.0 / 3.0; ///< largest acceptable error of the reference over that of the best compared method
-constexpr double Enough = 0.1;      ///< target for the same ratio, with sixteen sets
+constexpr int FewestSets = 16, MostSets = 64;            ///< numbers of photon sets of the reference
+constexpr int FewestToForecast = 4, MostToForecast = 64; ///< numbers of photon sets of the pilot run
+/// Photons per set of the pilot run: this fraction (1 / PartToForecast) of the largest photon count, at least
+/// LeastToForecast.
+constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000;
+/// largest number of photons per set; they use a hundred megabytes
+constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;
+/// Largest acceptable error of the photons as reference, over the error of the finest maps.
+constexpr double Beats = 1.0 / 3.0;
+/// Error that the photons as reference should have, over the error of the finest maps.
+constexpr double Enough = 0.1;
 
 constexpr double TypicalSweeps = 20.0;
 
-/// Maps with few directions and, if those could be computed, the finest maps that are compared.
+/// Light propagation maps for the forecast: with few directions and, if the time and the device allow, the finest maps
+/// that are compared.
 struct ForecastMaps
 {
   std::optional<LightField> coarse, finest;
@@ -35,7 +42,8 @@ struct ForecastMaps
   std::optional<LightField>& Best() { return this->finest ? this->finest : this->coarse; }
 };
 
-/// Run time by NominalSeconds.
+/// Run time of propagation by NominalSeconds, seconds.
+/// @param sweeps  number of sweeps
 double SecondsOf(const PropagationSettings& settings, const ComparedScene& scene, double sweeps)
 {
   const int channels =
@@ -44,7 +52,7 @@ double SecondsOf(const PropagationSettings& settings, const ComparedScene& scene
     settings.mapResolution * static_cast<double>(scene.medium.grid.VoxelCount());
 }
 
-/// Computes the maps that fit the device and take at most `seconds` together.
+/// Computes the maps for the forecast that fit the device and take at most `seconds` together, by NominalSeconds.
 ForecastMaps FindMaps(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
@@ -81,7 +89,8 @@ ForecastMaps FindMaps(
   return maps;
 }
 
-/// Run time per photon by NominalSeconds, from an estimate of the light: fluence is path length per volume.
+/// Run time per photon by NominalSeconds, seconds: the fluence is path length per volume.
+/// @param light  estimate of the light
 double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
 {
   const Grid& grid = scene.medium.grid;
@@ -98,24 +107,26 @@ double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
     power += light.balance.entered[static_cast<std::size_t>(channel)];
   }
   const double edge = std::min({ grid.spacing[0], grid.spacing[1], grid.spacing[2] });
-  constexpr double wallsOfEdge =
-    1.5; // mean number of voxel walls crossed by a straight segment as long as a voxel edge
+  // Mean number of voxel walls crossed by a straight segment whose length is a voxel edge.
+  constexpr double wallsOfEdge = 1.5;
   return NominalSeconds::OfPhoton +
     (power > 0.0
         ? (NominalSeconds::OfCrossing * wallsOfEdge * way / edge + NominalSeconds::OfScattering * scatterings) / power
         : 0.0);
 }
 
-/// A pilot run with a few photons for the forecast.
+/// A pilot run with a few photons, for the forecast.
 struct Pilot
 {
   MeansOfSets means;
-  std::size_t photons = 0; ///< of a set
-  double seconds = 0.0;    ///< of a photon
+  std::size_t photons = 0; ///< photons per set
+  double seconds = 0.0;    ///< run time per photon, by NominalSeconds
 };
 
+/// Pilot run with a few photons, in at least four sets.
+/// @param largest  largest photon count of the comparison
 /// @param maps  estimate of the light; null: there is none
-/// @return nothing if four sets take longer than `seconds`
+/// @return no value if four sets take longer than `seconds`, by NominalSeconds
 std::optional<Pilot> FewPhotons(Device& device, const ComparedScene& scene, std::size_t largest, double seconds,
   const LightField* maps, const Monitor& monitor)
 {
@@ -140,7 +151,7 @@ std::optional<Pilot> FewPhotons(Device& device, const ComparedScene& scene, std:
 }
 }
 
-/// Expands sums of one channel to all channels.
+/// Expands the sums of one channel to `channels` equal channels.
 void MeansOfSets::Widen(int channels)
 {
   const auto widened = [channels](const std::vector<double>& values) {
@@ -276,7 +287,7 @@ ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, co
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  const double part = 0.5 * PhotonForecast::PartOfTime * seconds; // the same for maps and for photons
+  const double part = 0.5 * PhotonForecast::PartOfTime * seconds; // seconds for the maps, and seconds for the pilot run
   PhotonForecast forecast;
   ForecastMaps maps = FindMaps(device, scene, settings, part, OfPart(monitor, 0.0, 0.5));
   const int largest = *std::max_element(settings.photonCounts.begin(), settings.photonCounts.end());

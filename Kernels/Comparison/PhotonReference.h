@@ -9,10 +9,11 @@
 
 namespace tyndall
 {
-/// Means over independent sets of photons, and their standard errors.
+/// Means over independent sets of photons, per voxel and channel, and standard errors of these means.
 class MeansOfSets
 {
 public:
+  /// Adds the light of one set of photons.
   /// @param channels  1 or 3; light of one channel is used for all channels
   void Add(const std::vector<float>& values, int channels);
 
@@ -20,14 +21,14 @@ public:
   int Channels() const { return this->OfVoxel; } ///< largest number of channels of any set
   std::vector<float> Values() const;
 
-  /// Sum of the squared standard errors; needs at least two sets.
+  /// Sum of the squared standard errors of the means; needs at least two sets.
   double Variance() const;
   double SumOfSquares() const; ///< sum of the squared means
-  /// Root mean square of the standard errors over that of the means.
+  /// Relative standard error: root mean square of the standard errors, over that of the means.
   double RelativeError() const;
 
-  /// Lower estimate of the squared error of other light on the same voxels: its squared distance from the means, less
-  /// the expected statistical part and twice the standard deviation of that.
+  /// Lower estimate of the squared error of other light on the same voxels: its squared distance from the means, minus
+  /// the expectation of that distance due to the photons' noise and twice its standard deviation.
   double SquaredErrorOf(const std::vector<float>& other, int channels) const;
 
 private:
@@ -37,13 +38,13 @@ private:
   int Sets = 0, OfVoxel = 1;
 };
 
-/// Reference from unfiltered photons in sixteen to sixty-four independent sets; its text states the standard error.
-/// Photons are scattered until they end if ComparedSettings::scattersReference is set. At least four sets are used if
-/// `monitor` throws TimeIsUp.
+/// Reference by photons without a filter, in sixteen to sixty-four independent sets; ReferenceLight::text states the
+/// standard error. Photons are scattered until they end if ComparedSettings::scattersReference is set. At least four
+/// sets are used if `monitor` throws TimeIsUp.
 /// @param set  photons per set
 /// @param seconds  time that sets beyond sixteen may take, by NominalSeconds
-/// @param maps  light propagation maps whose uncollided light is used if the photons' does not differ from it
-///   significantly; null: none
+/// @param maps  light propagation maps whose uncollided light is used if it does not differ significantly from that of
+///   the photons; null: none
 ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   std::size_t set, double seconds, const LightField* maps, const Monitor& monitor);
 
@@ -53,17 +54,18 @@ struct PhotonForecast
   static constexpr double PartOfTime = 0.5; ///< fraction of the time that the forecast may take
 
   bool beats = false;
-  /// Photons per set, of sixteen sets, for a standard error of a tenth of the maps' error, or as many as the time
+  /// Photons per set, in sixteen sets, for a standard error of a tenth of the maps' error, or as many as the time
   /// allows.
   std::size_t photonsOfASet = 0;
-  std::string why;                ///< explanation, with both errors
-  std::optional<LightField> maps; ///< the finest maps that are compared; none if they take too long or do not fit
+  std::string why; ///< explanation for the user, with both errors
+  /// The finest maps that are compared; no value if they take too long or do not fit the device.
+  std::optional<LightField> maps;
 };
 
-/// Compares a few photons with the finest maps on the scene's own grid. The mean square of their difference, less the
-/// photons' variance and twice its standard deviation, is the maps' squared error. Photons are forecast to be better if
-/// the standard error of as many photons as the time allows is at most a third of that error, or if even maps of few
-/// directions take more than a quarter of the time. All times are NominalSeconds.
+/// Compares a few photons with the finest maps on the scene's own grid. The mean square of their difference, minus the
+/// photons' variance and twice its standard deviation, is taken as the maps' squared error. Photons are forecast to be
+/// better if the standard error of as many photons as the time allows is at most a third of the maps' error, or if even
+/// maps of few directions take more than a quarter of the time. All times are NominalSeconds.
 /// @param seconds  time for forecast and reference together
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor);

@@ -35,7 +35,7 @@ double RootOfSquares(const std::vector<float>& values)
   return std::sqrt(sum);
 }
 
-/// Monte Carlo run: photons scattered until they end.
+/// Light by Monte Carlo: photons are scattered until they end.
 LightField TraceAllOrders(
   Device& device, const ComparedScene& scene, const EmissionSettings& emission, bool estimate, const Monitor& monitor)
 {
@@ -54,7 +54,8 @@ LightField TraceAllOrders(
   return light;
 }
 
-/// @param photons  of a light that none of them brought into the volume are all there is: dark, with nothing to rebuild
+/// Reconstructs the fluence from batches of photons. Light with fewer than two batches, of which no photon reaches the
+/// volume, is returned unchanged.
 LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, const Monitor& monitor)
 {
   if (photons.batches < 2)
@@ -75,7 +76,7 @@ LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, cons
   return light;
 }
 
-/// A complete photon run of a method, from lights to the LightField: the whole time that a user waits for.
+/// Light by a complete photon run of a method, from the emission of photons to the reconstruction.
 LightField Trace(
   Device& device, const ComparedScene& scene, ComparedMethod method, EmissionSettings emission, const Monitor& monitor)
 {
@@ -97,7 +98,8 @@ LightField Trace(
     settings.pilotCount = std::min(settings.pilotCount, std::max<std::size_t>(emission.photonCount / 10, 1));
     importance = FindImportance(marcher, grid, scene.illumination, settings, OfPart(monitor, 0.0, 0.1));
     const std::size_t pilots = importance.map.Cells() * importance.map.lights.size();
-    emission.photonCount -= std::min(emission.photonCount - 1, pilots); // pilot photons count as photons too
+    // pilot photons are included in the photon count
+    emission.photonCount -= std::min(emission.photonCount - 1, pilots);
     emission.map = importance.even ? nullptr : &importance.map;
   }
   emission.batches = 2;

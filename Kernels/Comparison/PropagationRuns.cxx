@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// The settings that vary between runs.
+/// Settings of propagation that differ between runs.
 struct Setting
 {
   int directions = 25, map = 1, coarsening = 1, orders = 0;
@@ -55,7 +55,8 @@ std::vector<Setting> SettingsToTry(const ComparedSettings& settings)
   return all;
 }
 
-/// The same settings for discrete ordinates, with as many terms as the quadrature supports.
+/// Settings of discrete ordinates that correspond to those of propagation, with as many spherical harmonics as the
+/// quadrature supports.
 OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
 {
   OrdinatesSettings as;

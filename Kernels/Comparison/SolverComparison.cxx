@@ -27,7 +27,8 @@ double Median(std::vector<double> values)
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-/// Copies grey values to three channels if `wanted` is three.
+/// Copies values of one channel to three channels if `wanted` is three.
+/// @param has  channels of `values`
 std::vector<float> InChannels(std::vector<float> values, int has, int wanted)
 {
   if (has == wanted)
@@ -42,7 +43,7 @@ std::vector<float> InChannels(std::vector<float> values, int has, int wanted)
   return inAll;
 }
 
-/// Transfers results to the coarser of the scene's and the reference's grid, and computes their errors there.
+/// Transfers results to the coarser of the grids of the scene and of the reference, and computes their errors there.
 class Comparator
 {
 public:
@@ -63,10 +64,11 @@ public:
     this->FluenceDirect = this->AsCompared(reference.fluenceDirect, fromReference);
   }
 
-  /// Whether runs of a method can be compared. Without any reference they are only timed.
+  /// Whether the reference includes the light that a method computes; true without any reference, since runs are then
+  /// only timed.
   bool Has(ComparedMethod method) const { return !this->IsThere || !this->For(method).empty(); }
 
-  /// Errors of a run; unknown without a reference.
+  /// Errors of the light of a run; NaN without a reference.
   RelativeErrors ErrorsOf(const LightField& light, const ComparedRun& run) const
   {
     if (!this->IsThere)
@@ -99,12 +101,13 @@ private:
 
   Grid SceneGrid;
   const ReferenceLight& Reference;
-  std::optional<Factors> ToReference; ///< set if the reference is at least as coarse as the scene
+  /// factors from the scene's grid to the reference's; set if the reference is at least as coarse
+  std::optional<Factors> ToReference;
   bool IsThere = false;
   std::vector<float> Fluence, FluenceDirect;
 };
 
-/// Why a method is not compared on a scene; empty if it is.
+/// Reason why a method is not compared on a scene; empty if it is.
 std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comparator& comparator)
 {
   const bool lattice = method == ComparedMethod::LatticeBoltzmann;
@@ -112,7 +115,8 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
   {
     return "its voxels have to be cubes";
   }
-  if (IsOfPhotons(method) || (lattice && scene.BendsLight())) // a lattice then takes its uncollided light from photons
+  // With a varying refractive index, photons compute the uncollided light of a lattice run.
+  if (IsOfPhotons(method) || (lattice && scene.BendsLight()))
   {
     const std::string why = scene.WhyNotByPhotons(!IsDirectOnly(method));
     return !why.empty()        ? why
@@ -127,17 +131,17 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
                               : "";
 }
 
-/// The runs of one method, cheapest first, and their run times.
+/// The runs of one method, cheapest first, and the index of the next one.
 struct Lane
 {
   std::vector<ComparedRun> runs;
   std::size_t next = 0;
-  double secondsOfCost = 0.0; ///< seconds per unit cost, from the last run with all orders
+  double secondsOfCost = 0.0; ///< seconds per unit of cost, from the last run with all orders
 
   bool Done() const { return this->next == this->runs.size(); }
 };
 
-/// Executes, times and compares runs.
+/// Executes and times runs, and adds their rows to the comparison.
 class Runner
 {
 public:
@@ -150,7 +154,7 @@ public:
   }
 
   /// Executes the next run of a method.
-  /// @param left  time that it may take, seconds
+  /// @param left  time that the run may take, seconds
   void RunNext(Lane& lane, double left, const Monitor& monitor)
   {
     const ComparedRun& run = lane.runs[lane.next++];
@@ -193,7 +197,9 @@ private:
     return this->TheDevice.Now() - start;
   }
 
-  /// Run times of repeats without compilation; empty if the time does not allow one.
+  /// Run times of repeats, seconds: of runs that did not compile kernels, unless the time allows the first run only.
+  /// @param left  time that all repeats may take, seconds
+  /// @param light  receives the light
   std::vector<double> TimesOf(const ComparedRun& run, double left, LightField& light, const Monitor& monitor)
   {
     constexpr double partForRepeats = 0.2;
@@ -229,7 +235,8 @@ private:
     return seconds;
   }
 
-  /// @return its run time, seconds
+  /// Executes a run with its repeats, and adds its row to the comparison.
+  /// @return median of the run times, seconds
   double Run(const ComparedRun& run, double left, const Monitor& monitor)
   {
     this->TheDevice.ResetPeak();
@@ -269,7 +276,7 @@ private:
       {
         light = run.solve(true, monitor);
       }
-      catch (const TimeIsUp&) // the row stays, without an estimate
+      catch (const TimeIsUp&) // the row is kept, without an estimated error
       {
         return;
       }
@@ -284,7 +291,7 @@ private:
   int Late = 0;
 };
 
-/// The runs of all methods that the scene allows; adds the reasons for the others to leftOut.
+/// The runs of all methods that the scene allows; adds the reasons why other methods are left out to result.leftOut.
 std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,
   const Comparator& comparator, Comparison& result)
 {
@@ -304,9 +311,10 @@ std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const Comp
   return lanes;
 }
 
-/// Executes one run of each method in turn, so that other load on the machine affects all methods alike, and time that
-/// one method does not need is left for the others.
-/// @return number of runs
+/// Executes one run of each method in turn, so that other load on the machine affects all methods equally, and time
+/// that one method does not need is left for the others.
+/// @param end  time of the device's clock at which the budget is spent
+/// @return number of executed runs
 std::size_t RunInTurns(
   const Device& device, std::vector<Lane>& lanes, Runner& runner, double end, const Monitor& monitor)
 {
@@ -331,7 +339,9 @@ std::size_t RunInTurns(
   return count;
 }
 
-/// ConvergedLight within half of the budget; empty, with a warning, if the machine is too slow for any.
+/// Reference by ConvergedLight within half of the time budget; empty, with a warning, if the machine is too slow for
+/// any.
+/// @param budget  time budget of the comparison, seconds
 ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const ComparedSettings& tried, double budget,
   std::vector<std::string>& warnings, const Monitor& monitor)
 {
@@ -383,7 +393,7 @@ RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float
       relative += std::pow(difference / reference[i], 2.0);
       ++lit;
     }
-    // Not std::max, so that NaN propagates.
+    // std::max would not propagate NaN.
     farthest = difference <= farthest ? farthest : difference;
     largest = std::max(largest, static_cast<double>(reference[i]));
   }
@@ -412,14 +422,15 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   Check(scene.medium);
   Check(scene.illumination);
   const double end = device.Now() + settings.timeBudget;
-  const double begun = reference ? 0.0 : 0.4; // fraction of the progress
+  const double begun = reference ? 0.0 : 0.4; // fraction of the progress at which the runs begin
   Comparison result;
   result.device = device.Name();
   ComparedSettings tried = settings.tried;
   if (tried.monteCarloReference == MonteCarloReference::WhereItCanBeat &&
     std::all_of(settings.methods.begin(), settings.methods.end(), IsOfPhotons))
   {
-    tried.monteCarloReference = MonteCarloReference::Never; // maps are free of noise, and share no solver with photons
+    // No photons: maps are free of noise, and share no solver with the compared photons.
+    tried.monteCarloReference = MonteCarloReference::Never;
   }
   tried.scattersReference = tried.monteCarloReference == MonteCarloReference::Always ||
     std::any_of(settings.methods.begin(), settings.methods.end(), [](ComparedMethod method) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// Error against run time of several solvers on one scene.
+/// Comparison of several solvers on one scene: error against run time.
 namespace tyndall
 {
 /// Result of one method with one setting. NaN: unknown or not applicable.
@@ -19,31 +19,35 @@ struct ComparisonRow
   ComparedMethod method = ComparedMethod::LightPropagationMaps;
   std::string setting;
   Grid grid;
-  double seconds = Unknown;   ///< median, from arrays in memory to light in memory
+  double seconds = Unknown;   ///< median run time, from input arrays in memory to light in memory
   double peakBytes = Unknown; ///< peak memory of buffers on the device, bytes
-  /// Relative L2 error: the 2-norm of the difference over voxels and channels, over that of the reference.
+  /// Relative L2 error: 2-norm of the difference from the reference over voxels and channels, divided by the 2-norm of
+  /// the reference.
   double errorL2 = Unknown;
-  double errorMax = Unknown; ///< largest difference in a voxel and channel, over the largest value of the reference
-  /// Root mean square of the relative errors of voxels in which the reference is above 0.
+  /// Largest difference from the reference in a voxel and channel, divided by the largest value of the reference.
+  double errorMax = Unknown;
+  /// Root mean square of the relative errors of the voxels in which the reference is above 0.
   double errorRelative = Unknown;
-  double balance = Unknown;        ///< relative error of the energy balance
-  int iterations = 0;              ///< sweeps or orders; 1 for photons
-  double estimatedError = Unknown; ///< the solver's own estimate of errorL2; unknown after one order (ErrorEstimate.h)
+  double balance = Unknown; ///< relative error of the energy balance
+  int iterations = 0;       ///< number of sweeps or orders; 1 for photons
+  /// The solver's own estimate of errorL2; unknown after one order (ErrorEstimate.h).
+  double estimatedError = Unknown;
   std::array<double, 6> facePowerOut = {}; ///< net escaped power through -x, +x, -y, +y, -z, +z, all channels, W
   double powerIn = 0.0;                    ///< entered and emitted power, all channels, W
-  bool pareto = false;                     ///< no other row for the same quantity is both faster and more accurate
+  /// Whether no other row for the same quantity (fluence or uncollided fluence) is faster and more accurate.
+  bool pareto = false;
 };
 
-/// Sets `pareto` of each row that no other row for the same quantity dominates, i.e. is at least as fast and as
-/// accurate, and better in one of both. Rows without an error are not marked.
+/// Sets `pareto` of each row that no other row for the same quantity (fluence or uncollided fluence) dominates, i.e. is
+/// at least as fast and as accurate, and faster or more accurate. Rows without an error are not marked.
 void MarkPareto(std::vector<ComparisonRow>& rows);
 
 struct RelativeErrors
 {
   double l2 = 0.0, max = 0.0, relative = 0.0;
 };
-/// Errors as defined in ComparisonRow. Voxels in which the reference is NaN are skipped; the result is NaN if no voxel
-/// is left or the reference is zero.
+/// Errors of light as defined in ComparisonRow. Voxels in which the reference is NaN are skipped; errors are NaN if no
+/// voxel is left or the reference is zero.
 RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float>& reference);
 
 struct ComparisonSettings
@@ -51,24 +55,25 @@ struct ComparisonSettings
   std::vector<ComparedMethod> methods = { ComparedMethod::LightPropagationMaps, ComparedMethod::ConstantSource,
     ComparedMethod::Published, ComparedMethod::Photons };
   ComparedSettings tried;
-  int repeats =
-    3; ///< timed runs per setting, after a run that compiles kernels; fewer if the time budget does not allow them
-  /// Total time budget, seconds: half for the reference, unless it is given; the methods share the rest. A run that
-  /// does not fit is not started, or is stopped. Otherwise the clock does not influence what is compared.
+  /// Timed runs per setting, after a run that compiles kernels; fewer if the time budget does not allow them.
+  int repeats = 3;
+  /// Total time budget, seconds: half of it for the reference, unless that is given; the methods share the rest. A run
+  /// that exceeds the budget is not started, or is stopped. Apart from that, the clock does not influence the
+  /// comparison.
   double timeBudget = 300.0;
-  bool estimates = true; ///< let solvers estimate their errors, in an extra run that is not timed
+  bool estimates = true; ///< whether solvers estimate their errors, in an extra run that is not timed
 };
 
 struct Comparison
 {
   std::vector<ComparisonRow> rows;
   ReferenceLight reference;
-  std::vector<std::string> leftOut;  ///< settings that were not compared, and why
-  std::vector<std::string> warnings; ///< what the time budget did not allow
+  std::vector<std::string> leftOut;  ///< settings that were not compared, with the reasons
+  std::vector<std::string> warnings; ///< parts of the comparison that the time budget did not allow
   std::string device;
 };
 
-/// Runs all methods with all settings.
+/// Runs all methods with all settings, and compares their light with a reference.
 /// @param reference  reference light; null: computed by ConvergedLight
 /// @throws InvalidInput if the scene, the settings or the reference are invalid; DeviceError; Aborted
 Comparison CompareSolvers(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,

@@ -37,8 +37,8 @@ std::vector<std::uint8_t> NumbersIn(const std::vector<std::uint32_t>& runs)
   return numbers;
 }
 
-/// Calls act(place, row) for each row along x of the box `part` within the box `box`; `place` is the index of the row's
-/// first byte in an array over `box`, `row` the number of the row in `part`.
+/// Calls act(place, voxel) for each row along x of the box `part` within the box `box`; `voxel` is the row's first
+/// voxel, `place` the index of its byte in an array over `box`.
 template <class Act>
 void ForRows(const VoxelBox& part, const VoxelBox& box, const Act& act)
 {
