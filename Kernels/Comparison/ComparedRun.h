@@ -61,7 +61,7 @@ struct ComparedSettings
   std::vector<int> orders = { 1, 3, 10 }; ///< limits of the number of scattering orders, in addition to all orders
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
-  double tolerance = PropagationSettings().tolerance; ///< tolerance of propagation
+  double tolerance = PropagationSettings().tolerance; ///< tolerance of propagation, PropagationSettings::tolerance
   /// Whether the photons of the reference are also scattered with a varying refractive index.
   bool scattersReference = false;
   /// Whether scattered photons are also the reference with a constant refractive index; the reference then shares no

@@ -44,9 +44,10 @@ struct ReferenceLight
   /// The scene's grid, or one finer or coarser by integer factors; errors are computed on the coarser of both.
   Grid grid;
   int channels = 1;
-  std::vector<float> fluence;       ///< W / length^2, `channels` per voxel; empty: unknown; NaN: unknown in this voxel
+  /// Fluence, W / length^2, `channels` per voxel; empty: unknown; NaN: unknown in this voxel.
+  std::vector<float> fluence;
   std::vector<float> fluenceDirect; ///< fluence of uncollided light, otherwise as `fluence`
-  std::string text;                 ///< description of the reference
+  std::string text;                 ///< description of the reference for the user
 };
 
 /// Computes reference light. With a constant refractive index, depending on ComparedSettings::monteCarloReference:

@@ -18,12 +18,12 @@ public:
   void Add(const std::vector<float>& values, int channels);
 
   int Count() const { return this->Sets; }
-  int Channels() const { return this->OfVoxel; } ///< largest number of channels of any set
+  int Channels() const { return this->OfVoxel; } ///< largest number of channels of any set that was added
   std::vector<float> Values() const;
 
   /// Sum of the squared standard errors of the means; needs at least two sets.
   double Variance() const;
-  double SumOfSquares() const; ///< sum of the squared means
+  double SumOfSquares() const; ///< sum of the squared means over voxels and channels
   /// Relative standard error: root mean square of the standard errors, over that of the means.
   double RelativeError() const;
 

@@ -54,7 +54,7 @@ LightField TraceAllOrders(
   return light;
 }
 
-/// Reconstructs the fluence from batches of photons. Light with fewer than two batches, of which no photon reaches the
+/// Reconstructs the fluence from batches of photons. Light with fewer than two batches, i.e. without photons in the
 /// volume, is returned unchanged.
 LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, const Monitor& monitor)
 {

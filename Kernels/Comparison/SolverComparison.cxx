@@ -224,7 +224,7 @@ private:
         seconds.push_back(this->Timed(run, light, monitor));
       }
     }
-    catch (const TimeIsUp&) // at least one run is complete
+    catch (const TimeIsUp&) // the time is up, but at least one run is complete
     {
     }
     if (seconds.empty())

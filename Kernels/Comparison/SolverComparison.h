@@ -32,8 +32,9 @@ struct ComparisonRow
   int iterations = 0;       ///< number of sweeps or orders; 1 for photons
   /// The solver's own estimate of errorL2; unknown after one order (ErrorEstimate.h).
   double estimatedError = Unknown;
-  std::array<double, 6> facePowerOut = {}; ///< net escaped power through -x, +x, -y, +y, -z, +z, all channels, W
-  double powerIn = 0.0;                    ///< entered and emitted power, all channels, W
+  /// Net escaped power through the faces -x, +x, -y, +y, -z, +z, summed over channels, W.
+  std::array<double, 6> facePowerOut = {};
+  double powerIn = 0.0; ///< entered and emitted power, summed over channels, W
   /// Whether no other row for the same quantity (fluence or uncollided fluence) is faster and more accurate.
   bool pareto = false;
 };

@@ -16,7 +16,7 @@ struct Batches
   std::size_t first = 1; ///< items in the first batch; its run time determines the size of the next batch
   std::size_t whole = 1; ///< number of which all batch sizes are multiples
   double seconds = 0.05; ///< target run time of a batch, seconds
-  double growth = 4.0;   ///< largest ratio of successive batch sizes
+  double growth = 4.0;   ///< largest ratio of the sizes of successive batches
   std::size_t most = std::numeric_limits<std::size_t>::max(); ///< largest size of a batch
   double from = 0.0, to = 1.0; ///< progress that is reported at the start and at the end, in [0, 1]
 };

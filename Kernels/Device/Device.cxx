@@ -34,7 +34,7 @@ struct Candidate
 /// State shared by all threads of the process.
 struct Shared
 {
-  std::mutex Guard; ///< protects all members
+  std::mutex Guard; ///< protects all members of this structure
   std::map<std::string, std::shared_ptr<Device>> Devices;
   std::optional<PoclCache> Cache; ///< cache folder of PoCL; set once PoCL has been asked for devices
   std::vector<std::string> Warnings;

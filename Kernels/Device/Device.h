@@ -33,8 +33,8 @@ public:
   /// the user asked.
   static std::vector<std::string> TakeWarnings();
 
-  /// @param cacheFolder  folder to which the platform writes compiled programs, if known; checked for free space before
-  ///   a build
+  /// @param cacheFolder  folder to which the platform writes compiled programs, if known; its free space is checked
+  ///   before each build
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});
   /// Creates a view of the device `whole` for one solve: allocations by the view are limited by `budget` and also count
   /// towards those of `whole`, which must outlive the view.
@@ -67,9 +67,9 @@ public:
   /// environment variable TYNDALL_WITHOUT names `cache`.
   std::size_t CacheBytes() const;
   std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< bytes of buffers in host memory
-  std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest HostBytes
+  std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest value of HostBytes so far
   std::size_t BytesInUse() const { return this->Memory.InUse(); }
-  std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest BytesInUse since ResetPeak
+  std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest value of BytesInUse since ResetPeak
   void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program `source`. Programs are cached, so that a second call with the same source and options
@@ -131,7 +131,7 @@ private:
   int VectorWidth = 1;
   std::size_t LargestAllocation = 0;
   Device* Whole = nullptr; ///< device of which this is a view; null: this is not a view
-  MemoryBudget Budget;     ///< budget of a view
+  MemoryBudget Budget;     ///< limits of this view; no limits for a device
   MemoryCount Memory;
   MemoryCount OnHost;
   std::atomic<double> SecondsQueued{ 0.0 };

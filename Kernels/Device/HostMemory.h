@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// Memory of the machine, bytes.
+/// Size of the machine's main memory, bytes.
 std::size_t HostMemory();
 
 /// Checks that arrays fit the machine's memory before they are allocated: a machine that swaps does not report that

@@ -39,7 +39,7 @@ private:
   const cl::Context Context;
   const cl::Device TheDevice;
   const std::string DeviceName, CacheFolder;
-  std::mutex Guard; ///< protects the map, not its elements
+  std::mutex Guard; ///< protects the map All, not its elements
   std::map<std::string, std::shared_ptr<KeptProgram>> All;
   std::atomic<bool> CompiledSince{ false };
 };

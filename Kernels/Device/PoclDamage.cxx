@@ -86,7 +86,7 @@ std::optional<std::string> BytesOf(const fs::path& file)
 struct Note
 {
   std::uint64_t number = 0; ///< inode number
-  std::uint64_t size = 0;   ///< bytes
+  std::uint64_t size = 0;   ///< size, bytes
   std::int64_t written = 0; ///< time of the last change of contents, ns
   std::int64_t changed = 0; ///< time of the last change of contents, name or permissions, ns
   std::uint64_t sum = 0;    ///< checksum of a file's bytes
@@ -189,7 +189,7 @@ public:
   /// whether the file was removed.
   using Report = std::function<bool(const std::string& path, const std::string& how)>;
 
-  /// @param folder  without a trailing slash
+  /// @param folder  name of PoCL's cache folder without a trailing slash
   explicit CacheInspection(const std::string& folder)
     : Folder(folder)
     , Known(folder)

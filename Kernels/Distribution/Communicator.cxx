@@ -19,8 +19,8 @@ enum class Trouble : char
 {
   None,
   OfOthers, ///< MissingMessage, a consequence of another rank's failure
-  Stopped,  ///< Aborted
-  OfInput,  ///< InvalidInput
+  Stopped,  ///< the rank's work was aborted (Aborted)
+  OfInput,  ///< the input is invalid (InvalidInput)
   OfDevice,
   OfMemory,
   Other

@@ -28,7 +28,7 @@ public:
   Grid GridOf(const std::array<int, 3>& size) const;
   /// The cells of the shared level that this rank contributes: those whose first voxel lies in its box.
   VoxelBox BoxCells() const { return this->CellsIn(this->Box()); }
-  /// All cells of the shared level.
+  /// All cells of the shared level of the whole domain.
   VoxelBox AllCells() const { return { {}, this->Cells.whole.size }; }
 
   /// Values of the voxels of this rank's box, gathered from the ranks that own them. Collective.

@@ -19,7 +19,7 @@ struct RoundsTraffic
   /// Travellers sent by this rank; a traveller counts each time that it enters another rank's block.
   std::size_t handed = 0;
   std::size_t bytes = 0; ///< bytes of the travellers sent by this rank
-  int rounds = 0;        ///< rounds of tracing and exchange, until no traveller was left
+  int rounds = 0;        ///< number of rounds of tracing and exchange, until no traveller was left
 };
 
 /// Traces travellers (photons, rays, or beams of a lamp) through a distributed grid in rounds: each rank follows its

@@ -29,7 +29,7 @@ constexpr double AsGoodAsOpaque = 0.95; ///< opacity from which on a voxel count
 struct SourceFunction
 {
   std::vector<float> radiance;   ///< source function, 3 per voxel, W / (length^2 sr)
-  std::vector<float> extinction; ///< mean of the channels, 1/length
+  std::vector<float> extinction; ///< extinction, mean of the channels, one per voxel, 1/length
 };
 
 /// Calls act(voxel) for all voxels, concurrently.

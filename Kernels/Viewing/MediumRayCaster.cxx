@@ -19,8 +19,8 @@ namespace
 {
 constexpr float LeastViewedIndex = 1e-3f;
 constexpr float LargestViewedIndex = 1e3f;
-/// Relative tolerance within which the index on the box's faces counts as constant: structures near the border are
-/// smoothed.
+/// Relative variation of the refractive index over the box's faces up to which no warning is given: smoothing of
+/// structures near the border causes some.
 constexpr float FacesAlike = 1e-3f;
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)

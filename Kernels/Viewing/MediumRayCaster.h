@@ -103,7 +103,7 @@ public:
   ///   with moments, these and 36 bytes more
   MediumRayCaster(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {}, const BlockOfScene* block = nullptr);
-  MediumRayCaster(const MediumRayCaster&) = delete; // the members refer to each other
+  MediumRayCaster(const MediumRayCaster&) = delete; // not copyable, since members refer to each other
   MediumRayCaster& operator=(const MediumRayCaster&) = delete;
 
   /// Changes settings that need no new device data, so that the caster can be reused while medium, light and
@@ -128,7 +128,7 @@ public:
     const GridBlock* block = nullptr);
 
   /// Whether the blocks of a grid can be rendered independently and composited: rays are straight and there is no
-  /// table. Shadow rays end at the block's faces.
+  /// table. Shadow rays then end at the block's faces.
   bool CastsBlocks() const { return this->Traits.OnlyStraight(); }
 
   /// Renders a block again, after Render with the same camera, with the transmittance of the blocks in front of it:
@@ -157,7 +157,7 @@ private:
   Picture Cast(const Camera& camera, const GridBlock* block, const std::vector<float>& ends, const Starts& starts,
     double from, const Monitor& monitor);
 
-  std::optional<BlockOfScene> Part; ///< set if the medium is one block of a larger grid
+  std::optional<BlockOfScene> Part; ///< the block, if the medium is one block of a larger grid
   bool LampsShine = false;
   bool AskedForShadowRays = false; ///< the caller's setting shadowRays, even if there is no lamp
   ViewSettings Settings;           ///< the caller's settings, with shadow rays as the scene needs them (Needed)

@@ -8,7 +8,7 @@ namespace tyndall
 {
 enum class ToneCurve
 {
-  Linear = 0, ///< radiance times exposure, cut at 1: for comparing numbers
+  Linear = 0, ///< radiance times exposure, cut at 1: displayed values can be compared as numbers
   /// K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015: fit to the reference transform of the Academy (AMPAS).
   Filmic = 1,
 };
@@ -49,14 +49,15 @@ double ExposureOfCounts(const std::vector<int>& luminanceCounts);
 /// @param shown  display value in [0, 1], sRGB-encoded; ToneMap writes 255 times this value
 double ExposedAs(double shown, ToneCurve curve);
 
-/// Display value of a channel, [0, 255], before rounding.
+/// Display value of a channel, [0, 255], before rounding to an integer.
 /// @param exposed  radiance times exposure
 float ShownValue(float exposed, ToneCurve curve);
 
 /// Converts a picture to eight bits per channel, red, green, blue and alpha, for an sRGB display (IEC 61966-2-1).
-/// Colours are not multiplied by alpha: composited over black, the picture has the tone-mapped radiance. A pixel
-/// brighter than white at its alpha, such as thin smoke in bright light, gets the alpha of its brightest channel: it
-/// then hides more of the background than the medium does.
+/// Colours are not multiplied by alpha: composited over black, the picture shows the tone-mapped radiance. A pixel
+/// brighter than white at its alpha, such as thin smoke in bright light, is given the alpha of its brightest channel:
+/// it then hides more of the background than the medium does.
+/// @param radiance  3 per pixel, W / (length^2 sr)
 /// @param alpha  one per pixel in [0, 1]; empty: opaque
 std::vector<std::uint8_t> ToneMap(
   const std::vector<float>& radiance, const std::vector<float>& alpha, const ToneMapping& settings);

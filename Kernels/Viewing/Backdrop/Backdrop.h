@@ -46,7 +46,7 @@ private:
   std::array<int, 2> Size = {}; ///< width and height of the environment, pixels
   Rotation Turn = {};           ///< rotation from world axes to the environment's axes
   int GroundBits = 0;           ///< bit mask of the reflecting faces that are shown
-  cl_int4 First = {};           ///< ViewInfo::backdrop
+  cl_int4 First = {};           ///< indices of the tables in Cells, ViewInfo::backdrop
   int FirstSharp = 0;           ///< index in Cells of the environment's peaks
   Buffer<cl_float4> Cells;
 };

@@ -11,7 +11,7 @@ namespace
 {
 constexpr float Half = 0.5f; ///< mean transmittance at which the depth of a pixel is defined
 
-/// Calls act(column, row, number) for each pixel of a rectangle.
+/// Calls act(column, row, number) for each pixel of a rectangle, row by row; `number` counts the pixels.
 template <class Act>
 void ForPixels(const PixelRect& rect, const Act& act)
 {

@@ -34,7 +34,7 @@ PixelRect Overlap(const PixelRect& a, const PixelRect& b);
 /// Contribution of a block of a larger grid, or of several blocks one behind the other, to one pixel.
 struct BlockPixel
 {
-  std::array<float, 3> radiance = {};                        ///< W / (length^2 sr)
+  std::array<float, 3> radiance = {};                        ///< accumulated radiance, W / (length^2 sr)
   std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< transmittance for radiance from behind
   /// transmittance for light from behind that is not scattered at all, as Picture::sceneTransmittance
   std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };
@@ -73,7 +73,7 @@ struct BlockPixel
   /// Opacity for what is behind the pixel, including that of the background.
   float Hidden() const { return 1.0f - this->open * this->Left(); }
 
-  /// Composites this pixel over the pixel `behind`.
+  /// Composites this pixel over `behind`, the contribution of the blocks behind to the same pixel.
   void LayBefore(const BlockPixel& behind)
   {
     for (int c = 0; c < 3; ++c)
@@ -105,13 +105,14 @@ struct BlockPixels
   }
 };
 
-/// Extracts one pixel of a block's picture.
+/// Extracts the contribution of a block to one pixel from its picture.
+/// @param pixel  index of the pixel, row by row
 BlockPixel PixelOf(const Picture& picture, std::size_t pixel);
 
 /// Crops a block's picture to the smallest rectangle outside of which it is empty.
 BlockPixels SeenPart(const Picture& picture);
 
-/// Crops pixels to a rectangle.
+/// Crops pixels of a block to a rectangle.
 BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 
 /// Transmittances of the blocks in front of a block, for the pixels that this block must render again: pixels whose

@@ -82,7 +82,7 @@ private:
   const std::vector<VoxelBox>& Held;
   MediumRayCaster* Own;
   WorkAtOnce AtOnce;
-  std::vector<SmallLight> Lights; ///< the same on all ranks
+  std::vector<SmallLight> Lights; ///< lights for shadow rays, the same on all ranks
   std::optional<Rounds> Between;
   bool InRounds = false, ByMoments = false;
 };

@@ -17,7 +17,7 @@
 //   across  (n sin(theta))^2, theta the angle to the surface's normal
 inline real fresnel(real n1, real n2, real across)
 {
-  const real in = sqrt(greater(n1 - across, (real)0.0f)); // n cos(theta)
+  const real in = sqrt(greater(n1 - across, (real)0.0f)); // n cos(theta) in the first medium, whose squared index is n1
   const real out = sqrt(greater(n2 - across, (real)0.0f));
   const real s = (in - out) / greater(in + out, (real)1e-20f);
   const real p = fma(n2, in, -n1 * out) / greater(fma(n2, in, n1 * out), (real)1e-20f);
@@ -40,7 +40,8 @@ inline void split_at_surface(
 {
   const int4 size = s->v->size;
   const float4 spacing = s->o->spacing;
-  // Bisection in the time before the midpoint: at `outer` the index is below that of the surface, at `inner` it is not.
+  // Bisection for the time, before the step's midpoint, at which the ray meets the surface: at `outer` the index is
+  // below that of the surface, at `inner` it is not.
   real outer = step->halfTime + step->since;
   real inner = (real)0.0f;
   real3 bend;
@@ -56,7 +57,7 @@ inline void split_at_surface(
   const real3 at = kept_within(further(step->middle, -before, step->velocity), size);
   index_at(s, at, &bend);
 
-  // Directions in world coordinates.
+  // Velocity and gradient of n^2 at the surface, in world coordinates.
   const real after_start = step->halfTime - before;
   const real3 t = stretched(further(step->velocity, after_start, bend), spacing);
   const real3 gradient = stretched(bend, spacing);
@@ -78,7 +79,7 @@ inline void split_at_surface(
   reflected->at = chosen(meets, at, reflected->at);
   reflected->velocity = chosen(meets, stretched(back, s->v->inverseSpacing), reflected->velocity);
 
-  // Light.
+  // Light of the medium between the step's start and the surface, and of the reflected ray.
   corners around;
   corners_of_samples(s, at, &around);
   const real speed = sqrt(product(t, t));
@@ -121,7 +122,9 @@ inline real room_around(real3 p, int4 size)
 #undef ROOM
 }
 
-// Marks lanes of `last` as outside once they have reached the face at which their step ends.
+// Marks rays as outside the box that have reached one of its faces at the end of their step.
+//   last     rays whose step ends at a face
+//   returns  the rays that have left
 inline integer leave(ray_packets* t, integer last, int4 size)
 {
   const real to_go = time_to_face(t->at, t->velocity, size) * sqrt(product(t->velocity, t->velocity));
@@ -139,7 +142,8 @@ inline integer leave(ray_packets* t, integer last, int4 size)
 #endif
 
 #if BENDS
-// A few leapfrog steps. Samples outside the box are never read.
+// Takes a few leapfrog steps along bent rays. Samples outside the box are never read.
+//   done  rays that have ended and are not moved
 __attribute__((always_inline)) inline void bend(
   const surroundings* s, integer done, ray_packets* t, light* l, crossed* half_way, watch* w)
 {
@@ -149,7 +153,7 @@ __attribute__((always_inline)) inline void bend(
   const float enough = s->v->marching.y;
   const int steps = s->o->limits.y;
   integer moves = done == 0;
-  // Usually the rays are so far inside that none can leave within these steps.
+  // Checks for faces of the box are needed only if a ray can reach one within these steps; usually none can.
   const int may_leave = any_lane(moves & (room_around(t->at, size) < (real)(stride * (float)(steps + 1) + 1.0f)));
 #if SURFACE
   const integer asks = moves & w->forgotten;
@@ -237,6 +241,8 @@ __attribute__((always_inline)) inline void bend(
 #endif
 
 // Steps through a region of constant index, or skips it if it is empty. Returns the number of steps.
+//   packet  the rays from their current positions on
+//   ahead   the bricks ahead of the rays
 //   leaves  rays that leave the box if they travel the packet's whole length
 __attribute__((always_inline)) inline int go_straight(const surroundings* s, const rays* packet, real step,
   stretch ahead, integer done, integer leaves, ray_packets* t, light* l, crossed* half_way)

@@ -9,7 +9,7 @@ struct Picture
 {
   int width = 0;
   int height = 0;
-  std::vector<float> radiance; ///< 3 per pixel, W / (length^2 sr)
+  std::vector<float> radiance; ///< radiance, 3 per pixel, W / (length^2 sr)
   /// Opacity for what is behind the medium, one per pixel: 1 - transmittance of the medium and of a surface's
   /// reflection, averaged over the channels. 1 where the table is seen.
   std::vector<float> alpha;

@@ -18,7 +18,7 @@
 
 namespace tyndall
 {
-/// Rows [begin, end) of a picture.
+/// Rows of pixels [begin, end) of a picture.
 struct PixelRows
 {
   int begin, end;

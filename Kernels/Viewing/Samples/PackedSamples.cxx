@@ -73,8 +73,8 @@ SampleBricks SampleBricksOf(const FilledBricks& filled, const Grid& grid, bool p
 
 namespace
 {
-/// Multiplies the class of each brick (1 empty, -1 filled, 0 where rays bend) by the number of king's moves to the
-/// nearest brick of another class, at most 127. Two passes that propagate distances from neighbours, the second
+/// Multiplies the class of each brick (1 empty, -1 filled, 0 where rays bend) by the Chebyshev distance, in bricks, to
+/// the nearest brick of another class, at most 127. Two passes that propagate distances from neighbours, the second
 /// backwards, are exact.
 void FindDistances(std::vector<cl_char>& bricks, const std::array<int, 3>& count)
 {

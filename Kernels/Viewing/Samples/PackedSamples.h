@@ -85,7 +85,8 @@ public:
   const cl::Buffer& Cosines() const { return this->ColouredG.Handle(); }
   const Buffer<cl_float4>& Bending() const { return this->Gradients; } ///< half the gradient of n^2, and n^2
   const Buffer<cl_char>& Bricks() const { return this->Distances; } ///< signed distances of bricks, see FindDistances
-  const Buffer<cl_int>& Records() const { return this->First; }     ///< SampleBricks::first
+  /// first sample of each brick's record, SampleBricks::first
+  const Buffer<cl_int>& Records() const { return this->First; }
   const std::array<int, 3>& BrickCount() const { return this->Count; }
 
 private:
@@ -107,7 +108,7 @@ private:
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;
   Buffer<cl_float4> Gradients;
   Buffer<cl_char> Distances;
-  Buffer<cl_uchar> Seen;       ///< SeenBricks::seen
+  Buffer<cl_uchar> Seen;       ///< flags of bricks that rays must sample, SeenBricks::seen
   Buffer<cl_uchar> SeenGroups; ///< for each work-group, whether it packs voxels that rays see (SampleLayout.cl)
   Buffer<cl_int> First, BricksOfRecords; ///< first and bricks of InBricks
 };

@@ -95,8 +95,8 @@ inline void add_to(real* sum, real* rest, real more)
 #endif
 }
 
-// A packet of rays: entry point into the box (voxels), direction (voxels per unit length), and path length inside the
-// box (0: the ray misses the box).
+// A packet of REAL_WIDTH rays: entry point into the box (voxels), direction (voxels per unit length), and path length
+// inside the box (0: the ray misses the box).
 typedef struct
 {
   real3 entry;
@@ -164,8 +164,8 @@ inline real3 along(rays packet, real distance)
   return p;
 }
 
-// The eight voxel centres around each point of a packet: twice the index of the first centre; the interpolation weights
-// of the four pairs along x; and the weight of the upper centre of each pair.
+// The eight voxel centres around one point on each ray of a packet: twice the index of the first centre; the
+// interpolation weights of the four pairs along x; and the weight of the upper centre of each pair.
 typedef struct
 {
   integer twiceFirst;
@@ -422,9 +422,9 @@ inline rgb between_four(__global const float4* values, integer lower, integer up
   return seen;
 }
 
-// `bricks` holds a signed distance per brick: its absolute value is the number of king's moves to the nearest brick of
-// another class. It is positive for empty bricks, negative for bricks with extinction or emission, and 0 where rays
-// bend (FindDistances in PackedSamples.cxx).
+// `bricks` holds a signed distance per brick: its absolute value is the Chebyshev distance, in bricks, to the nearest
+// brick of another class. It is positive for empty bricks, negative for bricks with extinction or emission, and 0 where
+// rays bend (FindDistances in PackedSamples.cxx).
 
 // The bricks ahead of a packet at p. `steps`: number of steps that every ray can take before one of them leaves the
 // surrounding bricks of its class; `empty`: whether all these steps are in empty bricks; `bends`: whether a ray bends.

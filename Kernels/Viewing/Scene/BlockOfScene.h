@@ -54,8 +54,9 @@ inline GridBlock BlockOfRank(const BlockPartition& partition, int rank)
 std::vector<float> FacesOfBlock(
   const std::vector<float>& ofWhole, int components, const GridBlock& block, const std::array<int, 3>& size);
 
-/// Indices of the blocks, sorted from front to back: no camera ray crosses a block after one that is later in the list.
-/// Blocks that occlude each other cyclically have no such order; those of a k-d partition never do.
+/// Indices of the blocks, sorted from front to back as seen by the camera: no camera ray crosses a block before one
+/// that precedes it in the list. Blocks that occlude each other cyclically have no such order; those of a k-d partition
+/// never do.
 std::vector<int> FrontToBack(const std::vector<GridBlock>& blocks, const Camera& camera);
 
 /// Properties of the whole domain on which the picture of each block depends.
@@ -106,7 +107,7 @@ VoxelBox KnownBox(const VoxelBox& own, const VoxelBox& held, const Grid& whole, 
 /// optical thickness ThickAtSurface.
 constexpr int VoxelsBehindSurface = 6;
 
-/// The kernels' description of a block.
+/// Kernel parameters that describe a block.
 BlockInfo BlockInfoOf(const GridBlock& block);
 
 /// Whether a face (0: -x, 1: +x, ...) of a block's arrays lies on the boundary of the domain.

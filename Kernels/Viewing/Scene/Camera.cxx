@@ -27,7 +27,7 @@ bool Finite(const std::array<double, 3>& v)
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-/// The vector scaled so that its largest component is 1, which keeps its square finite for any length; 0 for 0.
+/// The vector scaled so that its largest component is 1, which keeps the square of its length finite; 0 for 0.
 glm::dvec3 Scaled(const glm::dvec3& v)
 {
   const double largest = std::max({ std::abs(v.x), std::abs(v.y), std::abs(v.z) });

@@ -13,13 +13,14 @@ struct Camera
   std::array<double, 3> focalPoint = { 0.0, 0.0, 0.0 }; ///< point that is projected to the picture's centre
   std::array<double, 3> viewUp = { 0.0, 0.0, 1.0 }; ///< up direction of the picture; not parallel to the view direction
   double viewAngle = 30.0;                          ///< full vertical angle of view, degrees, in (0, 180)
-  bool parallelProjection = false;                  ///< parallel rays instead of rays from `position`
+  bool parallelProjection = false;                  ///< whether rays are parallel instead of starting at `position`
   double parallelScale = 1.0;                       ///< half the picture's height in a parallel projection, length, > 0
-  double aspect = 0.0; ///< width over height of the picture; 0: from the image size, for square pixels
+  /// Width over height of the picture; 0: that of the image size, for square pixels.
+  double aspect = 0.0;
   /// Offset of the picture's centre from the focal point, to the right and upwards, in units of half the picture's
   /// width and height: for a tile of a larger picture, or for one eye of a stereo pair.
   std::array<double, 2> shift = { 0.0, 0.0 };
-  bool mirrored = false; ///< the picture is flipped left to right
+  bool mirrored = false; ///< whether the picture is flipped left to right
 };
 
 /// The direction towards the camera of the default view: three-quarter view from the front and slightly from above,
@@ -39,6 +40,7 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle = 30.0,
 ///   invalid
 std::array<std::array<double, 3>, 3> Axes(const Camera& camera);
 
-/// @throws InvalidInput if the camera is so far from the grid, or the picture so wide, that ray coordinates overflow
+/// Checks that ray coordinates do not overflow.
+/// @throws InvalidInput if the camera is so far from the grid, or the picture so wide, that they do
 void CheckDistance(const Camera& camera, const Grid& grid);
 }

@@ -24,20 +24,21 @@ constexpr double VoxelsBesideSurface = 5.0;
 /// Settings of the ray caster, named as the filter's properties.
 struct ViewSettings
 {
-  std::array<int, 2> imageSize = { 800, 600 }; ///< pixels
+  std::array<int, 2> imageSize = { 800, 600 }; ///< width and height of the picture, pixels
   double stepSize = 0.5;                       ///< distance that a ray advances between samples, voxels, [0.01, 10]
-  bool singleScatteringOnly = false;           ///< show only light that was scattered exactly once
+  bool singleScatteringOnly = false;           ///< whether to show only light that was scattered exactly once
   /// Whether to compute direct light by shadow rays to the lights, with the medium's phase function; no effect without
   /// lamps and suns.
   bool shadowRays = false;
   int rectangleSamples = 3;   ///< samples along each edge of a rectangular light, for shadow rays
   bool showBackground = true; ///< whether the background is shown, also in reflections by surface and table
-  Rgb backgroundColor = { 0.0, 0.0, 0.0 }; ///< radiance behind the medium where there is no environment, [0, 1e37]
-  bool skipEmptyBricks = true;             ///< skip empty bricks; changes only the run time
+  /// Radiance behind the medium where there is no environment, W / (length^2 sr), [0, 1e37].
+  Rgb backgroundColor = { 0.0, 0.0, 0.0 };
+  bool skipEmptyBricks = true; ///< whether rays skip empty bricks; changes only the run time
   /// Whether to omit features that the scene does not need. false: always three channels, rays that may bend, and no
   /// skipping of bricks, to measure the savings.
   bool leaveOut = true;
-  double minimumTransmittance = 1e-3; ///< rays stop below this transmittance; 0: never
+  double minimumTransmittance = 1e-3; ///< transmittance below which rays stop; 0: they do not stop
   SurfaceReflection surfaceReflection = SurfaceReflection::None;
   /// Refractive index at which the surface lies, > 0; 0: mean of the smallest and the largest index.
   double surfaceIndex = 0.0;

@@ -14,7 +14,7 @@ enum
   AureoleColumns = 1024,     // columns of an aureole table, by cosine of the scattering angle
   AureoleRows = 64,          // rows of an aureole table, by the square root of the optical length
   AureoleDepth = 40,         // largest optical length of an aureole table
-  SampleEdge = BrickEdge + 1 // samples along an edge of a brick of cells (SampleBricks)
+  SampleEdge = BrickEdge + 1 // number of samples along an edge of a brick of cells (SampleBricks)
 };
 
 /// Parameters of a phase function, for red, green and blue.
@@ -47,8 +47,9 @@ typedef struct
 /// A block of a larger grid, see GridBlock; all indices are those of voxels of the whole grid.
 typedef struct
 {
-  int4 whole;      ///< size of the whole grid; 0: the medium is not a block
-  int4 first;      ///< first voxel of the block's arrays; w = 1: shows the background to rays that miss the domain
+  int4 whole; ///< size of the whole grid, voxels; 0: the medium is not a block
+  /// First voxel of the block's arrays; w = 1: the block shows the background to rays that miss the domain.
+  int4 first;
   int4 begin, end; ///< begin and end of the block's own voxels
 } BlockInfo;
 
@@ -90,7 +91,7 @@ typedef struct
 /// Parameters of the surface, the table and bent rays.
 typedef struct
 {
-  float4 spacing; ///< length per voxel
+  float4 spacing; ///< edges of a voxel, length
   /// n^2 at the surface, reflectance, distance in voxels from the surface at which the indices on both sides are read
   float4 surface;
   float4 table; ///< diffuse reflectance of red, green, blue; specular reflectance
@@ -117,7 +118,7 @@ enum
   // States and kinds of a RayOnItsWay.
   RayGoesOn = 0,
   RayIsOut = 1,  // has left the domain and has not yet received the background
-  RayMisses = 2, // misses the domain
+  RayMisses = 2, // misses the domain, and has not yet received the background
   RayHasEnded = 3,
   RayIsPrimary = 0,
   RayIsReflected = 1, // reflected by the surface
@@ -128,9 +129,9 @@ enum
 /// grid.
 typedef struct
 {
-  int pixel; ///< index in the picture; -1: no ray
-  int kind;  ///< RayIsPrimary, ...
-  int state; ///< RayGoesOn, ...
+  int pixel; ///< index of the pixel in the picture; -1: no ray
+  int kind;  ///< kind: RayIsPrimary, RayIsReflected or RayIsMirrored
+  int state; ///< state: RayGoesOn, RayIsOut, RayMisses or RayHasEnded
   int steps; ///< number of steps since the ray's entry into the domain
   /// Indices of the voxel that contains the midpoint of the next step or, once the ray has left the box, its position.
   int where[3];
@@ -143,7 +144,7 @@ typedef struct
   float halfWay[4];
   float square;      ///< n^2 at the midpoint of the last bent step
   float since;       ///< time t since that midpoint (RayPackets.cl); negative: n^2 is unknown and must be sampled first
-  float entrySquare; ///< n^2 at the primary ray's entry
+  float entrySquare; ///< n^2 at the primary ray's entry into the domain
   /// Set once the ray has ended: mean transmittance, and depth at which it was 1/2.
   float seen, depth;
 } RayOnItsWay;
@@ -164,7 +165,7 @@ typedef struct
 /// Parameters of the kernels of shadow rays.
 typedef struct
 {
-  float4 spacing; ///< length per voxel
+  float4 spacing; ///< edges of a voxel, length
   /// Position of the camera relative to the lower corner of the whole domain, world coordinates; w = 0: perspective, 1:
   /// parallel projection.
   float4 eye;
@@ -174,7 +175,7 @@ typedef struct
   BlockInfo block; ///< block of the whole grid that the medium is; `first` is 0 if there are no other blocks
   /// First voxel, in the whole grid, of the box for whose voxels optical lengths are computed.
   int4 asked;
-  int4 askedSize;              ///< number of voxels of that box along each axis
+  int4 askedSize;              ///< size of the box that begins at `asked`, voxels
   PhaseInfo phase;             ///< phase function, if it is equal in all voxels
   ViewedComponents components; ///< number of components of the medium's arrays
   float step;                  ///< step of the march, voxels

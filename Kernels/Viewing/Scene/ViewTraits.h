@@ -20,7 +20,7 @@ namespace tyndall
 struct SeenBricks
 {
   std::array<int, 3> count = { 0, 0, 0 };
-  std::vector<unsigned char> seen; ///< 1 or 0 for each brick, x fastest
+  std::vector<unsigned char> seen; ///< flag of each brick, 1 or 0, x fastest
   bool all = true;                 ///< whether all bricks are seen
 };
 
@@ -79,7 +79,7 @@ struct ViewTraits
   MediumTraits medium;
   SeenBricks bricks;
   bool bricked = false;       ///< whether samples are stored in bricks, because few bricks are filled
-  double largestSigmaT = 0.0; ///< upper bound of sigma_t, 1/length
+  double largestSigmaT = 0.0; ///< upper bound of sigma_t in the medium, 1/length
   ViewedPhase phase;
   IndexRange index;
   bool bends = false; ///< whether the refractive index varies
@@ -129,8 +129,8 @@ struct ViewTraits
   std::string PhaseOptions(bool needed) const;
 };
 
-/// Degree of the angular moments that are shown; -1: none.
-/// @throws InvalidInput as DegreeOf
+/// Degree of the angular moments that pictures show; -1: they show none.
+/// @throws InvalidInput for a wrong number of components, as DegreeOf
 int ShownDegree(const SolvedLight& light, const ViewSettings& settings);
 
 /// Absorption, scattering, emission, fluence and fluenceDirect of a scene, in the order of ViewTraits::components.
