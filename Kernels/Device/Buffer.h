@@ -15,6 +15,7 @@ class Buffer
 public:
   Buffer() = default;
 
+  /// Allocates an array of `count` values, which are not set.
   /// @param what  description of the array's content, for the message when the array does not fit
   /// @throws DeviceError if the array does not fit the device
   Buffer(Device& device, std::size_t count, const char* what, cl_mem_flags flags = CL_MEM_READ_WRITE,

@@ -33,6 +33,7 @@ public:
   /// the user asked.
   static std::vector<std::string> TakeWarnings();
 
+  /// Creates the context and the queue of an OpenCL device.
   /// @param cacheFolder  folder to which the platform writes compiled programs, if known; its free space is checked
   ///   before each build
   Device(const cl::Platform& platform, const cl::Device& device, std::string cacheFolder = {});

@@ -109,6 +109,7 @@ class ZeroedBuffer
 public:
   ZeroedBuffer() = default;
 
+  /// Allocates an array of `count` zeros.
   /// @param everywhere  whether kernels write the whole array before it is read, so that no zeros are needed
   /// @throws DeviceError if the array does not fit the device
   ZeroedBuffer(Device& device, std::size_t count, bool everywhere, const char* what)

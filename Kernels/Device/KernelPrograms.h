@@ -15,6 +15,7 @@ namespace tyndall
 class KernelPrograms
 {
 public:
+  /// Creates an empty cache of programs for a device.
   /// @param cacheFolder  as in Device's constructor
   KernelPrograms(const cl::Context& context, const cl::Device& device, std::string deviceName, std::string cacheFolder);
 

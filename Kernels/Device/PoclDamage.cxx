@@ -189,6 +189,7 @@ public:
   /// whether the file was removed.
   using Report = std::function<bool(const std::string& path, const std::string& how)>;
 
+  /// Reads the notes of the folder.
   /// @param folder  name of PoCL's cache folder without a trailing slash
   explicit CacheInspection(const std::string& folder)
     : Folder(folder)
@@ -351,6 +352,7 @@ private:
     return true;
   }
 
+  /// Compares a file with its recorded state and checks its contents.
   /// @param before  recorded state of the file; null: it is new
   /// @param found  current state of the file; receives its checksum
   /// @return how the file is damaged; empty if no damage was found

@@ -15,6 +15,7 @@ namespace tyndall
 class CoarseBlocks
 {
 public:
+  /// Distributes a coarse grid over the ranks of a fine grid.
   /// @param communicator  must outlive this object
   /// @param fine    partition of the fine grid
   /// @param coarse  grid over the same box, along no axis finer than the fine grid

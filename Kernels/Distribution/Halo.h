@@ -16,6 +16,7 @@ namespace tyndall
 class GhostCells
 {
 public:
+  /// Determines the cells that this rank exchanges with each rank.
   /// @param communicator  must outlive this object
   /// @param own  by rank, the box of cells that the rank owns; boxes are disjoint and may be empty
   /// @param ghosts  by rank, boxes of the rank's ghost cells; cells within the grid that the rank owns itself are left

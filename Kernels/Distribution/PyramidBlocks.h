@@ -14,6 +14,7 @@ namespace tyndall
 class PyramidBlocks
 {
 public:
+  /// Determines the boxes of all ranks and their cells of the shared level.
   /// @param domain  must outlive this object
   /// @param shared  index of the shared level
   /// @param margin  width of the margin, voxels
@@ -26,7 +27,7 @@ public:
   const VoxelBox& Box() const { return this->Boxes[static_cast<std::size_t>(this->TheDomain.Rank())]; }
   /// Grid of `size` voxels along each axis, with origin and spacing of the domain's grid.
   Grid GridOf(const std::array<int, 3>& size) const;
-  /// The cells of the shared level that this rank contributes: those whose first voxel lies in its box.
+  /// The cells of the shared level that this rank computes: those whose first voxel lies in its box.
   VoxelBox BoxCells() const { return this->CellsIn(this->Box()); }
   /// All cells of the shared level of the whole domain.
   VoxelBox AllCells() const { return { {}, this->Cells.whole.size }; }

@@ -30,6 +30,7 @@ struct RoundsTraffic
 class Rounds
 {
 public:
+  /// Determines the neighbouring ranks of this rank.
   /// @param communicator, partition  must outlive this object; one block per rank
   /// @param reach  largest distance, voxels, that a traveller may go beyond its block before it is sent on; the same on
   ///   all ranks

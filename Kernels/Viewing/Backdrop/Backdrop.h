@@ -22,6 +22,7 @@ std::array<int, 2> FaceSize(const Grid& grid, int face);
 class Backdrop
 {
 public:
+  /// Computes the tables and copies them to the device.
   /// @throws DeviceError if the tables do not fit the device
   /// @param block  position of the medium in a larger grid; null: the medium is the whole domain
   Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,

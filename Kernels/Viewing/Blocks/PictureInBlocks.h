@@ -48,6 +48,7 @@ public:
   /// @param own  properties of this rank's block; null: it has no voxels
   static SharedScene Shared(const Domain& domain, const SharedScene* own);
 
+  /// Prepares pictures of a domain; the lights of all ranks are compared. Collective.
   /// @param domain, held  must outlive this object
   /// @param held  by rank, the voxels that the rank's arrays cover, ghost cells included
   /// @param own   caster of this rank's block, for the medium in the box held[rank]; null: it has no voxels. On one

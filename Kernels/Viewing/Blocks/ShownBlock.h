@@ -26,6 +26,7 @@ class ShownBlock
 public:
   ShownBlock() = default; ///< empty: there is no block
 
+  /// Takes the contributions of all blocks from which Pixels computes the share of this block.
   /// @param frontToBack  pixels of all blocks within this block's rectangle
   /// @param own          index of this block in `frontToBack`
   /// @param size         width and height of the picture, pixels

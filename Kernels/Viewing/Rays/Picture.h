@@ -26,9 +26,9 @@ struct Picture
   /// Only for a block, 3 per pixel, may be empty: radiance that passes the blocks in front unscattered, so that they
   /// attenuate it by their sceneTransmittance. Not included in `radiance`.
   std::vector<float> sharp;
-  /// Only for a block, 3 per pixel: correction for light at the surface of thick voxels (Backdrop::SurfaceLight) where
-  /// the ray enters the domain. It is added to the radiance, multiplied by 1 - transmittance of all blocks along the
-  /// ray.
+  /// Only for a block, 3 per pixel: correction for light at the surface of thick voxels (SurfaceLight in Backdrop.cxx)
+  /// where the ray enters the domain. It is added to the radiance, multiplied by 1 - transmittance of all blocks along
+  /// the ray.
   std::vector<float> missing;
 };
 

@@ -17,6 +17,7 @@ class ViewedArray
 public:
   ViewedArray() = default;
 
+  /// Makes `count` values available to kernels.
   /// @param lent  whether `values` outlive this object, so that no copy is made
   ViewedArray(Device& device, const float* values, std::size_t count, bool lent, const char* what)
     : Copy(device, lent ? nullptr : values, lent ? 0 : count, what)

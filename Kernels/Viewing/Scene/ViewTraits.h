@@ -125,6 +125,7 @@ struct ViewTraits
   // Compiler options, as "-DNAME=value", of the kernels.
   std::string PacketOptions() const;
   std::string SampleOptions() const; ///< options of the kernels that pack samples
+  /// Options that define PHASE and PHASE_CHANNELS (PhaseFunction.cl) and FLOW (ScatteredLight.cl).
   /// @param needed  whether the kernel evaluates the phase function
   std::string PhaseOptions(bool needed) const;
 };
