@@ -89,7 +89,7 @@ std::optional<std::size_t> LimitOfMemory()
   return limited ? std::optional<std::size_t>(limit.rlim_cur >> 20) : std::nullopt;
 }
 
-/// Sentence for an error message: the memory that OpenCL drivers, which include a compiler, need, and how to provide it.
+/// Sentence for an error message: OpenCL drivers, which include a compiler, need memory, and how to provide it.
 std::string NeedsMemory()
 {
   const std::optional<std::size_t> limit = LimitOfMemory();

@@ -75,9 +75,9 @@ namespace tyndall
 /// thicker.
 ///
 /// Ground. A ray that leaves the box through a reflecting face (faceAlbedo) sees, instead of the background, albedo /
-/// pi times the power that leaves through the face there (facePower), interpolated between the centres of the face's
-/// cells (Eq. (111a)). The ground is part of the background: showBackground switches it off, alpha and depth ignore it,
-/// and it is invisible from outside.
+/// pi times the outgoing partial current at the face (facePower), interpolated between the centres of the face's cells
+/// (Eq. (111a)). The ground is part of the background: showBackground switches it off, alpha and depth ignore it, and
+/// it is invisible from outside.
 ///
 /// Table. Where a ray leaves the box through tableFace it sees
 ///   tableColor / pi  irradiance  +  tableReflectance  mirrored light,

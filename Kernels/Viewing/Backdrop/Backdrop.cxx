@@ -56,9 +56,9 @@ int GroundFaces(const SolvedLight& light)
   return faces;
 }
 
-/// Radiance of the reflecting faces, seen from inside, W / (length^2 sr): albedo / pi times the power per area that
-/// leaves through each cell (numerics.md, Eq. (111a)). [face][row][cell of the row] with borders (WithBorders). Empty
-/// if no face reflects or facePower is not known.
+/// Radiance of the reflecting faces, seen from inside, W / (length^2 sr): albedo / pi times the outgoing partial
+/// current in each cell (numerics.md, Eq. (111a)). [face][row][cell of the row] with borders (WithBorders). Empty if no
+/// face reflects or facePower is not known.
 std::vector<cl_float4> GroundLight(const Grid& grid, const SolvedLight& light)
 {
   if (GroundFaces(light) == 0)

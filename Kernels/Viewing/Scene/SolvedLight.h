@@ -24,8 +24,8 @@ struct SolvedLight
   /// many, and the matching LightField::straightOn and lampsApart. Null: not known.
   Field scatteredMoments = {}, straightOn = {};
   std::vector<Light> lampsApart = {};
-  /// Power through reflecting faces, LightField::facePower, with 1 or 3 components, and their albedo,
-  /// LightField::faceAlbedo. Null: not known.
+  /// Outgoing partial current in the cells of the box's faces, W / length^2, LightField::facePower, with 1 or 3
+  /// components, and albedo of the faces, LightField::faceAlbedo. Null: not known.
   Field facePower = {};
   std::array<Rgb, 6> faceAlbedo = {};
 };
