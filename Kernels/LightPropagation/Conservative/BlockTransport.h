@@ -14,24 +14,25 @@
 
 namespace tyndall
 {
-/// How rays get through the grid: the only place that chooses between a serial sweep and one that is pipelined over
-/// ranks. Owns the arrays that sweeps share.
+/// Makes the sweep operators of a solve: in the memory of one device for a serial domain, pipelined over ranks for a
+/// decomposed one. Owns the work arrays that all sweeps of the solve share.
 class BlockTransport
 {
 public:
   /// Not collective: may throw on one rank alone.
-  /// @param device, domain, layout, sigma_t  must outlive this; layout and extinction of this rank's block
+  /// @param device, domain, layout, sigma_t  must outlive this object; `layout` and `sigma_t` (extinction, 1/length)
+  ///   are those of this rank's block
   BlockTransport(Device& device, const Domain& domain, const VolumeLayout& layout, const Buffer<float>& sigma_t,
     const std::array<bool, 3>& periodic);
 
-  /// Chooses and makes an implementation of the sweep; no other function does. Collective.
+  /// Makes the sweep operator for a request. Collective.
   std::unique_ptr<SweepOperator> MakeSweep(const SweepRequest& request);
-  /// Whether MakeSweep can sweep a part of the grid (SweepRequest::box).
+  /// Whether MakeSweep can restrict a sweep to a box of voxels (SweepRequest::box); true for a serial domain.
   bool SweepsParts() const { return this->TheDomain.IsSerial(); }
-  /// Fetches the values beyond the faces of this block from its neighbours. Collective.
-  /// @param byFaces  values by face of each voxel, [channel][face][stride]
+  /// Fetches from the neighbouring ranks the values of the voxels just outside the faces of this block. Collective.
+  /// @param byFaces  values of this block by voxel face, [channel][face][stride]
   BeyondFaces FetchBeyond(const Buffer<float>& byFaces);
-  /// What an uncollided source needs to deposit its light in all blocks.
+  /// The medium and the `deposit` arrays through which an uncollided source transports its light (UncollidedSource.h).
   UncollidedVolume VolumeOf(const Deposit& deposit, const AngularBasis* basis);
 
 private:
@@ -42,6 +43,6 @@ private:
   const std::array<bool, 3> Periodic;
   SweepWorkspace Workspace;
   BlockWorkspace PipelineWorkspace;
-  std::unique_ptr<AcrossFaces> Across; ///< null: the block is the domain
+  std::unique_ptr<AcrossFaces> Across; ///< null for a serial domain
 };
 }

@@ -25,7 +25,8 @@ namespace tyndall
 {
 namespace
 {
-/// Entries of leftOut that follow from the traits of the scene, except the use of one channel for three.
+/// Entries of LightField::leftOut for work that traits of the scene make unnecessary, except for solving one channel
+/// instead of three.
 std::vector<std::string> LeftOutOf(const TransportParts& parts, const IterationResult& found)
 {
   std::vector<std::string> words;
@@ -97,7 +98,9 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
 
 constexpr double MostBytes = 1024.0 * 1024.0 * 1024.0;
 
-/// Number of spherical harmonics kept: all those of a degree limited by memory.
+/// Number of spherical harmonics stored for pictures: all up to `degree`, or up to a lower degree if they exceed
+/// MostBytes.
+/// @param values  number of values per harmonic
 int HarmonicsKept(int degree, std::size_t values)
 {
   const auto count = [](int l) { return (l + 1) * (l + 1); };
@@ -108,10 +111,11 @@ int HarmonicsKept(int degree, std::size_t values)
   return count(degree);
 }
 
-constexpr float LeastScattering = 1e-30f; ///< 1/length, in the solver's unit: weaker scattering is invisible
+/// Smallest sigma_s, 1 / solver's unit of length, whose scattered light is stored for pictures.
+constexpr float LeastScattering = 1e-30f;
 
-/// Factor from source to scattered radiance per mean free path of scattering: 1 / sigma_s, or 0 where sigma_s is
-/// negligible.
+/// Factor that converts a scattering source, per length, to one per scattering mean free path: 1 / sigma_s, or 0 where
+/// sigma_s is negligible.
 Buffer<float> PerScattering(Device& device, const VolumeLayout& layout, const Field& sigma_s)
 {
   const auto inverse = [&](std::size_t i, int c) {
@@ -120,7 +124,7 @@ Buffer<float> PerScattering(Device& device, const VolumeLayout& layout, const Fi
   return PlanarOnDevice(device, layout, layout.channels, inverse, "the inverse of sigma_s");
 }
 
-/// Whether the unscattered forward part differs between the channels of a voxel.
+/// Whether the fraction of scattered light that delta-M treats as unscattered differs between channels in any voxel.
 bool HasColouredStraightOn(const TransportParts& parts)
 {
   const TruncatedScattering& scattering = parts.Problem.Scattering();
@@ -137,7 +141,7 @@ bool HasColouredStraightOn(const TransportParts& parts)
   return false;
 }
 
-/// LightField::scatteredMoments in the solver's units. Overwrites parts.Path.
+/// Computes LightField::scatteredMoments, in the solver's units. Overwrites parts.Path.
 /// @param shown  IterationResult::shown
 std::vector<float> MomentsForPictures(const TransportParts& parts, const Buffer<float>& shown, int harmonics)
 {
@@ -160,8 +164,8 @@ std::vector<float> MomentsForPictures(const TransportParts& parts, const Buffer<
   return moments;
 }
 
-/// Adds the data from which a camera renders scattered light along any direction (numerics.md, section 14.7):
-/// scatteredMoments and straightOn, in the same form on all ranks. Collective.
+/// Sets LightField::scatteredMoments and straightOn, from which a camera renders scattered light in any direction
+/// (numerics.md, section 14.7). Number of harmonics and channels are equal on all ranks. Collective.
 /// @param shown  IterationResult::shown
 void AddShown(const TransportParts& parts, const Buffer<float>& shown, LightField& light)
 {
@@ -172,7 +176,7 @@ void AddShown(const TransportParts& parts, const Buffer<float>& shown, LightFiel
     {
       return;
     }
-    std::size_t most = 0; // values of one function in the largest block
+    std::size_t most = 0; // number of values of one angular function in the largest block
     for (const VoxelBox& block : domain.Partition().blocks)
     {
       most = std::max(most, parts.Layout.channels * block.VoxelCount());
@@ -192,7 +196,7 @@ void AddShown(const TransportParts& parts, const Buffer<float>& shown, LightFiel
   });
 }
 
-/// Copies the arrays over voxels.
+/// Sets the arrays over voxels of `light`: fluence, net flux and scattered radiance.
 void TakeVoxels(const TransportParts& parts, LightField& light)
 {
   light.fluence = Interleaved(parts.Layout, parts.Fluence, 1.0);
@@ -246,7 +250,7 @@ std::unique_ptr<Iteration> MakeIteration(TransportParts& parts, const KeptLight*
   return std::make_unique<DiffusionAcceleration>(parts, kept);
 }
 
-/// Solves a scene whose axes are already permuted for fast sweeps.
+/// Solves a scene by sweeps; its axes are already permuted for fast sweeps.
 LightField Solve(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
@@ -294,7 +298,8 @@ LightField SolveConservative(Device& device, const Domain& domain, const Medium&
   {
     return Solve(device, domain, medium, illumination, settings, monitor, kept);
   }
-  Check(domain, medium, illumination, settings); // before axes are permuted, so that messages name the user's axes
+  // Checks before axes are permuted, so that messages name the user's axes.
+  Check(domain, medium, illumination, settings);
   const Medium turned = turn.Of(medium);
   LightField light =
     Solve(device, Domain(turned.grid), turned, turn.Of(illumination), turn.Of(settings), monitor, kept);
@@ -306,7 +311,7 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
   const Illumination& illumination, const PropagationSettings& settings)
 {
   const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
-  // Plane-parallel blocks may still differ from each other; then the voxel solver is used.
+  // Blocks may be plane-parallel but differ from each other; the serial solve then uses voxels, too.
   const bool varies = !domain.IsEmpty() && !IsPlaneParallel(medium, illumination, settings);
   if (problem.IsSlab() || !domain.Any(varies))
   {

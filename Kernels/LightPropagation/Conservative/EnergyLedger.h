@@ -9,8 +9,9 @@
 
 namespace tyndall
 {
-/// Counts the power of one solve by its fate, W by channel. No other class does this (numerics.md, Eq. (80)). A value
-/// type: a sweep can be counted on a copy that is then kept or discarded.
+/// Energy balance of one solve, W by channel (numerics.md, Eq. (80)): incident, emitted, absorbed, escaped and
+/// unaccounted power, and escaped power by face of the box. A value type: a sweep can be counted on a copy that is then
+/// kept or discarded.
 class EnergyLedger
 {
 public:
@@ -22,13 +23,14 @@ public:
     this->Sums.escaped[channel] += watts;
     this->Faces[face][channel] += watts;
   }
-  /// Escaped power whose face is not known yet.
+  /// Counts escaped power whose face is not known yet.
   void Escape(int channel, double watts) { this->Sums.escaped[channel] += watts; }
-  /// Assigns to a face power that Escape(channel, watts) has counted.
+  /// Assigns escaped power to a face, after Escape(channel, watts) has counted it without a face.
   void AssignFace(int channel, int face, double watts) { this->Faces[face][channel] += watts; }
-  /// Distributes power that escaped through unknown faces, in proportion to the known escaped power of each face.
+  /// Distributes `watts` of power that escaped through unknown faces over the six faces, in proportion to the escaped
+  /// power already assigned to each.
   void ShareEscaped(const Rgb& watts);
-  /// Sets the power left over, instead of adding to it.
+  /// Replaces the unaccounted power: still in flight, or in sources that no sweep has carried.
   void SetUnaccounted(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 
   /// Adds the incident and escaped powers of a sweep.
@@ -42,7 +44,7 @@ private:
   std::array<Rgb, 6> Faces = {};
 };
 
-/// The rows of the `convergence` table, with the time since construction.
+/// Rows of the `convergence` table of a solve. The time in a row is counted from the construction of this object.
 class ConvergenceRecord
 {
 public:

@@ -12,18 +12,19 @@ namespace tyndall
 {
 namespace
 {
-/// W that radiance 1 carries through a row of cells of each face, by plane; all cells of a plane have the same value.
+/// Power that radiance 1 carries sideways into the box, W, by face and by plane of voxels along the marching axis; all
+/// cells of a face in one plane have the same value.
 using ByPlane = std::array<std::vector<double>, 6>;
 
-/// Marching axis of the rays, and the planes that they cross.
+/// Axes across the marching axis of rays, and the planes of voxels that the rays cross.
 struct Aside
 {
   PlaneAxes axes;
   AsidePlanes planes;
 };
 
-/// Adds the transverse moves of the rays of a bundle, as SweepBorder counts them; on a short periodic axis by laps
-/// (SweepPlan::LayLaps).
+/// Adds the power of the rays of a bundle that enter sideways, as SweepBorder counts it; on a short periodic axis
+/// averaged over laps (SweepPlan::LayLaps).
 void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
 {
   const PlaneAxes& axes = aside.axes;
@@ -93,7 +94,8 @@ void FaceReflection::SetPowerIn(std::vector<double> powerIn)
 std::vector<float> FaceReflection::RadianceOf(
   const std::vector<double>& swept, const std::vector<double>& uncollided) const
 {
-  std::vector<double> brought(swept.size()); // W of uncollided light, in the pattern of the rays
+  // Power of uncollided light by cell, W, with the uneven pattern of the rays.
+  std::vector<double> brought(swept.size());
   for (std::size_t i = 0; i < swept.size(); ++i)
   {
     const std::size_t cell = i % this->Cells();
@@ -177,7 +179,7 @@ std::vector<double> SweptPowerIn(
     const Aside aside = { AcrossAxis(axis), { grid.size[axis], periodic[axis], spreads } };
     ByPlane byPlane;
     byPlane.fill(std::vector<double>(aside.planes.size, 0.0));
-    std::array<double, 2> ahead = {}; // W through the low face and the high face
+    std::array<double, 2> ahead = {}; // power through each cell of the low and of the high face, W
     for (const Bundle& bundle : directions.Along(axis))
     {
       for (const Member& member : bundle.members)

@@ -11,24 +11,25 @@
 
 namespace tyndall
 {
-/// Result of an iteration. Fluence and flux themselves are in TransportParts::Fluence and Flux.
+/// Result of Iteration::Run(), except for fluence and net flux, which are in TransportParts::Fluence and Flux.
 struct IterationResult
 {
   EnergyLedger ledger;
   ConvergenceRecord convergence;
   std::vector<float> fluenceDirect, surfaceRadiance; ///< as in LightField
-  std::vector<float> firstMoments;                   ///< likewise; empty: not requested
-  std::vector<double> leftByCell; ///< W that left through each face cell, [channel][cell], if requested
+  std::vector<float> firstMoments;                   ///< as in LightField; empty: not requested
+  /// Power that left through each cell of the box faces, W, [channel][cell], if requested.
+  std::vector<double> leftByCell;
   /// Angular moments of the scattered radiance of all light except uncollided light of lamps, in the layout of a source
   /// (ScatteringOperator); only if TransportParts::StoresMoments().
   Buffer<float> shown;
-  std::vector<std::string> leftOut; ///< simplifications the iteration made
-  KeptLight kept;                   ///< first guess for the next solve; empty: not requested
-  bool warm = false;                ///< this solve began from kept light
+  std::vector<std::string> leftOut; ///< entries of LightField::leftOut that the iteration adds
+  KeptLight kept;                   ///< light to begin the next solve from; empty: not requested
+  bool warm = false;                ///< whether this solve began from the light of a previous one
 };
 
-/// Strategy that sums the scattering orders, over the same sweep and scattering operators. Stopping criterion and
-/// meaning of the last residual: numerics.md, section 7.9.
+/// Iteration that solves for the light of all scattering orders by sweeps: source iteration, with or without DSA.
+/// Stopping criterion and meaning of the last residual: numerics.md, section 7.9.
 class Iteration
 {
 public:

@@ -13,15 +13,17 @@ namespace tyndall
 {
 namespace
 {
-constexpr double More = 0.25; ///< additional time, relative to a solve with the usual directions
-/// Time of a solve besides its sweeps, in units of a scattering order along all usual directions: measured 0.8 in 100^3
-/// voxels, 2 in 40^3.
+constexpr double More = 0.25; ///< acceptable increase of the solve's time by finer directions, as a fraction
+/// Time of a solve outside its sweeps, in units of the time of one scattering order along all usual directions;
+/// measured: 0.8 in 100^3 voxels, 2 in 40^3.
 constexpr double SetUp = 0.8;
-/// An accelerated solve in such orders: one to set up three, and five sweeps with their corrections.
+/// Time of a solve with DSA, in units of the time of one scattering order: set-up, and five sweeps with their
+/// corrections.
 constexpr double AcceleratedOrders = 18.0;
-constexpr double OrdersByCells = 12.0; ///< time with coarse-mesh DSA: measured 9 in 128^3 voxels, 14 in 64^3
-constexpr double LeastOrders = 3.0;    ///< orders that are always swept
-constexpr double Lit = 0.5;            ///< fraction of all directions that carry light of one face
+/// Time of a solve with coarse-mesh DSA, in units of the time of one order; measured: 9 in 128^3 voxels, 14 in 64^3.
+constexpr double OrdersByCells = 12.0;
+constexpr double LeastOrders = 3.0; ///< smallest number of orders that source iteration sweeps
+constexpr double Lit = 0.5;         ///< fraction of all directions that carry light of one face
 constexpr int Choices[] = { 36, 49, 64, 100 };
 
 bool FacesShine(const Illumination& light)
@@ -29,7 +31,7 @@ bool FacesShine(const Illumination& light)
   return std::any_of(light.faces.begin(), light.faces.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
 }
 
-/// Time of a solve except its first sweep, in orders along all usual directions.
+/// Predicted time of a solve without its first sweep, in units of the time of one scattering order.
 double TimeOfLaterOrders(const PropagationProblem& problem, IterationScheme how)
 {
   const int most = problem.Settings().maximumOrders;
@@ -43,7 +45,7 @@ double TimeOfLaterOrders(const PropagationProblem& problem, IterationScheme how)
   return SetUp + (most > 0 ? std::min<double>(orders, most) : orders) - 1.0;
 }
 
-/// Adds the mean boundary radiance.
+/// Adds the radiance of a boundary source, averaged over the six faces, to `mean`, W / (length^2 sr).
 void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
 {
   for (const Rgb& power : boundary ? boundary->IncomingPower() : std::array<Rgb, 6>())
@@ -55,8 +57,9 @@ void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
   }
 }
 
-/// Separates localised emission, which is traced along exact rays. These neither wrap around periodic axes, because
-/// there would be infinitely many images, nor cross between blocks.
+/// Splits the emission of the medium into localised emission, which is traced along exact rays, and the rest. On
+/// periodic axes or several ranks nothing is localised: exact rays neither wrap around (there would be infinitely many
+/// images) nor cross between blocks.
 SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& comesIn)
 {
   const bool has = problem.TheDomain().IsSerial() && !problem.Settings().IsPeriodic();
@@ -64,7 +67,8 @@ SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& come
                                                                                  : SplitEmission();
 }
 
-/// The part of the boundary source that uses the finer directions. Its lights and environment are not to be used.
+/// Boundary source of the finer directions: radiance of faces and sky. Lamps and environment of the result are not to
+/// be used.
 Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining)
 {
   Illumination part = finer.perFace > 0 ? shining : Illumination();
@@ -72,7 +76,7 @@ Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& s
   return part;
 }
 
-/// The remainder, which uses the quadrature of scattered light.
+/// Boundary source of the quadrature of scattered light: `shining` without that of AlongFiner().
 Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& shining)
 {
   Illumination part = shining;
@@ -84,8 +88,8 @@ Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& s
   return part;
 }
 
-/// Directions along which that light is swept.
-/// @param accelerated  solved with DSA: finer directions are swept in addition to the usual ones, and unmodified
+/// Rays of the finer quadrature.
+/// @param accelerated  whether the solve uses DSA: finer directions are then swept in addition to the usual ones
 std::unique_ptr<const SweptDirections> FinerDirections(
   const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated)
 {
@@ -99,7 +103,7 @@ std::unique_ptr<const SweptDirections> FinerDirections(
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
 {
-  const bool besideUsual = how == IterationScheme::Dsa; // otherwise finer directions replace the usual ones
+  const bool besideUsual = how == IterationScheme::Dsa; // false: finer directions replace the usual ones for this light
   const PropagationSettings& settings = problem.Settings();
   const Illumination& shining = problem.Shining();
   const bool scatters = problem.Traits().scatters;
@@ -115,7 +119,8 @@ UncollidedDirections UncollidedDirectionsFor(
   }
   if (besideUsual && problem.Scattering().Degree() > 0)
   {
-    return {}; // all moments of four lights would be stored at once: hundreds of bytes per voxel
+    // 0, since the moments of four kinds of uncollided light would be stored at once: hundreds of bytes per voxel.
+    return {};
   }
   const double before = settings.directionsPerFace;
   const double affordable = More * (TimeOfLaterOrders(problem, how) + Lit) * before;
@@ -181,7 +186,8 @@ void LightSources::FindVacuum()
   }
 }
 
-/// Separates the environment into peaks and a smooth part, for the directions of that smooth part.
+/// Splits the environment into peaks, which become lamps, and a smooth part, for the quadrature that transports the
+/// smooth part.
 SplitEnvironment LightSources::SplitFar(const Environment& environment) const
 {
   return Split(environment, (this->Fine && !this->Finer.ofFacesAlone ? *this->Fine : this->Usual).Set());
@@ -210,9 +216,9 @@ void LightSources::FindBoundaryLight()
   }
 }
 
-/// Makes the boundary source along the finer quadrature. A uniform boundary source keeps the usual quadrature, as
-/// scattered light has, so that a furnace stays uniform. DSA with reflecting faces also keeps it, because faces cannot
-/// reflect part of the light along other directions than those of sweeps.
+/// Sets FineBoundary, the boundary source along the finer quadrature. A uniform boundary source stays with the
+/// quadrature of scattered light, so that the light in a furnace stays uniform. So does all boundary light in DSA with
+/// reflecting faces, because faces reflect only along the directions of sweeps.
 void LightSources::FindFineBoundary()
 {
   const PropagationSettings& settings = this->Problem.Settings();

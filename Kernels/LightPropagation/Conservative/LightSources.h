@@ -22,78 +22,81 @@ namespace tyndall
 /// are on, so that solutions can be superposed.
 struct UncollidedDirections
 {
-  int perFace = 0; ///< directions per cube face; 0: the same as for scattered light
-  /// Used for light of faces only; sky and environment, which are uniform or smooth, use the directions of scattered
-  /// light.
+  int perFace = 0; ///< directions per cube face; 0: the quadrature of scattered light
+  /// Whether only light of faces uses these directions; sky and environment, which are uniform or smooth, then use the
+  /// directions of scattered light.
   bool ofFacesAlone = false;
-  /// The difference in escape between these and the directions of scattered light is corrected (EscapeCorrection.h);
-  /// three times as expensive.
+  /// Whether the difference in escaped power between these directions and those of scattered light is corrected
+  /// (EscapeCorrection.h), at three times the cost.
   bool correctsEscape = false;
 };
 
-/// The value in the settings or, if they leave it open (-1), the largest of 36, 49, 64 and 100 directions for light of
-/// faces with which a solve with one emitting face is predicted to take at most a quarter longer. 0 if a face reflects;
-/// with coarse-mesh DSA (more directions gain nothing without the escape correction, which would change the light of
-/// lamps as well); and, for memory, in accelerated solves with angular moments.
-/// @param usual  quadrature of scattered light; only if it is a fitted one do finer directions alone improve accuracy
+/// Chooses the directions for uncollided boundary light: settings.uncollidedDirections or, if that is -1, the largest
+/// of 36, 49, 64 and 100 directions per cube face, for light of faces, with which a solve with one emitting face is
+/// predicted to take at most a quarter longer. The automatic choice is 0 if a face reflects; with coarse-mesh DSA (more
+/// directions gain nothing without the escape correction, which would change the light of lamps as well); and, for
+/// memory, with DSA and angular moments.
+/// @param usual  quadrature of scattered light; unless it is fitted (DirectionSet::orbits), the automatic choice is 0
 /// Collective.
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how);
 
-/// The light sources of a problem, each assigned to the way it is transported: traced along exact rays until its first
-/// collision, swept along a finer quadrature until then, or swept along the usual quadrature with scattered light.
-/// Boundary sources are those of the whole domain, emission is of the block.
+/// Light sources of a problem, sorted by how their light is transported: traced along exact rays until its first
+/// collision, swept along a finer quadrature until its first collision, or swept along the usual quadrature together
+/// with scattered light. Boundary sources are those of the whole domain, emission is that of this rank's block.
 class LightSources
 {
 public:
-  /// @param problem, layout, usual  must outlive this; usual: quadrature of scattered light
-  /// @param byBalance  for DSA, whose sweeps carry all boundary light
+  /// @param problem, layout, usual  must outlive this object; `usual` is the quadrature of scattered light
+  /// @param byBalance  whether the solve uses DSA, whose sweeps carry all boundary light
   /// @param finer  quadrature of boundary light until its first collision
   /// @throws InvalidInput if there are too few rays (BoundaryLight.h)
   LightSources(const PropagationProblem& problem, bool byBalance, const VolumeLayout& layout,
     const SweptDirections& usual, const UncollidedDirections& finer);
-  LightSources(const LightSources&) = delete; // sources refer to directions that this owns
+  LightSources(const LightSources&) = delete; // light sources refer to directions that this object owns
   LightSources& operator=(const LightSources&) = delete;
 
-  /// Gives the emission of empty voxels a quadrature of its own, if it needs one. Collective; call before any method
-  /// that concerns emission.
+  /// Sets OfVacuum, if empty voxels emit and need a separate quadrature. Collective; call before any method that
+  /// concerns emission.
   void FindVacuum();
 
   const PropagationProblem& Problem;
   const bool ByBalance;
   const VolumeLayout& Layout;
   const SweptDirections& Usual;
-  const UncollidedDirections Finer;            ///< quadrature of boundary light until its first collision
-  std::unique_ptr<const SweptDirections> Fine; ///< sweeps along Finer; null: along Usual
-  /// Boundary sources. FineBoundary: those along the finer quadrature; null if there are none. UsualBoundary: those
-  /// that sweeps carry along the usual quadrature, which are all others; with DSA, all boundary light.
+  const UncollidedDirections Finer; ///< quadrature of boundary light until its first collision
+  /// Rays of the quadrature Finer; null if that is the quadrature of scattered light.
+  std::unique_ptr<const SweptDirections> Fine;
+  /// Boundary sources. FineBoundary: transported along the quadrature Fine; null if there are none. UsualBoundary:
+  /// carried by sweeps along the usual quadrature; with DSA all boundary light, else all that is not in FineBoundary.
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary;
   std::vector<Light> Lamps; ///< lamps of the scene, and peaks of the environment
   Environment FarAway;      ///< the environment without its peaks
-  SplitEmission Emission;   ///< of the medium
-  /// Quadrature for the emission of empty voxels, until its first collision; null: no empty voxel emits, or its
-  /// emission is swept with the rest.
+  SplitEmission Emission;   ///< emission of the medium
+  /// Quadrature for the emission of empty voxels, until its first collision; null: no empty voxel emits, or that
+  /// emission is swept along the usual quadrature.
   std::unique_ptr<const SweptDirections> OfVacuum;
   std::unique_ptr<const GivenLight> Given; ///< uncollided light from another solver; null: none
 
   /// Boundary source of sweeps along the usual directions; empty: none.
   SweepBoundary BoundaryOfSweeps() const;
   bool SweepCarriesBoundarySource() const { return this->UsualBoundary->Shines(); }
-  /// The boundary source of FineBoundary, represented in the usual quadrature.
+  /// The boundary source of FineBoundary, represented in the usual quadrature instead of the finer one.
   BoundaryLight FinePartAlongUsual() const;
-  /// Lamps of a scene, and lamps that represent the peaks of its environment along these directions, in its units.
+  /// Lamps of a scene, and parallel beams that represent the peaks of its environment, in the units of `illumination`.
   std::vector<Light> LampsOf(const Illumination& illumination) const;
 
   using Sources = std::vector<std::unique_ptr<UncollidedSource>>;
   Sources LampSources() const;
-  /// Localised emission and given light: all uncollided light that neither comes from lamps nor is swept.
+  /// Sources of uncollided light other than lamps that are not swept: localised emission and uncollided light given by
+  /// another solver.
   Sources OtherSources() const;
-  /// Emission of empty voxels, if it has a quadrature of its own (OfVacuum).
+  /// Source of the emission of empty voxels, if it is swept along OfVacuum; else none.
   Sources VacuumSources() const;
   /// Emission without localised emission, W / (length^3 sr), [channel][stride].
-  /// @param emptyVoxels  of empty voxels that are swept separately; false: of all other voxels
+  /// @param emptyVoxels  true: emission of the empty voxels that are swept along OfVacuum; false: of all other voxels
   std::vector<float> EmissionOf(bool emptyVoxels) const;
-  void CountEmission(EnergyLedger& ledger) const; ///< counts all emission of the medium; collective
+  void CountEmission(EnergyLedger& ledger) const; ///< adds all emission of the medium to the ledger; collective
 
 private:
   void FindBoundaryLight();

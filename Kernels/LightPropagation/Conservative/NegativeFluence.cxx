@@ -8,13 +8,15 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostTurns = 50; ///< iterations; each reaches one voxel farther if nearer neighbours do not absorb enough
+/// Largest number of calls of OwedPower::Collect(); each call passes power that is still owed one voxel farther.
+constexpr int MostTurns = 50;
 
-/// One channel of fluence on this rank, and the power owed by voxels whose negative fluence was raised.
+/// One channel of fluence on this rank, and the absorbed power that voxels owe because their negative fluence was
+/// raised.
 class OwedPower
 {
 public:
-  /// @param instead  initial replacement of negative values; null: 0
+  /// @param instead  replacement of negative values, W / length^2, by voxel; null: 0
   OwedPower(const Halo& around, const std::function<double(std::size_t)>& sigma_a, float* fluence, const float* instead)
     : Around(around)
     , Sigma(sigma_a)
@@ -33,7 +35,8 @@ public:
     return std::any_of(this->Owed.begin(), this->Owed.end(), [](double owed) { return owed > 0.0; });
   }
 
-  /// Takes owed power from neighbouring voxels, which may then owe power themselves.
+  /// Subtracts the owed power from the neighbouring voxels, which owe power in turn if they become negative.
+  /// Collective.
   void Collect()
   {
     std::vector<float> own(this->Owed.size());
@@ -67,7 +70,8 @@ private:
     }
   }
 
-  /// Calls act(voxel, its index in the box with halo, that index along each axis).
+  /// Calls act(index in the block, index in the box with halo, indices along the axes of the box with halo) for each
+  /// voxel of the block.
   template <class Act>
   void ForOwn(const Act& act) const
   {
@@ -83,7 +87,8 @@ private:
     }
   }
 
-  /// Sum of `values` over the neighbours of a voxel in the box with halo.
+  /// Sum of `values`, by voxel of the box with halo, over the up to six neighbours of the voxel with index `known`
+  /// there.
   double SumBeside(const std::vector<float>& values, std::size_t known, const std::array<int, 3>& at) const
   {
     const std::array<std::size_t, 3> step = this->Known.Strides();
@@ -100,7 +105,7 @@ private:
   const std::function<double(std::size_t)> Sigma;
   float* Fluence;
   const Grid Known;         ///< the block with its halo
-  std::vector<double> Owed; ///< W / length^3
+  std::vector<double> Owed; ///< owed power per volume, W / length^3, by voxel of the block
 };
 }
 

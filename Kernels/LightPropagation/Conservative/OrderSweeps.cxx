@@ -8,10 +8,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr int FewPlanes = 256;        ///< that a ray crosses around a periodic axis per order, if more orders follow
-constexpr double MostlyLit = 0.75;    ///< fraction of rays above which a separate sweep does not pay
-constexpr double MostlyFilled = 0.75; ///< the same for voxels
-constexpr int OrdersExpected = 6;     ///< assumed when deciding whether to sweep empty slabs only at the end
+/// Largest number of planes of voxels that a ray crosses around a periodic axis in one order, if more orders follow.
+constexpr int FewPlanes = 256;
+constexpr double MostlyLit = 0.75; ///< fraction of rays with incident light above which the first order sweeps all rays
+/// Fraction of voxels in the medium's bounding box above which all orders sweep the whole grid.
+constexpr double MostlyFilled = 0.75;
+/// Number of orders assumed when deciding whether to omit empty slabs, if the settings set no limit.
+constexpr int OrdersExpected = 6;
 }
 
 OrderSweeps::OrderSweeps(
@@ -19,7 +22,8 @@ OrderSweeps::OrderSweeps(
   : Parts(parts)
 {
   const PropagationSettings& settings = parts.Problem.Settings();
-  // Coarse-mesh DSA does not know of rays that wait for the next sweep, so they go all the way.
+  // With coarse-mesh DSA rays complete their laps around periodic axes in one sweep: its solution does not include the
+  // light of rays that wait for the next sweep.
   const bool wholeWay = settings.maximumOrders > 0 || byCells;
   SweepRequest request = { deposit, parts.AllRays(), {}, wholeWay ? MostPlanesAround : FewPlanes };
   request.octantSource = octantSource;
@@ -28,7 +32,7 @@ OrderSweeps::OrderSweeps(
   this->Whole = parts.Transport.MakeSweep(request);
   if (!octantSource && !byCells && this->MayOmitEmptySlabs())
   {
-    // No flux: the final sweep computes it.
+    // Deposits no net flux: the final sweep computes that of all orders.
     this->Filled = parts.Transport.MakeSweep(
       { { &parts.Path, nullptr, nullptr, nullptr }, parts.AllRays(), parts.Problem.Traits().filled });
   }
@@ -38,9 +42,9 @@ OrderSweeps::OrderSweeps(
   }
 }
 
-/// Whether later orders sweep only the box that the medium fills: light that leaves this box does not come back. Not
-/// with periodic axes, whose rays would be under way in both sweeps; nor if face light by cell is requested, which the
-/// final sweep does not know.
+/// Whether later orders sweep only the bounding box of the medium, since light that leaves it does not return. False
+/// with periodic axes, around which rays would be in flight in both sweeps, and if light by cell of the box faces is
+/// needed, which the final sweep does not compute.
 bool OrderSweeps::MayOmitEmptySlabs() const
 {
   const PropagationSettings& settings = this->Parts.Problem.Settings();
@@ -56,8 +60,8 @@ bool OrderSweeps::MayOmitEmptySlabs() const
   return filled < MostlyFilled && later * (1.0 - filled) > 1.0;
 }
 
-/// Makes the first sweep, restricted to directions with incident light, if these are few. Not used with periodic axes,
-/// where rays wait in the other directions for the next order.
+/// Makes the sweep of the first order along the directions with incident light alone, if these are few. Not used with
+/// periodic axes, where rays of all directions carry light on to the next order.
 void OrderSweeps::MakeLitSweep(const Deposit& deposit)
 {
   const auto isLit = [this](int direction) { return this->Parts.Lights.UsualBoundary->IsLit(direction); };
@@ -99,7 +103,8 @@ std::array<std::size_t, 2> OrderSweeps::Values(int order) const
     RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
 }
 
-/// One sweep of the source of all orders minus the unswept source of the last one (numerics.md, Eq. (44)).
+/// The source of the final sweep is that of all orders minus the unswept source of the last order (numerics.md, Eq.
+/// (44)).
 void OrderSweeps::SweepEmptySlabs(EnergyLedger& ledger, const Monitor& monitor)
 {
   if (!this->Filled)
@@ -119,7 +124,7 @@ void OrderSweeps::SweepEmptySlabs(EnergyLedger& ledger, const Monitor& monitor)
   this->AddOutside(parts.Problem.Traits().filled);
 }
 
-/// Adds the path integrals of a sweep to the fluence of the voxels outside a box.
+/// Adds the path integrals of the final sweep to the fluence of the voxels outside `box`.
 void OrderSweeps::AddOutside(const VoxelBox& box)
 {
   const TransportParts& parts = this->Parts;

@@ -10,28 +10,29 @@
 
 namespace tyndall
 {
-/// The sweeps of source iteration. Orders sweep all rays through the whole grid, with two exceptions: the first order
-/// omits directions without incident light, and later orders omit voxels around the medium, whose light is computed at
-/// the end for all orders in one sweep. Construct and call collectively.
+/// Sweeps of source iteration, one per scattering order. An order sweeps all rays through the whole grid, with two
+/// exceptions: the first order omits directions without incident light, and later orders omit the empty voxels around
+/// the medium, whose light of all later orders is computed in one final sweep. Construct and call collectively.
 class OrderSweeps
 {
 public:
-  /// @param parts  must outlive this, as must what `deposit` and `octantSource` refer to
-  /// @param octantSource  sources by octant; null: none
-  /// @param byCells  for coarse-mesh DSA
-  /// @param shines  the source of the first order is not zero
+  /// @param parts  must outlive this object, as must the arrays of `deposit` and `octantSource`
+  /// @param octantSource  sources by octant of directions (OctantSources); null: none
+  /// @param byCells  whether the solve uses coarse-mesh DSA
+  /// @param shines  whether the source of the first order is non-zero
   OrderSweeps(
     TransportParts& parts, const Deposit& deposit, const Buffer<float>* octantSource, bool byCells, bool shines);
 
   SweepOperator& Of(int order);
-  void EndFirstOrder() { this->Lit.reset(); } ///< releases the sweep that only the first order needs
-  /// Whether an order is swept without the voxels around the medium; the faces through which light escapes are then not
-  /// known yet.
+  void EndFirstOrder() { this->Lit.reset(); } ///< releases the sweep of the first order
+  /// Whether the sweep of an order omits the empty voxels around the medium; the faces through which its light escapes
+  /// are then known only after SweepEmptySlabs().
   bool OmitsEmptySlabs(int order) const { return this->Filled && order > 0; }
-  /// Index range of a channel that the sweep of an order may change, in whole vectors.
+  /// Index range [begin, end) of a channel in arrays over voxels that the sweep of an order may change, rounded to
+  /// whole vectors.
   std::array<std::size_t, 2> Values(int order) const;
-  /// Computes the light of all orders after the first in the voxels around the medium, and through the box faces, if
-  /// they were omitted.
+  /// Final sweep, if empty voxels were omitted: computes the light of all orders after the first in the empty voxels
+  /// around the medium, and its escaped power by face.
   void SweepEmptySlabs(EnergyLedger& ledger, const Monitor& monitor);
   std::vector<std::string> LeftOut() const;
 

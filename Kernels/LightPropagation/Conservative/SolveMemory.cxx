@@ -17,11 +17,11 @@ struct SolveExtent
   std::array<int, 3> size; ///< voxels of the domain or of a rank's block
   const PropagationSettings& settings;
   int channels = 1;
-  int degree = 0; ///< of angular moments
+  int degree = 0; ///< highest degree of the angular moments
   IterationScheme how = IterationScheme::SourceIteration;
-  bool byOctant = false; ///< the source of a voxel differs between octants
-  bool byCells = false;  ///< light is stored by cell of the box faces
-  bool ofBlock = false;  ///< of a rank's block, swept one bundle of rays at a time
+  bool byOctant = false; ///< uses sources by octant (OctantSources)
+  bool byCells = false;  ///< stores light by cell of the box faces
+  bool ofBlock = false;  ///< solves on several ranks, where a rank sweeps its block one bundle of rays at a time
 };
 SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how)
 {
@@ -33,7 +33,7 @@ SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how)
   return solve;
 }
 
-/// Values per voxel and channel for the medium and the light in sweeps.
+/// Number of floats per voxel and channel for the medium and for the arrays that sweeps read and write.
 std::size_t ArraysOfLight(const SolveExtent& solve)
 {
   const std::size_t degree = Count(solve.degree);
@@ -42,11 +42,12 @@ std::size_t ArraysOfLight(const SolveExtent& solve)
   const std::size_t flux = solve.settings.netFlux ? 3 : 0;
   const std::size_t shown = degree > 0 && solve.settings.storeMoments ? moments : 0;
   const std::size_t beams = degree > 0 ? 5 : 0;
-  const std::size_t lost = solve.settings.IsPeriodic() ? moments : 0; // by rounding
+  const std::size_t lost =
+    solve.settings.IsPeriodic() ? moments : 0; // compensation of rounding errors in sums along periodic axes
   return medium + 2 * moments + lost + 1 + flux + shown + beams + (solve.settings.firstMoments ? 6 : 0);
 }
 
-/// Values per voxel and channel for the iteration.
+/// Number of floats per voxel and channel that the iteration needs beyond the arrays of sweeps.
 std::size_t ArraysOfOrders(const SolveExtent& solve)
 {
   const std::size_t degree = Count(solve.degree);
@@ -67,7 +68,8 @@ std::size_t LargestPlane(const SolveExtent& solve)
   return std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
 }
 
-/// Ray positions beside all planes along an axis; largest over axes.
+/// Number of positions at which rays leave sideways through faces of the box, over all planes along a marching axis;
+/// largest of the three axes.
 std::size_t MostBesidePlanes(const SolveExtent& solve)
 {
   std::size_t most = 0;
@@ -79,9 +81,9 @@ std::size_t MostBesidePlanes(const SolveExtent& solve)
   return most;
 }
 
-/// Bytes of ray state. CPU: rays of all bundles along an axis, in both directions, and the planes being crossed. GPU:
-/// rays of all axes (of a block: of one set) before and behind a plane, their sources, and what enters and leaves
-/// beside planes.
+/// Bytes of ray state in a sweep. CPU: rays of all bundles along one axis, in both directions, and the planes being
+/// crossed. GPU: rays of all axes (of a rank's block: of one bundle) on both sides of a plane, their sources, and the
+/// light that enters and leaves sideways.
 std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
 {
   const std::size_t directions = Count(std::max(solve.settings.directionsPerFace, 1));
@@ -103,11 +105,12 @@ std::size_t BytesOf(const Device& device, const SolveExtent& solve)
   return sizeof(float) * layout.Values() * (ArraysOfLight(solve) + ArraysOfOrders(solve)) + BytesOfSweep(device, solve);
 }
 
-/// The budget without regard to what the solve needs.
+/// Memory budget of a device, independent of the need of the solve.
+/// @param asked  settings.memoryBudget, bytes
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
 {
   MemoryBudget budget;
-  if (asked > 0 || !device.SharesHostMemory()) // otherwise there is no memory other than that of the host
+  if (asked > 0 || !device.SharesHostMemory()) // else the device uses host memory without a limit
   {
     const std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
     budget.bytes = asked > 0 ? asked : left / 10 * 9;
@@ -126,7 +129,7 @@ MemoryBudget BudgetOfSolve(const Device& device, const PropagationProblem& probl
 {
   const SolveExtent solve = ExtentOf(problem, how);
   MemoryBudget budget = BudgetAskedFor(device, solve.settings.memoryBudget);
-  const bool streams = !(solve.ofBlock && device.IsCpu()); // otherwise kernels work on host memory in place
+  const bool streams = !(solve.ofBlock && device.IsCpu()); // on a CPU, sweeps of blocks work on host memory in place
   if (streams && budget.spills && BytesOf(device, solve) > budget.bytes)
   {
     budget.hostFrom = sizeof(float) * Grid{ solve.size }.VoxelCount();

@@ -9,12 +9,12 @@
 
 namespace tyndall
 {
-/// Upper bound on the device memory of a solve without streaming, in bytes; about a quarter above the typical need.
-/// GPUs take more if available: separate arrays for all marching directions (SweepOnGpu.h). Collective.
+/// Device memory of a solve that does not stream arrays, in bytes: an upper bound, about a quarter above the typical
+/// use. If more is free, GPUs use more, for separate arrays of all marching directions (SweepOnGpu.h). Collective.
 std::size_t BytesOfSolve(const Device& device, const PropagationProblem& problem, IterationScheme how);
 
-/// Device memory that a solve may use: settings.memoryBudget bytes or, if 0, nine tenths of what is free. Arrays beyond
-/// that stay in host memory; if the solve needs more, all arrays over voxels do, and are streamed. A device that shares
-/// host memory has no limit of its own. Collective.
+/// Memory budget of a solve on a device: settings.memoryBudget bytes or, if that is 0, nine tenths of the free memory.
+/// If the solve needs more, all arrays over voxels are kept in host memory and streamed. A device that shares the
+/// host's memory has no limit unless settings.memoryBudget sets one. Collective.
 MemoryBudget BudgetOfSolve(const Device& device, const PropagationProblem& problem, IterationScheme how);
 }

@@ -1,8 +1,8 @@
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Adds path integrals to the fluence of all voxels outside a box. One work-item per voxel and channel.
-//   path     W length
-//   fluence  W / length^2, added to
+// Adds the path integrals of a sweep to the fluence of all voxels outside a box. One work-item per voxel and channel.
+//   path     W length, [channel][stride]
+//   fluence  W / length^2, [channel][stride], added to
 //   first, filled  first voxel and size of the box
 __kernel void add_outside(const __global float* path, __global float* fluence, ulong stride, float per_volume,
   int3 size, int3 first, int3 filled)
@@ -18,8 +18,9 @@ __kernel void add_outside(const __global float* path, __global float* fluence, u
   }
 }
 
-// Magnitude of a source that may be negative: its root mean square over directions, summed over the voxels of a row.
-// This is an upper bound on the power it adds or removes. One work-item per row and channel.
+// Computes the magnitude of a source that may be negative: the root mean square over directions in each voxel, summed
+// over the voxels of a row (numerics.md, Eq. (46c)). It bounds the power that the source adds or removes. One work-item
+// per row and channel.
 //   source  W / (length^3 sr), with its angular moments (MomentPlacesShared.h)
 //   tally   [channel][row]
 __kernel void sum_magnitudes(MomentPlaces places, const __global float* source, __global float* tally, ulong stride)

@@ -19,7 +19,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
-constexpr double FallByCells = 0.3; ///< smallest assumed ratio of successive remainders
+constexpr double FallByCells = 0.3; ///< smallest assumed ratio of successive remainders with coarse-mesh DSA
 }
 
 SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
@@ -96,8 +96,8 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->Result.ledger = this->Cells->WithOut(this->Result.ledger);
   }
-  // Dark voxels can be slightly negative, by rounding and because later sweeps would have corrected them; so can voxels
-  // behind sources of thick voxels.
+  // The fluence of dark voxels can be slightly negative: by rounding, because later sweeps would still have corrected
+  // it, and behind voxels with sources by octant.
   if (this->AtFaces || this->Warm.Begins() || this->Cells)
   {
     Communicator& comm = this->TheDomain.Comm();
@@ -113,15 +113,14 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   if (this->Parts.Faces)
   {
     const FaceLight& faces = *this->Parts.Faces;
-    this->Result.leftByCell = this->Cells
-      ? faces.ScaledTo(
-          faces.LeftInAll(), this->Result.ledger.FacePowerOut()) // coarse-mesh DSA changes the totals of faces
-      : faces.LeftInAll();
+    // With coarse-mesh DSA the ledger has the escaped power of each face, which differs from the sum over its cells.
+    this->Result.leftByCell =
+      this->Cells ? faces.ScaledTo(faces.LeftInAll(), this->Result.ledger.FacePowerOut()) : faces.LeftInAll();
   }
   return std::move(this->Result);
 }
 
-/// Applies the escape correction to the light that was just swept.
+/// Applies the escape correction (EscapeCorrection.h) to the path integrals of the last sweep.
 void SourceIteration::LetEscape()
 {
   Rgb escaped = {};
@@ -135,8 +134,8 @@ void SourceIteration::LetEscape()
   }
 }
 
-/// Adds all uncollided light that does not belong to the first sweep. Lamps come first, because the light that they
-/// scatter first is stored apart.
+/// Adds all uncollided light that the first sweep does not carry. Lamps are added first, because their first-scattered
+/// light is stored separately (ShowLamps).
 void SourceIteration::AddUncollided(const Monitor& monitor)
 {
   const LightSources& lights = this->Parts.Lights;
@@ -195,7 +194,8 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   }
 }
 
-/// Needed with any light source, because contributions of sources add up.
+/// Makes the escape correction. It is applied for every kind of light source, so that the light of several sources is
+/// the sum of their separate solutions.
 void SourceIteration::PrepareEscape(const Monitor& monitor)
 {
   const TransportParts::EvenSky sky = this->Parts.FindEvenSky(monitor);
@@ -205,7 +205,7 @@ void SourceIteration::PrepareEscape(const Monitor& monitor)
   });
 }
 
-/// Stores the first-scattered light of lamps, before any other light is added.
+/// Adds the first-scattered light of lamps to Result.shown, before any other light is deposited.
 void SourceIteration::ShowLamps()
 {
   this->TheDomain.Collective([&] {
@@ -216,8 +216,8 @@ void SourceIteration::ShowLamps()
   });
 }
 
-/// Adds the uncollided light of a lamp. Sources by octant take its path integrals and first moments for themselves;
-/// there are none if angular moments are stored.
+/// Adds the uncollided light of a lamp. If there are sources by octant, they receive its path integrals and first
+/// moments in their own arrays; they are not used together with angular moments.
 SweepTally SourceIteration::AddLamp(
   const UncollidedSource& lamp, const Buffer<float>& firstMoments, const Monitor& monitor)
 {
@@ -234,7 +234,8 @@ SweepTally SourceIteration::AddLamp(
   return tally;
 }
 
-/// Adds uncollided light that is swept along directions of its own.
+/// Adds uncollided light that is swept along a separate quadrature.
+/// @param along  rays of that quadrature
 SweepTally SourceIteration::AddSwept(
   const UncollidedSource& source, const SweptDirections& along, const Monitor& monitor)
 {
@@ -280,7 +281,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
     this->Result.ledger.Count(tally);
     return;
   }
-  for (int c = 0; c < 3; ++c) // the face is not known yet
+  for (int c = 0; c < 3; ++c) // the face is known only after OrderSweeps::SweepEmptySlabs
   {
     for (const Rgb& face : tally.out)
     {
@@ -289,7 +290,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
   }
 }
 
-/// Reflects the outgoing light of this order, which has then not escaped.
+/// Reflects the outgoing light of this order, and subtracts the reflected power from the escaped power.
 void SourceIteration::ReflectOrder()
 {
   this->ToCome.reflected = {};
@@ -309,8 +310,8 @@ void SourceIteration::ReflectOrder()
   }
 }
 
-/// As ScatterOrder, plus the predicted sum of all orders to come (coarse-mesh DSA), which is subtracted from the next
-/// source.
+/// ScatterOrder() with coarse-mesh DSA: also adds the predicted sum of all later orders to the fluence, and subtracts
+/// it from the next source.
 void SourceIteration::ScatterByCells()
 {
   const TransportParts& parts = this->Parts;
@@ -340,6 +341,7 @@ void SourceIteration::ScatterByCells()
     this->Cells->WithOut(this->Result.ledger));
 }
 
+/// Stores the uncollided fluence.
 /// @param scale  converts `fluence` to W / length^2
 void SourceIteration::LookAtDirect(const Buffer<float>& fluence, double scale)
 {
@@ -403,7 +405,8 @@ void SourceIteration::ScatterOrder()
     this->ToCome.residual, all > 0.0 ? Sum(this->ToCome.scattered) / all : 0.0, this->Result.ledger);
 }
 
-/// Computes the sources by octant from all light incident on voxels, including that beyond the faces of the block.
+/// Computes the sources by octant from the light incident on each voxel of the block through its faces, including light
+/// from neighbouring blocks.
 void SourceIteration::FindOctantSources()
 {
   if (!this->AtFaces)
@@ -415,8 +418,8 @@ void SourceIteration::FindOctantSources()
   this->TheDomain.Collective([&] { this->AtFaces->Find(this->Parts.Source, beyond); });
 }
 
-/// Converts path integrals to fluence and the next source.
-/// @return powers summed over ranks, W
+/// Adds the path integrals of the last sweep to the fluence, and computes the next source from them.
+/// @return absorbed and scattered power, summed over ranks, W
 ScatteringOperator::Powers SourceIteration::ScatterSwept()
 {
   const TransportParts& parts = this->Parts;
@@ -431,7 +434,7 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
       parts.WholeDeposit(), parts.Fluence, parts.Source, this->Sweeps->Values(this->Order));
     if (parts.StoresMoments())
     {
-      // Before the first order, `shown` holds only light of lamps.
+      // In the first order `shown` holds the first-scattered light of lamps, which is subtracted from the source.
       AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
         this->Order == 0 ? -1.0f : 1.0f);
       if (this->Order == 0 && parts.Lights.Given)
@@ -443,7 +446,7 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
   return { this->TheDomain.Sum(powers.absorbed), this->TheDomain.Sum(powers.scattered) };
 }
 
-/// Adds the scattering source of the first guess to the source of the next sweep.
+/// Warm start: adds the scattering source of the first guess to the source of the next sweep.
 void SourceIteration::BeginWarm()
 {
   this->Warm.AddGuessTo(this->Parts.Source);
@@ -454,9 +457,9 @@ void SourceIteration::BeginWarm()
   }
 }
 
-/// After the first sweep, subtracts the scattering source of the guess from the new source. The difference is the error
-/// of the guess, which later sweeps transport. It can be negative, so its magnitude, not its power, measures the
-/// distance from the limit of the iteration (numerics.md, Eqs. (46a) to (46c)).
+/// Warm start: subtracts the scattering source of the guess from the new source after the first sweep that carried it.
+/// The difference is the error of the guess, which later sweeps transport. It can be negative, so its magnitude, not
+/// its power, enters the residual (numerics.md, Eqs. (46a) to (46c)).
 void SourceIteration::GoOnWarm()
 {
   const Rgb guessed = this->Order == 1 ? this->Warm.GuessedPower() : Rgb{};
@@ -478,7 +481,7 @@ void SourceIteration::GoOnWarm()
   }
 }
 
-/// Adds the angular moments of all orders scattered so far.
+/// Adds the angular moments of the last sweep to Moments, the sum over all orders.
 void SourceIteration::GatherMoments()
 {
   if (this->Moments.Size() > 0 && this->Order > 0)
@@ -502,7 +505,8 @@ bool SourceIteration::Done() const
   {
     return true;
   }
-  const int least = this->Warm.Begins() ? 2 : 3; // after a guess the rate of decrease is known earlier
+  // Sweeps until the rate of decrease is known; a guess brings that of the previous solve.
+  const int least = this->Warm.Begins() ? 2 : 3;
   return this->Settings.maximumOrders > 0
     ? this->Order >= this->Settings.maximumOrders
     : this->Order >= least && MeetsTolerance(this->Settings, this->ToCome.residual);

@@ -15,20 +15,20 @@
 
 namespace tyndall
 {
-/// Power that is still under way after a scattering order, W by channel, and the estimate of the orders to come.
+/// Power still in flight after a scattering order, W by channel, and the estimated remainder of the orders to come.
 struct OrdersToCome
 {
-  Rgb scattered = {};    ///< scattered in the last order
-  Rgb onTheWay = {};     ///< wraps around periodic axes in the next sweep
-  Rgb wasOnTheWay = {};  ///< the same before the last sweep
-  Rgb reflected = {};    ///< reflected by faces, incident in the next sweep
-  Rgb stranded = {};     ///< uncollided light that wraps around without end
-  Rgb allScattered = {}; ///< scattered in all orders so far
+  Rgb scattered = {};    ///< power scattered in the last order
+  Rgb onTheWay = {};     ///< power that wraps around periodic axes in the next sweep
+  Rgb wasOnTheWay = {};  ///< power that wrapped around periodic axes in the last sweep
+  Rgb reflected = {};    ///< power reflected by faces, incident in the next sweep
+  Rgb stranded = {};     ///< power of uncollided light that wraps around periodic axes without end
+  Rgb allScattered = {}; ///< power scattered in all orders so far
   std::array<RestOfOrders, 3> rest;
-  double residual = 1.0; ///< estimated remainder relative to allScattered, of the worst channel
+  double residual = 1.0; ///< estimated remainder relative to allScattered, largest over channels
 
-  /// Includes a channel in `residual`, which the caller sets to 0 before the first.
-  /// @param now  power that goes on, or its magnitude, W
+  /// Updates `residual` with the remainder of a channel; the caller sets `residual` to 0 before the first channel.
+  /// @param now  power that the next order carries, or its magnitude if it may be negative, W
   void Expect(int channel, double now)
   {
     if (now != 0.0 && this->allScattered[channel] > 0.0)
@@ -38,8 +38,9 @@ struct OrdersToCome
   }
 };
 
-/// Source iteration, one scattering order per sweep. Each sweep transports the light scattered in the one before; the
-/// fluence is the sum over orders (numerics.md, section 6). Construct and run collectively.
+/// Source iteration: each sweep transports the light scattered from the sweep before it, one scattering order, and the
+/// fluence is the sum over orders (numerics.md, section 6). Optionally accelerated by coarse-mesh DSA. Construct and
+/// run collectively.
 class SourceIteration : public Iteration
 {
 public:
@@ -76,16 +77,18 @@ private:
   const PropagationSettings& Settings;
   std::optional<OrderSweeps> Sweeps; ///< always set after construction
   std::optional<EscapeCorrection> Escaping;
-  std::optional<OrdersByCells> Cells;   ///< coarse-mesh DSA; none: plain source iteration
+  std::optional<OrdersByCells> Cells;   ///< coarse-mesh DSA; unset for plain source iteration
   std::optional<OctantSources> AtFaces; ///< sources by octant of optically thick voxels
   WarmStart Warm;
-  std::vector<float> Direct; ///< W / length^2, [channel][stride], if light is kept for the next solve
-  Buffer<float> Moments;     ///< of scattered light, summed over orders, W length, if kept
+  /// Uncollided fluence, W / length^2, [channel][stride], if light is kept for the next solve.
+  std::vector<float> Direct;
+  /// Angular moments of the scattered light, summed over orders, W length, if light is kept.
+  Buffer<float> Moments;
 
   IterationResult Result;
   int Order = 0;        ///< current scattering order
-  bool Shining = false; ///< the source is not zero
-  Rgb Escaped = {};     ///< W, by EscapeCorrection
+  bool Shining = false; ///< whether the source of the next sweep is non-zero
+  Rgb Escaped = {};     ///< power that EscapeCorrection added to the escaped power, W by channel
   OrdersToCome ToCome;
 };
 }

@@ -10,11 +10,13 @@ namespace tyndall
 {
 namespace
 {
-/// Error of the diffusion power through a cell, relative to sqrt(1 - albedo) times the incident light.
+/// Error of the diffusion power through a cell, relative to sqrt(1 - albedo) times the incident light (Eq. (79)).
 constexpr double Uncertainty = 0.1;
-/// The same, relative to the deviation from average of the scattered light that lamp rays bring to a voxel.
+/// Error of the diffusion power through a cell, relative to the reflected light of lamps times its deviation from the
+/// average (Eq. (79)).
 constexpr double UncertainPart = 0.5;
-constexpr double MostUneven = 4.0; ///< largest ratio of lamp light in a voxel to its average
+/// Largest ratio of lamp light deposited in a voxel to that expected from the irradiance.
+constexpr double MostUneven = 4.0;
 /// Largest decay rate, per mean free path, assumed for light from deep inside; at 1 it diverges.
 constexpr double LargestExponent = 0.9;
 
@@ -24,23 +26,23 @@ constexpr std::array<double, 4> Nodes = { 0.0694318442029737, 0.3300094782075719
 constexpr std::array<double, 4> Weights = { 0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
   0.1739274225687269 };
 
-/// Irradiance of a cell from one direction.
+/// Light of one lamp incident on a cell.
 struct Beam
 {
-  double irradiance; ///< W per area of the face, W / length^2
-  double cosine;     ///< to the inward normal
+  double irradiance; ///< power per area of the face, W / length^2
+  double cosine;     ///< cosine of the angle between the light's direction and the inward normal
 };
 
-/// State of one channel at a cell.
+/// Properties of a cell's voxel and light through the cell, in one channel.
 struct Surface
 {
-  double albedo, emitted; ///< emission / sigma_a; 0 without sigma_a
-  double out, in;         ///< isotropic radiance of the same power
+  double albedo, emitted; ///< `emitted`: emission / sigma_a, W / (length^2 sr); 0 without absorption
+  double out, in;         ///< outgoing and incident power, each as isotropic radiance
   std::vector<Beam> beams;
-  double brought = 1.0; ///< light of the beams in this voxel, relative to the average
+  double brought = 1.0; ///< lamp light deposited in the voxel, relative to that expected from `beams`
 };
 
-/// Irradiance from a lamp at the centre of a cell, through vacuum; none if the light arrives from inside the box.
+/// Irradiance of a lamp at the centre of a cell, through vacuum; 0 if the light arrives from inside the box.
 Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int channel)
 {
   const int axis = cell.face / 2;
@@ -71,11 +73,13 @@ Beam BeamOf(const Light& lamp, const Grid& grid, const BoxFaceCell& cell, int ch
     : lamp.type == LightType::Spot                  ? (AngleFromAxis(lamp, way) <= HalfAngle(lamp) ? 1.0 : 0.0)
                                                     : std::max(std::cos(AngleFromAxis(lamp, way)), 0.0);
   const double ofAll = AxialIntensity(lamp) * part * cosine / (distance * distance);
-  // A narrow cone lights part of the cell; the cell receives at most its whole power.
+  // A cone narrower than the cell lights a part of it: the irradiance is limited to the lamp's power over the cell's
+  // area.
   return { lamp.power[channel] * std::min(ofAll, 1.0 / (grid.spacing[u] * grid.spacing[v])), cosine };
 }
 
-/// Outgoing radiance of a half-space at cosine mu: reflected incident light, and emission.
+/// Outgoing radiance of a half-space at cosine mu: reflected light and emission, the first three terms of Eq. (77).
+/// @param ofBeams  factor of the reflected light of lamps
 double OfHalfSpace(const Surface& s, double mu, double ofBeams = 1.0)
 {
   const double h = HalfSpaceH(s.albedo, mu);
@@ -95,16 +99,18 @@ double DiffuseExitance(double albedo, double mu)
   return HalfSpaceH(albedo, mu) / (1.0 - k * mu);
 }
 
-/// Outgoing radiance at SurfaceCosines.
+/// Outgoing radiance of a cell at the cosines SurfaceCosines, W / (length^2 sr).
 std::array<double, 4> Leaving(const Surface& s)
 {
-  double halfSpace = 0.0, deep = 0.0; // isotropic radiance of the same power
+  // Isotropic radiance with the outgoing power of OfHalfSpace(), and of DiffuseExitance().
+  double halfSpace = 0.0, deep = 0.0;
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {
     halfSpace += 2.0 * Nodes[n] * Weights[n] * OfHalfSpace(s, Nodes[n], s.brought);
     deep += 2.0 * Nodes[n] * Weights[n] * DiffuseExitance(s.albedo, Nodes[n]);
   }
-  // The same in diffusion with Marshak's boundary condition (numerics.md, Eq. (79)).
+  // Reflected fraction of isotropic light: exact, and in diffusion with Marshak's boundary condition (numerics.md, Eq.
+  // (79)).
   double exact = 0.0;
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {
@@ -133,15 +139,16 @@ std::array<double, 4> Leaving(const Surface& s)
   return radiance;
 }
 
-/// Light of lamps absorbed and scattered in a voxel, relative to the expected deposit of the beams through its faces at
+/// Lamp light that collides in a cell's voxel, relative to that expected from the irradiance of the voxel's faces on
 /// the box.
+/// @param fluence  uncollided fluence of lamps in the voxel, W / length^2
 double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std::vector<Light>& lamps,
   const BoxFaceCell& cell, int channel, double fluence)
 {
   const Grid& grid = medium.grid;
   const double sigma = medium.TransportSigmaT(cell.voxel, channel);
   const std::array<int, 3> at = grid.VoxelAt(cell.voxel);
-  double expected = 0.0; // power per volume
+  double expected = 0.0; // power per volume, W / length^3
   for (int face = 0; face < 6; ++face)
   {
     const int axis = face / 2;
@@ -161,8 +168,8 @@ double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std
   return expected > 0.0 ? std::clamp(sigma * fluence / expected, 1.0 / MostUneven, MostUneven) : 1.0;
 }
 
-/// Whether any voxel at these faces has an optical thickness across the face above ThickAtSurface in any channel. Only
-/// then is SurfaceRadiance more accurate than radiance computed from the light of the voxels.
+/// Whether any voxel at the given faces has an optical thickness above ThickAtSurface perpendicular to the face, in any
+/// channel. Only then is SurfaceRadiance() more accurate than radiance computed from the fluence of the voxels.
 bool IsThickAtFaces(const Medium& medium, const std::array<bool, 6>& faces, int channels)
 {
   bool thick = false;
@@ -234,7 +241,7 @@ std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 
 
 namespace
 {
-/// Which faces of a block lie on faces of the box.
+/// Whether each face -x, +x, ... +z of a block lies on a face of the box.
 std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole, const std::array<bool, 3>& periodic)
 {
   std::array<bool, 6> faces;
@@ -246,7 +253,7 @@ std::array<bool, 6> FacesAtBox(const VoxelBox& block, const Grid& whole, const s
   return faces;
 }
 
-/// Copies values of the face cells of a block, a fixed number per cell, to the face cells of the box.
+/// Copies values by cell of a block's faces, a fixed number per cell, to an array by cell of the box faces.
 void PutCells(const std::vector<float>& ofBlock, const VoxelBox& block, const std::array<bool, 6>& faces,
   const Grid& grid, const Grid& whole, std::vector<double>& all)
 {

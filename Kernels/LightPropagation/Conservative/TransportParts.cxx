@@ -23,7 +23,8 @@ VolumeLayout LayoutOf(const PropagationProblem& problem)
   return { problem.TheGrid(), problem.Channels(), shared };
 }
 
-/// Arrays needed on the device. Without absorption sigma_s equals sigma_t; without scattering it is not read.
+/// Which arrays of the medium the device needs. Separate sigma_s is not needed without absorption, where it equals
+/// sigma_t, nor without scattering.
 MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLayout& layout, bool byBalance)
 {
   const MediumTraits& traits = problem.Traits();
@@ -139,7 +140,8 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
       volume.beamPath = &path;
     }
   });
-  // A collective source reports failures on all ranks, except those after its last collective call.
+  // AddTo() rethrows failures on all ranks, except for those after its last collective step; the next Collective() does
+  // that.
   SweepTally tally;
   std::exception_ptr error;
   try
@@ -163,8 +165,8 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
   return source.TalliesOwnVoxels() ? this->SumOfVoxels(tally) : tally;
 }
 
-/// Tally of all ranks. Each rank knows the total escaped power and the net power into its own voxels; incident power is
-/// the sum of the latter over ranks plus the escaped power.
+/// Tally of all ranks from the tallies of their own voxels. Each rank knows the escaped power of the domain, and the
+/// net power into its voxels; the incident power is the sum of this net power over ranks plus the escaped power.
 SweepTally TransportParts::SumOfVoxels(const SweepTally& own) const
 {
   if (this->TheDomain().IsSerial())
@@ -197,7 +199,8 @@ SweepTally TransportParts::SumOfVoxels(const SweepTally& own) const
   return all;
 }
 
-/// Index of the beam that has its own angular distribution; -1: none.
+/// Index of a parallel beam among the beams whose first scattering is stored with its own angular distribution
+/// (SweptMoments); -1: `source` is no such beam.
 int TransportParts::SlotOf(const UncollidedSource& source) const
 {
   const auto* lamp = dynamic_cast<const UncollidedLamp*>(&source);

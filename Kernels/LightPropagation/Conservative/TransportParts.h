@@ -21,21 +21,21 @@
 
 namespace tyndall
 {
-/// Building blocks of the iterations: a rank's block of a problem on its device, the quadrature of scattered light, the
-/// light sources and how rays get through the grid. Holds no state of a solve except the arrays that the iterations
-/// work in. Directions and cells of the box faces are those of the whole domain; arrays over voxels are of the block.
+/// Objects and arrays that all iterations share: this rank's block of the medium on its device, the quadrature of
+/// scattered light, the light sources, the sweeps, and arrays of source, path integrals and fluence. Directions and
+/// cells of the box faces are those of the whole domain; arrays over voxels are those of the block.
 class TransportParts
 {
 public:
   /// Not collective: may throw on one rank alone.
-  /// @param problem  must outlive this
+  /// @param problem  must outlive this object
   /// @param usual  quadrature of scattered light
   /// @param finer  quadrature of boundary light until its first collision
   /// @throws DeviceError if the arrays do not fit
-  /// @throws InvalidInput if there are too few rays (BoundaryLight.h)
+  /// @throws InvalidInput if too few rays would meet the faces (BoundaryLight.h)
   TransportParts(Device& device, const PropagationProblem& problem, IterationScheme how, DirectionSet usual,
     const UncollidedDirections& finer);
-  TransportParts(const TransportParts&) = delete; // light sources refer to directions that this owns
+  TransportParts(const TransportParts&) = delete; // light sources refer to directions that this object owns
   TransportParts& operator=(const TransportParts&) = delete;
 
   Device& TheDevice;
@@ -45,44 +45,45 @@ public:
   const MediumOnDevice OnDevice;
   const std::unique_ptr<const ScatteringOperator> Scattering;
 
-  /// Quadrature of scattered light.
+  /// Rays of the quadrature of scattered light.
   const SweptDirections Usual;
   /// Basis of the angular moments of scattering; null: scattering is isotropic, or the block has no voxels.
   const AngularBasis* Basis = nullptr;
-  /// Light by cell of the box faces, if faces reflect or face power is requested; else null.
+  /// Outgoing and reflected light by cell of the box faces; null unless faces reflect or face power is requested.
   std::unique_ptr<FaceLight> Faces;
   LightSources Lights;
   BlockTransport Transport;
 
-  /// Arrays over voxels, [channel][stride]; Flux [channel][x, y, z][stride], empty if net flux is not requested. With
-  /// angular moments, Source and Path are [function][channel][stride], and the sources of beams follow in Source.
+  /// Arrays over voxels, [channel][stride]: source of the next sweep, W / (length^3 sr); path integrals, W length; net
+  /// flux times the voxel's volume, [channel][x, y, z][stride], empty if not requested; fluence, W / length^2. With
+  /// angular moments, Source and Path are [function][channel][stride], and Source ends with the sources of beams.
   Buffer<float> Source, Path, Flux, Fluence;
 
   const Domain& TheDomain() const { return this->Problem.TheDomain(); }
-  bool IsEmpty() const { return this->TheDomain().IsEmpty(); } ///< the block has no voxels
-  /// Writes the emission of the medium, and the unscattered forward part of given light, to Source. Collective; call
-  /// before any other method.
+  bool IsEmpty() const { return this->TheDomain().IsEmpty(); } ///< whether the block has no voxels
+  /// Writes the emission of the medium, and the forward peak of given light that delta-M treats as unscattered, to
+  /// Source. Collective; call before any other method.
   void LoadSource();
-  /// Whether Source is non-zero in the first sweep, or optimisations are off (settings.leaveOut).
+  /// Whether the first sweep has a non-zero source on any rank; always true if settings.leaveOut is off.
   bool HasSource() const { return this->MediumShines; }
-  /// Adds the uncollided light of one source to `deposit`. Collective, as are all methods that add or find uncollided
-  /// light.
-  /// @return tally of all channels, summed over ranks
+  /// Adds the uncollided light of a source to `deposit`, and the first scattering of a beam to Source. Collective, as
+  /// are FindUncollidedPath(), FindUncollided() and FindEvenSky().
+  /// @return incident and escaped power of all channels, summed over ranks
   SweepTally AddUncollided(const UncollidedSource& source, const Deposit& deposit, const Monitor& monitor);
-  /// Result of AddUncollided in separate arrays on the host.
+  /// Uncollided light of one source in arrays of the host, as AddUncollided() deposits it.
   struct UncollidedPath
   {
-    std::vector<float> path; ///< W length, in the layout of a deposit
+    std::vector<float> path; ///< path integrals, W length, in the layout of Deposit::path
     SweepTally tally;
   };
   struct UncollidedFlux : UncollidedPath
   {
-    std::vector<float> flux; ///< likewise; empty: not requested
+    std::vector<float> flux; ///< net flux, W length, in the layout of Deposit::flux; empty: not requested
   };
   UncollidedPath FindUncollidedPath(const UncollidedSource& source, const Monitor& monitor);
   UncollidedFlux FindUncollided(const UncollidedSource& source, const Monitor& monitor);
-  /// Uncollided light of a uniform sky of radiance 1, along the finer and the usual quadrature. By reciprocity this is
-  /// also the power that escapes from a source of 1 in each voxel (numerics.md, Eq. (45)).
+  /// Uncollided light of a uniform sky of radiance 1 along the finer quadrature and along the usual one. By reciprocity
+  /// its path integral is also the power that escapes uncollided from a source of 1 in a voxel (numerics.md, Eq. (45)).
   struct EvenSky
   {
     UncollidedPath fine, usual;
@@ -90,22 +91,24 @@ public:
   EvenSky FindEvenSky(const Monitor& monitor);
 
   bool FacesReflect() const { return this->Faces && this->Faces->Reflects(); }
-  /// Deposit::spreadsAside: true if face light is stored and no face reflects. Reflected light enters through the cells
-  /// it left through, so it must not be spread.
+  /// Value of Deposit::spreadsAside: true if light is stored by face cell and no face reflects. Reflected light is
+  /// incident through the cell through which it left, so its power must not be spread over cells.
   bool SpreadsAside() const { return this->Faces && !this->Faces->Reflects(); }
-  /// Incident radiance by cell, for SweepRequest::faceIn; null: none.
+  /// Reflected radiance by cell of the box faces, for SweepRequest::faceIn; null: no face reflects.
   const Buffer<float>* LightByCells() const { return this->FacesReflect() ? &this->Faces->In() : nullptr; }
 
-  /// Writes the emission that sweeps along the usual directions carry to `source`; writes nothing if there is none.
-  /// @return whether any of it is non-zero
+  /// Writes to `source` the emission that sweeps along the usual quadrature carry; writes nothing if the medium does
+  /// not emit.
+  /// @return whether this emission is non-zero in any voxel
   bool LoadEmission(Buffer<float>& source) const;
 
-  Deposit WholeDeposit() const;             ///< path, and flux if requested
-  std::vector<AxisBundles> AllRays() const; ///< along the usual directions
-  /// Angular moments along the usual directions, for SweepRequest::angular; null: scattering is isotropic.
+  /// Deposit to Path, to Flux if requested, and to the outgoing power of Faces.
+  Deposit WholeDeposit() const;
+  std::vector<AxisBundles> AllRays() const; ///< all rays of the usual quadrature
+  /// Angular functions in the usual directions, for SweepRequest::angular; null: scattering is isotropic.
   const AngularValues* UsualValues() const { return this->Angular ? &this->Angular->Values() : nullptr; }
   void DarkenBeams();                                ///< sets the sources of beams in Source to 0
-  BeamsInSource BeamsOfSource();                     ///< for source iteration
+  BeamsInSource BeamsOfSource();                     ///< access to the sources of beams in Source
   void LightBeams(const Buffer<float>& given) const; ///< copies the sources of beams from `given` to Source
   std::size_t BeamValues() const { return this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0; }
   /// Whether the angular moments of scattered light are part of the result.
@@ -113,7 +116,7 @@ public:
   {
     return this->Problem.Scattering().Degree() > 0 && this->Problem.Settings().storeMoments;
   }
-  int Functions() const; ///< in the basis; 1: isotropic
+  int Functions() const; ///< number of angular functions, (degree + 1)^2; 1: isotropic
 
 private:
   bool ByBalance() const { return this->How == IterationScheme::Dsa; }
@@ -125,6 +128,6 @@ private:
   std::unique_ptr<const SweptMoments> Angular; ///< null: isotropic, or the block has no voxels
 };
 
-/// Makes the parts of a problem, with quadratures chosen for it. Collective.
+/// Makes the TransportParts of a problem, with quadratures chosen for it. Collective.
 std::unique_ptr<TransportParts> MakeParts(Device& device, const PropagationProblem& problem, IterationScheme how);
 }

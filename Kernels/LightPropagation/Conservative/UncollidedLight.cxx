@@ -50,7 +50,8 @@ UncollidedLight::UncollidedLight(
   , Coefficients(medium)
 {
   parts.Lights.CountEmission(this->Counted);
-  const double sources = parts.Lights.FineBoundary ? 0.5 : 1.0; // fraction of the time
+  // Fraction of the time spent on lamps and localised emission.
+  const double sources = parts.Lights.FineBoundary ? 0.5 : 1.0;
   this->AddSources(OfPart(monitor, 0.0, sources));
   this->TheDomain.Collective([&] {
     if (parts.Basis && parts.Problem.Settings().netFlux)
@@ -67,7 +68,7 @@ UncollidedLight::UncollidedLight(
   this->CountAbsorbed();
 }
 
-/// In optically thick voxels the position of first collisions of lamp light matters.
+/// Whether first moments of lamp light are needed: in optically thick voxels the position of first collisions matters.
 bool UncollidedLight::NeedsFirstMoments() const
 {
   return this->LinearSource && !this->Parts.Lights.Lamps.empty() &&
@@ -92,7 +93,7 @@ void UncollidedLight::MakePassing()
   this->PassedWithGhosts = { device, this->Block, this->ThroughFaces, 6 * channels, what };
 }
 
-/// Adds lamps, localised emission, given light and emission of empty voxels.
+/// Adds the uncollided light of lamps, of localised emission, of given light and of the emission of empty voxels.
 void UncollidedLight::AddSources(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
@@ -163,7 +164,7 @@ SweepTally UncollidedLight::AddLampThroughFaces(const UncollidedSource& lamp, co
   return tally;
 }
 
-/// Adds the power of first-scattered light of a lamp that leaves its voxel straight away through the faces.
+/// Adds the power of a lamp's first-scattered light that leaves its voxel through the faces without another collision.
 void UncollidedLight::PassFaces()
 {
   const VolumeLayout& held = this->Block.WithGhosts();
@@ -177,7 +178,8 @@ void UncollidedLight::PassFaces()
   }
 }
 
-/// First-collision source of lamps minus the power that leaves its voxel straight away.
+/// Computes OfLamps(): the first-collision source of lamps minus the power that leaves its voxel without another
+/// collision.
 void UncollidedLight::FindScatteredInVoxels()
 {
   const VolumeLayout& layout = this->Parts.Layout;
@@ -207,24 +209,24 @@ void UncollidedLight::FindScatteredInVoxels()
   this->MomentsOfLamp = {};
 }
 
-/// Weight of the difference between the finer and the usual quadrature (numerics.md, Eqs. (55), (76)). Small in
-/// optically thick voxels, where the depth of first collisions matters, which the diffusion system knows only for light
-/// in sweeps.
+/// Weight of the difference between the finer and the usual quadrature in a voxel (numerics.md, Eqs. (55), (76)). It is
+/// small in optically thick voxels: the depth of first collisions matters there, and the diffusion system takes it into
+/// account only for light in sweeps.
 double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
 {
   const std::array<double, 3>& h = this->TheMedium.grid.spacing;
   const double longest = *std::max_element(h.begin(), h.end());
   const double tau = longest * this->TheMedium.TransportSigmaT(voxel, channel);
   const double absorbing = longest * this->TheMedium.sigma_a.At(voxel, channel);
-  // The same weight as the diffusion system gives to results of sweeps.
+  // The weight by which the diffusion system multiplies the transport correction, Eq. (55).
   return this->LinearSource ? 1.0 / (1.0 + tau * (0.25 * tau + 3.0 * absorbing)) : 1.0;
 }
 
-/// Sweeps carry all boundary light along the usual quadrature, because the diffusion system needs it. The difference
-/// that the finer quadrature makes to uncollided light is added like the light of lamps (numerics.md, Eq. (76)). In
-/// media with many scatterings, and for automatically chosen directions, it is scaled by voxel so that the power equals
-/// that of the sweeps and a uniform sky stays uniform; otherwise it is scaled by the entering power. Power added to or
-/// removed from voxels is compensated in the escaped power.
+/// Adds the uncollided boundary light along the finer quadrature minus that along the usual one (numerics.md, Eq.
+/// (76)). The sweeps of DSA carry all boundary light along the usual quadrature, because the diffusion system needs it.
+/// In media with many scatterings, and for automatically chosen directions, the light along the finer quadrature is
+/// scaled by voxel, so that the light of a uniform sky stays uniform; otherwise it is scaled by the incident power. The
+/// power that this adds to voxels is subtracted from the escaped power.
 void UncollidedLight::AddBoundaryDifference(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;

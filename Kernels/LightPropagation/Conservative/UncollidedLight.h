@@ -8,42 +8,44 @@
 
 namespace tyndall
 {
-/// Extinction and scattering as the diffusion systems of a block read them, with ghost cells. Ghost cells carry sigma_s
-/// < 0.
+/// Coefficients of the medium with ghost cells, 1/length, as the diffusion systems of a block read them. Ghost cells
+/// have sigma_s < 0, which excludes them from sums.
 struct GhostedMedium
 {
   GhostedMedium(TransportParts& parts, const BlockWithGhosts& block);
 
-  GhostedBuffer sigma_t; ///< extinction of the diffusion systems
-  GhostedBuffer swept;   ///< extinction of the sweeps
+  GhostedBuffer sigma_t; ///< transport extinction, sigma_a + sigma_s (1 - g)
+  GhostedBuffer swept;   ///< extinction of the sweeps; set only if there are angular moments
   GhostedBuffer sigma_a, sigma_s;
   bool hasMoments;
 
   const Buffer<float>& Swept() const { return this->hasMoments ? this->swept.Values() : this->sigma_t.Values(); }
 };
 
-/// Uncollided light that a DSA solve computes apart from its sweeps: of lamps, of localised emission, and the
+/// Uncollided light of a DSA solve that its sweeps do not carry: light of lamps, of localised emission, and the
 /// difference between the finer and the usual quadrature for boundary light (numerics.md, sections 5 and 7.10).
 /// Computed once, in the constructor. Collective.
 class UncollidedLight
 {
 public:
-  /// @param parts  parts.Flux then holds the flux of this light
-  /// @param block, medium  with ghost cells; must outlive this
+  /// @param parts  must outlive this object; the constructor adds the net flux of this light to parts.Flux
+  /// @param block, medium  block and coefficients with ghost cells; must outlive this object
   UncollidedLight(
     TransportParts& parts, const BlockWithGhosts& block, const GhostedMedium& medium, const Monitor& monitor);
 
-  const std::vector<float>& Path() const { return this->Lengths; } ///< W length, [channel][stride]
-  /// Path integrals of lamps alone, W length, [channel][stride]; empty if there are no lamps.
+  /// Path integrals of all this light, W length, [channel][stride].
+  const std::vector<float>& Path() const { return this->Lengths; }
+  /// Path integrals of the light of lamps alone, W length, [channel][stride]; empty if there are no lamps.
   const std::vector<float>& PathOfLamps() const { return this->LengthsOfLamps; }
-  /// Whether first-collided light of lamps that leaves its voxel straight away is given to the diffusion systems as
-  /// power through voxel faces. True if voxels are optically thick, there are lamps, and the source is linear.
+  /// Whether the first-scattered light of lamps that leaves its voxel without another collision enters the diffusion
+  /// systems as power through voxel faces (LampPassing.h). True if voxels are optically thick, there are lamps, and the
+  /// source is linear.
   bool Passes() const { return this->ThroughFaces.Size() > 0; }
-  /// If Passes(), in the layout of DiffusionSystem::Arrays: that power through faces, W, and the rest of the
-  /// first-collision source, W / (length^3 sr).
+  /// If Passes(): power of first-scattered lamp light through voxel faces, W, and the remaining first-collision source
+  /// of lamps, W / (length^3 sr); DiffusionSystem::Arrays::passed and ofLamps.
   const Buffer<float>& Passed() const { return this->PassedWithGhosts.Values(); }
   const Buffer<float>& OfLamps() const { return this->OfLampsWithGhosts.Values(); }
-  /// Emitted and incident power, the part of it that escaped, and the part that was absorbed at its first collision.
+  /// Power of this light: emitted, incident, escaped uncollided, and absorbed at its first collision.
   const EnergyLedger& Ledger() const { return this->Counted; }
 
 private:
@@ -64,10 +66,11 @@ private:
   std::vector<float> Lengths, LengthsOfLamps;
   const BlockWithGhosts& Block;
   const GhostedMedium& Coefficients;
-  Buffer<float> PathOfLamp, MomentsOfLamp;       ///< of one lamp, in the layout of Deposit
-  Buffer<float> ThroughFaces, ScatteredInVoxels; ///< of all lamps
+  Buffer<float> PathOfLamp, MomentsOfLamp;       ///< deposit of one lamp (Deposit::path, firstMoments)
+  Buffer<float> ThroughFaces, ScatteredInVoxels; ///< sums over all lamps: Passed() and OfLamps() without ghost cells
   GhostedBuffer PathWithGhosts, MomentsWithGhosts, AllPathWithGhosts, PassedWithGhosts, OfLampsWithGhosts;
   EnergyLedger Counted;
-  SweepTally OfSources; ///< its onTheWay wraps around periodic axes without end
+  /// Incident and escaped power; light in flight (onTheWay) wraps around periodic axes without end.
+  SweepTally OfSources;
 };
 }

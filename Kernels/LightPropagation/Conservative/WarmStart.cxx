@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SlowestRate = 1.0 - 1e-6; ///< largest rate that is passed to the next solve
+constexpr double SlowestRate = 1.0 - 1e-6; ///< largest rate of convergence that is passed to the next solve
 }
 
 WarmStart::WarmStart(const TransportParts& parts, const KeptLight* kept, const char* method)
@@ -44,7 +44,7 @@ std::vector<std::string> WarmStart::LeftOut() const
   return this->Keeps() ? std::vector<std::string>{ WordsOfWarmStart(this->WhyNot) } : std::vector<std::string>();
 }
 
-/// Sum over the voxels of all ranks of sigma_s times values, by channel.
+/// Sum of sigma_s times `values` over the voxels of all ranks, by channel.
 /// @param values  [channel][stride]
 Rgb WarmStart::ScatteredOf(const std::vector<float>& values) const
 {
@@ -143,7 +143,8 @@ KeptLight WarmStart::Leave(const std::vector<float>& base, const std::vector<flo
   left.kind = this->TheKind;
   for (int c = 0; c < layout.channels && this->Parts.Problem.Settings().maximumOrders == 0; ++c)
   {
-    // The error of a good guess decreases faster at first than the orders of a cold start do at the end.
+    // After a good guess the first changes decrease faster than the last orders of a solve from zero: the rate is not
+    // lowered.
     left.rate[c] = std::max(std::min(rate[c], SlowestRate), this->Begins() ? this->Rate(c) : 0.0);
   }
   left.firstScattered = this->First;

@@ -10,43 +10,46 @@ namespace tyndall
 {
 /// First guess of a solve: zero, or the scattered light of the previous solve (numerics.md, section 6.4). Uncollided
 /// light is always computed anew. A guess changes the number of sweeps, not the limit: the iteration continues from the
-/// measured error of the guess.
-/// Construct and call collectively; each rank keeps the light of its block.
+/// error of the guess, which the first sweep measures. Construct and call collectively; each rank keeps the light of
+/// its block.
 class WarmStart
 {
 public:
   /// @param parts  must outlive this
-  /// @param kept  must outlive this; null, on all ranks: start from zero and keep nothing
+  /// @param kept  light of the previous solve, must outlive this object; null, on all ranks: start from zero and keep
+  ///   nothing
   /// @param method  name of the iteration scheme
   WarmStart(const TransportParts& parts, const KeptLight* kept, const char* method);
 
-  bool Keeps() const { return this->Kept != nullptr; } ///< keep the light of this solve
-  /// Whether this solve begins from kept light; the same on all ranks.
+  bool Keeps() const { return this->Kept != nullptr; } ///< whether the light of this solve is kept for the next
+  /// Whether this solve begins from the light of the previous one; equal on all ranks.
   bool Begins() const { return this->Keeps() && this->WhyNot.empty(); }
   std::vector<std::string> LeftOut() const;
 
-  /// Scales the kept light by the change in first-scattered power since the previous solve. Required if Keeps().
+  /// Computes the guess: the kept light, scaled by the ratio of first-scattered powers of this solve and the previous
+  /// one, Eq. (46a). Must be called if Keeps().
   /// @param direct  uncollided fluence, W / length^2, [channel][stride]
   void Prepare(const std::vector<float>& direct);
-  /// The first guess, W length, [function][channel][stride].
+  /// Path integrals of the first guess on the device, W length, [function][channel][stride].
   const Buffer<float>& Guess() const { return this->Path; }
-  const std::vector<float>& Guessed() const { return this->Scaled; } ///< the same on the host
+  const std::vector<float>& Guessed() const { return this->Scaled; } ///< Guess() in host memory
   /// Power that the guess scatters, W, summed over ranks.
   const Rgb& GuessedPower() const { return this->Power; }
-  /// Ratio of the last two iterations of the previous solve; 0: not known, because the channel was dark.
+  /// Ratio of the last two changes of the previous solve's iteration; 0: unknown, because the channel was dark.
   double Rate(int channel) const { return this->Kept->rate[channel]; }
 
-  /// Adds the scattering source of the guess to `source`; TakeGuessFrom subtracts it again.
+  /// Adds the scattering source of the guess to `source`; TakeGuessFrom() subtracts it, and frees the guess.
   void AddGuessTo(const Buffer<float>& source) const;
   void TakeGuessFrom(const Buffer<float>& source);
-  /// Magnitude of a source that may be negative, W by channel: root mean square over directions, summed over voxels.
+  /// Magnitude of a source that may be negative, W by channel: root mean square over directions, summed over voxels
+  /// (numerics.md, Eq. (46c)).
   Rgb MagnitudeOf(const Buffer<float>& source) const;
 
-  /// Light to keep for the next solve.
-  /// @param base  fluence that the next solve finds without a guess; the guess is the total fluence minus this
-  /// @param moments  higher angular moments minus theirs, in the layout of Guess(); the first function is not read.
-  ///   Empty: none
-  /// @param rate  ratio of the last two iterations
+  /// Light to keep for the next solve: total fluence minus `base`.
+  /// @param base  the part of the fluence that the next solve computes anew, W / length^2, [channel][stride]
+  /// @param moments  higher angular moments minus those of `base`, in the layout of Guess(); the first function is not
+  ///   read. Empty: isotropic
+  /// @param rate  ratio of the last two changes of the iteration
   KeptLight Leave(const std::vector<float>& base, const std::vector<float>& moments, const Rgb& rate) const;
 
 private:
