@@ -19,8 +19,8 @@ namespace
 {
 constexpr int MostSweeps = 200;
 
-/// Limits the net flux to the fluence. In absorbing voxels the mean of the powers through opposite faces overestimates
-/// the net flux.
+/// Limits the magnitude of the net flux to the fluence. In absorbing voxels the mean of the powers through opposite
+/// faces exceeds the net flux.
 /// @param fluence  W / length^2, [channel][stride]
 /// @param flux  net flux times the voxel's volume, [channel][x, y, z][stride]
 void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& ofLight)
@@ -107,7 +107,8 @@ IterationResult DiffusionAcceleration::Run(const Monitor& monitor)
   return std::move(this->Result);
 }
 
-/// Computes the scattered light to render: the next source minus emission and first-scattered light of lamps.
+/// Computes Result.shown, the scattered light to render: the next source minus emission and first-scattered light of
+/// lamps.
 void DiffusionAcceleration::FindShown()
 {
   TransportParts& parts = this->Parts;
@@ -129,7 +130,7 @@ void DiffusionAcceleration::FindShown()
   });
 }
 
-/// Adds the first-collision source to the given source, like emission.
+/// Adds the first-collision source to the given source, which also contains the emission.
 void DiffusionAcceleration::GiveFirstScattered()
 {
   TransportParts& parts = this->Parts;
@@ -165,14 +166,15 @@ void DiffusionAcceleration::MakeSweep()
   this->Swept = parts.Transport.MakeSweep(request);
 }
 
-/// No flux: the diffusion system provides it.
+/// Arrays that a sweep adds to; without net flux, which the diffusion systems compute.
 Deposit DiffusionAcceleration::DepositOfSweep()
 {
   const Deposit whole = this->Parts.WholeDeposit();
   return { whole.path, nullptr, &this->Arrays.PartialCurrents(), nullptr, whole.faceOut, whole.spreadsAside };
 }
 
-/// Sweeps the current source into path integrals and partial currents. Boundary light enters in every sweep.
+/// Sweeps the current source and the boundary light, which is incident in every sweep, into path integrals and partial
+/// currents.
 void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
 {
   this->TheDomain.Collective([&] {
@@ -198,7 +200,7 @@ void DiffusionAcceleration::Sweep(int iteration, const Monitor& monitor)
   this->Arrays.TakeSwept();
 }
 
-/// Adjusts the source at the surfaces of optically thick voxels.
+/// Adjusts the source of the next sweep in optically thick voxels next to thinner ones (DiffusionSystem::ShapeSource).
 void DiffusionAcceleration::ShapeSource()
 {
   this->Arrays.TakeSource();
@@ -217,7 +219,7 @@ void DiffusionAcceleration::ShapeSource()
   });
 }
 
-/// Reflects uncollided light; its reflected part enters in every sweep.
+/// Reflects the uncollided light that left through the box faces; its reflected power is incident in every sweep.
 void DiffusionAcceleration::ReflectUncollided()
 {
   TransportParts& parts = this->Parts;
@@ -247,7 +249,7 @@ void DiffusionAcceleration::ScatterFound()
   });
 }
 
-/// Fluence of the last sweep plus uncollided light, [channel][stride].
+/// Fluence of the last sweep plus uncollided fluence, W / length^2, [channel][stride]; not negative.
 std::vector<float> DiffusionAcceleration::SweptFluence() const
 {
   const double perVolume = 1.0 / this->Parts.Layout.grid.VoxelVolume();
@@ -282,14 +284,14 @@ void DiffusionAcceleration::MakeSystems()
   }
 }
 
-/// Approximate power of a voxel, W: the unit of the diffusion solver.
+/// Mean emitted and incident power per voxel, W: the unit of power in the diffusion solver. 0 for a dark channel.
 double DiffusionAcceleration::VoxelPower(int c) const
 {
   return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->TheDomain.Whole().VoxelCount());
 }
 
-/// Solves the diffusion system of each channel and estimates the distance from the limit of the iteration (numerics.md,
-/// Eq. (73)), the largest of all channels.
+/// Solves the diffusion system of each channel, and estimates the residual of the iteration (numerics.md, Eq. (73)),
+/// the largest of all channels.
 void DiffusionAcceleration::Correct(int iteration)
 {
   double change = 0.0;
@@ -324,8 +326,8 @@ void DiffusionAcceleration::Correct(int iteration)
   this->Result.convergence.Add(this->Residual, change, this->Result.ledger);
 }
 
-/// Counts the power according to the diffusion solution, which conserves it. The escaped power of the sweep serves only
-/// to distribute it among the faces.
+/// Sets the energy balance from the diffusion solution, which conserves power. The escaped power of the sweep only
+/// determines how the escaped power is divided among the box faces.
 void DiffusionAcceleration::CountLight()
 {
   this->Result.ledger = this->Uncollided->Ledger();
@@ -342,7 +344,7 @@ void DiffusionAcceleration::CountLight()
     }
     if (!(this->VoxelPower(c) > 0.0))
     {
-      continue; // dark channel: not solved
+      continue; // a dark channel is not solved
     }
     lit[c] = true;
     this->Result.ledger.Absorb(c, this->Systems[c]->Absorbed());
@@ -362,14 +364,14 @@ void DiffusionAcceleration::CountLight()
 bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
-  // After a guess the rate of decrease is known earlier, unless there are angular moments, which the guess does not
-  // cover.
+  // A guess brings the rate of convergence of the previous solve. With angular moments one more sweep is made, because
+  // the measured change does not include them.
   const int least = this->Warm.Begins() && !this->HasMoments() ? 2 : 3;
   return iterations >= most || this->Residual == 0.0 ||
     (iterations >= least && MeetsTolerance(this->Settings, this->Residual));
 }
 
-/// Computes the uncollided fluence.
+/// Stores the uncollided fluence in Result.fluenceDirect, and prepares the warm start.
 void DiffusionAcceleration::LookAtDirect()
 {
   std::vector<float> direct;
@@ -384,8 +386,8 @@ void DiffusionAcceleration::LookAtDirect()
   }
 }
 
-/// The result of the first sweep and its diffusion solution is computed anew in each solve. The part that later
-/// iterations add is kept, and added before the second sweep (numerics.md, Eq. (46d)).
+/// Warm start: stores the light of the first iteration, which each solve computes anew, and adds the guess, the
+/// contribution of later iterations in the previous solve, before the second sweep (numerics.md, Eq. (46d)).
 void DiffusionAcceleration::BeginWarm()
 {
   TransportParts& parts = this->Parts;
@@ -423,8 +425,8 @@ void DiffusionAcceleration::BeginWarm()
   });
 }
 
-/// Guess minus the current solution of a channel, as state of its diffusion system.
-/// @param fluence  with ghost cells, W length
+/// The guess of a channel as a state of its diffusion system (DiffusionSystem::State), W / length^2.
+/// @param fluence  path integrals of the guess with ghost cells, W length
 std::vector<double> DiffusionAcceleration::GuessOf(int c, const std::vector<float>& fluence) const
 {
   const VolumeLayout& held = this->Arrays.Block().WithGhosts();
@@ -468,7 +470,7 @@ void DiffusionAcceleration::WriteFluence()
   }
 }
 
-/// Fluence of the diffusion systems plus uncollided light, [channel][stride].
+/// Fluence of the diffusion systems plus uncollided fluence, W / length^2, [channel][stride].
 std::vector<float> DiffusionAcceleration::FluenceOfSystems()
 {
   const VolumeLayout& layout = this->Parts.Layout;
@@ -489,8 +491,8 @@ std::vector<float> DiffusionAcceleration::FluenceOfSystems()
   return fluence;
 }
 
-/// Adds the net flux of the diffusion systems; with angular moments that of the sweep, whose degree 1 has less of the
-/// pattern of rays.
+/// Adds the net flux of scattered light: from the diffusion systems or, with angular moments, from the moments of
+/// degree 1 of the sweep, in which the uneven pattern of rays is weaker.
 void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
 {
   TransportParts& parts = this->Parts;
@@ -518,7 +520,8 @@ void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
   });
 }
 
-/// Computes the surface radiance of optically thick voxels from the powers of the diffusion system.
+/// Computes Result.surfaceRadiance of optically thick voxels from the powers through the box faces in the diffusion
+/// solution.
 void DiffusionAcceleration::FindSurfaceRadiance()
 {
   if (!this->Parts.Problem.HasLinearSource())

@@ -15,13 +15,14 @@
 
 namespace tyndall
 {
-/// Diffusion synthetic acceleration (numerics.md, section 7). Each sweep transports all scattered light once. A
-/// diffusion system (DiffusionSystem.h), corrected by the power that the sweep carried through each voxel face, then
-/// gives the fluence of all orders, from which the next source is computed. Construct and run collectively.
+/// Diffusion synthetic acceleration, DSA (numerics.md, section 7). Each sweep transports the current estimate of all
+/// scattered light. A diffusion system (DiffusionSystem.h), corrected by the power that the sweep carried through each
+/// voxel face, then yields the fluence of all orders, from which the next source is computed. Construct and run
+/// collectively.
 class DiffusionAcceleration : public Iteration
 {
 public:
-  /// @param parts  must outlive this; made for DSA
+  /// @param parts  must outlive this object; made with IterationScheme::Dsa
   /// @param kept  light of the previous solve (WarmStart.h), must outlive this; null, on all ranks: no first guess,
   ///   nothing is kept
   explicit DiffusionAcceleration(TransportParts& parts, const KeptLight* kept = nullptr);
@@ -57,16 +58,18 @@ private:
   const PropagationSettings& Settings;
   SystemArrays Arrays;
   std::optional<UncollidedLight> Uncollided;
-  std::vector<float> UncollidedFluence; ///< W / length^2, [channel][stride]
-  std::unique_ptr<SweepOperator> Swept; ///< of scattered light and boundary light along the usual directions
-  std::vector<std::unique_ptr<DiffusionSolver>> Systems; ///< by channel
-  std::optional<FaceBalance> Box;                        ///< if light by cell of the box faces is needed
-  SweepTally Tally;                                      ///< of the last sweep
-  Rgb GivenPower = {}, PowerIn = {};                     ///< W: emitted or first scattered; incident through faces
+  std::vector<float> UncollidedFluence; ///< fluence of uncollided light, W / length^2, [channel][stride]
+  std::unique_ptr<SweepOperator> Swept; ///< sweep of scattered and boundary light along the usual quadrature
+  std::vector<std::unique_ptr<DiffusionSolver>> Systems; ///< diffusion systems, by channel
+  std::optional<FaceBalance> Box;                        ///< unset unless faces reflect or face power is requested
+  SweepTally Tally;                                      ///< incident and escaped power of the last sweep
+  /// Power emitted or first scattered, and power incident through the box faces, W by channel.
+  Rgb GivenPower = {}, PowerIn = {};
   RestOfChanges Rest;
   double Residual = 1.0;
   WarmStart Warm;
-  std::vector<float> First, FirstMoments; ///< of the first iteration, as in WarmStart, if light is kept
+  /// Fluence and moments of the first iteration: `base` of WarmStart::Leave; empty if no light is kept.
+  std::vector<float> First, FirstMoments;
 
   IterationResult Result;
 };

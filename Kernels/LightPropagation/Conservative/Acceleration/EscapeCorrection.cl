@@ -1,11 +1,14 @@
-// The host defines GROUP: work-items that sum a chunk together (GroupSum.cl).
+// Escape correction (EscapeCorrection.h). The host defines GROUP, the number of work-items that sum a chunk
+// (GroupSum.cl).
 
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/GroupSum.cl"
 
-// Adds the escaped power of each voxel beyond that of the sweep (numerics.md, Eq. (46)).
-//   extra  additional escape of a source of 1, W length
-//   tally  [channel][chunk], W
+// Subtracts the additional escaped power of each voxel from its path integral (numerics.md, Eq. (46)).
+//   path    path integrals of the sweep, W length
+//   source  source of the sweep, W / (length^3 sr)
+//   extra   path integral to subtract for a source of 1, W length
+//   tally   additional escaped power, W, [channel][chunk]
 __kernel void let_escape(__global float* path, const __global float* source, const __global float* extra,
   const __global float* sigma_t, __global float* tally, ulong stride, int one_sigma_t)
 {

@@ -18,7 +18,8 @@ EscapeCorrection::EscapeCorrection(Device& device, const VolumeLayout& layout, c
 {
   const Grid& grid = layout.grid;
   const double thinnest = *std::min_element(grid.spacing.begin(), grid.spacing.end());
-  // Limit: half of the part of its own light that collides in the voxel; that part is about half its optical thickness.
+  // Limit of the correction: half of the voxel's own light that collides in the voxel, whose fraction is about half the
+  // optical thickness.
   const double whole = 0.25 * 4.0 * Pi * grid.VoxelVolume();
   const auto extra = [&](std::size_t i, int c) {
     const std::size_t at = c * layout.Stride() + i;

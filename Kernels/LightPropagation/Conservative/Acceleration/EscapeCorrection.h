@@ -16,14 +16,16 @@ namespace tyndall
 class EscapeCorrection
 {
 public:
-  /// @param layout, scattering, sigma_t  of the medium, must outlive this
-  /// @param fine, usual  path integrals of a sky of radiance 1 along the finer and the usual quadrature
-  ///   (TransportParts::FindEvenSky), W length, [channel][stride]
+  /// @param layout, scattering, sigma_t  layout and coefficients of the medium; must outlive this object
+  /// @param fine, usual  path integrals of the uncollided light of a sky of radiance 1 along the finer and the usual
+  ///   quadrature (TransportParts::FindEvenSky), W length, [channel][stride]
   EscapeCorrection(Device& device, const VolumeLayout& layout, const TruncatedScattering& scattering,
     const Buffer<float>& sigma_t, const std::vector<float>& fine, const std::vector<float>& usual);
 
-  /// Subtracts the additional escaped power from the path integrals of a sweep. Only scattered light is corrected,
-  /// because emission may come from voxels too thin to subtract from.
+  /// Subtracts the additional escaped power of scattered light from the path integrals of a sweep. Emission is not
+  /// corrected, because it may be in voxels too thin to subtract from.
+  /// @param path  path integrals of the sweep, W length; changed
+  /// @param source  scattering source of the sweep, W / (length^3 sr)
   /// @return the additional escaped power by channel, W
   Rgb Apply(const Buffer<float>& path, const Buffer<float>& source);
 
@@ -31,6 +33,7 @@ private:
   Device& TheDevice;
   const VolumeLayout& Layout;
   const Buffer<float>& SigmaT;
-  Buffer<float> Extra; ///< additional escape of a source of 1, W length
+  /// Power that escapes additionally from a source of 1, divided by sigma_t: W length, [channel][stride].
+  Buffer<float> Extra;
 };
 }

@@ -51,7 +51,7 @@ void FaceBalance::FindOwnCells(const BlockWithGhosts& block)
   const Grid& held = block.WithGhosts().grid;
   ForBoxFaceCells(held, [&](const BoxFaceCell& cell) {
     const std::array<int, 3> voxel = held.VoxelAt(cell.voxel);
-    if (block.IsOwn(voxel)) // at its face the grid with ghost cells then ends at the box
+    if (block.IsOwn(voxel)) // the faces of the grid with ghost cells at an own voxel are faces of the box
     {
       const BoxFaceLayout layout = LayoutOfFace(this->Faces.Box(), cell.face);
       std::size_t place = layout.first;
@@ -117,10 +117,10 @@ double FaceBalance::Reflect(int iteration, const Rgb& given)
     {
       change = std::max(change, this->ReflectChannel(iteration, c, given[c]));
     }
-    // Powers of the diffusion systems do not have the pattern of rays.
+    // Powers of the diffusion solution do not have the uneven pattern of rays, so they are passed as uncollided light.
     this->Faces.LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
   });
-  return this->TheDomain.Max(change); // devices of different ranks may round differently
+  return this->TheDomain.Max(change); // maximum over ranks, whose devices may round differently
 }
 
 double FaceBalance::ReflectChannel(int iteration, std::size_t c, double given)
@@ -136,7 +136,8 @@ double FaceBalance::ReflectChannel(int iteration, std::size_t c, double given)
     differs += std::abs(found[cell] - came[cell]);
     all += found[cell];
   }
-  // Mixing helps in thin media, where the diffusion systems do not predict the path of reflected light.
+  // Mixing accelerates convergence in thin media, where the diffusion systems do not predict how reflected light is
+  // transported.
   if (iteration > 0)
   {
     found = this->BackMixing[c].Next(came, found);
@@ -165,7 +166,7 @@ void FaceBalance::Count(EnergyLedger& ledger) const
   }
 }
 
-/// Optical length of the voxel at each cell along its longest edge, [channel][cell].
+/// Optical thickness along the longest voxel edge of the voxel at each cell of the box faces, [channel][cell].
 std::vector<double> FaceBalance::OpticalLengths(const Medium& medium) const
 {
   const std::array<double, 3>& h = this->Faces.Box().spacing;
@@ -183,7 +184,8 @@ std::vector<double> FaceBalance::OpticalLengths(const Medium& medium) const
 
 std::vector<double> FaceBalance::LeftWithoutPattern(const std::array<Rgb, 6>& incoming, const Medium& medium) const
 {
-  const bool spreads = !this->Faces.Reflects(); // over neighbouring cells (Deposit::spreadsAside)
+  // Whether rays spread their power over neighbouring cells (Deposit::spreadsAside).
+  const bool spreads = !this->Faces.Reflects();
   const std::vector<double> tau = this->OpticalLengths(medium);
   const Grid& grid = this->Faces.Box();
   const std::vector<double> left = this->Left();

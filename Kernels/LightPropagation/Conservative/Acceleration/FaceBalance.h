@@ -14,15 +14,15 @@
 
 namespace tyndall
 {
-/// Anderson mixing (numerics.md, Eq. (71)) of short vectors on the host; used for reflected light. The next iterate is
-/// the combination of the last results whose change is smallest in the least-squares sense, with negative entries set
-/// to 0.
+/// Anderson mixing (numerics.md, Eq. (71)) of short vectors in host memory, used for reflected power by cell. The next
+/// iterate is the combination of the last results whose change is smallest in the least-squares sense, with negative
+/// entries set to 0.
 class HostMixing
 {
 public:
-  /// @param given  the iterate
+  /// Computes the next iterate.
+  /// @param given  the last iterate
   /// @param found  result of one iteration from `given`
-  /// @return the next iterate
   std::vector<double> Next(const std::vector<double>& given, const std::vector<double>& found)
   {
     const auto size = static_cast<Eigen::Index>(found.size());
@@ -68,51 +68,51 @@ private:
   std::vector<Eigen::VectorXd> Results, Changes;
 };
 
-/// Light by cell of the box faces in a DSA solve (numerics.md, section 7.12): the power that left in the sweep, the
-/// power that leaves in the diffusion solution, and the reflected power that therefore enters the next sweep. Each rank
-/// holds the light of all cells of the box faces on the host, W, [channel][cell], and the light of the cells at its own
-/// voxels on the device, where its diffusion system reads it. Construct and call collectively.
+/// Power through each cell of the box faces in a DSA solve (numerics.md, section 7.12): outgoing in the sweep, outgoing
+/// in the diffusion solution, and reflected into the next sweep. Each rank holds the values of all cells of the box
+/// faces in host memory, W, [channel][cell], and those of the cells at its own voxels on the device, where its
+/// diffusion system reads them. Construct and call collectively.
 class FaceBalance
 {
 public:
-  /// Takes the power that has left so far as uncollided. It is not swept again; its reflected part enters every sweep.
-  /// @param device, faces, block  must outlive this
+  /// Takes the outgoing power in `faces` as that of uncollided light. Uncollided light is not swept; its reflected
+  /// power is incident in every sweep.
+  /// @param device, faces, block  must outlive this object
   FaceBalance(Device& device, FaceLight& faces, const BlockWithGhosts& block);
 
-  const Rgb& GivenBack() const { return this->PowerGivenBack; } ///< W of uncollided light reflected, by channel
+  const Rgb& GivenBack() const { return this->PowerGivenBack; } ///< reflected power of uncollided light, W by channel
 
-  /// Takes the power that left in the last sweep, and writes Rows.
+  /// Reads the outgoing power of the last sweep, and writes Rows().
   void TakeSwept();
-  /// Rows in the layout of DiffusionSystem::Arrays, by cell of the faces of the block with ghost cells; 0 at ghost
-  /// cells.
+  /// The array DiffusionSystem::Arrays::faces of a channel: power, W, by cell of the faces of the block with ghost
+  /// cells; 0 at ghost cells.
   const Buffer<float>& Rows(int channel) const { return this->OfBlock[channel]; }
-  /// Reads the leaving power from the rows that the diffusion systems wrote.
-  /// @param lit  channels that were solved, the same on all ranks
+  /// Reads the outgoing power of the diffusion solution, which the diffusion systems wrote to Rows().
+  /// @param lit  by channel: whether it was solved; equal on all ranks
   void TakeLeaving(const std::vector<bool>& lit);
 
-  /// Sets the incident light of the next sweep to the reflected power of the diffusion solution.
-  /// @param given  by channel, W: emitted, first scattered, reflected uncollided and incident boundary power
-  /// @return difference between this reflected power and that incident in the last sweep, relative to `given` plus the
-  ///   reflected power; largest over channels
+  /// Sets the reflected light incident in the next sweep from the outgoing power of the diffusion solution.
+  /// @param given  emitted, first-scattered, reflected uncollided and incident boundary power, W by channel
+  /// @return change of the reflected power since the last sweep, relative to `given` plus the reflected power; largest
+  ///   over channels
   double Reflect(int iteration, const Rgb& given);
 
-  /// Adds the escaped power after reflection to the ledger, which already contains uncollided light that left.
+  /// Adds the escaped power, after reflection, to the ledger, which already contains the uncollided light that left.
   void Count(EnergyLedger& ledger) const;
 
-  /// Power that leaves through each cell, W, without the uneven pattern in which the rays of the last sweep cross the
-  /// cells. In optically thin voxels the diffusion systems inherit this pattern from the sweep. Sums over faces are
-  /// unchanged.
-  /// @param incoming  boundary irradiance of each face, W / length^2
-  /// @param medium  of this rank's block
+  /// Outgoing power by cell, W, without the uneven pattern in which the rays of the last sweep cross the cells. In
+  /// optically thin voxels the diffusion solution inherits this pattern from the sweep. Sums over faces are unchanged.
+  /// @param incoming  irradiance of each face by the boundary source, W / length^2
+  /// @param medium  medium of this rank's block
   std::vector<double> LeftWithoutPattern(const std::array<Rgb, 6>& incoming, const Medium& medium) const;
 
 private:
-  /// A cell of the box faces at a voxel of this rank: its index among the face cells of the block with ghost cells
-  /// (held) and of the whole box (whole).
+  /// A cell of the box faces at a voxel of this rank. held: its index among the cells of the faces of the block with
+  /// ghost cells; whole: its index among the cells of the box faces.
   struct OwnCell
   {
     std::size_t held, whole;
-    std::size_t voxel; ///< index in the block
+    std::size_t voxel; ///< index of the voxel in the block
   };
   void FindOwnCells(const BlockWithGhosts& block);
   double ReflectChannel(int iteration, std::size_t channel, double given);
@@ -122,14 +122,15 @@ private:
 
   const Domain& TheDomain;
   FaceLight& Faces;
-  const std::size_t Cells, HeldCells; ///< number of cells of the box faces, and of those of the block with ghost cells
+  const std::size_t Cells,
+    HeldCells; ///< number of cells of the box faces, and of those of the block with ghost cells
   std::vector<OwnCell> OwnCells;
   std::vector<Buffer<float>> OfBlock; ///< by channel
   Rgb PowerGivenBack = {};
   std::vector<double> CameBack, GivenBackByCell, LeftUncollided;
-  std::vector<float> LeftSwept;        ///< W that left in the last sweep
-  std::vector<double> Leaves;          ///< W that leaves in the diffusion solution
-  std::vector<double> CameBackInSweep; ///< W reflected into the last sweep
-  std::vector<HostMixing> BackMixing;  ///< mixes CameBack, by channel
+  std::vector<float> LeftSwept;        ///< outgoing power of the last sweep, W
+  std::vector<double> Leaves;          ///< outgoing power of the diffusion solution, W
+  std::vector<double> CameBackInSweep; ///< reflected power incident in the last sweep, W
+  std::vector<HostMixing> BackMixing;  ///< Anderson mixing of CameBack, by channel
 };
 }

@@ -8,42 +8,44 @@
 
 namespace tyndall
 {
-/// Correction step of coarse-mesh DSA (CoarseDiffusion.h). For each channel,
-/// diffusion on coarse cells of several voxels predicts the sum of all orders to come; this class also accounts for its
-/// power. Construct and call collectively.
+/// Correction step of coarse-mesh DSA: for each channel, diffusion on coarse cells of several voxels
+/// (CoarseDiffusion.h) predicts the sum of all later scattering orders. This class also keeps the energy balance of
+/// that prediction. Construct and call collectively.
 class OrdersByCells
 {
 public:
   /// @param parts  must outlive this
   explicit OrdersByCells(TransportParts& parts);
 
-  /// Powers by channel, W.
+  /// Powers of one scattering order, W by channel.
   struct Powers
   {
     Rgb scattered = {}; ///< power of the next source
-    Rgb magnitude = {}; ///< the same with absolute values
-    Rgb left = {};      ///< not accounted for by the coarse solution
+    Rgb magnitude = {}; ///< sum of the absolute values of the next source
+    Rgb left = {};      ///< power that the coarse solution neither absorbs nor lets escape
   };
 
-  /// Converts the path integrals of a sweep to fluence and to the next source, including the predicted sum of all
-  /// orders to come.
-  /// @param ledger  receives the absorbed power, and minus the power that the last sweep let escape in excess
-  /// @param onTheWay  W that wrapped around periodic axes at the end of the sweep, or that no sweep carries on
-  /// @param guess  replaces the coarse solution; null: solve
+  /// Adds the path integrals of the last sweep, and the predicted sum of all later orders, to the fluence, and computes
+  /// the next source.
+  /// @param ledger  receives the absorbed power, and a correction for the power by which the last sweep overestimated
+  ///   the escape
+  /// @param onTheWay  power in flight around periodic axes after the sweep, W by channel, including light that no sweep
+  ///   continues
+  /// @param guess  path integrals of all later orders, W length, used instead of the coarse solution; null: solve
   Powers ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess);
 
-  /// Whether all axes are periodic. Power that wraps around can then only be absorbed, so the coarse solution includes
-  /// it.
+  /// Whether the coarse solution includes power in flight around periodic axes: if all axes are periodic, so that this
+  /// power can only be absorbed.
   bool ForeseeWay() const { return this->Closed; }
 
-  /// Copy of the ledger plus the escaped power of all orders to come.
+  /// Copy of `ledger` plus the predicted escaped power of all later orders.
   EnergyLedger WithOut(const EnergyLedger& ledger) const;
 
 private:
   TransportParts& Parts;
   bool Closed; ///< all axes are periodic
   CoarseDiffusion Cells;
-  std::array<Rgb, 6> Kept = {}; ///< W by face that the next sweep lets escape in excess
-  std::array<Rgb, 6> Out = {};  ///< W by face that escapes in all orders to come
+  std::array<Rgb, 6> Kept = {}; ///< power by which the next sweep will overestimate the escape through each face, W
+  std::array<Rgb, 6> Out = {};  ///< predicted escaped power of all later orders through each face, W
 };
 }

@@ -110,7 +110,7 @@ void SystemArrays::Give(const std::vector<float>& uncollided)
   const char* currents = "the power from voxel to voxel";
   parts.TheDomain().Collective([&] {
     this->TheGiven = Buffer<float>(parts.TheDevice, parts.Source.Read(), "the light given");
-    parts.DarkenBeams(); // until the first-collision source is emitted
+    parts.DarkenBeams(); // the first sweep does not carry the first-collision source of beams
     parts.Path.Write(uncollided.data());
     if (!parts.IsEmpty())
     {

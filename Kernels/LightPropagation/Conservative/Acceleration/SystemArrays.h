@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// Angular moments of the path integrals of a block, and the copy with ghost cells that the diffusion systems read. The
-/// copy has degrees 0 and 1 only, and is 0 in ghost cells.
+/// Angular moments of a block's path integrals, copied to an array with ghost cells that the diffusion systems read.
+/// The copy has degrees 0 and 1 only, and is 0 in ghost cells.
 class MomentsWithGhosts
 {
 public:
@@ -24,8 +24,8 @@ public:
   /// Layout of the moments in arrays with ghost cells.
   const MomentPlaces& Places() const { return this->Held; }
 
-  /// Allocates the array with ghost cells if the block has any; otherwise the systems read the array of the block.
-  /// Collective, as are all methods that write.
+  /// Allocates the array with ghost cells, if the block has any; if not, the systems read the block's own array.
+  /// Collective, as are Spread() and TakeFirstDegree().
   void Allocate(Device& device, const char* what);
   const Buffer<float>& Values(const Buffer<float>& own) const { return this->Array.Size() > 0 ? this->Array : own; }
   /// Copies the moments of the block to the array with ghost cells, and sets ghost cells to 0.
@@ -33,23 +33,24 @@ public:
   /// Copies the moments of degree 1 back to the array of the block.
   void TakeFirstDegree(Buffer<float>& own) const;
 
-  /// One channel of `values` in the layout of DiffusionSystem::State. Ghost cells have degree 0 only; their other
-  /// moments are 0.
-  /// @param values  of the block, in the layout of path integrals
-  /// @param fluence  degree 0 with ghost cells, in the same unit
+  /// One channel of angular moments in the layout of DiffusionSystem::State. The moments of degree 1 are 0 in ghost
+  /// cells.
+  /// @param values  moments of the block, in the layout of path integrals
+  /// @param fluence  moment of degree 0 with ghost cells, in the unit of `values`
   std::vector<double> StateOf(int channel, const std::vector<float>& values, std::vector<double> fluence) const;
 
 private:
-  static int FunctionAlong(int axis) { return axis == 0 ? 3 : axis; } ///< AngularBasis orders degree 1 as y, z, x
+  /// Index of the function of degree 1 along an axis; AngularBasis orders them y, z, x.
+  static int FunctionAlong(int axis) { return axis == 0 ? 3 : axis; }
 
   const BlockWithGhosts& Block;
   MomentPlaces Own, Held;
-  Buffer<float> Array; ///< empty: the block has no ghost cells
+  Buffer<float> Array; ///< moments with ghost cells; empty if the block has none
 };
 
-/// The arrays that sweeps and diffusion systems exchange (DiffusionSystem::Arrays): those of the block, which sweeps
-/// read and write, and their copies with ghost cells, which the systems do. All functions are collective, except for
-/// those that return a member.
+/// Arrays that sweeps and diffusion systems exchange (DiffusionSystem::Arrays): arrays of the block, which sweeps read
+/// and write, and their copies with ghost cells, which the diffusion systems read and write. All functions are
+/// collective, except for those that return a member.
 class SystemArrays
 {
 public:
@@ -60,22 +61,26 @@ public:
   const GhostedMedium& Medium() const { return this->Coefficients; }
   const MomentsWithGhosts& Moments() const { return this->OfPath; }
 
-  /// Sets the given source to emission plus the first-collision source.
-  /// @param uncollided  path of uncollided light, W length; the paths of `parts` become it
+  /// Sets the given source: emission plus the first-collision source.
+  /// @param uncollided  path integrals of uncollided light, W length; also copied to TransportParts::Path
   void Give(const std::vector<float>& uncollided);
-  const Buffer<float>& Given() const { return this->TheGiven; } ///< W / (length^3 sr), of the block
+  const Buffer<float>& Given() const { return this->TheGiven; } ///< given source of the block, W / (length^3 sr)
 
-  /// Partial currents of the sweep, W, of the block.
+  /// Partial currents of the sweep in the block, W (Deposit::partialCurrents).
   Buffer<float>& PartialCurrents() { return this->TheCurrents; }
-  /// Takes the path integrals and partial currents of a sweep.
+  /// Copies the path integrals and partial currents of the last sweep to the arrays with ghost cells.
   void TakeSwept();
-  /// Runs a step on the path's moments with ghost cells, and copies those of degree 1 back to the path.
+  /// Runs `step` on the moments of the path integrals with ghost cells, and copies those of degree 1 back to
+  /// TransportParts::Path.
   void ChangePath(const std::function<void(const Buffer<float>& path)>& step);
-  /// Runs a step on the source of the next sweep, with ghost cells, and copies the source back.
+  /// Runs `step`, which changes the source of the next sweep with ghost cells, and copies that source back to the
+  /// block.
   void ChangeSource(const std::function<void()>& step);
-  void TakeSource() { this->SourceWithGhosts.FillOwn(); } ///< copies the sweep's source to the array with ghost cells
+  /// Copies the source of the next sweep to its array with ghost cells.
+  void TakeSource() { this->SourceWithGhosts.FillOwn(); }
 
-  /// @param faces  see DiffusionSystem::Arrays
+  /// Arrays with ghost cells that the diffusion system of a channel reads.
+  /// @param faces  DiffusionSystem::Arrays::faces
   DiffusionSystem::Arrays OfChannel(int channel, const UncollidedLight& light, const Buffer<float>* faces) const;
 
 private:
@@ -83,7 +88,7 @@ private:
   const BlockWithGhosts TheBlock;
   const GhostedMedium Coefficients;
   MomentsWithGhosts OfPath;
-  Buffer<float> TheGiven, GivenFlux, TheCurrents; ///< of the block, as in DiffusionSystem::Arrays
+  Buffer<float> TheGiven, GivenFlux, TheCurrents; ///< arrays of the block; meaning as in DiffusionSystem::Arrays
   GhostedBuffer GivenWithGhosts, GivenFluxWithGhosts, SourceWithGhosts, CurrentsWithGhosts;
 };
 }
