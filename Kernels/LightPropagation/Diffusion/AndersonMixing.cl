@@ -1,14 +1,16 @@
-// Anderson mixing of the last corrections, see AndersonMixing.h. Options:
-//   GROUP    work-items that share a chunk (GroupSum.cl)
+// Anderson mixing of the last three results of an iteration (AndersonMixing.h). Options:
+//   GROUP    number of work-items that sum a chunk (GroupSum.cl)
 //   DOUBLES  1: the device has double precision
 
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "Numerics/Exact.cl"
 #include "Numerics/GroupSum.cl"
 
-// Sums for Anderson mixing (numerics.md, Eqs. (71), (72)), with f = found - given and d1, d2 the differences of f from
-// that of the previous two iterations: f f and found found (both weighted by scattering, over the voxels' first values
-// only), d1 d1, d1 d2, d2 d2, d1 f, d2 f.
+// Computes the sums for Anderson mixing (numerics.md, Eqs. (71), (72)) of a chunk of values. With the change f = found
+// - given, and its differences d1, d2 from the changes of the two previous iterations: f f and found found (both
+// weighted by scattering, over the first value of each voxel only), d1 d1, d1 d2, d2 d2, d1 f, d2 f.
+//   change1, change2  changes of the two previous iterations
+//   sums              [chunk][AndersonSums]
 __kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,
   const __global float* change2, const __global float* sigma_s, int first, float length, int voxels, int count,
   __global exact* sums)
@@ -21,7 +23,7 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     const float scatters = sigma_s[first + i % voxels];
     if (scatters < 0.0f)
     {
-      continue; // a ghost: its owner counts it
+      continue; // a ghost voxel, which its owner counts
     }
     const exact tau = i < voxels ? scatters * length : 0;
     const exact f = found[i] - given[i];
@@ -36,14 +38,14 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     sum[5] += d1 * f;
     sum[6] += d2 * f;
   }
-  // The eighth sum is 0.
+  // The eighth sum is unused and 0.
   const exact8 all = (exact8)(sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6], sum[7]);
   __global exact8* of_chunks = (__global exact8*)sums;
   PUT_SUM_OF_GROUP(exact8, all, of_chunks[get_group_id(0)])
 }
 
-// given = found - w1 (found - found1) - w2 (found - found2). Stores found and found - given over those of the second to
-// last iteration.
+// given = found - w1 (found - found1) - w2 (found - found2). Overwrites found2 by found, and change2 by found - given.
+//   found1, found2  results of the previous iteration and of the one before it
 __kernel void anderson_step(__global exact* given, const __global exact* found, const __global float* found1,
   __global float* found2, __global float* change2, float w1, float w2)
 {

@@ -37,8 +37,8 @@ void AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, con
   cl::Kernel step = this->Kernel("anderson_step");
   std::swap(this->FoundBefore[0], this->FoundBefore[1]);
   std::swap(this->ChangeBefore[0], this->ChangeBefore[1]);
-  // The previous result becomes the second to last one, whose buffer receives the new one: the kernel reads before it
-  // writes.
+  // Swaps the buffers of the two stored results: the kernel reads the older result, then overwrites it with the new
+  // one.
   With(step, given.Handle(), found.Handle(), this->FoundBefore[1], this->FoundBefore[0], this->ChangeBefore[0],
     static_cast<float>(weights[0]), static_cast<float>(weights[1]));
   this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);
@@ -66,7 +66,8 @@ AndersonMixing::Sums AndersonMixing::SumsOf(
   return sums;
 }
 
-/// Weights of the two previous iterations: least squares of the change (numerics.md, Eq. (71)).
+/// Weights w1, w2 of the two previous iterations, which minimise the change in the least-squares sense (numerics.md,
+/// Eq. (71)).
 std::array<double, 2> AndersonMixing::WeightsBy(const Sums& sums) const
 {
   const auto& [ff, all, aa, ab, bb, af, bf, unused] = sums;

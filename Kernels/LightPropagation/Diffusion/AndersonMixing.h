@@ -7,32 +7,36 @@
 
 namespace tyndall
 {
-/// Anderson mixing of an iteration's last three results (D. G. Anderson, Iterative Procedures for Nonlinear Integral
-/// Equations, J. ACM 12, 1965; numerics.md, Eq. (71)). It speeds up convergence and damps oscillation: the next x is
-/// the combination of the results with the least change in the least-squares sense.
+/// Anderson mixing of the last three results of a fixed-point iteration (D. G. Anderson, Iterative Procedures for
+/// Nonlinear Integral Equations, J. ACM 12, 1965; numerics.md, Eq. (71)). It speeds up convergence and damps
+/// oscillation: the next input is the linear combination of the results whose change is smallest in the least-squares
+/// sense.
 class AndersonMixing
 {
 public:
   /// @param voxels  number of voxels
-  /// @param count  number of values: one or several arrays of one value a voxel, one after the other
+  /// @param count  number of values: `voxels` times the number of consecutive arrays of one value per voxel
   AndersonMixing(Device& device, std::size_t voxels, std::size_t count, const char* what);
 
-  /// Weight of a voxel in the norm of the change: tau / (1 + tau), tau = sigma_s length (numerics.md, Eq. (72)); 0 in
-  /// vacuum, which does not scatter.
+  /// Parameters of the weight of a voxel in the norm of the change (numerics.md, Eq. (72)): tau / (1 + tau), with tau =
+  /// sigma_s length; 0 without scattering.
   struct Weighting
   {
-    const Buffer<float>* sigma_s; ///< 1/length; below 0: a ghost voxel, excluded because it is counted by its owner
-    std::size_t first;            ///< offset of the values' coefficients in sigma_s
+    /// 1/length; below 0 in ghost voxels, which are excluded because their owners count them.
+    const Buffer<float>* sigma_s;
+    std::size_t first; ///< offset of the first voxel's value in sigma_s
     float length;
   };
 
   using Sums = std::array<double, AndersonSums>;
 
-  /// Sums over this rank's values; Mix() takes those of all ranks.
+  /// Sums over this rank's values (AndersonMixing.cl). Mix() needs them summed over all ranks.
   Sums SumsOf(const ExactValues& given, const ExactValues& found, const Weighting& weighting) const;
-  /// @param given  the input that led to the result `found`; replaced by the next input
+  /// @param given  the input of the iteration whose result is `found`; replaced by the next input
+  /// @param sums  SumsOf(), summed over all ranks
   void Mix(const ExactValues& given, const ExactValues& found, const Sums& sums);
-  /// |found - given| / |found| over each voxel's first value, weighted (numerics.md, Eq. (72)).
+  /// Relative change |found - given| / |found|, in the weighted norm over each voxel's first value (numerics.md, Eq.
+  /// (72)).
   static double ChangeBy(const Sums& sums);
 
 private:
@@ -42,7 +46,7 @@ private:
   Device& TheDevice;
   std::size_t Voxels, Count;
   ExactValues OfChunks;
-  /// Result and change of the last mix and of the one before it.
+  /// Result, and change found - given, of the previous iteration [0] and of the one before it [1].
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore;
   int Mixes = 0;
 };

@@ -1,10 +1,11 @@
-// Access to a grid's voxels, to their neighbours, and to the voxels at the box's faces, in the diffusion system.
+// Voxel indices for kernels of the diffusion system: voxels of the grid, their neighbours, and voxels at the box's
+// faces.
 
 #pragma once
 #include "LightPropagation/Diffusion/Conductance.cl"
 #include "Numerics/Exact.cl"
 
-// Defines x, y, z and index i of the work-item's voxel.
+// Defines the indices x, y, z of the work-item's voxel, and its index i in arrays.
 #define VOXEL(count)                                                          \
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2); \
   if (x >= (count)[0] || y >= (count)[1] || z >= (count)[2])                  \
@@ -18,7 +19,7 @@
     (!(layout).periodic[1] && ((at)[1] == 0 || (at)[1] == (layout).size[1] - 1)) || \
     (!(layout).periodic[2] && ((at)[2] == 0 || (at)[2] == (layout).size[2] - 1)))
 
-// Neighbours across all faces, wrapped around every axis; at the box's boundary the conductance is zero.
+// Indices of the six neighbours of a voxel, wrapped around every axis; where the box ends the conductance is 0.
 static void find_neighbours(const int* size, int x, int y, int z, int i, int* next)
 {
   const int row = size[0];
@@ -37,8 +38,8 @@ static bool is_border(const DiffusionLayout* layout, const int* at, int d)
   return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
-// Finds the voxel of a cell of the box's faces (numbered as in Medium/BoxFaces.h). @return false if the voxel has an
-// earlier cell, or the axis is periodic
+// Finds the voxel of a cell of the box's faces (numbered as in Medium/BoxFaces.h). @return true for the first cell of
+// each voxel; false for its other cells, and if the axis is periodic
 static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
 {
   const int* n = layout->size;
@@ -63,7 +64,8 @@ static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
   return false;
 }
 
-// Defines x, y, z and index i of the work-item's voxel, one of those at the box's faces.
+// Defines the indices x, y, z and the array index i of the work-item's voxel, a voxel at the box's faces. Work-items
+// are numbered by cells of the faces.
 #define BORDER_VOXEL(layout)                                        \
   int border[3];                                                    \
   if (!find_border_voxel(&(layout), (int)get_global_id(0), border)) \
@@ -73,8 +75,8 @@ static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
   const int x = border[0], y = border[1], z = border[2];            \
   const int i = (z * (layout).size[1] + y) * (layout).size[0] + x;
 
-// Factors of the net outgoing power through a reflecting face of the box (numerics.md, Eqs. (76b), (76c)):
-//   ofMedium times the power without incident light, minus ofLight times the incident power
+// Factors of the net outgoing power through a reflecting face of the box (numerics.md, Eqs. (76b), (76c)), which is
+// ofMedium times the power without incident light, minus ofLight times the incident power.
 typedef struct
 {
   float ofMedium, ofLight;

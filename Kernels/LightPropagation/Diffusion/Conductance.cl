@@ -1,13 +1,14 @@
-// Conductances of the voxels' faces in the diffusion system (DiffusionSystem.h), and the transport correction of the
-// inner ones (numerics.md, Eqs. (54), (55), (62)). tau is the optical length of a
-// voxel along an axis. All functions operate on `real` (Numerics.cl): one voxel, or a vector of them.
+// Conductances of voxel faces in the diffusion system (DiffusionSystem.h), and the transport correction at inner faces
+// (numerics.md, Eqs. (54), (55), (62)). tau is the optical length of a voxel along an axis. All functions operate on
+// `real` (Numerics.cl): one voxel, or a vector of voxels.
 
 #pragma once
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "Numerics/Numerics.cl"
 
-// Coefficient of the partial current of a source that is constant in each voxel and falls by one per mean free path
-// (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for optically thick ones.
+// Partial current that a sweep carries for a fluence that decreases by one per mean free path, with a source that is
+// constant in each voxel (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for optically thick
+// ones.
 inline real flat_source_current(real tau)
 {
   const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
@@ -25,15 +26,15 @@ inline real flat_source_current(real tau)
   return sum;
 }
 
-// Half a voxel's optical length in diffusion lengths, y = tau sqrt(3 (1 - albedo)) / 2.
+// Half the edge of a voxel in diffusion lengths, y = tau sqrt(3 sigma_a / sigma_t) / 2.
 inline real half_diffusion_length(real tau, real sigma_t, real sigma_a)
 {
   const real absorbed = fmin(sigma_a / fmax(sigma_t, (real)1e-37f), (real)1.0f);
   return select((real)0.0f, 0.5f * tau * sqrt(3.0f * absorbed), sigma_t > (real)0.0f);
 }
 
-// Conductance of an absorbing half voxel relative to that of tau / 2 (numerics.md, Eq. (57)): for light that decays
-// exponentially from a boundary...
+// Conductance of an absorbing half voxel next to a boundary, from which light decays exponentially, relative to that of
+// a half voxel without absorption (numerics.md, Eq. (57)).
 inline real at_border(real y)
 {
   real left;
@@ -41,7 +42,8 @@ inline real at_border(real y)
   const real whole = y * (2.0f * y / (2.0f * fmax(y, (real)0.02f) - 1.0f + left));
   return select(whole, 1.0f + y * (2.0f / 3.0f), y < (real)0.02f);
 }
-// ...and between equal voxels.
+// Conductance of an absorbing half voxel between equal voxels, relative to that of a half voxel without absorption
+// (numerics.md, Eq. (57)).
 inline real among_equals(real y)
 {
   const real bounded = clamp(y, (real)1e-3f, (real)40.0f);
@@ -51,7 +53,7 @@ inline real among_equals(real y)
   return select(fmax(select(x * x, (real)0.0f, y >= (real)40.0f), (real)1e-20f), (real)1.0f, y < (real)0.01f);
 }
 
-// Conductance per area of an inner face (numerics.md, Eq. (57)).
+// Conductance per area of the inner face between voxels 0 and 1 (D / A of numerics.md, Eq. (57)).
 inline real pass_face(const DiffusionLayout* layout, real tau0, real tau1, real y0, real y1, real flat_source)
 {
   if (!layout->linear)
@@ -75,8 +77,8 @@ inline float volume_of(const DiffusionLayout* layout)
   return layout->spacing[0] * layout->spacing[1] * layout->spacing[2];
 }
 
-// Twice the optical length from the voxel's centre to a face of the box; shorter if the voxel absorbs (numerics.md, Eq.
-// (58)).
+// Twice the effective optical length from a voxel's centre to a face of the box, smaller if the voxel absorbs (`way` of
+// numerics.md, Eq. (58)).
 inline real way_to_boundary(const DiffusionLayout* layout, real tau, real sigma_t, real sigma_a)
 {
   return layout->linear ? tau / at_border(half_diffusion_length(tau, sigma_t, sigma_a)) : tau;
@@ -87,46 +89,47 @@ inline real pass_boundary(const DiffusionLayout* layout, real way)
   return 2.0f * layout->halfRange / (1.0f + (layout->linear ? x : x / (1.0f + x)));
 }
 
-// Contrast, 0 to 1: how optically thick a voxel of optical length tau is compared with a neighbour of length `beyond`
-// (numerics.md, Eq. (62)).
+// Contrast of a face, 0 to 1, between a voxel of optical length tau and a neighbour of optical length `beyond`: near 1
+// if the voxel is thick and the neighbour thin, 0 if the neighbour is thicker (numerics.md, Eq. (62)).
 inline real contrast(real tau, real beyond)
 {
-  // larger values make no difference, and their fourth power would overflow
+  // avoids overflow of the fourth power; the contrast of larger values is the same
   const real bounded = fmin(tau, (real)1e4f);
   const real thick = 0.8f * bounded * bounded;
   const real unlike = select((real)0.0f, 1.0f - beyond / fmax(tau, (real)1e-37f), tau > beyond);
   return unlike * unlike * thick * thick / ((1.0f + thick * thick) * (1.0f + beyond * beyond));
 }
 
-// Weight of the transport correction (numerics.md, Eq. (55)): 1 in thin voxels, small in thick or absorbing ones, where
-// the sweep's powers contain nothing but the discretisation error of its source.
+// Weight of the transport correction (numerics.md, Eq. (55)): 1 in thin voxels, small in thick or absorbing voxels,
+// where the sweep's deviation from diffusion is the discretisation error of its source.
 inline real weight_of_transport(const DiffusionLayout* layout, real tau, real absorbing)
 {
   const real weight = 1.0f / (1.0f + tau * (0.25f * tau + layout->absorbingWeight * absorbing));
   return layout->linear ? weight : (real)1.0f;
 }
 
-// Power of the rays that cross a face in their repeating pattern, relative to the mean (numerics.md, Eq. (65)).
-//   crossing  the pattern's value for thick voxels
+// Crossing pattern of a face between voxels of optical length tau (`pattern` of numerics.md, Eq. (65)).
+//   crossing  value for thick voxels (CrossingPattern.h)
 inline real pattern_of(real crossing, real tau)
 {
-  const real thick = 1.0f - 1.0f / (1.0f + tau * tau); // in thin voxels the fluence has the same pattern
+  const real thick = 1.0f - 1.0f / (1.0f + tau * tau); // in thin voxels the fluence has this pattern, too
   return 1.0f + thick * (crossing - 1.0f);
 }
 
-// An inner face across an axis, between voxels 0 and 1.
+// Inner face between voxels 0 and 1, which are neighbours along an axis.
 typedef struct
 {
-  real sigma_t[2], sigma_a[2]; // 1/length
-  real flatSource[2];          // flat_source_current
-  real model[2];               // the model's fluence, W / length^2
+  real sigma_t[2], sigma_a[2]; // coefficients of the two voxels, 1/length
+  real flatSource[2];          // result of flat_source_current()
+  real model[2];               // fluence of the model, W / length^2
   real passes;                 // conductance, length^2
   real net;                    // net power from 0 to 1 in the sweep, W
-  real driven;                 // part of `net` that the given source's own net flux drives
-  real crossing;               // value of the crossing pattern
+  real driven;                 // part of `net` that is driven by the net flux of the given source (Eq. (53a))
+  real crossing;               // crossing pattern for thick voxels
 } inner_face;
 
-// Power through the face from 0 to 1: that of the sweep minus that of the model (numerics.md, Eq. (54)).
+// Remainder of the power through the face from voxel 0 to 1: R of numerics.md, Eq. (54), the weighted power of the
+// sweep minus that of the model.
 inline real remainder_of(const DiffusionLayout* layout, int axis, const inner_face* face)
 {
   const float h = layout->spacing[axis];

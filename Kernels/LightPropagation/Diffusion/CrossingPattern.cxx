@@ -17,8 +17,8 @@ double FaceArea(const Grid& grid, int axis)
   return grid.spacing[(axis + 1) % 3] * grid.spacing[(axis + 2) % 3];
 }
 
-/// Power per area, at radiance 1, that crosses faces across `axis` upwards in each plane, carried by rays that march
-/// along `marching`.
+/// Power per area, at radiance 1, that rays marching along the axis `marching` carry upwards through faces
+/// perpendicular to `axis`, by plane of voxels along `marching`.
 std::vector<double> CrossingsIn(
   const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, int axis, int marching)
 {
@@ -76,7 +76,7 @@ CrossingPattern FindCrossingPattern(
     for (int which = 0; which < 2; ++which)
     {
       const int marching = OtherAxis(axis, which);
-      // On a periodic axis rays wrap around many times, so that only the mean matters.
+      // On a periodic axis rays wrap around many times, so that the power is the mean in all planes.
       const std::vector<double> power = periodic[marching]
         ? std::vector<double>(grid.size[marching], HalfRange(grid, set, axis, marching))
         : CrossingsIn(grid, set, mapResolution, starts, axis, marching);

@@ -9,18 +9,20 @@
 
 namespace tyndall
 {
-/// Power of the rays that cross each face of the voxels in the sweeps' repeating ray pattern, divided by its mean
-/// (numerics.md, Eq. (65)). It is the sum of two parts: for each axis of the face, one part for the plane of voxels
-/// along each of the other two axes. About 1; the mean over planes is 1.
+/// Crossing pattern of a quadrature: power of the rays that cross a voxel face at uniform radiance, divided by its mean
+/// over the grid (numerics.md, Eq. (65)). About 1, because rays repeat a pattern that crosses some faces more often.
+/// For faces perpendicular to an axis it is the sum of two table entries, one for the voxel's index along each of the
+/// two other axes.
 struct CrossingPattern
 {
   std::vector<float> values;
-  std::array<int, 6> first = {}; ///< offset of each table in `values`, [axis][other axes in order]
+  /// Offset of each table in `values`, [axis perpendicular to the face][other axes in order].
+  std::array<int, 6> first = {};
 };
 CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,
   RayStarts starts, const std::array<bool, 3>& periodic);
 
-/// Sum of w mu over the directions with positive cosine mu to `axis` that march along `marching`; a direction that
-/// marches along several axes counts in part for each.
+/// Sum of w mu over the directions with cosine mu > 0 to `axis` whose rays march along the axis `marching`. A direction
+/// whose rays march along several axes contributes a fraction to each.
 double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marching);
 }

@@ -1,35 +1,38 @@
-// The diffusion system of a channel along rows of voxels, in vectors: its matrix, and its right-hand side from the
-// results of a sweep, except for the box's faces (DiffusionSystem.cl). Options:
-//   REAL_WIDTH  4 or 8 floats of a vector; 1: voxel by voxel, on a GPU
-//   GROUP       GroupSum.cl
+// Kernels of the diffusion system of one channel (DiffusionSystem.h) that process rows of voxels in vectors: its
+// matrix, and its right-hand side from the results of a sweep, except for terms of the box's faces
+// (DiffusionSystem.cl). Options:
+//   REAL_WIDTH  number of floats in a vector, 4 or 8; 1: one voxel per work-item, on a GPU
+//   GROUP       number of work-items that sum together (GroupSum.cl)
 //   DOUBLES     1: the device has double precision
-//   PASSING     1: lamps' light crosses faces directly after its first scattering (LampPassing.h)
+//   PASSING     1: first-scattered light of lamps crosses faces without another collision (LampPassing.h)
 //   MOMENTS     1: sweeps treat forward scattering as unscattered light, or have angular moments
 //   SKIN        1: there are thick voxels next to thinner ones
 //
-// The solver's arrays are [voxel]; reads may extend one vector beyond a row's end. Arrays in rows are laid out as in
-// MultigridRows.cl. The face at x = 0 of a row needs separate treatment: the voxel before it in memory is not its
-// neighbour.
+// Arrays of the sweeps are [voxel]; reads may extend one vector beyond a row's end. Arrays in rows have the layout of
+// MultigridRows.cl. The low face of the first voxel of a row is processed separately: the voxel before it in memory is
+// not its neighbour.
 
 #include "LightPropagation/Diffusion/Conductance.cl"
 #include "LightPropagation/Diffusion/MultigridRows.cl"
 #include "Numerics/Exact.cl"
 
-// Index of a row's first voxel.
+// Index of the first voxel of the row (y, z) in an array [voxel].
 inline int voxel_at(const DiffusionLayout* layout, int y, int z)
 {
   return (z * layout->size[1] + y) * layout->size[0];
 }
 
-// A contiguous range of low faces of a row, across an axis, through which light passes from voxel to voxel.
+// A contiguous range of voxels of a row whose low faces, perpendicular to an axis, have a neighbouring voxel behind
+// them.
 typedef struct
 {
-  int begin, end; // along x
-  int before;     // index of the first voxel of the row on the other side of the faces
+  int begin, end; // range of x
+  int before;     // index of the neighbour of a voxel with x = 0 behind these faces
 } face_span;
 
-// All such ranges of a row: none at the box's boundary; across x first the face that wraps around, then the others. The
-// last vector of a range writes beyond its end, so they must be processed in order.
+// Finds all face_spans of a row. At the box's boundary there are none; perpendicular to x the first span is the face
+// that wraps around, the second all other faces. The last vector of a span writes beyond its end, so spans must be
+// processed in order. @return number of spans
 inline int find_spans(const DiffusionLayout* layout, int axis, int y, int z, face_span* spans)
 {
   const int n = layout->size[0], here = voxel_at(layout, y, z);
@@ -49,7 +52,7 @@ inline int find_spans(const DiffusionLayout* layout, int axis, int y, int z, fac
   return 1;
 }
 
-// Stores a vector in a row of [voxel], where the last vector may be incomplete.
+// Stores a vector at x of a row of an array [voxel]; of the last vector only the voxels of the row.
 inline void store_in_row(real values, int x, int size, __global float* row)
 {
   if (x + REAL_WIDTH <= size)
@@ -65,9 +68,9 @@ inline void store_in_row(real values, int x, int size, __global float* row)
   }
 }
 
-// Computes the current of a constant source (Conductance.cl) for each voxel.
-// flat_source  [axis][flatStride]
-// swept        sigma_t of the sweeps
+// Computes flat_source_current() (Conductance.cl) of each voxel along each axis.
+//   flat_source  [axis][flatStride]
+//   swept        extinction of the sweeps, 1/length
 __kernel void diffusion_flat_source(
   DiffusionLayout layout, const __global float* sigma_t, const __global float* swept, __global float* flat_source)
 {
@@ -84,8 +87,8 @@ __kernel void diffusion_flat_source(
         real current = flat_source_current(sweeps * layout.spacing[axis]);
         if (MOMENTS)
         {
-          // The first moment of the source carries part of the current exactly; only the rest has the excess of a
-          // constant source.
+          // A fraction of the current is carried by the first moment of the source, exactly; only the rest has the
+          // excess of a constant source.
           const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
           const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
           current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
@@ -96,7 +99,8 @@ __kernel void diffusion_flat_source(
   }
 }
 
-// Conductance of faces between voxels 0 and 1 across an axis, length^2.
+// Conductance of the faces between voxels 0 and their neighbours 1 along an axis, length^2 (D of numerics.md, Eq.
+// (57)).
 static real conductance_of(
   const DiffusionLayout* layout, int axis, real sigma_t0, real sigma_a0, real sigma_t1, real sigma_a1, real flat_source)
 {
@@ -107,8 +111,9 @@ static real conductance_of(
   return face_area(layout, axis) * pass_face(layout, tau0, tau1, y0, y1, flat_source);
 }
 
-// conductance  [axis][rows] of the voxel's low face, length^2; 0 on the box's boundary
-// loss         [rows] absorbed power per fluence
+// Computes the matrix of the diffusion system, without the loss through the box's faces.
+//   conductance  [axis][rows] of the voxel's low face, length^2; 0 on the box's boundary
+//   loss         [rows] absorbed power per fluence, length^2
 __kernel void diffusion_conductance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, __global float* conductance, __global float* loss)
 {
@@ -144,7 +149,8 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
   }
 }
 
-// Copies sigma_t to rows. Beyond the box's boundary it is the same as inside, so that there is no contrast.
+// Copies sigma_t to rows. Beyond the box's boundary it has the value of the outermost voxel, so that contrast() is 0
+// there.
 __kernel void diffusion_extinction(DiffusionLayout layout, const __global float* sigma_t, __global float* extinction)
 {
   sigma_t += layout.firstT;
@@ -165,7 +171,8 @@ __kernel void diffusion_extinction(DiffusionLayout layout, const __global float*
   }
 }
 
-// Extinction of the voxels at x of a row, [0], and of their neighbours across face d, [1 + d].
+// Loads the extinction of a vector of voxels from x on, to sigma_t[0], and of their neighbours across face d, to
+// sigma_t[1 + d].
 static void find_extinctions(
   const DiffusionLayout* layout, int y, int z, int x, const __global float* extinction, real* sigma_t)
 {
@@ -185,7 +192,8 @@ static void find_extinctions(
   sigma_t[6] = load_real(row_at(rows, y, high_z) + x, extinction);
 }
 
-// The largest contrast() of the voxels' faces, 0 below 0.01. Nonzero only next to thinner voxels.
+// Skin of voxels (numerics.md, section 7.5): the largest contrast() of a voxel's faces, 0 if that is below 0.01.
+// Nonzero only next to thinner voxels.
 static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
 {
   real most = (real)0.0f;
@@ -198,8 +206,8 @@ static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
   return layout->linear ? select((real)0.0f, most, most > (real)0.01f) : (real)0.0f;
 }
 
-// Marks rows that contain voxels with a nonzero skin_of().
-// skins  [z][y], initially 0
+// Marks the rows that contain voxels with a nonzero skin_of().
+//   skins  [z][y], 1: marked; initially 0
 __kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
 {
   FOR_ROWS(layout.rows)
@@ -219,7 +227,8 @@ __kernel void diffusion_skins(DiffusionLayout layout, const __global float* exti
   }
 }
 
-// Loads exact values of a row of [voxel] from x on as floats; lanes beyond its end repeat the last voxel.
+// Loads a vector of exact values (Exact.cl) of a row of [voxel] from x on, rounded to floats; lanes beyond the row's
+// end repeat its last voxel.
 static real load_rounded(const __global exact* row, int x, int size)
 {
   float values[REAL_WIDTH];
@@ -230,10 +239,12 @@ static real load_rounded(const __global exact* row, int x, int size)
   return *(real*)values;
 }
 
-// Computes the model's fluence, at which the sweep's powers are compared with diffusion (numerics.md, Eq. (56)): in
-// thin voxels the sweep's result, in optically thick ones the fluence from which its source was computed.
-// extinction  sigma_t in rows, see diffusion_extinction; if SKIN is 0, in the solver's layout
-// of_lamps    W / (length^3 sr), see DiffusionSystem::Arrays; if PASSING
+// Computes the fluence of the model, for which the sweep's powers are compared with diffusion (m of numerics.md, Eq.
+// (56)): in thin voxels the fluence of the sweep, in optically thick ones the fluence from which its source was
+// computed.
+//   extinction  sigma_t in rows, from diffusion_extinction; if SKIN is 0, in the layout of the sweeps
+//   of_lamps    DiffusionSystem::Arrays::ofLamps, W / (length^3 sr), if PASSING
+//   model       W / length^2, [voxel]
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
   const __global exact* fluence, const __global float* source, const __global float* of_lamps, __global float* model)
 {
@@ -257,7 +268,8 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
         real source_of_fluence = load_real(here + x, source);
         if (PASSING)
         {
-          source_of_fluence -= load_real(here + x, of_lamps); // the solved fluence does not include it either
+          // The solved fluence does not include this source, either.
+          source_of_fluence -= load_real(here + x, of_lamps);
         }
         const real shining = 4.0f * M_PI_F * source_of_fluence / fmax(sigma_t[0], (real)1e-37f);
         given = select(solved, mix(solved, shining, skin), skin > (real)0.0f);
@@ -275,17 +287,19 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
   }
 }
 
-// Data of a channel at the faces across one axis, [voxel].
+// Arrays of a channel for the faces perpendicular to one axis, [voxel].
 typedef struct
 {
   const __global float *sigma_t, *sigma_a, *flatSource, *model;
-  const __global float *low, *high; // power that entered in the sweep through low faces, and through high ones, W
-  const __global float *passedLow, *passedHigh; // lamps' first-scattered light that crossed these faces directly
+  const __global float *low, *high; // power that entered voxels in the sweep through their low and high faces, W
+  // Power of lamps' first-scattered light that leaves through these faces, W.
+  const __global float *passedLow, *passedHigh;
   const __global float* givenFlux;
 } face_arrays;
 
-// Power from voxels j to the next ones along the axis, i, through the faces between them, except for the part that
-// their fluence drives (numerics.md, Eqs. (53a), (54)).
+// Power from voxels j to their next neighbours i along the axis, without the part that the difference of fluence drives
+// (numerics.md, Eqs. (53a), (54)): remainder, power driven by the given source's net flux, and first-scattered light of
+// lamps, W.
 static real power_of_faces(
   const DiffusionLayout* layout, const face_arrays* of, int axis, int j, int i, real passes, real crossing)
 {
@@ -307,10 +321,11 @@ static real power_of_faces(
   return power;
 }
 
-// Computes the power through the voxels' low faces, in rows; 0 at the box's boundary.
-// currents  power that entered in the sweep, W, [-x, +x, -y, +y, -z, +z][stride]
-// passed    laid out as currents; if PASSING
-// pattern   crossing tables (DiffusionLayout)
+// Computes the power of power_of_faces() through the voxels' low faces, W, in rows; 0 at the box's boundary.
+//   currents  power that entered voxels in the sweep, W, [-x, +x, -y, +y, -z, +z][stride]
+//   passed    power of lamps' first-scattered light that leaves through each face, in the layout of `currents`, if
+//             PASSING
+//   pattern   tables of the crossing pattern (CrossingPattern.h)
 __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
@@ -359,8 +374,8 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
 }
 
 // Computes the right-hand side of numerics.md, Eq. (53), W, in rows, except for the power through the box's faces.
-// given    emission and first-collision source, W / (length^3 sr)
-// powers_  through low faces, see diffusion_face_powers
+//   given    emission and first-collision source, W / (length^3 sr)
+//   powers_  results of diffusion_face_powers
 __kernel void diffusion_balance(DiffusionLayout layout, const __global float* given, const __global float* powers_x,
   const __global float* powers_y, const __global float* powers_z, __global float* right)
 {
@@ -383,8 +398,8 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* gi
   }
 }
 
-// Absorbed power of the fluence, W, in the voxels that this rank owns.
-// sums  [work-group]
+// Computes the absorbed power of a fluence, W, in the voxels that this rank owns.
+//   sums  [work-group] partial sums
 __kernel void diffusion_absorbed(
   DiffusionLayout layout, const __global float* sigma_a, const __global exact* fluence, __global exact* sums)
 {

@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-/// The part of the crossing pattern for the planes of a box.
+/// Crossing pattern for the planes of voxels of a box, from that of the whole grid.
 CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, const std::array<int, 3>& size)
 {
   CrossingPattern pattern;
@@ -22,22 +22,25 @@ CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, con
     pattern.first[table] = static_cast<int>(pattern.values.size());
     for (int k = 0; k < box.size[along]; ++k)
     {
-      const int plane = (box.first[along] + k + size[along]) % size[along]; // wraps around a periodic axis
+      // Index of the plane in the whole grid, wrapped around a periodic axis.
+      const int plane = (box.first[along] + k + size[along]) % size[along];
       pattern.values.push_back(whole.values[whole.first[table] + plane]);
     }
   }
   return pattern;
 }
 
-constexpr double Reduction = 3e-3; ///< reduction of the residual in one correction: more would hardly save sweeps
-/// The same for slow iterations, after several corrections: the residuals that these leave add up.
+/// Factor by which one correction reduces the residual; a smaller one would hardly save sweeps.
+constexpr double Reduction = 3e-3;
+/// Reduction of the residual from the 13th correction on: in slow iterations the residuals of successive corrections
+/// add up.
 constexpr double SlowReduction = 1e-4;
 constexpr int Several = 12;
-/// Targets of Refine(): reduction of the residual, and its root mean square in units.
+/// Targets of Refine(): factor by which the residual is reduced, and its root mean square relative to `unit`.
 constexpr double RefinedBy = 0.1, RefinedTo = 1e-6;
 
-/// Rounding can make the power of dark faces slightly negative: it is set to 0, and the others are scaled to conserve
-/// the sum.
+/// Sets negative powers, which rounding can produce at dark faces, to 0, and scales the positive ones to conserve the
+/// sum.
 std::array<double, 6> NotNegative(std::array<double, 6> powers)
 {
   const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
@@ -54,17 +57,18 @@ std::array<double, 6> NotNegative(std::array<double, 6> powers)
   return powers;
 }
 
-/// Escaped power through each of the box's faces by the last correction, W; 0 on periodic axes.
+/// Escaped power through each of the box's faces in the last solution, W; 0 on periodic axes.
 /// @param sums  over all ranks
-/// @param entered  power that entered in the sweep, W
-/// @param ofSweep  power that left through each face in the sweep, W; determines how power at the box's edges is
-///   divided among faces
+/// @param entered  incident power of the sweep, W
+/// @param ofSweep  escaped power of the sweep through each face, W; determines how the power of voxels with several
+///   faces on the box is divided among faces
 std::array<double, 6> OutflowBy(const DiffusionSystem::BorderSums& sums, double entered,
   const std::array<double, 6>& ofSweep, const std::array<bool, 3>& periodic)
 {
   std::array<double, 6> outflow = sums.out;
-  std::array<double, 6> missing = ofSweep; // outgoing power minus its estimate
-  // Summing thousands of rays through one cell in floats gives errors of 1e-5.
+  std::array<double, 6> missing = ofSweep; // outgoing power of the sweep minus its estimate, by face
+  // The incident power by face is scaled to the total `entered`: sums over thousands of rays through a cell in floats
+  // have errors of 1e-5.
   const double allCame = std::accumulate(sums.came.begin(), sums.came.end(), 0.0);
   for (int face = 0; face < 6; ++face)
   {
@@ -109,7 +113,7 @@ DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, c
   this->Solver->Coarsen();
 }
 
-/// Runs a step of a rank that has voxels. Collective.
+/// Runs `step` on the system of a rank that has voxels. Collective.
 void DiffusionSolver::OnSystem(const std::function<void(DiffusionSystem&)>& step) const
 {
   this->TheDomain.Collective([&] {
@@ -153,7 +157,7 @@ void DiffusionSolver::BeginBeyond(const std::vector<double>& guessed)
   });
 }
 
-/// The fluence of the block's voxels out of a state with ghost voxels (DiffusionSystem::State).
+/// Extracts the fluence of the block's voxels from a state with ghost voxels (DiffusionSystem::State).
 std::vector<double> DiffusionSolver::OwnOf(std::vector<double> held) const
 {
   const std::size_t count = this->Block.Own().grid.VoxelCount();
@@ -203,7 +207,7 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
       voxel[axes.axis] = face % 2 ? size[axes.axis] - 1 : 0;
       voxel[axes.u] = u;
       voxel[axes.v] = v;
-      return this->Block.IsOwn(voxel); // the faces of own voxels at the end of the box are the grid's
+      return this->Block.IsOwn(voxel); // where the box with ghosts ends at an own voxel, the whole grid ends, too
     });
   });
   std::vector<double> values = { sums.transportWeight, sums.shared };
@@ -213,7 +217,8 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
   }
   values = this->TheDomain.Sum(values);
   sums.transportWeight = values[0];
-  sums.shared = this->ByCells ? 0.0 : values[1]; // otherwise the power is known by cell
+  // If the sweep tallies power by cell, nothing has to be divided among faces.
+  sums.shared = this->ByCells ? 0.0 : values[1];
   auto next = values.begin() + 2;
   for (std::array<double, 6>* ofFaces : { &sums.out, &sums.seeming, &sums.came })
   {

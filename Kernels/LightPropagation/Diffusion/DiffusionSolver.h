@@ -11,16 +11,16 @@
 
 namespace tyndall
 {
-/// The low-order solve of one channel (DiffusionSystem.h, numerics.md, section 7) on a domain. Each rank sets up the
-/// balance of its own voxels from its block and ghosts; all ranks solve it together (MultigridSolver.h). Constructor
-/// and functions are collective unless stated otherwise.
+/// Solver for the diffusion system of one channel on a domain (DiffusionSystem.h; numerics.md, section 7). Each rank
+/// assembles the equations of its own voxels from its block and ghost voxels; all ranks solve them together
+/// (MultigridSolver.h). Constructor and functions are collective unless stated otherwise.
 class DiffusionSolver
 {
 public:
   /// @param block  must outlive this object
-  /// @param pattern  of the whole grid
-  /// @param arrays  with ghosts: sigma_t, sigma_a, partialCurrents and passed have their owners' values there, sigma_s
-  ///   is below 0 there; the other arrays are not read there
+  /// @param pattern  crossing pattern of the whole grid
+  /// @param arrays  arrays with ghost voxels. In ghost voxels sigma_t, sigma_a, partialCurrents and passed have the
+  ///   values of the owners, sigma_s is below 0, and all other arrays are not read.
   /// @param incoming  incident power through the faces of the whole grid without that of lamps, W / length^2
   /// @param periodic  which axes of the domain are periodic
   /// @param linear  as in DiffusionLayout
@@ -28,29 +28,30 @@ public:
     const CrossingPattern& pattern, const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming,
     const std::array<bool, 3>& periodic, bool linear);
 
-  /// Solves for the fluence after a sweep.
+  /// Solves for the fluence of all orders after a sweep, and mixes it with previous solutions.
   /// @param unit  typical power of a voxel, W
-  /// @return |found - given| / |found|
+  /// @return change of the fluence by sweep and solve, |found - given| / |found| (numerics.md, Eq. (72))
   double Correct(double unit);
-  /// Continues the solve of the last correction, for more digits.
+  /// Continues the solve of the last Correct() to a smaller residual.
   void Refine(double unit);
-  double Absorbed() const; ///< power absorbed according to the last correction, W
-  /// Escaped power through each of the box's faces by the last correction, W; 0 on periodic axes.
-  /// @param entered  power that entered in the sweep, W
-  /// @param ofSweep  power that left through each face in the sweep, W
+  double Absorbed() const; ///< absorbed power of the last solution, W
+  /// Escaped power through each of the box's faces in the last solution, W; 0 on periodic axes.
+  /// @param entered  incident power of the sweep, W
+  /// @param ofSweep  escaped power of the sweep through each face, W
   std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
-  /// Starts the next correction and the next sweep's source from the solution plus a guess.
-  /// @param guessed  added, W / length^2, by voxel with ghosts, as DiffusionSystem::State()
+  /// Warm start: adds a guess to the solution from which the next sweep's source and the next correction are computed.
+  /// @param guessed  W / length^2, by voxel with ghosts, in the layout of DiffusionSystem::State()
   void BeginBeyond(const std::vector<double>& guessed);
 
-  // Not collective.
-  std::vector<double> Found() const; ///< W / length^2, by voxel of the block
-  /// The fluence from which the next sweep's source is to be computed, W / length^2.
+  // Functions that are not collective:
+  std::vector<double> Found() const; ///< fluence of the last solution, W / length^2, by voxel of the block
+  /// Fluence from which the next sweep's source is to be computed, W / length^2, by voxel of the block.
   const ExactValues& NextFluence();
-  void ShapeSource(); ///< DiffusionSystem::ShapeSource(); like the following two, on arrays with ghosts
+  void ShapeSource(); ///< DiffusionSystem::ShapeSource()
   void PutNextFlux(const Buffer<float>& path);
-  void AddFlux(const Buffer<float>& flux); ///< values in ghosts differ from those of their owners
-  /// As DiffusionSystem::PowersAtSurface(), by cell of the block's faces; valid only for cells on the box's faces.
+  /// DiffusionSystem::AddFlux(); afterwards ghost voxels do not have the values of their owners.
+  void AddFlux(const Buffer<float>& flux);
+  /// Power through the cells of the block's faces in the last solution; valid only for cells on the box's faces.
   SurfacePowers PowersAtSurface() const;
 
 private:
@@ -60,11 +61,11 @@ private:
   const BlockWithGhosts& Block;
   const Domain& TheDomain;
   const std::array<bool, 3> Periodic;
-  bool ByCells; ///< whether escaped power is known by cell of the box's faces
+  bool ByCells; ///< whether sweeps tally escaped power by cell of the box's faces
   std::unique_ptr<MultigridSolver> Solver;
-  std::unique_ptr<DiffusionSystem> System; ///< of the block with ghosts; null on a rank without voxels
+  std::unique_ptr<DiffusionSystem> System; ///< system of the block with ghosts; null on a rank without voxels
   ExactValues NoVoxels;                    ///< the solution of a rank without voxels
-  ExactValues OwnNext;                     ///< next fluence of the block; empty: the block has no ghosts
+  ExactValues OwnNext;                     ///< result of NextFluence(); empty if the block has no ghosts
   int Corrections = 0;
 };
 }

@@ -1,8 +1,8 @@
-// The diffusion system of a channel at the box's faces, and quantities derived from its solution, voxel by voxel.
-// Kernels that process all voxels in every iteration are in DiffusionRows.cl. Options:
+// Kernels of the diffusion system of one channel (DiffusionSystem.h): its equations at the box's faces, and quantities
+// derived from its solution. Kernels that process all voxels in every iteration are in DiffusionRows.cl. Options:
 //   DOUBLES  1: the device has double precision
-//   PASSING  1: lamps' light crosses faces directly after its first scattering (LampPassing.h)
-//   FACES    1: outgoing and reflected power is known by cell of the box's faces
+//   PASSING  1: first-scattered light of lamps crosses faces without another collision (LampPassing.h)
+//   FACES    1: sweeps tally outgoing and reflected power by cell of the box's faces
 //   MOMENTS  1: sweeps treat forward scattering as unscattered light, or have angular moments
 //
 // Faces d of a voxel are -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
@@ -10,7 +10,7 @@
 #include "LightPropagation/Diffusion/BoxBorders.cl"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Conductance of face d of a voxel. The array holds low faces, in rows (MultigridLevel).
+// Conductance of face d of the voxel with indices `at`. `conductance` is of low faces, in rows (MultigridLevel).
 static float conductance_at(const DiffusionLayout* layout, const __global float* conductance, int d, const int* at)
 {
   int of[3] = { at[0], at[1], at[2] };
@@ -22,7 +22,8 @@ static float conductance_at(const DiffusionLayout* layout, const __global float*
   return conductance[d / 2 * rows->floats + RowsLead + of[2] * rows->plane + of[1] * rows->pitch + of[0]];
 }
 
-// Adds to the loss the power that leaves through the box's faces per fluence.
+// Adds the power that leaves through the box's faces per fluence to the loss term of the matrix. One work-item per cell
+// of the box's faces.
 __kernel void diffusion_border_loss(
   DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a, __global float* loss)
 {
@@ -46,8 +47,8 @@ __kernel void diffusion_border_loss(
   loss[RowsLead + z * layout.rows.plane + y * layout.rows.pitch + x] += taken;
 }
 
-// The largest contrast() of a voxel's inner faces, 0 below 0.01; `open` receives that of each face. Nonzero only next
-// to thinner voxels.
+// Skin of a voxel (numerics.md, section 7.5): the largest contrast() of its inner faces, 0 if that is below 0.01.
+// Nonzero only next to thinner voxels. `open` receives the contrast of each face.
 static float openness(
   const DiffusionLayout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
 {
@@ -74,12 +75,12 @@ typedef struct
   const __global float* passed;
   const __global float* model;
   const __global float* pattern;
-  const __global float* givenFlux; // [axis][stride]
+  const __global float* givenFlux; // net flux of the given source over 4 pi, [axis][stride]
   ulong stride;
-  const __global float* faces; // if FACES
+  const __global float* faces; // if FACES: rows of power by cell of the box's faces, W (DiffusionShared.h)
 } diffusion_arrays;
 
-// Index of a voxel's cell on face d of the box (Medium/BoxFaces.h).
+// Index of the cell of face d of the box at a voxel (Medium/BoxFaces.h).
 static int cell_of_face(const DiffusionLayout* layout, const int* at, int d)
 {
   const int* n = layout->size;
@@ -99,8 +100,8 @@ static int face_cells(const DiffusionLayout* layout)
   return 2 * (n[1] * n[2] + n[0] * n[2] + n[0] * n[1]);
 }
 
-// Incident power per area through a cell of face d, W / length^2: boundary source and, if FACES, that of a row of
-// `faces`.
+// Incident power per area through a cell of face d of the box, W / length^2: boundary source and, if FACES, reflected
+// power of a row (FaceCame or FaceGiven) of `faces`.
 static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* arrays, int row, int d, const int* at)
 {
 #if FACES
@@ -111,14 +112,14 @@ static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* ar
 #endif
 }
 
-// Contribution of the given source's own net flux, over half a voxel along an axis, to the fluence that drives the
-// current along the axis (numerics.md, Eq. (53a)).
+// Fluence difference over half a voxel along an axis that is equivalent to the net flux of the given source
+// (numerics.md, Eq. (53a)).
 static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
 {
   return MOMENTS ? 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i] : 0.0f;
 }
 
-// drive() out of a voxel through its face d to voxel j, or, below, to the boundary of the box.
+// drive() from a voxel through its face d to the centre of voxel j, or, in drive_out(), to the face of the box.
 static float drive_through(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j)
 {
   return (d & 1 ? 1.0f : -1.0f) * (drive(layout, arrays, d / 2, i) + drive(layout, arrays, d / 2, j));
@@ -128,7 +129,7 @@ static float drive_out(const DiffusionLayout* layout, const diffusion_arrays* ar
   return (d & 1 ? 1.0f : -1.0f) * drive(layout, arrays, d / 2, i);
 }
 
-// Value of the crossing pattern (CrossingPattern.h) of faces across an axis, at a voxel.
+// Crossing pattern (CrossingPattern.h) of a voxel's faces perpendicular to an axis.
 static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, const int* at)
 {
   const int b = axis == 0 ? 1 : 0;
@@ -136,7 +137,8 @@ static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* 
   return arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
 }
 
-// Power through inner face d from voxel i to j: that of the sweep minus that of the model (numerics.md, Eq. (54)).
+// Remainder R of the power through inner face d from voxel i to j: weighted power of the sweep minus that of the model
+// (numerics.md, Eq. (54)).
 static float remainder_of_face(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
 {
@@ -151,8 +153,8 @@ static float remainder_of_face(
   return remainder_of(layout, axis, &face);
 }
 
-// Net outgoing power through a face of the box that a sweep finds according to the model (numerics.md, Eq. (59));
-// `dark` receives that of diffusion without any light in the voxel.
+// Net outgoing power through a face of the box that a sweep would carry for the model's fluence (M_d of numerics.md,
+// Eq. (59)); `dark` receives the net outgoing power by diffusion for a fluence of 0 in the voxel.
 static float model_of_boundary(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* at, float* dark)
 {
@@ -182,7 +184,8 @@ static float model_of_boundary(
   return pattern_of(crossing_at(layout, arrays, axis, at), tau) * spread * area;
 }
 
-// Lamps' first-scattered light that crosses face d of voxel i directly, minus that in the opposite direction, W.
+// Net power of lamps' first-scattered light that crosses face d of voxel i without another collision, W: outgoing minus
+// incoming (Q_d of numerics.md, Eq. (53)).
 static float passing(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
 {
@@ -193,7 +196,7 @@ static float passing(
   return arrays->passed[d * arrays->stride + i] - (border ? 0.0f : arrays->passed[(d ^ 1) * arrays->stride + next[d]]);
 }
 
-// Fraction of the power that the medium sends through face d and that is not reflected back.
+// Fraction of the medium's outgoing power through face d of the box that escapes after reflection.
 static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i)
 {
 #if FACES
@@ -205,12 +208,12 @@ static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arr
 #endif
 }
 
-// Net outgoing power through all of the box's faces at voxel i: that of the sweep minus that of the model (numerics.md,
-// Eq. (60)), W.
-//   power    power that the voxel emits and scatters in the sweep, minus what it absorbs and scatters of the light
-//   share    [face] part of the result for each face, in proportion to `seeming`
+// Remainder of the net outgoing power through all faces of the box at voxel i: weighted power of the sweep minus that
+// of the model (R_box of numerics.md, Eq. (60)), W.
+//   power    power that the voxel emits and scatters in the sweep, minus the power of the sweep that collides in it
+//   share    [face] part of the remainder for each face, in proportion to `seeming`
 //   seeming  [face] outgoing power of the sweep; estimated, since its tally is not by voxel (numerics.md, Eq. (61))
-//   transport_weight  weight of the result
+//   transport_weight  weight of the remainder, Eq. (55)
 static float remainder_of_borders(const DiffusionLayout* layout, const diffusion_arrays* arrays, int i, const int* next,
   const int* at, float power, float* share, float* seeming, float* transport_weight)
 {
@@ -246,12 +249,12 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
   }
   *transport_weight = weight_of_transport(layout, longest * arrays->sigma_t[i], longest * arrays->sigma_a[i]);
   *transport_weight = *transport_weight > 1e-12f ? *transport_weight : 0.0f;
-  // In an optically thick voxel the net power is a small difference of the emitted and the removed power.
+  // In an optically thick voxel the net power is a small difference of large powers, within their rounding error.
   const float rounding = 1e-6f * arrays->sigma_t[i] * volume_of(layout) * fmax(arrays->model[i], 0.0f);
   const float whole = rounding < 0.01f * sum || sum <= 0.0f ? left + in : sum;
   for (int d = 0; d < 6; ++d)
   {
-    // If nothing crosses the voxel unscattered, light that entered through its lateral faces leaves all the same.
+    // If all estimates are 0, the power is divided equally among the voxel's faces on the box.
     const float part = sum > 0.0f ? seeming[d] / sum : is_border(layout, at, d) ? 1.0f / borders : 0.0f;
     seeming[d] = whole * part;
     const float net = seeming[d] - arrays->currents[d * arrays->stride + i] - model[d];
@@ -269,8 +272,8 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
 #endif
 }
 
-// Power through face d of the box that the medium sends by the solution, before reflection at the face; `share` is the
-// voxel's remainder_of_borders() for the face.
+// Outgoing power of the medium through face d of the box in the solution, before reflection at the face; `share` is
+// from remainder_of_borders().
 static exact sent_by_medium(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, float passes, float share)
 {
@@ -278,7 +281,7 @@ static exact sent_by_medium(const DiffusionLayout* layout, const diffusion_array
   return passes * face_area(layout, d / 2) * light + share + passing(layout, arrays, d, i, next, true);
 }
 
-// Net outgoing power through face d of the box by the solution.
+// Net outgoing power through face d of the box in the solution, W; `share` is from remainder_of_borders().
 static exact power_of_border(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, const int* at, float share)
 {
@@ -297,8 +300,8 @@ static exact power_of_border(const DiffusionLayout* layout, const diffusion_arra
 #endif
 }
 
-// Net outgoing power through face d of voxel i by the solution; `share` is the voxel's remainder_of_borders() for each
-// face of the box.
+// Net outgoing power through face d of voxel i in the solution, W; `share` is from remainder_of_borders() and used at
+// faces of the box.
 static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, const float* share)
 {
@@ -316,7 +319,8 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
 }
 
 #if FACES
-// Outgoing power through face d of the box by the solution, before reflection at the face (numerics.md, Eq. (76c)).
+// Outgoing power through face d of the box in the solution, with reflected light and before reflection at the face, W
+// (numerics.md, Eq. (76c)).
 static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, const int* at, float share)
 {
@@ -347,10 +351,11 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);                                                  \
   float share[6], seeming[6], transport_weight;
 
-// Adds the power through the box's faces to the right-hand side of numerics.md, Eq. (53), W, in rows.
-// borders  for each cell of the box's faces the values of DiffusionShared.h, except BorderNet
-// source   of the sweep, W / (length^3 sr)
-// given_flux  net flux of the given source over 4 pi, if there are angular moments, [channel][x, y, z][stride]
+// Adds the power through the box's faces to the right-hand side of numerics.md, Eq. (53), W, in rows. One work-item per
+// cell of the box's faces.
+//   borders     [cell of the box's faces][BorderNet ... BorderWholeShare]; all but BorderNet are written
+//   source      source of the sweep, W / (length^3 sr)
+//   given_flux  net flux of the given source over 4 pi, if there are angular moments, [channel][x, y, z][stride]
 __kernel void diffusion_border_balance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
   const __global float* conductance, const __global float* currents, const __global float* passed,
@@ -391,7 +396,8 @@ __kernel void diffusion_border_balance(DiffusionLayout layout, const __global fl
   }
 }
 
-// Computes the power through the box's faces by the solution; completes the values of diffusion_border_balance.
+// Computes the power through the box's faces in the solution: writes BorderNet to the array `borders` of
+// diffusion_border_balance and, if FACES, the row FaceLeaves of `faces`.
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* passed, const __global float* given_flux, __global float* faces, const __global exact* fluence,
   __global exact* borders)
@@ -420,7 +426,8 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   }
 }
 
-// Adds the net flux, W / length^2, times the volume, [x, y, z][stride] (numerics.md, Eq. (75)).
+// Adds the net flux of the solution, W / length^2, times the voxel's volume to `flux`, [x, y, z][stride] (numerics.md,
+// Eq. (75)).
 __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
@@ -443,10 +450,10 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
   }
 }
 
-// Computes the moments of degree 1 and stores them behind the fluence, [x, y, z][voxel]: those of the sweep, plus the
-// difference of the solution's net flux from the model's.
-// moments  of the sweep's path, W length
-// model    see diffusion_model
+// Computes the moments of degree 1 of the solution and stores them after the fluence, [x, y, z][voxel]: those of the
+// sweep, plus the net flux of the solution minus that of the model (numerics.md, Eq. (70a)).
+//   moments  angular moments of the sweep's path integrals, W length
+//   model    result of diffusion_model
 __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* conductance,
   const __global float* model, const __global float* moments, MomentPlaces places, int channel, __global exact* fluence)
 {
@@ -468,14 +475,14 @@ __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float*
         sum += (d & 1 ? 1.0f : -1.0f) * conductance_at(&layout, conductance, d, at) * change;
       }
     }
-    const int function = axis == 0 ? 3 : axis; // sqrt(3) times y, z, x
+    const int function = axis == 0 ? 3 : axis; // functions 1 to 3 are sqrt(3) times y, z, x
     const exact swept_length = moments[MOMENT_PLACE(places, function, channel, line, x)];
     fluence[(axis + 1) * count + i] =
       (swept_length + 1.73205081f * 0.5f * sum * layout.spacing[axis]) / volume_of(&layout);
   }
 }
 
-// Copies the moments of degree 1 to the path.
+// Copies the moments of degree 1, which follow the fluence in `fluence`, to the angular moments of path integrals.
 __kernel void diffusion_put_flux(
   DiffusionLayout layout, const __global exact* fluence, MomentPlaces places, int channel, __global float* path)
 {
@@ -490,9 +497,9 @@ __kernel void diffusion_put_flux(
   }
 }
 
-// Changes the next sweep's source in optically thick voxels next to thinner ones: instead of emission and scattering,
-// to the source that gives their surface the outward partial current of diffusion (numerics.md, Eqs. (63), (64)).
-// skins  by row, see diffusion_skins
+// Changes the next sweep's source in optically thick voxels next to thinner ones. With the weight skin, the source
+// becomes the one whose surface emits the outgoing partial current of diffusion (numerics.md, Eqs. (63), (64)).
+//   skins  by row of voxels, from diffusion_skins
 __kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
   const __global float* sigma_t, const __global float* sigma_a, const __global float* conductance,
   const __global float* passed, const __global int* skins, __global float* source)
@@ -530,6 +537,6 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
     }
   }
   const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * sigma_t[i] * (0.25f * M_1_PI_F) : 0.0f;
-  // With skin 1 the scattering source has no weight; it may exceed the range of floats.
+  // With skin 1 the previous source is not read: it may exceed the range of floats.
   source[begin + i] = skin < 1.0f ? mix(source[begin + i], there, skin) : there;
 }

@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Floor = 0.05; ///< minimum optical length between voxel centres: conductance does not grow below it
+constexpr double Floor = 0.05;           ///< minimum optical length between voxel centres in conductances, Eq. (57)
 constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces per work-group
 }
 
@@ -54,7 +54,7 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
   this->Model = Buffer<float>(device, this->Count + RowVector, what);
   this->Next = ExactValues(device, this->Values(), what);
   this->Solution = ExactValues(device, this->Values(), what);
-  this->Solution.Fill(0.0); // a channel without light is never solved for
+  this->Solution.Fill(0.0); // stays 0 for a dark channel, which is not solved
   this->Borders = ExactValues(device, BorderValues * this->BorderCells, what);
 
   cl::Kernel flat_source = this->RowsKernel("diffusion_flat_source");
@@ -115,7 +115,7 @@ cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
   return kernel;
 }
 
-/// Finds the rows that have thick voxels next to thinner ones.
+/// Finds the rows of voxels that have thick voxels next to thinner ones, and sets Skins and AnySkin.
 void DiffusionSystem::FindSkins()
 {
   this->Skins =
@@ -129,7 +129,7 @@ void DiffusionSystem::FindSkins()
   this->AnySkin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != 0; });
 }
 
-/// Uses an array of the solver that the next solve overwrites.
+/// Copies sigma_t to rows of the solver's layout, in a scratch array of the solver that the next solve overwrites.
 const Buffer<float>& DiffusionSystem::ExtinctionInRows()
 {
   const Buffer<float>& extinction = *this->Solver.Scratch().front();
@@ -151,7 +151,6 @@ void DiffusionSystem::ShapeSource()
   this->Run(kernel);
 }
 
-/// Computes the fluence at which the sweep's powers are compared with diffusion.
 void DiffusionSystem::FindModel()
 {
   const Arrays& inputs = this->Inputs;
@@ -162,7 +161,6 @@ void DiffusionSystem::FindModel()
   this->RunRows(model);
 }
 
-/// Computes the system's right-hand side.
 void DiffusionSystem::Balance()
 {
   const Arrays& inputs = this->Inputs;
@@ -193,7 +191,7 @@ void DiffusionSystem::FindFlux()
 AndersonMixing::Sums DiffusionSystem::SumsOfChange() const
 {
   const auto& h = this->Layout.spacing;
-  const float edge = std::cbrt(h[0] * h[1] * h[2]); // invariant under permutation of the axes
+  const float edge = std::cbrt(h[0] * h[1] * h[2]); // mean edge of a voxel, invariant under permutation of the axes
   return this->Mixing.SumsOf(this->Next, this->Solution, { this->Inputs.sigma_s, this->Inputs.first, edge });
 }
 

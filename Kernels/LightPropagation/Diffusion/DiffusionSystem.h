@@ -16,7 +16,8 @@
 
 namespace tyndall
 {
-/// @param arrays  has the offsets of a channel and the stride (DiffusionSystem::Arrays, LampLight)
+/// Geometry and channel offsets of a DiffusionLayout; all its constants are 0.
+/// @param arrays  has members stride, firstT and first (DiffusionSystem::Arrays, LampLight)
 template <class Arrays>
 DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
 {
@@ -33,7 +34,7 @@ DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, 
   return layout;
 }
 
-/// Runs a kernel with one work-item per voxel (VOXEL in DiffusionLayout.cl).
+/// Runs a kernel with one work-item per voxel (VOXEL in BoxBorders.cl).
 inline void RunVoxels(Device& device, cl::Kernel& kernel, const DiffusionLayout& layout)
 {
   const cl::NDRange range(RoundUp<std::size_t>(layout.size[0], 32), RoundUp<std::size_t>(layout.size[1], 8),
@@ -44,120 +45,125 @@ inline void RunVoxels(Device& device, cl::Kernel& kernel, const DiffusionLayout&
 /// Power of one channel through the cells of the box's faces, W / length^2, without uncollided light of lamps.
 struct SurfacePowers
 {
-  std::vector<double> net;       ///< outgoing minus incoming, by cell (BoxFaces.h)
-  std::array<double, 6> in = {}; ///< incident through each face, averaged over its cells
+  std::vector<double> net;       ///< outgoing minus incident power, by cell (BoxFaces.h)
+  std::array<double, 6> in = {}; ///< incident power through each face, averaged over its cells
   std::vector<double> back;      ///< reflected power by cell; empty: no face reflects
-  const float* lamps = nullptr;  ///< uncollided fluence of lamps by voxel; null: there are none
-  /// halfRange of the quadrature of the incident light: isotropic radiance L gives `in` = 4 pi halfRange L
+  const float* lamps = nullptr;  ///< uncollided fluence of lamps by voxel, W / length^2; null: there are no lamps
+  /// DiffusionLayout::halfRange of the quadrature of incident light: `in` is 4 pi halfRange L for isotropic radiance L.
   double halfRange = 0.25;
 };
 
-/// The diffusion system of one channel (numerics.md, section 7): a diffusion-like balance of each voxel's power,
-/// corrected by the powers that a sweep found through its faces, Eq. (53). Its solution is the fluence of all
-/// scattering orders.
+/// Diffusion system of one channel (numerics.md, section 7): the power balance of each voxel with diffusive powers
+/// through its faces, corrected by the powers that a sweep carried through these faces, Eq. (53). Its solution is the
+/// fluence of all scattering orders.
 ///
-/// Requires a sweep's path integrals and partial currents for a known source. Alternating with sweeps, each with the
-/// solution as its fluence, it converges in a few iterations whatever the thickness and albedo.
+/// Requires the path integrals and partial currents of a sweep with a known source. Alternating sweeps, whose source is
+/// computed from the last solution, and solves converge in a few iterations for any optical thickness and albedo.
 ///
-/// Guarantees: power is conserved exactly, since what leaves one voxel enters the next. In thin voxels, in vacuum and
-/// next to boundaries the solution is the sweep's; in optically thick ones it is that of diffusion, without the excess
-/// of a source that is constant in each voxel (Eqs. (51), (52)). With `linear` false it is the sweep's own solution,
-/// with that excess.
+/// Guarantees: power is conserved exactly, since the power that leaves one voxel enters its neighbour. In thin voxels,
+/// in vacuum and next to boundaries the solution is that of the sweep; in optically thick voxels it is that of
+/// diffusion, without the excess current of a source that is constant in each voxel (Eqs. (51), (52)). With `linear`
+/// false it is the solution of the sweeps everywhere, including that excess.
 ///
 /// Related: coarse-mesh finite differences (Smith 1983; Cho, Lee and Park 2003), the second-moment method (Lewis and
 /// Miller 1976); numerics.md, section 7.11.
 class DiffusionSystem
 {
 public:
-  /// The solver's arrays, for all channels: `stride` voxels for each channel.
+  /// Arrays that the system reads, for all channels: [channel][stride], unless stated otherwise.
   struct Arrays
   {
-    std::size_t stride, firstT, first; ///< offset of this channel in sigma_t and in the others
-    const Buffer<float>* sigma_t;      ///< transport extinction, 1/length: sigma_a + sigma_s (1 - g)
-    const Buffer<float>* swept;        ///< extinction used by the sweeps, 1/length
-    const Buffer<float>* sigma_a;      ///< 1/length
-    const Buffer<float>* sigma_s;      ///< 1/length
-    const Buffer<float>* given;        ///< emission and first-collision source, W / (length^3 sr)
-    MomentPlaces moments;              ///< places of the angular moments in `path`
-    int channel;                       ///< channel of this system
+    /// Stride between channels; offset of this channel in sigma_t and `swept`, and in all other arrays.
+    std::size_t stride, firstT, first;
+    const Buffer<float>* sigma_t; ///< transport extinction, 1/length: sigma_a + sigma_s (1 - g)
+    const Buffer<float>* swept;   ///< extinction used by the sweeps, 1/length
+    const Buffer<float>* sigma_a; ///< 1/length
+    const Buffer<float>* sigma_s; ///< 1/length
+    const Buffer<float>* given;   ///< emission and first-collision source, W / (length^3 sr)
+    MomentPlaces moments;         ///< places of the angular moments in `path`
+    int channel;                  ///< channel of this system
     /// Net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][stride]; null: isotropic.
     const Buffer<float>* givenFlux;
     const Buffer<float>* source; ///< source of the sweep, W / (length^3 sr)
     const Buffer<float>* path;   ///< path integrals of the sweep, W length
-    /// Partial currents of the sweep, W, [channel][-x, +x, -y, +y, -z, +z][stride]
+    /// Partial currents of the sweep, W, [channel][-x, +x, -y, +y, -z, +z][stride].
     const Buffer<float>* partialCurrents;
-    /// Power of lamps' first-scattered light that crosses a face directly (LampPassing.h), W, [channel][-x, +x, -y, +y,
-    /// -z, +z][stride]; null: voxels are thin, or there are no lamps.
+    /// Power of lamps' first-scattered light that leaves a voxel through each face without another collision
+    /// (LampPassing.h), W, [channel][-x, +x, -y, +y, -z, +z][stride]; null: voxels are thin, or there are no lamps.
     const Buffer<float>* passed;
     /// First-collision source of lamps minus `passed`, W / (length^3 sr), [channel][stride]; used with `passed` only.
     const Buffer<float>* ofLamps;
-    /// Power by cell of the box's faces, W, [row of DiffusionShared.h][cell of BoxFaces.h]; SumBorders() writes the
-    /// last row. Null: no face reflects, and the powers are not wanted.
+    /// Power by cell of the box's faces, W, [FaceCame ... FaceLeaves][cell of BoxFaces.h]; SumBorders() writes the row
+    /// FaceLeaves. Null: no face reflects, and power by cell is not requested.
     const Buffer<float>* faces = nullptr;
-    std::array<double, 6> albedo = {}; ///< of the box's faces
+    std::array<double, 6> albedo = {}; ///< albedo of the box's faces
   };
 
-  /// @param solver  of the same voxels; its matrix is written, except for the coarser levels; must outlive this object
+  /// @param solver  solver on the same voxels, whose matrix of the finest level the constructor writes; must outlive
+  ///   this object
   /// @param incoming  incident power through the box's faces without that of lamps, W / length^2
   DiffusionSystem(Device& device, MultigridSolver& solver, const Grid& grid, const std::array<bool, 3>& periodic,
     const DirectionSet& directions, const CrossingPattern& pattern, const Arrays& arrays,
     const std::array<double, 6>& incoming, bool linear);
 
-  /// The last solution: fluence, W / length^2, [voxel]; if there are angular moments, followed by those of degree 1,
-  /// [x, y, z][voxel].
+  /// The last solution: fluence, result of FindModel(), W / length^2, [voxel]; with angular moments followed by the
+  /// moments of degree 1, [x, y, z][voxel].
   std::vector<double> State() const { return this->Solution.Read(); }
-  /// Sets the state, see State(), from which the next sweep's source and the next correction are computed; initially it
-  /// is 0.
+  /// Sets the state, in the layout of State(), from which the next sweep's source and the next correction are computed.
+  /// The initial state is 0.
   void Begin(const std::vector<double>& state)
   {
     this->Next.Write(state);
     this->Solution.Write(state);
   }
-  /// Fluence from which the next sweep's source is to be computed, W / length^2: the result of the last correction.
+  /// Fluence from which the next sweep's source is to be computed, W / length^2: the last solution after Anderson
+  /// mixing.
   const ExactValues& NextFluence() const { return this->Next; }
-  /// Changes the next sweep's source at the surfaces of optically thick voxels such that the sweep finds the outward
-  /// partial current of diffusion.
+  /// Changes the next sweep's source in optically thick voxels next to thinner ones, such that the sweep emits the
+  /// outgoing partial current of diffusion there (numerics.md, Eqs. (63), (64)).
   void ShapeSource();
 
-  // The steps of a correction (DiffusionSolver.h). The system of a rank's block includes ghost cells, whose `sigma_s`
-  // is below 0: they are excluded from sums.
+  // Steps of DiffusionSolver::Correct(), in order. The system of a rank's block includes ghost voxels, which have
+  // `sigma_s` below 0 and are excluded from sums.
 
-  void FindModel();                                 ///< computes the fluence with which the sweep is compared
-  Buffer<float>& TheModel() { return this->Model; } ///< W / length^2, [voxel]
-  void Balance(); ///< computes the right-hand side: each voxel's balance, from the model
-  /// The solution; ghost voxels included.
+  /// Computes the fluence m of Eq. (56), for which the sweep's powers are compared with diffusion.
+  void FindModel();
+  Buffer<float>& TheModel() { return this->Model; } ///< result of FindModel(), W / length^2, [voxel]
+  void Balance(); ///< computes the right-hand side of Eq. (53) from the sweep's powers and the model
+  /// The solution, with ghost voxels: input and result of the solver.
   ExactValues& Solved() { return this->Solution; }
-  void FindFlux(); ///< computes the moments of degree 1 that belong to the solution, if there are angular moments
-  AndersonMixing::Sums SumsOfChange() const; ///< for the mixing of the solution; call after it was found
+  void FindFlux(); ///< with angular moments: computes the moments of degree 1 of the solution, Eq. (70a)
+  AndersonMixing::Sums SumsOfChange() const; ///< this rank's sums for Anderson mixing of the solution
   void MixBy(const AndersonMixing::Sums& sums);
 
-  /// Sums over cells of the box's faces, from which the escaped power of the last correction follows, W.
+  /// Sums over cells of the box's faces, W, from which DiffusionSolver::Outflow() computes the escaped power.
   struct BorderSums
   {
-    std::array<double, 6> out = {}, seeming = {},
-                          came = {}; ///< by face: outgoing power, estimate of it from the sweep, incoming power
-    /// Sum over the cells of voxels with several faces, and number of such cells.
+    /// By face: outgoing power of the solution, of the sweep (estimated), and incident power of the sweep.
+    std::array<double, 6> out = {}, seeming = {}, came = {};
+    /// Sum of the weights of the transport correction over cells of voxels with several faces on the box, and number of
+    /// these cells.
     double transportWeight = 0.0, shared = 0.0;
   };
-  /// @param counts  whether to count a cell of a face (face; position along the other two axes in order)
+  /// @param counts  whether to include a cell, given by its face and its indices along the other two axes in order
   BorderSums SumBorders(const std::function<bool(int face, int u, int v)>& counts);
-  /// Power absorbed according to the last correction, W; without ghost voxels.
+  /// Absorbed power of the solution in the voxels that this rank owns, W.
   double Absorbed() const;
 
-  /// Power through the voxels' faces on the box's surface, W, of the last SumBorders().
+  /// Power through the cells of the box's faces, W / length^2, after SumBorders().
   SurfacePowers PowersAtSurface() const;
 
-  /// Replaces the first moments in a sweep's path by those that belong to NextFluence(): the sweep's, plus the
-  /// difference of the solution's net flux from that of the model, W length (numerics.md, Eq. (70a)).
+  /// Replaces the moments of degree 1 in a sweep's path integrals, W length, by those that belong to NextFluence(): the
+  /// sweep's moments, plus the net flux of the solution minus that of the model (numerics.md, Eq. (70a)).
   void PutNextFlux(const Buffer<float>& path);
 
-  /// Adds the net flux times the voxel's volume to [channel][x, y, z][stride].
+  /// Adds the net flux of the solution times the voxel's volume to `flux`, [channel][x, y, z][stride].
   void AddFlux(const Buffer<float>& flux);
 
 private:
   std::size_t Values() const { return this->HasMoments() ? 4 * this->Count : this->Count; }
   bool HasMoments() const { return this->Inputs.swept != this->Inputs.sigma_t; }
-  // Arrays that kernels read only if they exist; else any other.
+  // Arguments for arrays that a kernel reads only if they exist; if not, any other array.
   const Buffer<float>& GivenFlux() const
   {
     return this->Inputs.givenFlux ? *this->Inputs.givenFlux : *this->Inputs.given;
@@ -168,11 +174,11 @@ private:
   const Buffer<float>& ExtinctionInRows();
   std::string Options() const;
   cl::Kernel Kernel(const char* name) const;
-  cl::Kernel RowsKernel(const char* name) const; ///< kernel that processes rows
+  cl::Kernel RowsKernel(const char* name) const; ///< kernel of DiffusionRows.cl
   void Run(cl::Kernel& kernel);                  ///< one work-item per voxel
-  void RunBorder(cl::Kernel& kernel);            ///< one work-item per cell of the box's faces
+  void RunBorder(cl::Kernel& kernel);            ///< runs one work-item per cell of the box's faces
   void RunRows(cl::Kernel& kernel) const;
-  /// Creates a kernel and sets the arguments that all kernels share, then `more`.
+  /// Creates a kernel whose arguments are the layout, the arrays of the channel, and then `more`.
   template <class... More>
   cl::Kernel OnArrays(const char* kernel, const More&... more);
 
@@ -182,10 +188,10 @@ private:
   std::size_t Count, BorderCells;
   MultigridSolver& Solver;
   Buffer<float> FlatSource, Pattern, Model;
-  Buffer<cl_int> Skins; ///< by row: 1 if it has thick voxels next to thinner ones
+  Buffer<cl_int> Skins; ///< by row of voxels: 1 if it has thick voxels next to thinner ones
   bool AnySkin = false;
   AndersonMixing Mixing;
   ExactValues Borders;
-  ExactValues Next, Solution; ///< [voxel]; if there are moments, followed by those of degree 1, [x, y, z][voxel]
+  ExactValues Next, Solution; ///< states, in the layout of State()
 };
 }

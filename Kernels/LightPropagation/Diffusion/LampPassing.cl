@@ -1,12 +1,13 @@
-// Lamps' light in optically thick voxels, see LampPassing.h: it is first scattered near the faces through which it
-// enters, and part of the scattered light crosses these directly.
+// First-scattered light of lamps in optically thick voxels (LampPassing.h): lamp light is first scattered near the
+// faces through which it enters, and a fraction of the scattered light leaves through these faces without another
+// collision.
 
 #include "LightPropagation/Diffusion/BoxBorders.cl"
 #include "LightPropagation/Sweep/FallOfLight.cl"
 
-// Fraction of light that returns to the entry face, if it collides with density exp(-b t) over tau and is absorbed at
-// the rate k per mean free path on the way back (numerics.md, Eq. (69)). r, 0 to 1, is the proximity of first
-// scattering to the face: 1 - 2 t / tau for mean depth t.
+// Fraction of scattered light that returns to the entry face (`back` of numerics.md, Eq. (69)), if collisions have the
+// density exp(-b t) at the optical depth t < tau, and light is attenuated by exp(-k t) on its way back. r, 0 to 1, is
+// the proximity of first scattering to the face: 1 - 2 t / tau for the mean depth t.
 static float comes_back(float tau, float r, float k)
 {
   const float x = fall_of(fmin(r, 0.999999f)), y = x + k * tau;
@@ -15,8 +16,8 @@ static float comes_back(float tau, float r, float k)
   return back / shone;
 }
 
-// Fraction of a voxel's scattered light that crosses an inner face in addition to what would if it were scattered at
-// the centre (numerics.md, Eqs. (66), (69)), without the ratio of path lengths.
+// Fraction of a voxel's scattered light that crosses an inner face, beyond the fraction for scattering at the voxel's
+// centre (numerics.md, Eqs. (66), (69)); without the factor way_i / (way_i + way_j).
 static float passes_inside(float tau, float r, float k)
 {
   if (k * tau < 0.02f)
@@ -27,21 +28,23 @@ static float passes_inside(float tau, float r, float k)
   return fmax((comes_back(tau, r, k) - even) / (1.0f - even), 0.0f);
 }
 
-// Mean of Hopf's function weighted by exp(-t / depth): H(depth) / sqrt(3) - depth, to 0.5% (numerics.md, Eq. (67)).
+// Mean of Hopf's function with the weight exp(-t / depth): H(depth) / sqrt(3) - depth, to 0.5% (numerics.md, Eq. (67)).
 static float hopf(float depth)
 {
   const float c = 0.34f - 0.17f / (1.0f + 4.0f * depth);
   return 0.57735f + 0.13310f * depth / (depth + c);
 }
 
-// Correction factor for voxels that are neither thin nor thick, fitted to slabs (numerics.md, Eq. (68)).
+// Correction factor of the fraction that crosses a face, in voxels that are neither thin nor thick; fitted to slabs
+// (numerics.md, Eq. (68)).
 static float beside_sweeps(float tau)
 {
   const float transport_weight = 1.0f / (1.0f + 0.25f * tau * tau);
   return 1.0f + transport_weight * (0.02f + 0.17f * transport_weight);
 }
 
-// passes_inside() for a face of the box (numerics.md, Eqs. (66), (69)).
+// Fraction of a voxel's scattered light that crosses a face of the box, beyond the fraction for scattering at the
+// voxel's centre (numerics.md, Eqs. (66), (69)).
 static float passes_border(float tau, float r, float k)
 {
   const float depth = 0.5f * (1.0f - r) * tau;
@@ -55,12 +58,13 @@ static float passes_border(float tau, float r, float k)
   return fmax(1.0f - kept / (1.0f - even), 0.0f);
 }
 
-// Adds the light of one lamp that crosses faces directly after first scattering (numerics.md, Eqs. (66) to (69)).
-// path           of the lamp, W length
-// swept          sigma_t of the sweeps: larger than sigma_t if scattering is not taken as isotropic
-// first_moments  of the lamp's deposit, as in Sweep/SweepOperator.h, [channel][face][stride]
-// passed         [channel][face][stride] W, added to
-// all_path       of all lamps, W length, added to
+// Adds the power of a lamp's first-scattered light that leaves its voxel through each face without another collision
+// (numerics.md, Eqs. (66) to (69)).
+//   path           path integrals of the lamp, W length
+//   swept          sigma_t of the sweeps: larger than sigma_t if scattering is solved in angular moments
+// first_moments  first moments of the lamp's deposit, W length, [channel][face][stride] (Deposit::firstMoments)
+// passed         power through voxel faces, W, [channel][face][stride]; added to
+// all_path       path integrals of all lamps, W length; added to
 __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* sigma_s, const __global float* swept, const __global float* path,
   const __global float* first_moments, __global float* passed, __global float* all_path)
@@ -85,7 +89,7 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
     const float tau = sigma_t[i] * h;
     const float r = length > 0.0f ? fmin(2.0f * first_moments[d * stride + i] / length, 1.0f) : 0.0f;
     part[d] = 0.0f;
-    // Forward-scattered light does not return directly.
+    // Light scattered forward in angular moments does not return to its entry face.
     if (tau <= 0.0f || r <= 0.0f || swept[i] > sigma_t[i])
     {
       continue;
@@ -103,7 +107,7 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
     }
     sum += part[d];
   }
-  // limits the sum over a corner's faces to the scattered power
+  // limits the sum over faces to the scattered power, in voxels lit through several faces
   const float power = sigma_s[layout.first + i] * length / fmax(sum, 1.0f);
   for (int d = 0; d < 6; ++d)
   {

@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-/// A grid of a level's voxels; only its size is used.
+/// Grid with the size of a level's box, for index computations only.
 Grid GridOf(const MultigridLevel& level)
 {
   Grid grid;
@@ -19,7 +19,7 @@ Grid GridOf(const MultigridLevel& level)
   return grid;
 }
 
-/// Places in rows of some voxels of a level's box.
+/// Indices, in the row layout of a level, of voxels given by their index in the level's box, x fastest.
 Buffer<cl_int> PlacesInRows(Device& device, const MultigridLevel& level, const std::vector<std::size_t>& voxels)
 {
   std::vector<cl_int> places;
@@ -31,7 +31,7 @@ Buffer<cl_int> PlacesInRows(Device& device, const MultigridLevel& level, const s
   return { device, places, "ghost voxels" };
 }
 
-/// Adds values of a part of a grid to those of the grid.
+/// Adds values by voxel of a box to an array by voxel of the grid that contains the box.
 void AddPart(const std::vector<float>& part, const VoxelBox& box, const Grid& grid, float* values)
 {
   Grid ofBox;

@@ -11,29 +11,31 @@
 
 namespace tyndall
 {
-/// What the ranks of a distributed multigrid exchange (MultigridSolver.h): ghost voxels of the finest level, and the
-/// second level's cells, which the first rank holds for the whole grid and each rank for its own voxels. All functions
-/// are collective, except for those that return layouts.
+/// Communication of a multigrid solver on several ranks (MultigridSolver.h): ghost voxels of the finest level, and
+/// cells of the second level, which the first rank holds for the whole grid and every rank for its own voxels
+/// ("touched" cells). All functions are collective, except for those that return layouts.
 class MultigridExchange
 {
 public:
   /// @param domain  must outlive this object
-  /// @param finest, coarser  first two levels of the whole grid
+  /// @param finest, coarser  layouts of the first two levels of the whole grid
   MultigridExchange(Device& device, const Domain& domain, const std::array<bool, 3>& periodic,
     const MultigridLevel& finest, const MultigridLevel& coarser);
 
-  const MultigridLevel& Finest() const { return this->OfBlock; }    ///< this rank's block with its ghost voxels
-  const MultigridLevel& Touched() const { return this->OfTouched; } ///< cells that contain voxels of the block
+  /// Layout of this rank's block with its ghost voxels.
+  const MultigridLevel& Finest() const { return this->OfBlock; }
+  /// Layout of the second level's cells that contain voxels of the block.
+  const MultigridLevel& Touched() const { return this->OfTouched; }
 
-  /// Fills the ghost voxels of an array of the finest level.
+  /// Copies the values of ghost voxels from their owners, in an array of the finest level in rows.
   void FillGhosts(Buffer<float>& rows) const;
-  void FillGhosts(ExactValues& ofVoxels) const; ///< in an array by voxel
-  /// Sums values of touched cells over the ranks, in their order.
-  /// @param arrays  number of arrays of the level
-  /// @return rows of the whole level on the first rank; elsewhere empty
+  void FillGhosts(ExactValues& ofVoxels) const; ///< copies ghost values in an array by voxel
+  /// Sums values of touched cells over all ranks, in the order of ranks.
+  /// @param arrays  number of consecutive arrays in `ofTouched`
+  /// @return rows of the whole second level on the first rank; empty on all other ranks
   std::vector<float> Sum(const Buffer<float>& ofTouched, int arrays) const;
-  /// Copies values from the first rank to the touched cells.
-  /// @param whole  used on the first rank
+  /// Copies values of the second level from the first rank to the touched cells of all ranks.
+  /// @param whole  rows of the whole second level, read on the first rank only
   void Distribute(const Buffer<float>& whole, Buffer<float>& ofTouched) const;
 
 private:
@@ -42,8 +44,9 @@ private:
   Device& TheDevice;
   const Domain& TheDomain;
   MultigridLevel OfBlock, OfTouched, Coarser;
-  std::vector<VoxelBox> TouchedBoxes; ///< by rank
+  std::vector<VoxelBox> TouchedBoxes; ///< boxes of touched cells, by rank
   std::unique_ptr<GhostCells> Ghosts;
-  Buffer<cl_int> Owned, Copied; ///< places in rows of the ghost voxels of others, and of this rank's
+  /// Indices in rows of this rank's voxels that are ghosts of other ranks, and of this rank's ghosts.
+  Buffer<cl_int> Owned, Copied;
 };
 }

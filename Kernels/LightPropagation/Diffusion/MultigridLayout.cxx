@@ -13,7 +13,7 @@ constexpr std::size_t FewVoxels = 64;        ///< number of voxels below which a
 constexpr int VoxelsOfItem = 4096;           ///< approximate number of voxels per work-item
 constexpr int BetweenPlanes = 2 * RowVector; ///< padding of planes, floats
 
-/// Sets the memory layout of a level of this size.
+/// Sets the memory layout of a level from its size.
 void LayOut(MultigridLevel& level)
 {
   level.pitch = RoundUp(level.size[0], int(RowVector)) + RowVector;

@@ -8,22 +8,22 @@
 
 namespace tyndall
 {
-/// The multigrid levels of a whole grid, the finest first. Each level joins voxels in pairs along the axes whose
-/// edges are below 1.9 times the shortest one, until few voxels are left.
-/// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
+/// Multigrid levels of a whole grid, the finest first. Each coarser level joins pairs of voxels along the axes whose
+/// voxel edges are below 1.9 times the shortest edge, until at most 64 voxels are left.
+/// @param spacing  voxel edges of the finest level
 std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 
-/// A part of a level.
-/// @param box, own  voxels of the whole grid: those of the arrays, and those that this rank owns
-/// @param joined  the box of the next coarser level
+/// Layout of a box of a level, for arrays of one rank.
+/// @param box, own  boxes in voxels of the whole level: of the arrays, and of the voxels that this rank owns
+/// @param joined  box of the rank's arrays on the next coarser level, in its voxels
 MultigridLevel PartOfLevel(
   const MultigridLevel& whole, const VoxelBox& box, const VoxelBox& own, const VoxelBox& joined = {});
-/// The level with all voxels of its box owned, as kernels see it that process ghost voxels, too.
+/// Copy of the level in which all voxels of the box count as owned, for kernels that also process ghost voxels.
 MultigridLevel WithGhostsOwned(MultigridLevel level);
-/// The box of the next coarser level's voxels that contain voxels of a box.
+/// Box of the voxels of the next coarser level that contain voxels of `box`.
 VoxelBox Joined(const MultigridLevel& level, const VoxelBox& box);
 
-/// Copies one or several arrays of values by voxel, x fastest, to the rows of a level; padding is 0.
+/// Copies `arrays` consecutive arrays of values by voxel, x fastest, to the row layout of a level; padding is 0.
 template <class Value>
 std::vector<float> InRows(const MultigridLevel& level, const std::vector<Value>& values, int arrays = 1)
 {
@@ -39,13 +39,13 @@ std::vector<float> InRows(const MultigridLevel& level, const std::vector<Value>&
       {
         row[x] = static_cast<float>(values[i]);
       }
-      row[n[0]] = row[0]; // right ghost, for a periodic axis
+      row[n[0]] = row[0]; // ghost after the row, read on a periodic axis
     }
   }
   return rows;
 }
 
-/// Copies rows of a level, of one or several arrays, to values by voxel, x fastest.
+/// Copies `arrays` consecutive arrays in the row layout of a level to values by voxel, x fastest.
 inline std::vector<float> OfRows(const MultigridLevel& level, const std::vector<float>& rows, int arrays = 1)
 {
   const int* const n = level.size;

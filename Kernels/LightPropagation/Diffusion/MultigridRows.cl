@@ -1,20 +1,20 @@
-// Rows of a multigrid level (DiffusionShared.h), and the matrix of a level along them:
+// Loops over the rows of a multigrid level (MultigridLevel), and its matrix along rows:
 //   (A x)_i = sum over faces of conductance (x_i - x_j) + loss_i x_i
-// with the conductances of low faces, [axis][floats of an array]; 0 at the box's end.
+// The conductances are those of low faces, [axis][MultigridLevel::floats]; 0 where the box ends.
 //
-// Kernels are written once, for CPUs and GPUs. On a CPU a work-item processes rows in vectors. On a GPU (REAL_WIDTH 1)
-// it processes single voxels, and neighbouring work-items of the group process neighbouring voxels. Also needs the
-// option GROUP (GroupSum.cl).
+// The macros let one kernel serve CPUs and GPUs. On a CPU a work-item processes rows in vectors of REAL_WIDTH voxels.
+// On a GPU (REAL_WIDTH 1) it processes single voxels, and neighbouring work-items of a group process neighbouring
+// voxels. Also requires the option GROUP (GroupSum.cl).
 
 #pragma once
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "Numerics/GroupSum.cl"
 #include "Numerics/Numerics.cl"
 
-// FOR_ROWS     loops over the rows r of own voxels that this work-item contributes to
-// ROW_Y, ROW_Z  position of such a row
-// FOR_VECTORS  loops over its part of begin <= x < end in a row, by vectors
-// FOR_VOXELS   the same by single voxels
+// FOR_ROWS     loops over the rows r of owned voxels that this work-item processes
+// ROW_Y, ROW_Z  indices y and z of the row r
+// FOR_VECTORS  loops over this work-item's vectors of begin <= x < end in a row
+// FOR_VOXELS   loops over this work-item's voxels of begin <= x < end in a row
 // FILL_GHOSTS  sets a row's ghosts to the values of the opposite end; within FOR_ROWS, after the last write to the row.
 //              A periodic axis continues there; at the box's end the conductance is 0
 // ENDS_ROW     true for exactly one iteration per row
@@ -53,13 +53,13 @@ inline int row_at(const MultigridLevel* level, int y, int z)
   return RowsLead + z * level->plane + y * level->pitch;
 }
 
-// Sets lanes from `left` on to 0: those beyond a row's last voxel.
+// Sets the lanes from `left` on to 0; `left` is the number of voxels from the first lane to the row's end.
 inline real in_row(real values, int left)
 {
   return left >= REAL_WIDTH ? values : select(values, (real)0.0f, LANES >= left);
 }
 
-// The same for lanes of voxels that this rank does not own.
+// Sets the lanes of voxels that this rank does not own to 0; the first lane is voxel x of the row.
 inline real in_own(const MultigridLevel* level, real values, int x)
 {
   const real kept = in_row(values, level->end[0] - x);
@@ -72,7 +72,8 @@ inline void fill_ghosts(__global float* row, int size)
   row[size] = row[0];
 }
 
-// fill_ghosts() by the work-item that wrote x.
+// Sets the ghosts of a row, as fill_ghosts() does, by the work-items that wrote its first and last voxel; x is the
+// voxel of this work-item.
 inline void fill_ghosts_of(__global float* row, int size, int x)
 {
   if (x == 0)
@@ -113,7 +114,7 @@ inline real diagonal_of(const matrix_row* row, int x)
     ((load_real(x, row->passes_z) + load_real(x, row->passes_high_z)) + load_real(x, row->loss));
 }
 
-// (A x) of the voxels at x.
+// Product of the matrix with the values, for the vector of voxels from x on.
 inline real apply_row(const matrix_row* row, int x)
 {
   const real own = load_real(x, row->own);
@@ -127,7 +128,7 @@ inline real apply_row(const matrix_row* row, int x)
   return sum + aside;
 }
 
-// For two adjacent vectors: sums of pairs of neighbours; below, the first of each pair.
+// Sums of pairs of neighbouring lanes of two adjacent vectors. first_of_pairs(): the first lane of each pair.
 inline real pair_sums(real a, real b)
 {
 #if REAL_WIDTH == 1

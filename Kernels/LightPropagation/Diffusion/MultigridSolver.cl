@@ -1,11 +1,12 @@
 // Conjugate gradients, preconditioned by multigrid, for the diffusion system (MultigridSolver.h). Options:
-//   REAL_WIDTH  4 or 8 floats of a vector; 1: voxel by voxel, on a GPU
-//   GROUP       GroupSum.cl; on a GPU at least the number of voxels of the coarsest level
+//   REAL_WIDTH  number of floats in a vector, 4 or 8; 1: one voxel per work-item, on a GPU
+//   GROUP       number of work-items that sum together (GroupSum.cl); on a GPU at least the number of voxels of the
+//               coarsest level
 //   DOUBLES     1: the device has double precision
 //
-// Each kernel processes rows (MultigridRows.cl). Vectors are float: multigrid only needs an approximate direction, and
-// conjugate gradients start from a residual computed in double. Entries beyond a row's last voxel are 0 in right-hand
-// sides and residuals, and are not used elsewhere.
+// Each kernel processes rows (MultigridRows.cl). All arrays but the solution are float, since the residual from which a
+// solve starts is computed in double. Entries beyond a row's last voxel are 0 in right-hand sides and residuals, and
+// not used in other arrays.
 
 #include "LightPropagation/Diffusion/MultigridRows.cl"
 #include "Numerics/Exact.cl"
@@ -39,7 +40,7 @@ inline exact sum_of_exact(exact_real values)
 #endif
 }
 
-// Computes damping / diagonal for Jacobi's method; 0 where the diagonal is 0.
+// Computes damping / diagonal of a level's matrix for Jacobi's method; 0 where the diagonal is 0.
 __kernel void level_invert(MultigridLevel level, const __global float* conductance, const __global float* loss,
   __global float* inverse, float damping)
 {
@@ -61,14 +62,16 @@ inline bool owns_row(const MultigridLevel* level, int y, int z)
   return y >= level->first[1] && y < level->end[1] && z >= level->first[2] && z < level->end[2];
 }
 
-// The coarser level's matrix (numerics.md, Eq. (70)): conductances of adjacent faces add up; along a halved axis they
-// are halved, since centres are twice as far apart.
+// Matrix entries of voxels of a coarser level (numerics.md, Eq. (70)): loss, and conductances of the low faces by axis.
+// Conductances of fine faces side by side are summed; along a halved axis the sum is halved, since centres are twice as
+// far apart.
 typedef struct
 {
   real loss, passes[3];
 } coarse_entries;
 
-// Adds the fine row (v, w) to the coarse voxels from x on; b, c: whether it is the second row, or plane, of these.
+// Adds the entries of the fine row y = v, z = w to those of a vector of coarse voxels from x on. b, c: 1 if the fine
+// row is the second one of the coarse voxels along y, along z.
 static void add_fine_row(const MultigridLevel* fine, int v, int w, int b, int c, int x,
   const __global float* conductance, const __global float* loss, coarse_entries* sum)
 {
@@ -125,7 +128,7 @@ __kernel void level_coarsen(MultigridLevel fine, MultigridLevel coarse, const __
   }
 }
 
-// b - A x of one voxel, in exact numbers; x is [voxel], without ghosts.
+// Residual b - A x of one voxel, in exact arithmetic (Exact.cl). `values` is x, [voxel], without ghosts between rows.
 static float residual_at(
   const MultigridLevel* level, const matrix_row* row, const __global exact* values, int x, int y, int z, float right)
 {
@@ -143,8 +146,9 @@ static float residual_at(
   return (float)(right - sum);
 }
 
-// Replaces the right-hand side by the residual of `values`, in units, and computes Jacobi's initial guess for it.
-// sums  [work-group] of its square
+// Replaces the right-hand side by the residual r of `values`, times per_unit, and computes Jacobi's initial guess for
+// it.
+//   sums  [work-group] r r
 __kernel void begin_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global exact* values, float per_unit, __global float* right,
   __global float* guess, __global exact* sums)
@@ -163,15 +167,15 @@ __kernel void begin_residual(MultigridLevel level, const __global float* conduct
     }
     for (int x = level.end[0]; (x - level.first[0]) % REAL_WIDTH != 0; ++x)
     {
-      right[here + x] = 0.0f; // may be the ghost of the next row
+      right[here + x] = 0.0f; // clears the padding, which may be a ghost of the next row
     }
     FILL_GHOSTS(guess + here, level.size[0]);
   }
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
-// Residual of a level along a row; below, level_restrict sums it over the fine voxels of each coarse one and computes
-// Jacobi's initial guess there.
+// Residual of a vector of voxels from x on in a row; 0 in voxels that this rank does not own. level_restrict sums it
+// over the fine voxels of each coarse voxel, and computes Jacobi's initial guess of the coarse level.
 static real left_of_row(const MultigridLevel* fine, const matrix_row* row, const __global float* right, int x)
 {
   return in_own(fine, load_real(x, right) - apply_row(row, x), x);
@@ -217,7 +221,7 @@ __kernel void level_restrict(MultigridLevel fine, MultigridLevel coarse, const _
   }
 }
 
-// Jacobi's initial guess for a right-hand side.
+// Computes Jacobi's initial guess for a right-hand side: right times inverse.
 __kernel void level_guess(
   MultigridLevel level, const __global float* inverse, const __global float* right, __global float* guess)
 {
@@ -232,7 +236,8 @@ __kernel void level_guess(
   }
 }
 
-// Copies values at some places of an array to and from ghost voxels' messages.
+// Copies the values at the indices `places` of an array to a message for ghost voxels; put_places() copies a message
+// back.
 __kernel void pick_places(const __global float* values, const __global int* places, __global float* picked)
 {
   picked[get_global_id(0)] = values[places[get_global_id(0)]];
@@ -242,7 +247,7 @@ __kernel void put_places(const __global float* picked, const __global int* place
   values[places[get_global_id(0)]] = picked[get_global_id(0)];
 }
 
-// Adds the coarser level's correction.
+// Adds the correction of a coarser level to the values of the finer one, constant over the fine voxels of a coarse one.
 __kernel void level_prolong(
   MultigridLevel fine, MultigridLevel coarse, const __global float* correction, __global float* values)
 {
@@ -285,8 +290,8 @@ __kernel void level_prolong(
   }
 }
 
-// A step of Jacobi's method.
-// sums  [work-group] of right times better
+// One step of Jacobi's method: better = values + inverse (right - A values).
+//   sums  [work-group] right times better
 __kernel void level_smooth(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global float* right, const __global float* values, __global float* better,
   __global exact* sums)
@@ -311,8 +316,8 @@ __kernel void level_smooth(MultigridLevel level, const __global float* conductan
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
-// Between two visits of a level: stores a fraction of the first visit's correction, replaces the right-hand side by the
-// remaining residual, and computes Jacobi's initial guess for it.
+// Between two visits of a level: kept = part found, right -= part A found, and Jacobi's initial guess for the new
+// right-hand side. `found` is the correction of the first visit.
 __kernel void level_revisit(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global float* found, float part, __global float* kept, __global float* right,
   __global float* guess)
@@ -333,7 +338,7 @@ __kernel void level_revisit(MultigridLevel level, const __global float* conducta
   }
 }
 
-// values = added + part values
+// Computes values = added + part values.
 __kernel void scale_and_add(MultigridLevel level, const __global float* added, float part, __global float* values)
 {
   FOR_ROWS(level)
@@ -347,8 +352,8 @@ __kernel void scale_and_add(MultigridLevel level, const __global float* added, f
   }
 }
 
-// Solves a level of few voxels approximately by symmetric Gauss-Seidel iterations. @return the sum of right times
-// values
+// Solves a level of few voxels approximately, by `rounds` symmetric Gauss-Seidel iterations from 0. @return the sum of
+// right times values
 static exact finish(const MultigridLevel* level, const __global float* conductance, const __global float* loss,
   const __global float* right, __global float* values, int rounds)
 {
@@ -384,18 +389,19 @@ static exact finish(const MultigridLevel* level, const __global float* conductan
   return sum;
 }
 
-// finish() by one work-item.
-// sums  of right times values
+// finish(), run by one work-item.
+//   sums  [0] right times values
 __kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* right, __global float* values, __global exact* sums, int rounds)
 {
   sums[0] = finish(&level, conductance, loss, right, values, rounds);
 }
 
-// Computes the matrix of level_finish, which is linear in the right-hand side, for GPUs, where a single work-item takes
-// half a millisecond. One work-item per voxel, whose right-hand side is 1.
-// rights, values  [voxel] an array of the level; rights are 0
-// answers         [voxel][voxel]
+// Computes the result of level_finish, which is linear in the right-hand side, as a matrix: used on GPUs, where a
+// single work-item takes half a millisecond for level_finish. One work-item per voxel, with a right-hand side of 1 in
+// this voxel.
+//   rights, values  scratch, [voxel][floats of the level]; rights are 0 on entry
+//   answers         [voxel of the right-hand side][voxel of the result]
 __kernel void level_answers(MultigridLevel level, const __global float* conductance, const __global float* loss,
   __global float* rights, __global float* values, __global float* answers, int rounds)
 {
@@ -411,8 +417,8 @@ __kernel void level_answers(MultigridLevel level, const __global float* conducta
   }
 }
 
-// Applies that matrix instead of level_finish, with one work-group.
-// sums  of right times values
+// Applies the matrix of level_answers to a right-hand side, in place of level_finish. One work-group.
+//   sums  [0] right times values
 __kernel void level_answer(MultigridLevel level, const __global float* answers, const __global float* right,
   __global float* values, __global exact* sums)
 {
@@ -434,8 +440,8 @@ __kernel void level_answer(MultigridLevel level, const __global float* answers, 
   PUT_SUM_OF_GROUP(exact, sum, sums[0])
 }
 
-// q = A p
-// sums  [work-group] of p q
+// Product of the matrix with the search direction: applied = A direction.
+//   sums  [work-group] direction times applied
 __kernel void apply_matrix(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* direction, __global float* applied, __global exact* sums)
 {
@@ -456,9 +462,11 @@ __kernel void apply_matrix(MultigridLevel level, const __global float* conductan
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
-// x += step p, r -= step q, and Jacobi's initial guess for the new residual.
-// values  x by voxel, without ghosts; scaled by `step_of_values` / `step` relative to the solver's units
-// sums    [work-group] of r r
+// Step of conjugate gradients: x += step_of_values p, r -= step A p, and Jacobi's initial guess for the new residual r.
+//   direction, applied  p and A p
+//   left    r
+//   values  x by voxel, without ghosts between rows, in W / length^2; r and p are in the solver's unit
+//   sums    [work-group] r r
 __kernel void go_along(MultigridLevel level, const __global float* direction, const __global float* applied,
   const __global float* inverse, float step, exact step_of_values, __global float* left, __global float* guess,
   __global exact* values, __global exact* sums)

@@ -14,29 +14,32 @@ namespace tyndall
 {
 namespace
 {
-/// On a GPU: enough to keep the largest ones busy. With more voxels each work-item processes several, and the host need
-/// not add more sums.
+/// Largest number of work-groups of a kernel on a GPU, enough to occupy large GPUs. With more voxels each work-item
+/// processes several, so that the number of partial sums stays small.
 constexpr std::size_t GroupsAtMost = 4096;
 
 constexpr const char* Contents = "the diffusion system";
 
-constexpr int FinishRounds = 12; ///< symmetric Gauss-Seidel iterations on the coarsest level
-/// Damping of Jacobi's method, about the optimum: 0.8 takes 8% more iterations, 0.95 as many.
+constexpr int FinishRounds = 12; ///< number of symmetric Gauss-Seidel iterations on the coarsest level
+/// Damping of Jacobi's method, near the optimum: 0.8 takes 8% more iterations, 0.95 the same number.
 constexpr float Damping = 0.87f;
-/// Number of coarse levels, from the finest of them, that are visited twice per cycle; more do not save iterations.
+/// Number of coarse levels, counted from the second level, that are visited twice per cycle; more do not save
+/// iterations.
 constexpr std::size_t VisitedTwice = 2;
-/// Fraction of each of two visits' correction that is applied. With it the preconditioner stays positive even if one
-/// visit overshoots by up to a factor of 2.5, as it does where voxels of unequal coefficients are joined.
+/// Factor of the correction of each of two visits. With it the preconditioner is positive definite as long as a visit
+/// overshoots by less than a factor of 2.5, as happens where voxels of unequal coefficients are joined.
 constexpr float PartOfVisit = 0.8f;
 
 constexpr int MostIterations = 300;
-/// Number of iterations within which the residual must halve; otherwise the iteration stops.
+/// Number of iterations within which the residual must halve; if it does not, the iteration stops.
 constexpr int Patience = 12;
-/// Factor by which the bound on the root mean square is looser than that in the preconditioner's norm.
+/// Ratio of the bounds on the reduction of the residual in the root mean square and in the preconditioner's norm.
 constexpr double Looser = 10.0;
-constexpr double Negligible = 1e-12; ///< residual relative to the first one that is negligible
+/// Ratio of r z to the largest initial r z below which the residual is rounding error.
+constexpr double Negligible = 1e-12;
 
-/// Whether a residual is above its bound and still falling. To be called once per iteration.
+/// Test whether an iteration should go on: whether the residual is above its bound and has halved recently. To be
+/// called once per iteration.
 class StagnationTest
 {
 public:
@@ -45,6 +48,7 @@ public:
   {
   }
 
+  /// Returns whether the iteration should go on.
   /// @param square  squared norm of the residual
   bool operator()(double square)
   {
@@ -54,7 +58,7 @@ public:
   }
 
 private:
-  double Most; ///< squared
+  double Most; ///< bound on the squared norm
   double Smallest = std::numeric_limits<double>::infinity();
   int SinceHalved = 0; ///< iterations
 };
@@ -68,7 +72,7 @@ MultigridSolver::MultigridSolver(Device& device, const Domain& domain, const std
   std::vector<MultigridLevel> layouts = MultigridLevels(whole.size, whole.spacing);
   if (!this->TheDomain.IsSerial())
   {
-    if (layouts.size() == 1) // adds a level of the same voxels, all on the first rank
+    if (layouts.size() == 1) // adds a second level with the same voxels, which the first rank holds
     {
       std::fill_n(layouts[0].halved, 3, 0);
       layouts.push_back(layouts[0]);
@@ -183,7 +187,7 @@ void MultigridSolver::CoarsenTo(Level& coarse, const Level& fine)
   this->Run(coarsen, coarse);
 }
 
-/// What the coarsest level makes of a 1 in each of its voxels.
+/// Computes Answers: column by column, the result of Finish() for a right-hand side of 1 in one voxel.
 void MultigridSolver::FindAnswers()
 {
   const Level& level = this->Levels.back();
@@ -203,7 +207,7 @@ void MultigridSolver::FindAnswers()
   this->TheDevice.Finish();
 }
 
-/// Solves the coarsest level approximately: from its right-hand side to `better`.
+/// Solves the coarsest level approximately, for its right-hand side; the result is in `better`.
 void MultigridSolver::Finish(Level& level)
 {
   if (this->Answers.Size() == 0)
@@ -219,7 +223,7 @@ void MultigridSolver::Finish(Level& level)
   RunSummingGroups(this->TheDevice, answer, 1);
 }
 
-/// Computes the next level's right-hand side and initial guess from a level's residual.
+/// Computes right-hand side and initial guess of the coarser level from the residual of the finer one.
 void MultigridSolver::Restrict(Level& fine, Level& coarse)
 {
   cl::Kernel kernel = this->Kernel("level_restrict");
@@ -228,7 +232,7 @@ void MultigridSolver::Restrict(Level& fine, Level& coarse)
   this->Run(kernel, coarse);
 }
 
-/// Adds the coarser level's correction.
+/// Adds the correction of the coarser level to `guess` of the finer one.
 void MultigridSolver::Prolong(const Level& coarse, Level& fine)
 {
   cl::Kernel prolong = this->Kernel("level_prolong");
@@ -244,8 +248,8 @@ void MultigridSolver::Smooth(Level& level)
   this->Run(smooth, level);
 }
 
-/// Applies a multigrid cycle to the residual; the result is in the finest level's `better`.
-/// @return the residual's squared norm in that of the preconditioner, in units
+/// Applies the preconditioner, one multigrid cycle, to the residual r; the result z is in the finest level's `better`.
+/// @return r z, the squared norm of the residual in the norm of the preconditioner, relative to `unit`
 double MultigridSolver::Precondition()
 {
   if (!this->Exchange)
@@ -274,8 +278,8 @@ double MultigridSolver::Precondition()
   return this->SumAfter([&] { this->Smooth(finest); });
 }
 
-/// Solves a level approximately: from its right-hand side and initial guess to `better`. The cycle is symmetric:
-/// Jacobi's initial guess on the way down, a Jacobi step on the way up.
+/// Solves a level approximately, from its right-hand side and initial guess; the result is in `better`. The cycle is
+/// symmetric: Jacobi's initial guess before the coarser level, a Jacobi step after it.
 void MultigridSolver::Visit(std::size_t l)
 {
   Level& level = this->Levels[l];
@@ -302,8 +306,8 @@ void MultigridSolver::VisitCoarser(std::size_t l)
   }
 }
 
-/// Applies a fraction of each of two visits' corrections, the second for the residual of the first: symmetric, as one
-/// visit is.
+/// Visits a level twice, the second time for the residual of the first visit, and adds both corrections times
+/// PartOfVisit. Symmetric, like one visit.
 void MultigridSolver::VisitTwice(std::size_t l)
 {
   Level& level = this->Levels[l];
@@ -316,7 +320,7 @@ void MultigridSolver::VisitTwice(std::size_t l)
   this->ScaleAndAdd(level, level.kept, PartOfVisit, level.better);
 }
 
-/// values = added + part values
+/// Computes values = added + part values, in rows of a level.
 void MultigridSolver::ScaleAndAdd(
   const Level& level, const Buffer<float>& added, float part, const Buffer<float>& values)
 {
@@ -325,7 +329,7 @@ void MultigridSolver::ScaleAndAdd(
   this->Run(kernel, level);
 }
 
-/// Runs kernels of the finest level whose work-groups leave partial sums. @return their sum over all ranks
+/// Runs kernels of the finest level that write partial sums by work-group to Sums. @return the sum over all ranks
 double MultigridSolver::SumAfter(const std::function<void()>& work) const
 {
   double sum = 0.0;
@@ -341,7 +345,7 @@ double MultigridSolver::SumAfter(const std::function<void()>& work) const
   return this->TheDomain.Sum(sum);
 }
 
-/// Replaces the right-hand side by the residual. @return r r, in units
+/// Replaces the right-hand side by the residual r = b - A x of `values`. @return r r, relative to `unit`
 double MultigridSolver::Begin(const ExactValues& values, double unit)
 {
   return this->SumAfter([&] {
@@ -354,7 +358,7 @@ double MultigridSolver::Begin(const ExactValues& values, double unit)
   });
 }
 
-/// p = z + part p
+/// New search direction: p = z + part p.
 void MultigridSolver::Turn(double part)
 {
   this->TheDomain.Collective([&] {
@@ -367,7 +371,7 @@ void MultigridSolver::Turn(double part)
   }
 }
 
-/// @return p A p. Leaves A p in the finest level's `better`.
+/// Computes A p of the search direction p, in the finest level's `better`. @return p A p
 double MultigridSolver::Curvature()
 {
   return this->SumAfter([&] {
@@ -378,7 +382,7 @@ double MultigridSolver::Curvature()
   });
 }
 
-/// x += length p, r -= length A p. @return r r, in units
+/// Step along the search direction: x += length p, r -= length A p. @return r r, relative to `unit`
 double MultigridSolver::Step(const ExactValues& values, double length, double unit)
 {
   return this->SumAfter([&] {
@@ -406,7 +410,8 @@ int MultigridSolver::GoOn(ExactValues& values, double unit, double reduction, do
 }
 
 /// Conjugate gradients (Hestenes and Stiefel 1952) until the bounds are met or the residual stagnates.
-/// @param left  r r of the initial residual, in units
+/// @param left  r r of the initial residual, relative to `unit`
+/// @return number of iterations
 int MultigridSolver::Iterate(ExactValues& values, double left, double unit, double reduction, double leftAtMost)
 {
   double rz = this->Precondition();

@@ -14,73 +14,76 @@
 
 namespace tyndall
 {
-/// Options of kernels that process rows (MultigridRows.cl).
+/// Compiler options of kernels that process rows (MultigridRows.cl).
 std::string RowOptions(const Device& device);
 /// Runs a kernel that processes rows.
 void RunRowsOf(Device& device, cl::Kernel& kernel, const MultigridLevel& level);
-/// Number of work-groups of such a kernel, and thus of the partial sums that it writes.
+/// Number of work-groups of a kernel that processes rows, and thus of the partial sums that it writes.
 std::size_t RowGroups(const Device& device, const MultigridLevel& level);
 
-/// Solves the linear system of a diffusion matrix on the voxels of a domain,
+/// Solver for a linear system with a diffusion matrix on the voxels of a domain,
 ///   sum over faces of conductance (x_i - x_j) + loss_i x_i = b_i,
-/// which is symmetric, with positive conductances and losses, by conjugate gradients (Hestenes and Stiefel 1952) from a
-/// residual computed in double, preconditioned by a multigrid cycle in float (2 x 2 x 2 voxels joined, damped Jacobi,
-/// two visits of the first coarse levels), so that the cost per voxel hardly grows with the number of voxels
+/// symmetric, with positive conductances and losses. Method: conjugate gradients (Hestenes and Stiefel 1952), from a
+/// residual computed in double, preconditioned by a multigrid cycle in float (coarsening by 2 along each axis, damped
+/// Jacobi smoothing, two visits of the first coarse levels). The cost per voxel hardly grows with the number of voxels
 /// (numerics.md, section 7.8).
 ///
-/// Each rank holds the voxels of its block and one layer of ghost voxels. The coarser levels, of all cells of the whole
-/// grid, are on the first rank, which receives the other ranks' contributions to the cells that their voxels touch. The
-/// iteration therefore does not depend on the blocks, except for rounding (numerics.md, section 7.14).
+/// Each rank holds the voxels of its block and one layer of ghost voxels. The first rank holds the coarser levels of
+/// the whole grid, and sums the contributions of all ranks to their cells. The iteration therefore does not depend on
+/// the decomposition, except for rounding (numerics.md, section 7.14).
 ///
 /// Arrays are stored in rows (MultigridLevel), which kernels process in vectors or, on a GPU, voxel by voxel. The time
-/// of an iteration is about that of its memory traffic (some 150 bytes a voxel, counted).
+/// of an iteration is limited by memory traffic, about 150 bytes per voxel.
 class MultigridSolver
 {
 public:
-  /// @param periodic  axes that wrap around
+  /// @param periodic  which axes are periodic
   MultigridSolver(Device& device, const Domain& domain, const std::array<bool, 3>& periodic);
-  /// On one rank.
-  /// @param spacing  of voxels: an axis along which they are far shorter is coarsened first
+  /// Solver on one rank without periodic axes.
+  /// @param spacing  voxel edges, which determine the axes that are coarsened first (MultigridLevels)
   MultigridSolver(Device& device, const std::array<int, 3>& size, const std::array<double, 3>& spacing)
     : MultigridSolver(device, Domain(Grid{ size, spacing }), {})
   {
   }
 
-  /// Layout of the arrays below: the block and its ghost voxels (BlockWithGhosts::Held).
+  /// Layout of the arrays of the finest level: the block and its ghost voxels (BlockWithGhosts::Held).
   const MultigridLevel& Rows() const { return this->Levels.front().layout; }
 
-  /// Conductances of low faces, [axis][rows]: of the block's voxels and of the ghost voxels above it; 0 at the low end
-  /// of the arrays' box, unless the block spans a periodic axis from end to end.
+  /// Conductances of the low faces of the block's voxels and of the ghost voxels above them, [axis][rows]; 0 at the low
+  /// end of the box with ghosts, unless the block spans a periodic axis from end to end.
   Buffer<float>& Conductance() { return this->Levels.front().conductance; }
   Buffer<float>& Loss() { return this->Levels.front().loss; }
-  /// Computes the matrices of the coarser levels. To be called after conductances and losses were written. Collective.
+  /// Computes the matrices of the coarser levels. To be called after Conductance() and Loss() have been written.
+  /// Collective.
   void Coarsen();
 
-  /// The right-hand side b, 0 in the padding of rows. To be written before each Solve(), which overwrites it.
+  /// Right-hand side b, in rows, 0 in their padding. To be written before each Solve(), which overwrites it.
   Buffer<float>& Right() { return this->Levels.front().right; }
-  /// Three scratch arrays of rows, free for other use between solves; their contents are undefined.
+  /// Three scratch arrays in rows that callers may use between solves; every solve overwrites them.
   std::array<const Buffer<float>*, 3> Scratch() const;
 
-  // The following two are collective. `values` are those of the block and its ghost voxels, x fastest.
+  // Solve() and GoOn() are collective. `values` are by voxel of the block with its ghost voxels, x fastest.
 
-  /// Reduces the residual of `values` by the factor `reduction` in the norm of the preconditioner, and its root mean
-  /// square by at least a tenth of that factor, since that norm hardly weighs thin voxels next to thick ones.
+  /// Iterates until the residual has fallen by the factor `reduction` in the norm of the preconditioner, and its root
+  /// mean square by ten times that factor; the norm of the preconditioner alone hardly weighs thin voxels next to thick
+  /// ones.
   /// @param values  initial guess; replaced by the solution, also at ghost voxels
   /// @param unit  typical magnitude of the entries of b
-  /// @param leftAtMost  additional bound on the residual's root mean square, in units
+  /// @param leftAtMost  upper bound on the root mean square of the residual, relative to `unit`
   /// @return number of iterations
   int Solve(
     ExactValues& values, double unit, double reduction, double leftAtMost = std::numeric_limits<double>::infinity());
 
-  /// Continues the last Solve(); matrix, right-hand side and values must not have been written since.
+  /// Continues the last Solve() to a smaller residual. Matrix, right-hand side and `values` must not have been changed
+  /// since. Parameters and result as in Solve().
   int GoOn(ExactValues& values, double unit, double reduction, double leftAtMost);
 
 private:
   struct Level
   {
     MultigridLevel layout = {};
-    /// `inverse`: damping / diagonal. `guess`, `better`: before and after a Jacobi step. `kept`: correction of the
-    /// first of two visits; empty if the level is visited once.
+    /// Arrays in rows. `inverse`: damping / diagonal. `guess`, `better`: solution before and after a Jacobi step.
+    /// `kept`: correction of the first of two visits; empty if the level is visited once.
     Buffer<float> conductance, loss, inverse, right, guess, better, kept;
   };
 
@@ -109,14 +112,16 @@ private:
 
   Device& TheDevice;
   const Domain TheDomain;
-  std::vector<Level> Levels; ///< this rank's part of the finest one and, on the first rank, the coarser ones
-  std::unique_ptr<MultigridExchange> Exchange; ///< null: on one rank
-  Level Touched;                               ///< on several ranks: cells of the second level at this rank's voxels
+  std::vector<Level> Levels; ///< finest level of this rank's block; on the first rank also all coarser levels
+  std::unique_ptr<MultigridExchange> Exchange; ///< null on one rank
+  /// On several ranks: cells of the second level that contain voxels of this rank.
+  Level Touched;
   Buffer<float> Direction;
-  /// Inverse of the coarsest level as a matrix, where that is faster (level_answers); else empty.
+  /// Approximate inverse of the coarsest level's matrix, on devices where it is faster (level_answers); else empty.
   Buffer<float> Answers;
   ExactValues Sums;
-  /// Largest r z at the begin of a solve, in units: later solves do not reduce the residual below its rounding error
+  /// Largest initial r z of all solves so far, relative to `unit`: later solves do not reduce the residual below the
+  /// rounding error of this value.
   double FirstResidual = 0.0;
 };
 }
