@@ -1,6 +1,7 @@
-// Transfers light between voxels and cells between two sweeps (CoarseDiffusion.h). Options:
-//   REAL_WIDTH  4 or 8 floats of a vector; 1: cell by cell, on a GPU
-//   GROUP       GroupSum.cl
+// Kernels of coarse-mesh DSA (CoarseDiffusion.h): transfer light from voxels to cells, and from cells to voxels.
+// Options:
+//   REAL_WIDTH  number of floats in a vector, 4 or 8; 1: one cell per work-item, on a GPU
+//   GROUP       number of work-items that sum together (GroupSum.cl)
 //   DOUBLES     1: the device has double precision
 
 #include "LightPropagation/CoarseDiffusion/CoarseShared.h"
@@ -9,8 +10,7 @@
 
 #define CELLS_AT_ONCE 64
 
-// Sums the block's values over the voxels of each cell, times `scale`, plus `more` per voxel. Work-items process rows
-// of cells.
+// Sums scale times value plus `more` over the voxels of each cell that the block has. Work-items process rows of cells.
 __kernel void sum_cells(
   CoarseCells box, const __global float* values, float scale, float more, __global float* sums, ulong first)
 {
@@ -44,19 +44,19 @@ __kernel void sum_cells(
   }
 }
 
-// Excess of the current of a constant source (numerics.md, Eq. (51)) over that of a linear one, divided by the first
-// term of its expansion; to 1e-4 for voxels up to 1.5 mean free paths.
+// Excess of the current of a source that is constant in each voxel (numerics.md, Eq. (51)) over that of a linear
+// source, divided by the first term of its expansion in tau (f of Eq. (76g)); accurate to 1e-4 up to tau = 1.5.
 inline float part_of_first_term(float tau)
 {
   return 1.0f / (1.0f + tau * (0.183f + 0.0163f * tau));
 }
 
-// Additional light that a voxel scatters because light is less smeared than in voxels of constant light, once where it
-// is gathered and once where it is emitted (Eq. (76f)). What one voxel gains its neighbour loses. Exact for light that
-// varies linearly.
-//   own, other  light of the voxel, and of its neighbour
-//   t, s        their sigma_t and sigma_s
-//   spacing     distance of the two
+// Correction of the scattered power of a voxel for light that varies linearly instead of being constant in each voxel
+// (one term of the sum in numerics.md, Eq. (76f)). The neighbour's correction is the negative.
+//   own, other        path integrals of the voxel and of its neighbour
+//   t, s              sigma_t and sigma_s of the voxel
+//   other_t, other_s  sigma_t and sigma_s of the neighbour
+//   spacing           distance between their centres
 inline float sharpen(float own, float other, float t, float s, float other_t, float other_s, float spacing)
 {
   const float both = t + other_t;
@@ -64,19 +64,20 @@ inline float sharpen(float own, float other, float t, float s, float other_t, fl
   return scattered * (own - other) * part_of_first_term(0.5f * spacing * both) / 12.0f;
 }
 
-// At a face of the box (Eq. (76g)) voxels of constant light let out more than light that decreases towards the face
-// does. The difference is added to the outermost voxels and counted as retained.
+// Correction of the scattered power of a voxel at a face of the box (numerics.md, Eq. (76g)): constant light in a voxel
+// emits more through the face than light that decreases towards it. The correction is counted as power that did not
+// escape.
 inline float sharpen_at_face(float own, float inner, float t, float s, float spacing)
 {
   return s * (inner - own) * part_of_first_term(spacing * t) / 24.0f;
 }
 
-// Computes the source scattered from gathered light. One work-item per row of the block's voxels. The path and the
-// coefficients are with ghost voxels.
-//   path        W length; may be negative
+// Computes the source scattered from path integrals (numerics.md, Eqs. (76f), (76g)). One work-item per row of the
+// block's voxels. `path`, `sigma_t` and `sigma_s` include ghost voxels.
+//   path        path integrals, W length; may be negative
 //   source      W / (length^3 sr), added to if `adds`
 //   per_volume  sign / (4 pi times the volume of a voxel)
-//   tally       [row] sums of the source, of its magnitude, and of the retained power at each face of the box
+//   tally       [row] sums of the source, of its absolute value, and of sharpen_at_face() at each face of the box
 __kernel void scatter_row(CoarseCells box, const __global float* restrict path, const __global float* restrict sigma_t,
   const __global float* restrict sigma_s, __global float* restrict source, float per_volume, int adds,
   __global float8* tally)
@@ -161,8 +162,8 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
   tally[r] = (float8)(sum, magnitude, kept[0], kept[1], kept[2], kept[3], kept[4], kept[5]);
 }
 
-// The two cells between whose centres a voxel lies along an axis, and its distance from the first one, in cells. Beyond
-// the last centre light is extrapolated from the last two cells.
+// The two cells between whose centres a voxel lies along an axis, and the distance from the centre of `from`, in cells.
+// Beyond the last centre `way` is negative, for extrapolation from the last two cells.
 typedef struct
 {
   int from, to;
@@ -186,12 +187,13 @@ inline between find_between(const CoarseCells* box, int axis, int voxel)
   return found;
 }
 
-// Adds a sweep's path and the cells' solution to the fluence. The path of the solution is subtracted from that of the
-// next sweep, which carries all light scattered from it. One work-item per row of voxels.
-//   found    W / length^2, by cells
-//   path     W length, replaced
+// Adds the path integrals of a sweep, and the cells' solution interpolated to voxels, to the fluence. Sets the path
+// integrals to minus those of the solution, since the next sweep carries the light scattered from it (numerics.md, Eq.
+// (76e)). One work-item per row of voxels.
+//   found    solution, W / length^2, by cell
+//   path     path integrals, W length; replaced
 //   fluence  W / length^2, added to
-//   tally    [row] absorbed power: of all added light, of the solution
+//   tally    [row] absorbed power of all added light, and of the solution alone
 __kernel void add_found(CoarseCells box, const __global exact* found, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
   float volume, __global float8* tally)
@@ -208,7 +210,7 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
   const __global exact* low = found + y.from * cells + z.from * plane;
   const int aside = (y.to - y.from) * cells, above = (z.to - z.from) * plane;
   float absorbed = 0.0f, of_found = 0.0f;
-  float line[CELLS_AT_ONCE + 2]; // solution along the row of voxels, with one cell on either side
+  float line[CELLS_AT_ONCE + 2]; // solution by cell along the row of voxels, with one more cell at each end
   for (int first = 0; first < cells; first += CELLS_AT_ONCE)
   {
     const int count = min(CELLS_AT_ONCE, cells - first);
@@ -249,8 +251,9 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
   tally[r] = (float8)(absorbed, of_found, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
 }
 
-// add_found() for a guess by voxel.
-//   guess  W length
+// Adds the path integrals of a sweep and of a first guess by voxel to the fluence, as add_found() does for the
+// solution.
+//   guess  path integrals of all later orders, W length
 __kernel void add_guess(CoarseCells box, const __global float* restrict guess, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
   float volume, __global float8* tally)

@@ -15,7 +15,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Reduction = 0.02; ///< reduction of the residual per order: sweeps reduce the error by less than that
+/// Factor by which a solve reduces the residual; a sweep reduces the error by less.
+constexpr double Reduction = 0.02;
 constexpr const char* Contents = "diffusion on cells";
 
 Grid CellsOf(const Grid& voxels, const std::array<int, 3>& halvings)
@@ -111,9 +112,8 @@ cl::Kernel CoarseDiffusion::Kernel(const char* name) const
     name, kernel_source::CoarseDiffusion, RowOptions(this->TheDevice) + ExactOption(this->TheDevice));
 }
 
-/// Sum over the voxels of each cell, over all ranks, x fastest.
+/// Sum over the voxels of each cell and over all ranks of scale times value plus `more`; cells with x fastest.
 /// @param first  offset of the channel in `values`
-/// @param scale, more  factor of the values; addend per voxel
 std::vector<double> CoarseDiffusion::SumByCells(
   const CoarseCells& box, const Buffer<float>& values, int first, double scale, double more) const
 {
@@ -169,7 +169,10 @@ std::vector<CoarseDiffusion::Powers> CoarseDiffusion::ScatterOrder(
   return all;
 }
 
-/// Solves for all later orders, from the power that the last sweep scattered and the power still in flight, W.
+/// Solves for the fluence of all later orders, from the power that the last sweep scattered and the power in flight.
+/// @param source  source of the last sweep's scattered light, W / (length^3 sr)
+/// @param magnitude  sum of its absolute values, W
+/// @param onTheWay  power in flight around periodic axes, W
 void CoarseDiffusion::Solve(Channel& channel, const Buffer<float>& source, double magnitude, double onTheWay) const
 {
   const double all = magnitude + std::abs(onTheWay);
@@ -191,7 +194,7 @@ void CoarseDiffusion::Solve(Channel& channel, const Buffer<float>& source, doubl
       channel.found = channel.foundOnDevice.Read();
     }
   });
-  channel.found = this->TheDomain.Sum(channel.found); // the other ranks contribute zeros
+  channel.found = this->TheDomain.Sum(channel.found); // all ranks but the first contribute zeros
   this->TheDomain.Collective([&] {
     if (!channel.solver)
     {
@@ -200,7 +203,9 @@ void CoarseDiffusion::Solve(Channel& channel, const Buffer<float>& source, doubl
   });
 }
 
-/// Adds the light scattered from path integrals, times a sign, to the source. @return sums of the kernel's tally
+/// Computes the source scattered from the path integrals, times `sign`.
+/// @param adds  whether to add to `source` rather than replace it
+/// @return sums of the tally of scatter_row
 CoarseDiffusion::Sums CoarseDiffusion::Scatter(
   const Channel& channel, const Buffer<float>& source, double sign, bool adds) const
 {
@@ -210,7 +215,9 @@ CoarseDiffusion::Sums CoarseDiffusion::Scatter(
   });
 }
 
-/// Adds the path and that of all later orders, which replaces it with a negative sign, to the fluence.
+/// Adds the path integrals of the last sweep and of all later orders to the fluence, and sets the path integrals to
+/// minus those of all later orders.
+/// @return sums of the tally of add_found or add_guess
 CoarseDiffusion::Sums CoarseDiffusion::AddLaterOrders(
   const Channel& channel, const Buffer<float>* guess, const Buffer<float>& fluence) const
 {
@@ -221,7 +228,8 @@ CoarseDiffusion::Sums CoarseDiffusion::AddLaterOrders(
   });
 }
 
-/// Runs a kernel on the rows of the block's voxels. @return sums of its tally over all ranks
+/// Runs a kernel with one work-item per row of the block's voxels. @return sums of the kernel's tally over rows and
+/// ranks
 CoarseDiffusion::Sums CoarseDiffusion::RunByRows(
   const char* name, const std::function<void(cl::Kernel&)>& setArguments) const
 {

@@ -13,13 +13,13 @@
 
 namespace tyndall
 {
-/// Coarse-mesh DSA: diffusion on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13), which estimates
-/// the contribution of all later scattering orders from the light that a sweep found. Cells are at most about a mean
-/// free path wide, so that sweeps damp errors below cell size quickly. The correction is subtracted from the next
-/// source, so it changes the rate of convergence, not the limit.
+/// Coarse-mesh DSA: diffusion on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13), which predicts
+/// the fluence of all later scattering orders from the power that the last sweep scattered. Cells are at most about a
+/// mean free path wide, so that sweeps damp errors below cell size quickly. The prediction is subtracted from the next
+/// sweep's result, so it changes the rate of convergence, not the limit.
 ///
-/// Cells are those of the whole grid, whichever ranks own their voxels: ranks sum over their voxels, the first rank
-/// solves, and all ranks hold the solution. Constructor and functions are collective.
+/// Cells are cells of the whole grid, and may contain voxels of several ranks: each rank sums over its voxels, the
+/// first rank solves, and all ranks receive the solution. Constructor and functions are collective.
 ///
 /// Related: diffusion synthetic acceleration (Adams and Larsen 2002), here on a coarser grid than the sweeps'.
 class CoarseDiffusion
@@ -27,51 +27,52 @@ class CoarseDiffusion
 public:
   struct Settings
   {
-    std::array<bool, 3> periodic; ///< axes of the domain
-    std::array<int, 3> halvings;  ///< along each axis; cells have 2^halvings voxels
-    bool linear;                  ///< light varies linearly across voxels rather than being constant in each
+    std::array<bool, 3> periodic; ///< which axes of the domain are periodic
+    std::array<int, 3> halvings;  ///< by axis: cells have 2^halvings voxels along it
+    bool linear;                  ///< true: light varies linearly across voxels; false: it is constant in each
   };
   /// @param domain, medium, path  must outlive this object
-  /// @param layout  of the rank's block
+  /// @param layout  layout of the rank's block
   /// @param path  path integrals of the sweeps, W length, [channel][stride]
   CoarseDiffusion(Device& device, const Domain& domain, const VolumeLayout& layout, const MediumOnDevice& medium,
     const Buffer<float>& path, const Settings& settings);
 
-  /// Powers of one scattering order in a channel, over all ranks, W.
+  /// Powers of one scattering order in one channel, summed over ranks, W.
   struct Powers
   {
-    double absorbed = 0.0;  ///< absorbed from all light added in this order
+    double absorbed = 0.0;  ///< absorbed from the light of this order and of the predicted later orders
     double scattered = 0.0; ///< power of the next source
     double magnitude = 0.0; ///< sum of the absolute values of the next source
-    double left = 0.0;      ///< neither absorbed nor escaped, according to the solution
-    /// Power by which the next sweep would overestimate the escaped power through each face of the box; included in the
-    /// next source.
+    double left = 0.0;      ///< power of later orders that the solution neither absorbs nor lets escape
+    /// Power by which the next sweep will overestimate the escaped power through each face of the box (numerics.md, Eq.
+    /// (76g)); included in the next source.
     std::array<double, 6> kept = {};
     std::array<double, 6> out = {}; ///< escaped power through each face of the box, according to the solution
   };
 
-  /// Computes the next source from a sweep's path integrals. Adds these and the cells' solution for all later orders to
-  /// `fluence`, and leaves in the path the (negative) path to subtract from the next sweep's. All arrays are
-  /// [channel][stride].
+  /// Computes the next source from a sweep's path integrals. Adds the path integrals, and the cells' solution for all
+  /// later orders, to `fluence`. Sets the path integrals to minus those of the solution, to which the next sweep adds.
+  /// All arrays are [channel][stride].
   /// @param source  W / (length^3 sr), replaced
-  /// @param onTheWay  power that rays around periodic axes still carry, W; it is added to the right-hand side,
-  ///   uniformly over the box
-  /// @param guess  path of all later orders, W length, to use instead of the cells' solution; null: use the solution
-  /// @return by channel
+  /// @param onTheWay  power in flight around periodic axes, W by channel; added to the right-hand side, uniformly over
+  ///   the box
+  /// @param guess  path integrals of all later orders, W length, used instead of the cells' solution; null: use the
+  ///   solution
+  /// @return powers by channel
   std::vector<Powers> ScatterOrder(
     const Buffer<float>& fluence, const Buffer<float>& source, const Rgb& onTheWay, const Buffer<float>* guess);
 
 private:
   struct Sums
   {
-    double first = 0.0, second = 0.0; ///< meaning as in the kernel's tally
+    double first = 0.0, second = 0.0; ///< first two values of the tally of the kernel that was run
     std::array<double, 6> byFace = {};
   };
   struct Channel
   {
     CoarseCells box = {};
-    std::unique_ptr<MultigridSolver> solver; ///< on the first rank; else null
-    std::vector<double> borders;             ///< as in CoarseMatrix
+    std::unique_ptr<MultigridSolver> solver; ///< null except on the first rank
+    std::vector<double> borders;             ///< CoarseMatrix::borders
     std::vector<double> found;               ///< solution of the last order, W / length^2, by cell
     ExactValues foundOnDevice;
   };
@@ -92,9 +93,9 @@ private:
   const Buffer<float>& Path;
   const BlockWithGhosts Block;
   GhostedBuffer PathWithGhosts, SigmaT, SigmaS;
-  Grid Cells; ///< of the whole grid
+  Grid Cells; ///< grid of the cells of the whole domain
   Buffer<float> CellSums;
-  Buffer<cl_float8> Tally; ///< by row of voxels
+  Buffer<cl_float8> Tally; ///< partial sums of kernels, by row of voxels
   std::vector<Channel> Channels;
 };
 }

@@ -10,15 +10,17 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Floor = 0.05;  ///< minimum optical length between cells: conductance does not grow below it
-constexpr double Marshak = 2.0; ///< resistance of a face of the box, over its area
+constexpr double Floor = 0.05; ///< minimum optical length between cell centres in conductances
+/// Term of Marshak's boundary condition in the resistance of a face of the box, Eq. (76d).
+constexpr double Marshak = 2.0;
 
-/// One of a hierarchy of coarser and coarser grids: mean extinctions and edges of its cells.
+/// One grid of a hierarchy in which each coarser grid joins two cells along each axis: edges and mean extinction of its
+/// cells.
 struct Level
 {
   std::array<int, 3> size;
   std::array<std::vector<double>, 3> widths; ///< edges of cells along each axis, length
-  std::vector<double> sigmaT;                ///< mean over each cell, 1/length
+  std::vector<double> sigmaT;                ///< mean extinction of each cell, 1/length
 
   std::size_t At(int x, int y, int z) const { return (std::size_t(z) * size[1] + y) * size[0] + x; }
   double Volume(int x, int y, int z) const { return this->widths[0][x] * this->widths[1][y] * this->widths[2][z]; }
@@ -81,9 +83,10 @@ Level Coarser(const Level& fine)
   return level;
 }
 
-/// Edge of the surrounding box that is one mean free path thick, interpolated between a box that is thinner and one
-/// that is not.
-/// @param thin, thick  optical width over edge
+/// Edge of the box around a cell that is one mean free path thick (W of numerics.md, Eq. (76h)), interpolated between a
+/// thinner and a thicker box.
+/// @param edge, wide  edges of the thinner and the thicker box, length
+/// @param thin, thick  optical width of the thinner and of the thicker box, divided by its edge, 1/length
 double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
 {
   constexpr double Vacuum = 1e-9;
@@ -91,9 +94,9 @@ double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
   return edge * std::pow(wide / edge, -std::log(tau) / std::log(wide * thick / tau));
 }
 
-/// Extinction for diffusion, 1/length. A cell thinner than a mean free path sends light into its surroundings as far as
-/// light travels, which is about the edge of the surrounding box of unit optical thickness. With 1 / (3 sigma_t) of
-/// thin cells alone light would diffuse far too fast over such short distances (numerics.md, Eq. (76h)).
+/// Extinction that limits diffusion by cell, 1/length: max(sigma_t, 1 / W), with W the edge of the box around the cell
+/// that is one mean free path thick (numerics.md, Eq. (76h)). With 1 / (3 sigma_t) of thin cells light would diffuse
+/// too fast over distances below a mean free path.
 std::vector<double> Diffusing(const Level& level)
 {
   if (level.sigmaT.size() == 1)
@@ -101,7 +104,7 @@ std::vector<double> Diffusing(const Level& level)
     return level.sigmaT;
   }
   std::vector<double> sigma = level.sigmaT;
-  std::vector<double> around; // computed on demand
+  std::vector<double> around; // result for the next coarser grid; computed on demand
   Level coarser;
   ForCells(level.size, [&](int x, int y, int z) {
     double& here = sigma[level.At(x, y, z)];

@@ -7,13 +7,16 @@
 
 namespace tyndall
 {
-/// The diffusion matrix on cells (MultigridSolver.h), in rows.
+/// Diffusion matrix on the cells of coarse-mesh DSA (numerics.md, Eq. (76d)), for MultigridSolver.
 struct CoarseMatrix
 {
-  std::vector<float> conductance, loss; ///< in the solver's layout
-  std::vector<double> borders; ///< escaped power through each cell of the box's faces (BoxFaces.h), per fluence
+  std::vector<float> conductance, loss; ///< in the row layout of the solver
+  /// Escaped power per fluence through each cell of the box's faces (BoxFaces.h), length^2.
+  std::vector<double> borders;
 };
 
+/// Computes the matrix.
+/// @param grid  voxels of the whole domain
 /// @param cells  grid of the cells of `box`; only its size is used
 /// @param sigmaT, sigmaS  1/length, summed over the voxels of each cell, x fastest
 CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const Grid& cells,
