@@ -13,8 +13,9 @@ namespace tyndall
 {
 namespace
 {
-/// Smaller components of the mean direction along an axis are ignored, since light also decreases at shadow edges. The
-/// weight grows linearly from the first to the second value, so that rounding does not decide.
+/// Components of the mean direction along an axis below the first value have the weight 0 in the estimate of first
+/// moments, since light also decreases at shadow edges. The weight grows linearly to 1 at the second value, so that
+/// rounding does not decide.
 constexpr double SaysNothing = 0.15, SaysAll = 0.25;
 
 /// Mean of exp(-k x) over x from 0 to 1.
@@ -23,20 +24,21 @@ double MeanOf(double k)
   return k > 1e-6 ? -std::expm1(-k) / k : 1.0 - 0.5 * k;
 }
 
-/// sigma_t times the voxel's edge along an axis.
+/// Optical thickness of a voxel along an axis.
 double ThicknessOf(const Medium& medium, std::size_t voxel, std::size_t axis, int channel)
 {
   return medium.grid.spacing[axis] * (medium.sigma_a.At(voxel, channel) + medium.sigma_s.At(voxel, channel));
 }
 
-/// Distance from the voxel's centre, upstream, of the mean place at which light exp(-k x) is lost.
+/// Distance from a voxel's centre upstream to the mean position of collisions of light that decays as exp(-k x), in
+/// voxels.
 double NearerBy(double k)
 {
   return k > 1e-2 ? std::min(0.5 - 1.0 / k + 1.0 / std::expm1(k), 0.5) : k / 12.0;
 }
 
-/// Solves exp(-k) MeanOf(ratio k) / MeanOf(k) = passes for k, at most `most`: the next voxel downstream is `ratio`
-/// times as thick and has the fraction `passes` of this voxel's fluence. The left side decreases with k.
+/// Solves exp(-k) MeanOf(ratio k) / MeanOf(k) = passes for k in [0, most], by bisection (numerics.md, Eq. (L14)): the
+/// next voxel downstream is `ratio` times as thick as this one, and has the fraction `passes` of its fluence.
 double FallOff(double passes, double ratio, double most)
 {
   double low = 0.0, high = most;
@@ -48,7 +50,7 @@ double FallOff(double passes, double ratio, double most)
   return low;
 }
 
-/// One channel of an uncollided image in its medium.
+/// Positions of collisions of uncollided light in one channel, estimated from fluence and mean direction by voxel.
 class LostLight
 {
 public:
@@ -60,7 +62,7 @@ public:
   {
   }
 
-  /// Distance of the mean collision place from the voxel's centre along the axis, upstream.
+  /// Distance from a voxel's centre upstream along an axis to the mean position of collisions, in voxels.
   double Nearer(std::size_t voxel, std::size_t axis) const
   {
     const double along = this->Image.meanDirection.At(voxel, static_cast<int>(axis));
@@ -71,13 +73,14 @@ public:
   double Fluence(std::size_t voxel) const { return this->Image.fluence.At(voxel, this->Channel); }
 
 private:
-  /// The same, from the decay of the light.
+  /// Result of Nearer() for a mean direction that is clearly along the axis, from the decay of fluence to the next
+  /// voxel.
   /// @param along  component of the mean direction along the axis
   double NearerBySlope(std::size_t voxel, std::size_t axis, double along) const
   {
     const double thickness = this->Thickness(voxel, axis);
     const double most = thickness / std::abs(along);
-    const std::size_t ahead = along > 0.0 ? 1 : 0; // the downstream one of the two faces across the axis
+    const std::size_t ahead = along > 0.0 ? 1 : 0; // 1 if the high face across the axis is downstream
     const std::size_t next = this->Box.Beyond(voxel, 2 * axis + ahead);
     if (next != Outside)
     {
@@ -87,10 +90,10 @@ private:
     const std::size_t last = this->Box.Beyond(voxel, 2 * axis + 1 - ahead);
     if (last != Outside)
     {
-      // From the preceding voxel, in units of whose thickness k is measured.
+      // At the last voxel of the box, k follows from the voxel upstream, and is converted to this voxel's thickness.
       const double before = this->Thickness(last, axis), there = this->Fluence(last);
       const double ratio = before > 0.0 ? thickness / before : 0.0;
-      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0; // no light came from there
+      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0; // 1 without light upstream
       return before > 0.0 ? NearerBy(std::min(ratio * FallOff(passes, ratio, before / std::abs(along)), most))
                           : NearerBy(most);
     }
@@ -108,9 +111,9 @@ private:
   int Channel;
 };
 
-/// Estimate of the first moments of collisions (LightField::firstMoments) for uncollided light that is known by voxel
-/// only: along its mean direction it decays as exp(-k x), where k follows from the fluence of the next voxel downstream
-/// (numerics.md, Eq. (L14)). Empty if the image has no mean direction.
+/// Estimates the first moments of collisions (LightField::firstMoments) of uncollided light that is known by voxel
+/// only: along its mean direction the light decays as exp(-k x), with k from the fluence of the next voxel downstream
+/// (numerics.md, Eq. (L14)). Empty if the image has no mean directions.
 std::vector<float> EstimatedFirstMoments(const UncollidedImage& image, const Medium& medium, const LatticeBox& box)
 {
   if (!image.meanDirection.values)
@@ -153,8 +156,8 @@ double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel)
 
 namespace
 {
-/// Settings for a single sweep: voxels are made wide along axes on which nothing varies, and the quadrature is adapted
-/// to them.
+/// Settings of light propagation maps for uncollided light: source Automatic, so that voxels are extended along axes on
+/// which nothing varies, with a quadrature adapted to them.
 PropagationSettings AsSweep(const LatticeSettings& settings)
 {
   PropagationSettings of = AsPropagation(settings);
@@ -162,7 +165,7 @@ PropagationSettings AsSweep(const LatticeSettings& settings)
   return of;
 }
 
-/// Clears moments towards faces across a periodic axis of one voxel: the voxel is its own neighbour there.
+/// Sets first moments along periodic axes of one voxel to 0: the voxel is its own neighbour there.
 void ClearAcrossSingleVoxels(const Grid& whole, const LatticeSettings& settings, std::vector<float>& moments)
 {
   for (std::size_t i = 0; i < moments.size(); ++i)
@@ -173,7 +176,7 @@ void ClearAcrossSingleVoxels(const Grid& whole, const LatticeSettings& settings,
   }
 }
 
-/// The net flux of light, repeated for the channels of the problem if it has one channel.
+/// Net flux of `light` for the channels of the problem; if `light` has one channel, it is repeated.
 std::vector<float> FluxByChannel(const LightField& light, int channels)
 {
   std::vector<float> values;
@@ -188,14 +191,15 @@ std::vector<float> FluxByChannel(const LightField& light, int channels)
   return values;
 }
 
-/// The uncollided light of lamps and environment, by the first sweep of light propagation maps. Collective.
+/// Computes the uncollided light of lamps and environment by a solve of light propagation maps with one order.
+/// Collective.
 Uncollided BySweep(Device& device, const LatticeProblem& problem, const LatticeSettings& settings, bool firstMoments,
   const Monitor& monitor)
 {
   const Domain& domain = problem.TheDomain();
   const std::size_t voxels = problem.OwnMedium().grid.VoxelCount();
   const int channels = problem.Channels();
-  Medium dark = problem.OwnMedium(); // isotropic scattering: no delta-M truncation
+  Medium dark = problem.OwnMedium(); // made isotropic, so that there is no delta-M truncation
   dark.emission = {};
   dark.phase = PhaseFunction();
   PropagationSettings once = AsSweep(settings);
@@ -284,7 +288,7 @@ Uncollided FindUncollided(
     found.image = given;
     if (!IsFirstThatHas(domain.Comm(), domain.Partition()))
     {
-      found.image.escaped = {}; // every rank has the powers of the whole grid
+      found.image.escaped = {}; // counted on one rank only: every rank has the powers of the whole grid
     }
     AddMomentsOfImage(found, problem, settings, moments);
     return found;

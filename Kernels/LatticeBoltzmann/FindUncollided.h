@@ -14,29 +14,32 @@
 
 namespace tyndall
 {
-/// Uncollided light by known voxel: an image and the arrays it refers to.
+/// Uncollided light by known voxel (LatticeBox): an UncollidedImage and the arrays it refers to.
 struct Uncollided
 {
   std::vector<float> fluence, netFlux;
-  std::vector<float> firstMoments; ///< LightField::firstMoments, for the image's channels; empty: not known
-  UncollidedImage image;           ///< `escaped` is set on the lowest rank that has voxels, 0 on others
-  Rgb lost = {};                   ///< power that entered and was not deposited anywhere, W; set on the same rank
+  std::vector<float> firstMoments; ///< as LightField::firstMoments, with the channels of `image`; empty: unknown
+  UncollidedImage image;           ///< `escaped` is set on the lowest rank that has voxels, and 0 on all other ranks
+  /// Incident power that neither collided nor escaped, W; set on the same rank as `escaped`.
+  Rgb lost = {};
 
-  /// Distance, 0 to 1/2 voxel, from a voxel's centre towards a face to the mean place where its light collides.
+  /// Distance from a voxel's centre towards a face to the mean position of collisions, in voxels, 0 to 1/2.
   double Nearer(std::size_t voxel, int channel, std::size_t face) const;
 };
 
-/// Distance, 0 to 1/2 voxel, from the voxel's centre upstream to the mean collision place of a beam along an axis
-/// (numerics.md, Eq. (L14), k = sigma_t h).
+/// Distance from a voxel's centre upstream to the mean position of collisions of a beam along an axis, in voxels, 0 to
+/// 1/2 (numerics.md, Eq. (L14), k = sigma_t h).
 double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel);
 
-/// Uncollided light by known voxel: that of another solver if given, else that of lamps and environment by light
-/// propagation maps. Diffuse sky and face light is excluded; it is incident on the lattice itself. Collective.
+/// Computes uncollided light by known voxel: the light given by another solver, if there is any, else that of lamps and
+/// environment by light propagation maps. Diffuse light of sky and faces is excluded, since it is incident on the
+/// lattice. Collective.
 Uncollided FindUncollided(
   Device& device, const LatticeProblem& problem, const LatticeSettings& settings, const Monitor& monitor);
 
-/// Adds net flux and first moments, if asked for, to uncollided light that is given as an image with mean directions.
-/// @param firstMoments  whether first moments are asked for
+/// Computes net flux, if settings ask for it, and first moments of uncollided light from the mean directions of its
+/// image.
+/// @param firstMoments  whether first moments are computed
 void AddMomentsOfImage(
   Uncollided& found, const LatticeProblem& problem, const LatticeSettings& settings, bool firstMoments);
 }

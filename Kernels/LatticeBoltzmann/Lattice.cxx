@@ -13,9 +13,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Width = 16; ///< vector width of LatticeStep.cl
-constexpr std::size_t Cached = std::size_t{ 48 }
-  << 20; ///< bytes of densities that fit a cache; beyond that stores bypass it
+constexpr int Width = 16; ///< WIDTH of LatticeStep.cl: voxels per vector
+/// Bytes of densities that fit into the caches; if there are more, stores bypass the caches.
+constexpr std::size_t Cached = std::size_t{ 48 } << 20;
 
 cl::NDRange WholeBlocks(const std::array<int, 3>& size, int edge)
 {
@@ -46,7 +46,8 @@ Lattice::Lattice(Device& device, const LatticeBox& box, const LatticeSettings& s
 void Lattice::LayOut(const LatticeVoxels& voxels)
 {
   std::copy(this->Size.begin(), this->Size.end(), this->TheInfo.size);
-  this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst; // the place after a row may be the next row's first
+  // The value after a row may be the first one of the next row.
+  this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst;
   this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
   for (int i = 0; i < 18; ++i)
   {
@@ -74,7 +75,7 @@ std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside
       for (at[0] = -1; at[0] <= this->Size[0]; ++at[0])
       {
         int faces = 0;
-        float beyondThem = 0.0f; // at an edge of the box: the mean of its faces
+        float beyondThem = 0.0f; // sum of outside(face) over the faces that `at` lies beyond
         std::array<int, 3> near = at;
         for (int a = 0; a < 3; ++a)
         {
@@ -155,7 +156,7 @@ cl::Kernel Lattice::Kernel(const char* name) const
   return this->TheDevice.Kernel(name, kernel_source::LatticeStep, this->Options);
 }
 
-/// Fills the halo across periodic axes.
+/// Copies densities to the halo across periodic axes.
 void Lattice::Wrap(const Buffer<float>& densities)
 {
   const int steps[3] = { 1, this->TheInfo.row, this->TheInfo.layer };

@@ -12,45 +12,49 @@
 
 namespace tyndall
 {
-/// Photon densities of one channel on a device, and the steps that collide and stream them.
+/// Photon densities of one channel on a device, and the lattice steps that collide and stream them (numerics.md,
+/// section 10 c).
 class Lattice
 {
 public:
-  /// @param voxels  voxel data of all known voxels of the box
+  /// @param voxels  coefficients of all known voxels of the box
   Lattice(Device& device, const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels);
 
-  /// Queues `steps` steps. Densities are zero before the first call, except for incident light.
-  /// @param writes  whether the last step writes Fluence()
+  /// Queues `steps` lattice steps. Before the first call densities are zero, except for incident light.
+  /// @param writes  whether the last step writes the fluence
   void Step(int steps, bool writes);
-  std::vector<float> Fluence() const { return this->Shown.Read(); } ///< W / length^2, by own voxel
-  /// Fluence at the given voxels only.
+  std::vector<float> Fluence() const { return this->Shown.Read(); } ///< fluence, W / length^2, by own voxel
+  /// Fluence at the given own voxels, W / length^2.
   std::vector<float> FluenceAt(const Buffer<cl_int>& voxels) const;
 
-  /// Queues later steps on this queue instead of the device's.
+  /// Makes Step() use `queue` instead of the device's queue.
   void StepOn(const cl::CommandQueue& queue) { this->Queue = queue; }
-  void SetSource(const std::vector<float>& source); ///< LatticeVoxels::source, by known voxel
-  /// Sets the source to light scattered from a fluence on the device, plus emission. Queued.
-  /// @param scatters  by lattice place: fraction of the fluence that is scattered in a step through a voxel, times the
-  ///   conversion from the fluence's unit to the lattice's
-  /// @param emits  by lattice place: the source without that scattered light
-  /// @param fluence  [voxel][channels]; only `channel` is used
+  void SetSource(const std::vector<float>& source); ///< sets LatticeVoxels::source, by known voxel
+  /// Sets the source to scatters times fluence plus `emits`. Queued. Arrays are in the layout of the lattice unless
+  /// stated otherwise.
+  /// @param scatters  fraction of the fluence that is scattered in a step through a voxel, times the conversion from
+  ///   the unit of `fluence` to that of the lattice
+  /// @param emits  source without that scattered light, W / length^2 per step
+  /// @param fluence  uncollided fluence, [voxel][channels], of which `channel` is used
   void SetSourceOf(
     const Buffer<float>& scatters, const Buffer<float>& emits, const Buffer<float>& fluence, int channels, int channel);
 
-  /// Densities, [direction][stride].
+  /// Densities after the last step, W / length^2, [direction][stride].
   const Buffer<float>& Densities() const { return this->Now; }
   const LatticeInfo& Info() const { return this->TheInfo; }
 
-  /// Light that escapes in a step, W / length^2, [face][voxel].
+  /// Light that escapes through the box's faces in the next step, W / length^2, [face][voxel].
   std::vector<float> Leaving();
-  /// The same for a fluence of 1 everywhere and black faces. Overwrites scratch of the next step, but not Densities().
+  /// Light that would escape in a step for a fluence of 1 everywhere and black faces, [face][voxel]. Does not change
+  /// Densities().
   std::vector<float> LeavingOfOne();
-  /// Net flux, W / length^2, [x, y, z][voxel].
+  /// Computes the net flux, W / length^2, [x, y, z][voxel].
   std::vector<float> NetFlux();
 
-  /// Uploads values by known voxel in the layout of the lattice; 0 outside.
+  /// Copies values by known voxel to a device array in the layout of the lattice; 0 outside the box.
   Buffer<float> Placed(const std::vector<float>& values, const char* what) const;
-  /// Array in the layout of the lattice, with inside(known voxel) or outside(face) at each place.
+  /// Array in the layout of the lattice: inside(known voxel) in the box and its ghost voxels, outside(face) beyond the
+  /// box's faces, where at edges of the box the mean over faces is taken.
   template <class Inside, class Outside>
   std::vector<float> Arrange(const Inside& inside, const Outside& outside) const;
 
@@ -65,14 +69,15 @@ private:
   cl::Kernel Kernel(const char* name) const;
 
   Device& TheDevice;
-  cl::CommandQueue Queue; ///< queue on which steps run
+  cl::CommandQueue Queue; ///< queue of the steps
   const LatticeBox Box;
   const std::array<int, 3> Size;
   const LatticeSettings& Settings;
   LatticeInfo TheInfo = {};
   std::string Options;
   Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Endless, Shown;
-  Buffer<float> Now, Next; ///< densities; with blocks, `Next` holds what the blocks exchange
-  Buffer<float> Sends;     ///< with blocks: what they send next
+  /// Densities before and after a step; with blocks, Next holds the light that blocks receive.
+  Buffer<float> Now, Next;
+  Buffer<float> Sends; ///< with blocks: light that blocks send
 };
 }

@@ -1,6 +1,6 @@
 // Steps in blocks of voxels that exchange light only after several steps (Bernabei et al., section III-C). The host
 // defines
-//   BLOCK  voxels along a block's edge
+//   BLOCK  number of voxels along a block's edge
 #include "LatticeBoltzmann/LatticeLink.cl"
 
 #define IN_BLOCK (BLOCK * BLOCK * BLOCK)
@@ -9,7 +9,8 @@ DEFINE_COLLIDED(collided, float)
 DEFINE_OPEN(open_weight, float, int)
 DEFINE_SENT(sent_weight, float, int)
 
-// Index within the block of the neighbour at `sign` times direction i; -1 if it is in another block or outside.
+// Index within the block of the neighbour at `sign` times the link vector i; -1 if it is in another block or outside
+// the box.
 static int neighbour_in_block(LatticeInfo lattice, int i, int sign)
 {
   int index = 0, step = 1;
@@ -26,11 +27,13 @@ static int neighbour_in_block(LatticeInfo lattice, int i, int sign)
   return index;
 }
 
-// One work-group per block, one work-item per voxel. Arrays are those of step_lattice, and
-//   came       densities that other blocks, or the boundary, send along each link in each of these steps: the mean over
-//              the last exchange interval
-//   goes       the same from this block, for the next exchange; values of other links are not changed
-//   densities  of all voxels, before and after
+// Takes lattice.steps steps in each block independently. One work-group per block, one work-item per voxel. Arrays are
+// those of step_lattice, and
+//   came       densities that other blocks, or the boundary, send into the block per step: mean over the steps before
+//              the last exchange
+//   goes       densities that this block sends to other blocks per step, for the next exchange: mean over these steps.
+//              Values of links within the block are not changed.
+//   densities  of all voxels, before and after the steps
 __kernel __attribute__((reqd_work_group_size(BLOCK, BLOCK, BLOCK))) void step_blocks(LatticeInfo lattice,
   const __global float* resistance, const __global float* squared, const __global float* albedo,
   const __global float* turning, const __global float* kept, const __global float* source,

@@ -14,19 +14,19 @@
 
 namespace tyndall
 {
-/// Lattice-Boltzmann lighting (Geist et al. 2004; Bernabei et al., section III-C; numerics.md, section 10 c): the
-/// photon density of each voxel along its links to neighbours collides and streams until it is steady. Uncollided light
-/// is that of the illumination's image (UncollidedImage), or else that of lamps and environment by light propagation
-/// maps; its first-collision source, emission, and diffuse light incident from sky and faces are diffused by the
-/// lattice.
+/// Lattice-Boltzmann lighting (Geist et al. 2004; Bernabei et al., section III-C; numerics.md, section 10 c): photon
+/// densities along the links between neighbouring voxels collide and stream until they are steady. Sources of the
+/// lattice are the first-collision source of uncollided light, emission, and diffuse light incident from sky and faces.
+/// Uncollided light is given by the illumination (UncollidedImage), or computed by light propagation maps for lamps and
+/// environment.
 ///
 /// Conservative scheme: collisions are scaled so that densities are positive and power is conserved for any optical
-/// thickness of a voxel; where it is above 4/3 mean free paths, links reflect a part. Light that crosses into a lower
-/// refractive index is partly returned, according to total internal reflection, so that fluence / n^2 diffuses and a
-/// furnace has fluence proportional to n^2; light of sky and faces is incident with its radiance times n^2. The steady
-/// state is solved for directly (SteadyLattice.h), unless steps are asked for. Published scheme: the explicit
-/// collisions of the paper, without refraction. Densities oscillate and grow where sigma_t h is above 1; a warning says
-/// so.
+/// thickness of a voxel; in voxels above 4/3 mean free paths (with 18 links), links reflect a fraction of the light.
+/// Light that crosses into a lower refractive index is partly returned, according to total internal reflection, so that
+/// fluence / n^2 diffuses and a furnace has fluence proportional to n^2; light of sky and faces is incident with its
+/// radiance times n^2. The steady state is solved for directly (SteadyLattice.h), unless steps are asked for. Published
+/// scheme: the explicit collisions of the paper, without refraction. Densities oscillate and grow where sigma_t h is
+/// above 1; a warning says so.
 ///
 /// The result is a diffusion approximation: inaccurate where light is scattered rarely, with anisotropic scattering
 /// treated by the similarity relation. In thick voxels the conservative scheme resolves where light is first scattered:
@@ -48,11 +48,13 @@ namespace tyndall
 LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
   const Illumination& illumination, const LatticeSettings& settings, const Monitor& monitor = {});
 
-/// The same with photons as uncollided light: they march along bent rays to their first scattering (PhotonMarcher),
-/// either to their ends before the lattice solve or interleaved with its steps (InterleavedLattice.h), depending on
-/// settings. From `illumination` only diffuse light and the faces' albedo are used, no lamps.
-/// @param photons  this rank's share; all photons are those of rank 0, then those of rank 1, and so on
-/// @throws InvalidInput if an axis is periodic, under PhotonMarcher's conditions, and as above
+/// Lattice-Boltzmann lighting with photons as uncollided light: photons march along bent rays to their first scattering
+/// (PhotonMarcher), before the lattice solve or, depending on settings, interleaved with its steps
+/// (InterleavedLattice.h). Of `illumination` only the diffuse light of sky and faces, and the faces' albedo, are used.
+/// @param photons  photons of this rank; the list of all photons is that of rank 0, followed by that of rank 1, and so
+///   on
+/// @throws InvalidInput if an axis is periodic, under the conditions of PhotonMarcher, and as the function without
+///   photons
 LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
   const std::vector<Photon>& photons, const Illumination& illumination, const LatticeSettings& settings,
   const Monitor& monitor = {});

@@ -9,20 +9,21 @@
 
 namespace tyndall
 {
-constexpr auto Outside = static_cast<std::size_t>(-1); ///< no voxel
+constexpr auto Outside = static_cast<std::size_t>(-1); ///< index that stands for no voxel
 
-/// The own voxels of a lattice within the known voxels, those whose coefficients this rank has: the whole grid, or a
-/// block and its ghost voxels, which wrap around periodic axes.
+/// Own voxels of a lattice within its known voxels. Own voxels are those that this rank solves; known voxels, whose
+/// coefficients it has, are the whole grid on one rank, else the block and its ghost voxels, which wrap around periodic
+/// axes.
 struct LatticeBox
 {
-  /// For a whole grid, whose periodic axes wrap around.
+  /// Box of a serial lattice: own and known voxels are the whole grid.
   LatticeBox(const Grid& whole, const std::array<bool, 3>& periodicAxes)
     : known(whole)
     , own({ { 0, 0, 0 }, whole.size })
     , periodic(periodicAxes)
   {
   }
-  /// For a rank's block with its ghost voxels.
+  /// Box of a rank's block with its ghost voxels.
   explicit LatticeBox(const Halo& halo)
     : known(halo.KnownGrid())
     , own(halo.Own())
@@ -40,7 +41,7 @@ struct LatticeBox
   std::size_t Count() const { return this->own.VoxelCount(); }
   bool IsAll() const { return this->Count() == this->known.VoxelCount(); }
 
-  /// Index, among the known voxels, of an own voxel.
+  /// Index among the known voxels of an own voxel, given by its index among the own voxels.
   std::size_t Known(std::size_t voxel) const
   {
     if (this->IsAll())
@@ -51,6 +52,7 @@ struct LatticeBox
     grid.size = this->own.size;
     return this->Known(grid.VoxelAt(voxel));
   }
+  /// Index among the known voxels of a voxel.
   /// @param at  indices relative to the first own voxel; may be a ghost voxel
   std::size_t Known(std::array<int, 3> at) const
   {
@@ -61,7 +63,7 @@ struct LatticeBox
     return this->known.IndexOf(at);
   }
 
-  /// The known voxel across a face -x, +x, ... +z of a known voxel, or Outside.
+  /// Index of the known voxel across a face -x, +x, ... +z of a known voxel; Outside if there is none.
   std::size_t Beyond(std::size_t voxel, std::size_t face) const
   {
     return this->Beyond(this->known.VoxelAt(voxel), face);
@@ -80,7 +82,7 @@ struct LatticeBox
   }
 
   Grid known;
-  VoxelBox own;                      ///< in voxels of `known`
+  VoxelBox own;                      ///< box of the own voxels, in voxels of `known`
   int innerFaces = 0;                ///< bits of the faces -x, +x, ... +z of `own` beyond which ghost voxels lie
   std::array<bool, 3> periodic = {}; ///< axes that wrap around within the known voxels
 };

@@ -28,9 +28,11 @@ namespace
 class Settling
 {
 public:
-  /// @param lattice  covers all voxels of `grid`; all arguments must outlive this
+  /// @param lattice  lattice of all voxels of `grid`; all arguments must outlive this object
   Settling(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings);
 
+  /// Takes the steps.
+  /// @param before  steps and time that count towards the limits
   /// @param rows  receives one convergence row per check of the probes
   /// @return fluence after the last step
   /// @throws InvalidInput if densities have overflowed (explicit collisions in optically thick voxels)
@@ -52,7 +54,7 @@ private:
 namespace
 {
 constexpr int StepsPerLook = 16;   ///< least number of steps between two readings of the probes
-constexpr int MostSteps = 200000;  ///< limit if the tolerance is not met
+constexpr int MostSteps = 200000;  ///< largest number of steps if the settings set no limit
 constexpr double Slowest = 0.9999; ///< largest ratio of successive changes from which an error can be estimated
 }
 
@@ -82,7 +84,7 @@ void Settling::Step(int steps, double done, const Monitor& monitor)
   });
 }
 
-/// Relative change of the fluence at the probes since the last call.
+/// Relative change of the fluence at the probes since the previous call.
 double Settling::Change()
 {
   double changed = 0.0, all = 0.0;
@@ -104,7 +106,7 @@ double Settling::Change()
   return all > 0.0 ? changed / all : 0.0;
 }
 
-/// Estimated relative error, from the rate at which changes decrease.
+/// Estimates the relative error of the fluence from the ratio of successive changes, as a geometric series.
 double Settling::Estimate(double change)
 {
   const double ratio = this->LastChange > 0.0 ? std::min(change / this->LastChange, Slowest) : 1.0;
@@ -118,13 +120,14 @@ std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monit
   const double start = ClockSeconds() - before.seconds;
   const bool asked = this->Settings.maximumSteps > 0;
   const int most = asked ? this->Settings.maximumSteps : MostSteps;
-  // Reading the probes costs about a step; blocks are read after whole exchanges.
+  // Reads the probes every `look` steps, because reading costs about as much as a step; with blocks after whole
+  // exchanges.
   const int exchange = this->Settings.blockSize > 0 ? this->Settings.stepsPerExchange : 1;
   const int look = (StepsPerLook + exchange - 1) / exchange * exchange;
   double residual = 1.0, done = 0.0;
   if (before.steps > 0)
   {
-    this->Change(); // the next change is measured from here, not from zero
+    this->Change(); // reads the probes, so that the next change is measured from the current fluence
   }
   for (int step = before.steps; step < most && (asked || residual > this->Settings.tolerance);)
   {
@@ -146,12 +149,12 @@ std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monit
   return this->TheLattice.Fluence();
 }
 
-/// Fluence, flux and energy balance of one channel, computed from the lattice densities of this rank's own voxels.
+/// Computes fluence, net flux and energy balance of one channel from the lattice densities of this rank's own voxels.
 class LatticeAccount
 {
 public:
-  /// All arguments must outlive this.
-  /// @param direct, voxels  by known voxel
+  /// All arguments must outlive this object.
+  /// @param direct, voxels  uncollided light and coefficients, by known voxel
   LatticeAccount(const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct,
     const LatticeVoxels& voxels, Lattice& lattice, int channel)
     : TheMedium(problem.TheMedium())
@@ -164,7 +167,8 @@ public:
   {
   }
 
-  /// Adds scattered and uncollided light, face powers, and all terms of the energy balance but leftOver.
+  /// Adds scattered and uncollided fluence, net flux, face powers, and all terms of the energy balance but leftOver, to
+  /// `light`.
   /// @param fluence  lattice fluence by own voxel
   void AddTo(LightField& light, const std::vector<float>& fluence) const;
 
@@ -188,7 +192,8 @@ private:
   const std::size_t Channel;
 };
 
-/// Adds fluence, absorbed and emitted power. @return power of uncollided light that collides in voxels, W
+/// Adds fluence, absorbed power and emitted power to `light`. @return power of uncollided light that collides in
+/// voxels, W
 double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& fluence) const
 {
   const Medium& medium = this->TheMedium;
@@ -200,10 +205,11 @@ double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& 
     const std::size_t known = this->Box.Known(i);
     const double tau = edge * medium.sigma_a.At(known, channel);
     const double direct = this->Direct.image.fluence.At(known, channel), lost = this->Voxels.lost[known];
-    // Part of the source that is absorbed in its first step, before it enters the lattice's fluence.
+    // Power per area of the source that is absorbed in its first step, before it is part of the lattice's fluence (Eq.
+    // (L4a)).
     const double own = this->Voxels.source[known] * (1.0 / this->Voxels.begins[known] - 1.0);
     const double absorbed = lost * fluence[i] + own;
-    // If much is absorbed in a step, the fluence is the mean over the step.
+    // Fluence of scattered light, averaged over a step (Eq. (L4)).
     const double scattered = tau > 1e-6 ? absorbed / tau : fluence[i];
     light.fluence[this->Place(light, i)] = static_cast<float>(direct + scattered);
     light.fluenceDirect[this->Place(light, i)] = static_cast<float>(direct);
@@ -214,14 +220,14 @@ double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& 
   return entered;
 }
 
-/// Adds escaped power. @return power incident through the faces, or escaped uncollided, W
+/// Adds escaped power to `light`. @return power incident through the faces, including light that escapes uncollided, W
 double LatticeAccount::CountFaces(LightField& light) const
 {
   const std::size_t voxels = this->Box.Count();
   const double area = this->Edge() * this->Edge();
   const std::vector<float> through = this->Photons.Leaving();
   const std::vector<float> inwards =
-    this->Photons.LeavingOfOne(); // by symmetry, as much enters from a fluence of 1 outside
+    this->Photons.LeavingOfOne(); // by reciprocity also the light that enters from a fluence of 1 outside
   double entered = 0.0;
   for (std::size_t face = 0; face < 6; ++face)
   {
@@ -230,7 +236,7 @@ double LatticeAccount::CountFaces(LightField& light) const
     for (std::size_t i = 0; i < voxels; ++i)
     {
       const std::size_t known = this->Box.Known(i);
-      // Links that reflect return some incident light immediately.
+      // Reflecting links return a fraction of the incident light, which is counted as incident and as escaped.
       const double squared = this->Voxels.bends ? this->Voxels.squared[known] : 1.0;
       const double entering = area * this->Voxels.incoming[face] * squared * inwards[face * voxels + i];
       const double passed = 2.0 * this->Voxels.passes[known] / (this->Voxels.passes[known] + 1.0);
@@ -255,7 +261,8 @@ void LatticeAccount::AddFlux(LightField& light) const
   {
     const std::size_t known = this->Box.Known(i);
     const double tau = this->Edge() * this->TheMedium.sigma_a.At(known, static_cast<int>(this->Channel));
-    const double mean = tau > 1e-6 ? this->Voxels.lost[known] / tau : 1.0; // as fluence
+    // Converts the flux of densities to the mean over a step, as for fluence.
+    const double mean = tau > 1e-6 ? this->Voxels.lost[known] / tau : 1.0;
     for (std::size_t a = 0; a < 3; ++a)
     {
       float& sum = light.netFlux[3 * this->Place(light, i) + a];
@@ -268,8 +275,9 @@ void LatticeAccount::AddFlux(LightField& light) const
   }
 }
 
-/// Flux of the crossing source (Eq. (L13)) in the voxel that sends or receives it: from the place of first scattering
-/// to the face, and from there to the centre of the next voxel.
+/// Net flux in a voxel of the first-collision source that LatticeVoxels::crossing moves across a face (Eq. (L13)): in
+/// the voxel of first scattering from the mean collision position to the face, in the neighbour from the face to the
+/// centre.
 double LatticeAccount::FluxOfCrossing(std::size_t known, std::size_t face) const
 {
   const std::size_t beyond = this->Box.Beyond(known, face);
@@ -292,7 +300,7 @@ void LatticeAccount::AddTo(LightField& light, const std::vector<float>& fluence)
 
 namespace
 {
-/// Adds the convergence rows of one channel to those of all channels.
+/// Adds the convergence rows of one channel to the rows of all channels.
 void AddRows(const std::vector<ConvergenceRow>& rows, LightField& light)
 {
   light.convergence.resize(std::max(light.convergence.size(), rows.size()));

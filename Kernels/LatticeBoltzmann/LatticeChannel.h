@@ -13,15 +13,14 @@
 
 namespace tyndall
 {
-/// Steps that were taken before and count towards the limits.
+/// Lattice steps taken, and time spent, before LatticeChannel::Settle(); they count towards the limits of the settings.
 struct StepsBefore
 {
   int steps = 0;
   double seconds = 0.0;
 };
 
-/// Solve of one colour channel on this rank's block, whose result is added to the LightField of all channels.
-/// Collective.
+/// Lattice solve of one colour channel on this rank's block. Collective.
 class LatticeChannel
 {
 public:
@@ -29,17 +28,18 @@ public:
   LatticeChannel(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
     const Uncollided& direct, int channel);
 
-  double Thickest() const { return this->Voxels.thickest; } ///< largest sigma_t h of all ranks
-  Lattice& TheLattice() { return *this->Densities; }        ///< requires a block that has voxels
+  /// Largest optical thickness of a voxel, sigma_t h, of all ranks.
+  double Thickest() const { return this->Voxels.thickest; }
+  Lattice& TheLattice() { return *this->Densities; } ///< requires a block that has voxels
   const LatticeVoxels& TheVoxels() const { return this->Voxels; }
 
-  /// Solves for the steady state or takes steps, depending on the settings.
+  /// Solves for the steady state, or takes lattice steps, depending on the settings.
   void Solve(const Monitor& monitor);
-  /// Recomputes the sources after the uncollided light has changed.
+  /// Recomputes the sources of the lattice after the uncollided light has changed.
   void UpdateSources();
-  /// Continues stepping from the current densities. On one rank only.
+  /// Takes lattice steps from the current densities until the tolerance or the limit of steps is met. On one rank only.
   void Settle(const StepsBefore& before, const Monitor& monitor);
-  /// Adds this rank's fluence, flux and powers, and the convergence rows.
+  /// Adds fluence, net flux and powers of this rank's block, and the convergence rows, to `light`.
   void AddTo(LightField& light);
 
 private:
@@ -49,7 +49,7 @@ private:
   const Uncollided& Direct;
   const int Channel;
   LatticeVoxels Voxels;
-  std::optional<Lattice> Densities; ///< of the block; none if it has no voxels
+  std::optional<Lattice> Densities; ///< lattice of the block; unset if the block has no voxels
   std::vector<float> Fluence;
   std::vector<ConvergenceRow> Rows;
 };

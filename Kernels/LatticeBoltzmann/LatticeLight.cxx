@@ -27,10 +27,11 @@ void CheckCubes(const Grid& grid)
   }
 }
 
-/// Double precision limits the number of collisions that can be resolved in a voxel without absorption.
+/// Checks that no voxel is too thick for its absorption: double precision limits the number of collisions in a voxel
+/// that can be resolved.
 void CheckThickness(const Medium& medium)
 {
-  constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // of doubles 1e-16 are left
+  constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // relative to the precision of double, 1e-16
   const double edge = medium.grid.spacing[0];
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
@@ -76,7 +77,7 @@ void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, 
 
 bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)
 {
-  constexpr double thick = 0.1; // mean free paths
+  constexpr double thick = 0.1; // thickness of a voxel, mean free paths
   return settings.scheme == LatticeScheme::Conservative && AnyVoxelIsThickerThan(thick, medium);
 }
 
@@ -130,7 +131,7 @@ LightField BeginLight(const LatticeProblem& problem, const LatticeSettings& sett
 
 namespace
 {
-/// Adds quantities derived from fluence, and leftOut, in the units of the solve.
+/// Sets the quantities of `light` that are derived from the fluence, and leftOut, in the units of the solve.
 void DescribeLight(
   LightField& light, const Device& device, bool anisotropic, const LatticeSettings& settings, double thickest)
 {
@@ -157,7 +158,7 @@ void DescribeLight(
   }
 }
 
-/// Sums powers over ranks. The power that densities still gain per step becomes leftOver.
+/// Sums powers over ranks, and sets leftOver to the power that densities still gain per step.
 void SumPowers(const Domain& domain, LightField& light)
 {
   EnergyBalance& balance = light.balance;
@@ -170,7 +171,7 @@ void SumPowers(const Domain& domain, LightField& light)
   balance.leftOver = balance.entered + balance.emitted - balance.absorbed - balance.escaped;
 }
 
-/// Sets `converged` and adds warnings; light is in the user's units.
+/// Sets `converged` and adds warnings to `light`, which is in the user's units.
 void JudgeLight(LightField& light, const Illumination& illumination, const LatticeSettings& settings)
 {
   PropagationSettings judged = AsPropagation(settings);

@@ -15,21 +15,22 @@
 
 namespace tyndall
 {
-/// Checks what the lattice requires beyond LatticeProblem. Collective.
+/// Checks conditions of the lattice solve that LatticeProblem does not check. Collective.
 /// @throws InvalidInput under the conditions listed at SolveLatticeBoltzmann
 void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, const LatticeSettings& settings);
 
-/// Whether some voxel is so optically thick that the place of first scattering within it matters, and the scheme
-/// resolves it.
+/// Whether a voxel of this rank is so optically thick that the position of first scattering within it matters, and the
+/// scheme takes it into account.
 bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings);
 
+/// Checks that no axis is periodic.
 /// @throws InvalidInput if an axis is periodic
 void RequireOpenAxes(const LatticeSettings& settings);
 
-/// Power escaped through each face, W, in three channels, which are equal for grey light.
+/// Escaped power through each face, W, in three channels; equal in all three if `light` has one channel.
 std::array<Rgb, 6> EscapedByChannel(const LightField& light);
 
-/// The light of photons as an image of uncollided light, which refers to their arrays.
+/// The light of photons as an image of uncollided light, which refers to the arrays of `photons`.
 UncollidedImage ImageOf(const PhotonLight& photons);
 
 /// Adds the warnings of the photon march, and a warning about photons that miss the medium, to light.doubts.
@@ -39,11 +40,11 @@ void DoubtPhotons(const PhotonLight& photons, std::size_t all, LightField& light
 /// A LightField of zeros for the problem's voxels and channels.
 LightField BeginLight(const LatticeProblem& problem, const LatticeSettings& settings);
 
-/// Sums powers over ranks, checks the energy balance, converts to the user's units and adds `leftOut` and `doubts`.
-/// Collective.
+/// Completes `light`: sums powers over ranks, checks the energy balance, converts to the user's units, and adds leftOut
+/// and doubts. Collective.
 /// @param illumination  as the user gave it
 /// @param thickest  sigma_t h of the thickest voxel of all ranks
-/// @param lost  uncollided power on this rank that entered and was not deposited anywhere, W
+/// @param lost  Uncollided::lost of this rank, W
 void FinishLight(LightField& light, const Device& device, const LatticeProblem& problem,
   const Illumination& illumination, const LatticeSettings& settings, double thickest, const Rgb& lost = {});
 }

@@ -4,17 +4,17 @@
 //   BENDS       1: the refractive index varies
 //   REFLECTS    1: a face of the box reflects light
 //   PUBLISHED   1: collisions as in the paper
-//   ENDLESS     1: some lines of links are endless; no light is sent along them
+//   ENDLESS     1: some lines of links are endless (LatticeVoxels.h); no light is sent along these lines
 //
-// The density of a direction is the light that leaves a voxel along that link, W / length^2, [direction][stride]. The
-// sum over directions is the fluence. The halo around the box holds incident light.
+// Densities are [direction][stride], W / length^2: light that leaves a voxel along the link of the direction in a step.
+// Their sum over directions is the fluence. The halo around the box holds incident light.
 #pragma once
 #include "LatticeBoltzmann/LatticeShared.h"
 
 #define WEIGHT(i) (DIRECTIONS == 6 ? 1.0f / 6.0f : (i) < 6 ? 1.0f / 12.0f : 1.0f / 24.0f)
 #define FOR_DIRECTIONS(i) _Pragma("unroll") for (int i = 0; i < DIRECTIONS; ++i)
 
-// All links transmit everything and reflect nothing.
+// 1: all links transmit all light and reflect none.
 #define PLAIN (PASSES_ALL && !BENDS && !REFLECTS)
 
 __constant char Ways[18][3] = LATTICE_WAYS;
@@ -35,7 +35,7 @@ __constant char Ways[18][3] = LATTICE_WAYS;
     if (BENDS)                                                                                                     \
     {                                                                                                              \
       const type by_here = 1.0f / here;                                                                            \
-      const type lower = select(fmin(here, there), here, there == 0.0f); /* n^2 of which all goes on */            \
+      const type lower = select(fmin(here, there), here, there == 0.0f); /* n^2 without total reflection */        \
       const type by_there = select(1.0f / there, by_here, there == 0.0f);                                          \
       const type both = PASSES_ALL ? lower : 2.0f / (own * by_here + other * by_there + fabs(by_here - by_there)); \
       part = select(both * by_there, both, there == 0.0f);                                                         \
@@ -48,8 +48,9 @@ __constant char Ways[18][3] = LATTICE_WAYS;
     return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                                   \
   }
 
-// Weights of the open directions: voxels emit no isotropic light along endless lines (LatticeVoxels.h), and all of it
-// along the other lines.
+// Total weight of the open directions of a voxel (LatticeVoxels::OpenWeight): isotropic light is emitted along open
+// directions only, not along endless lines (LatticeVoxels.h). DEFINE_SENT: weight of direction i in isotropic light,
+// relative to the open directions.
 //   closed  bit mask of the direction pairs whose line is endless
 #define DEFINE_OPEN(name, type, whole)                                                    \
   static type name(whole closed)                                                          \
@@ -69,7 +70,7 @@ __constant char Ways[18][3] = LATTICE_WAYS;
 
 // Density along a direction after a collision (Eqs. (L1), (L6)).
 //   weight  of the direction, relative to the open directions
-//   before  light that arrived, plus half the source of a step
+//   before  light that arrived along the direction, plus half the source of a step
 //   sum     of `before` over all directions
 #define DEFINE_COLLIDED(name, type)                                                                                \
   static type name(type weight, type before, type sum, type even, type stays)                                      \

@@ -15,9 +15,10 @@
 
 namespace tyndall
 {
-/// A scene prepared for a lattice solve: that of light propagation maps (PropagationProblem), in units suited to floats
-/// and with the channels it needs, extended on several ranks by a halo of two layers around this rank's block, since
-/// first moments in a voxel depend on its neighbours' neighbours. On one rank the block is the grid, without a halo.
+/// A scene prepared for a lattice solve, in units suited to floats and with the channels that it needs
+/// (PropagationProblem). On several ranks it includes a halo of two layers around this rank's block, since the source
+/// of a voxel depends on its neighbours' neighbours (numerics.md, Eq. (L13)). On one rank the block is the grid,
+/// without a halo.
 class LatticeProblem
 {
 public:
@@ -26,13 +27,13 @@ public:
   /// @throws InvalidInput  as PropagationProblem
   LatticeProblem(const Domain& domain, const Medium& medium, const Field& ior, const Illumination& illumination,
     const LatticeSettings& settings);
-  LatticeProblem(const LatticeProblem&) = delete; // the medium refers to arrays that this owns
+  LatticeProblem(const LatticeProblem&) = delete; // the medium refers to arrays that this object owns
   LatticeProblem& operator=(const LatticeProblem&) = delete;
 
-  const Domain& TheDomain() const { return this->Scene.TheDomain(); } ///< in the problem's unit of length
+  const Domain& TheDomain() const { return this->Scene.TheDomain(); } ///< domain in the problem's unit of length
   const LatticeBox& Box() const { return *this->OwnBox; }
-  const Medium& OwnMedium() const { return this->Scene.TheMedium(); } ///< of this rank's block, without a halo
-  // Fields over the known voxels:
+  const Medium& OwnMedium() const { return this->Scene.TheMedium(); } ///< medium of this rank's block, without a halo
+  // Fields over the known voxels: the block and its halo.
   const Medium& TheMedium() const { return this->Known; }
   const Field& Index() const { return this->KnownIndex; } ///< refractive index; null values: 1
   const Illumination& TheIllumination() const { return this->Shining; }
@@ -40,17 +41,17 @@ public:
   /// Whether the medium scatters anisotropically on any rank.
   bool IsAnisotropic() const { return !this->Scene.IsIsotropic() && this->Scene.Traits().scatters; }
 
-  /// Extends values of the block's voxels to its ghost voxels. Collective.
+  /// Extends values by voxel of the block to known voxels: copies those of ghost voxels from their owners. Collective.
   std::vector<float> WithGhosts(std::vector<float> own, int components) const;
 
-  /// Converts light to the user's units and channels; adds to leftOut. Collective.
+  /// Converts `light` to the user's units and channels, and adds entries to its leftOut. Collective.
   void Undo(LightField& light) const;
 
 private:
   Field WithGhosts(const Field& own);
 
-  const PropagationProblem Scene; ///< of this rank's block
-  std::optional<Halo> Ghosts;     ///< none on one rank
+  const PropagationProblem Scene; ///< scene of this rank's block
+  std::optional<Halo> Ghosts;     ///< unset on one rank
   std::vector<std::vector<float>> GhostValues;
   Medium Known;
   Field KnownIndex;

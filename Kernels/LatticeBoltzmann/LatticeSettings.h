@@ -20,14 +20,14 @@ enum class LatticeScheme
 /// Settings of the lattice-Boltzmann solver.
 struct LatticeSettings
 {
-  /// Neighbours that a voxel exchanges light with: 18 (Geist et al. 2004), or 6 along the axes.
+  /// Number of neighbours with which a voxel exchanges light: 18 (Geist et al. 2004), or 6 along the axes.
   int directions = 18;
   LatticeScheme scheme = LatticeScheme::Conservative;
-  /// Edge of blocks that take several steps between exchanges, as published, 2 to 8 voxels; 0: all voxels step
-  /// together.
+  /// Edge, 2 to 8 voxels, of blocks that take several steps between exchanges of light, as published; 0: all voxels
+  /// step together.
   int blockSize = 0;
-  int stepsPerExchange =
-    8;                     ///< steps in a block before it exchanges light with its neighbours, and of a turn of photons
+  /// Number of steps in a block between exchanges of light, and of steps during a turn of photons.
+  int stepsPerExchange = 8;
   int maximumSteps = 0;    ///< number of steps; 0: step until the tolerance is met
   double tolerance = 1e-4; ///< estimated relative error of the fluence at which to stop
   /// Solve for the steady state, if the scheme is conservative, there are no blocks and maximumSteps is 0; false: step
@@ -36,12 +36,13 @@ struct LatticeSettings
   /// Number of evenly spread voxels at which the change of fluence is measured; 0: all voxels. Reading all costs about
   /// one step.
   int probes = 4096;
-  /// March photons, if any are given, interleaved with lattice steps on the light they have deposited: stepsPerExchange
-  /// steps per `stretches` segments of a photon's path, from voxel wall to voxel wall (0: the whole path). False:
-  /// photons march to their ends first.
+  /// Whether photons, if any are given, march interleaved with lattice steps that diffuse the light deposited so far:
+  /// stepsPerExchange steps per `stretches` segments of a photon's path, from voxel wall to voxel wall (0: the whole
+  /// path). False: photons march to their ends first.
   bool interleaves = false;
   int stretches = 16;
-  bool sideBySide = true; ///< if interleaved; false: photons and lattice take turns on the device
+  /// If interleaved: whether photons and lattice run concurrently on the device; false: alternately.
+  bool sideBySide = true;
   std::array<bool, 3> periodic = {};
   bool netFlux = false; ///< also compute net_flux
 
@@ -55,14 +56,15 @@ struct LatticeSettings
 /// Whether voxels are cubes to 0.1%, as the lattice requires.
 bool HasCubicVoxels(const Grid& grid);
 
+/// Checks the ranges of settings.
 /// @throws InvalidInput if `directions` is not 6 or 18, a number is out of its range or the tolerance is not positive
 void Check(const LatticeSettings& settings);
 
-/// The setting that makes the solver take steps instead of solving for the steady state, as text for an error; empty if
-/// there is none. Steps are taken on one rank only.
+/// Name of the setting that makes the solver take steps, which works on one rank only, instead of solving for the
+/// steady state; text for an error, empty if there is no such setting.
 std::string NotInBlocks(const LatticeSettings& settings);
 
-/// Settings for the light propagation maps that compute the lattice's uncollided light.
+/// Settings for the light propagation maps that compute the uncollided light of a lattice solve.
 /// @param angularDegree  as in PropagationSettings
 PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDegree = -1);
 

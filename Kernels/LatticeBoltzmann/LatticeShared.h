@@ -18,7 +18,7 @@ SHARED_BEGIN
 enum
 {
   LatticeFirst = 16, ///< index of a row's first voxel, chosen so that rows are aligned for vector loads
-  OtherBlock = 6     ///< stands for a face number of the grid: another block lies beyond
+  OtherBlock = 6     ///< in place of a face number: another block lies beyond the face
 };
 
 /// Memory layout of a lattice: voxels with a halo of one layer, in rows of `row` values, the first voxel at
@@ -33,15 +33,15 @@ typedef struct
   float albedo[6];   ///< albedo of the faces -x, +x, ... +z
   float incoming[6]; ///< fluence / n^2 of the diffuse light outside each face, W / length^2
   ulong stride;      ///< stride of the densities between directions
-  int steps;         ///< with blocks: steps until they exchange light
+  int steps;         ///< number of steps in a block between exchanges of light
 } LatticeInfo;
 
-/// A sweep along the lines of links of a pair of directions.
+/// Parameters of a sweep along the lines of links of a pair of opposite directions (LatticeLines.cl).
 typedef struct
 {
-  LatticeInfo lattice; ///< with no incoming light if the sweep is without sources
+  LatticeInfo lattice; ///< layout of the lattice; without incoming light in a sweep without sources
   int pair;            ///< directions 2 pair and 2 pair + 1
-  int writes;          ///< 1: also write densities, in the layout of step_lattice
+  int writes;          ///< 1: the sweep also writes densities, in the layout of step_lattice
 } LinePass;
 SHARED_END
 

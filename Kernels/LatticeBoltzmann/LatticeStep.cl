@@ -1,4 +1,5 @@
-// One lattice step of the photon densities (numerics.md, section 10 c), for all voxels together. The host also defines
+// Lattice steps of the photon densities of all voxels together (numerics.md, section 10 c, Eq. (L1)). The host defines
+// the options of LatticeLink.cl, and
 //   STREAMS  1: densities exceed the caches; use streaming stores if the compiler has them
 #include "LatticeBoltzmann/LatticeLink.cl"
 
@@ -14,7 +15,7 @@ DEFINE_COLLIDED(collided, float16)
 DEFINE_OPEN(open_weight, float16, int16)
 DEFINE_SENT(sent_weight, float16, int16)
 
-// Stores sixteen values at `at`, clipped to the end of the row.
+// Stores sixteen values from `at` on, but no more than `voxels`, the number of voxels to the end of the row.
 static void store_some(float16 values, __global float* to, ulong at, int voxels)
 {
   if (voxels >= WIDTH)
@@ -30,7 +31,8 @@ static void store_some(float16 values, __global float* to, ulong at, int voxels)
   }
 }
 
-// The same for densities, whose rows are aligned. A streaming store avoids reading the cache lines that it overwrites.
+// Stores sixteen densities, whose rows are aligned, as store_some() does. A streaming store avoids reading the cache
+// lines that it overwrites.
 static void store_densities(float16 values, __global float* to, ulong at, int voxels)
 {
 #ifdef STORE_PAST_CACHES
@@ -44,12 +46,12 @@ static void store_densities(float16 values, __global float* to, ulong at, int vo
 }
 
 // Properties of the medium at each place of the lattice:
-//   resistance  inverse of the fraction that a link between two such voxels transmits; 1 outside
+//   resistance  inverse of the fraction that a link between two voxels like this one transmits; 1 outside
 //   squared     n^2; 0 outside
 //   albedo      albedo of the face, outside the box; 0 inside
 #define LINKS const __global float *resistance, const __global float *squared, const __global float *albedo
 
-// Light that arrives along direction i in the sixteen voxels from `at` on.
+// Light that arrives along direction i in the sixteen voxels from index `at` on, W / length^2.
 static float16 arriving_along(LatticeInfo lattice, LINKS, const __global float* from, int i, ulong at)
 {
   const ulong other = at - lattice.offset[i];
@@ -61,12 +63,12 @@ static float16 arriving_along(LatticeInfo lattice, LINKS, const __global float* 
     BENDS ? vload16(0, squared + other) : one, REFLECTS ? vload16(0, albedo + other) : zero);
 }
 
-// One step. One work-item per row of voxels. Arrays have the layout of the lattice, except fluence:
+// One lattice step. One work-item per row of voxels. Arrays have the layout of the lattice, except for the fluence:
 //   turning   fraction of the density that collisions make isotropic
 //   kept      fraction that is not absorbed in a step; published scheme: neither absorbed nor scattered
 //   source    isotropic source, W / length^2 per step
 //   endless   with ENDLESS: bit mask of the direction pairs along which nothing is sent
-//   from, to  densities before and after
+//   from, to  densities before and after the step
 //   fluence   [voxel], written with `writes`
 __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* turning, const __global float* kept,
   const __global float* source, const __global float* endless, const __global float* from, __global float* to,
@@ -99,8 +101,8 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
   }
 }
 
-// Sets the source from one channel of a fluence, [voxel][channels], and from emission; arguments as described at
-// Lattice::SetSourceOf. One work-item per row of voxels.
+// Computes source = emits + scatters times one channel of a fluence, [voxel][channels] (Lattice::SetSourceOf). One
+// work-item per row of voxels.
 __kernel void source_of_fluence(LatticeInfo lattice, const __global float* scatters, const __global float* emits,
   const __global float* fluence, int channels, int channel, __global float* source)
 {
@@ -113,14 +115,15 @@ __kernel void source_of_fluence(LatticeInfo lattice, const __global float* scatt
   }
 }
 
-// Copies the fluence at the given voxels.
+// Copies the fluence at the given voxels. One work-item per given voxel.
 __kernel void look_at_lattice(const __global float* fluence, const __global int* voxels, __global float* seen)
 {
   const int i = get_global_id(0);
   seen[i] = fluence[voxels[i]];
 }
 
-// Net flux, W / length^2, [x, y, z][voxel]: the mean of arriving and leaving flux. One work-item per row of voxels.
+// Computes the net flux, W / length^2, [x, y, z][voxel]: the mean of arriving and leaving densities times link vectors.
+// One work-item per row of voxels.
 __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* from, __global float* flux)
 {
   const int y = get_global_id(0), z = get_global_id(1), nx = lattice.size[0];
@@ -146,8 +149,10 @@ __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* fro
   }
 }
 
-// Fills the halo across a periodic axis. One work-item per value of a plane and direction.
-//   u, v  strides within the plane; `along`: stride along the periodic axis; n: voxels along it
+// Copies densities to the halo across a periodic axis. One work-item per value of a plane and direction.
+//   u, v   strides within the plane
+//   along  stride along the periodic axis
+//   n      voxels along the periodic axis
 __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v, int along, int n)
 {
   __global float* at = densities + LatticeFirst - 1 + get_global_id(2) * stride + (ulong)get_global_id(0) * u +
@@ -156,8 +161,8 @@ __kernel void wrap_lattice(__global float* densities, ulong stride, int u, int v
   at[(ulong)(n + 1) * along] = at[along];
 }
 
-// Light that each voxel sends through the box's faces in the next step, W / length^2, [face][voxel]. Light that leaves
-// across an edge is split equally between both faces. Periodic axes have no faces.
+// Computes the light that each voxel sends through the box's faces in the next step, W / length^2, [face][voxel]. Light
+// that leaves across an edge of the box is split equally between both faces. Periodic axes have no faces.
 __kernel void leave_lattice(
   LatticeInfo lattice, const __global float* resistance, const __global float* densities, __global float* leaving)
 {

@@ -14,14 +14,14 @@ namespace tyndall
 {
 namespace
 {
-/// A closed line is endless if its voxels remove, on average, less than this fraction of the light. If no axis is open,
-/// all lines are closed, and thin media remove light over many laps.
+/// A closed line is endless if its voxels remove, on average, less than this fraction of the light per step. The second
+/// value applies if all axes are periodic: all lines then close, and thin media remove light over many laps.
 constexpr double LeastEnding = 1e-3, LeastEndingInClosedBox = 1e-12;
 
-/// Probability that diffuse light starting between two places reaches the farther one before the nearer, and is not
-/// absorbed.
-/// @param way  diffusive resistance to the nearer place, as a fraction of that between both
-/// @param decays  e-folds by which diffuse light decays between both
+/// Probability that diffuse light that starts between two points reaches the farther point before the nearer one, and
+/// is not absorbed (p of numerics.md, Eq. (L13)).
+/// @param way  diffusive resistance to the nearer point, relative to that between both
+/// @param decays  number of e-folds by which diffuse light decays between both points
 double PartThatCrosses(double way, double decays)
 {
   if (decays < 1e-3)
@@ -31,14 +31,15 @@ double PartThatCrosses(double way, double decays)
   return std::exp((way - 1.0) * decays) * std::expm1(-2.0 * way * decays) / std::expm1(-2.0 * decays);
 }
 
-/// Number of e-folds by which diffuse light decays across a voxel.
+/// Number of e-folds by which diffuse light decays across a voxel: its edge in diffusion lengths.
 double DecaysAcross(const Medium& medium, std::size_t voxel, int channel)
 {
   const double absorbs = medium.sigma_a.At(voxel, channel);
   return medium.grid.spacing[0] * std::sqrt(3.0 * absorbs * medium.TransportSigmaT(voxel, channel));
 }
 
-/// Lines of links of a pair of directions that wrap around periodic axes and close, in the whole grid.
+/// Closed lines of links of a pair of directions in the whole grid: lines that wrap around periodic axes and return to
+/// their first voxel.
 class ClosedLines
 {
 public:
@@ -66,7 +67,7 @@ public:
   std::size_t Through(const std::array<int, 3>& voxel) const
   {
     std::size_t line = 0;
-    int along = 0; // constant along a diagonal, modulo whole periods
+    int along = 0; // constant along a diagonal line, up to multiples of Common
     int sign = 1;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -128,8 +129,8 @@ void LatticeVoxels::Load(const LatticeSettings& settings)
   const Field& ior = this->Problem.Index();
   const double edge = medium.grid.spacing[0];
   const bool published = settings.scheme == LatticeScheme::Published;
-  // Optical thickness at which a collision makes all of the density isotropic, and up to which links transmit all
-  // light.
+  // Optical thickness up to which links transmit all light, and at which a collision makes all of the density isotropic
+  // (Eqs. (L2), (L3)).
   const double most = 2.0 / (3.0 * LatticeSquares(settings.directions));
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
@@ -148,7 +149,7 @@ void LatticeVoxels::Load(const LatticeSettings& settings)
   }
 }
 
-/// Reduces flags over ranks, so that kernels omit only what no voxel of any rank needs.
+/// Combines passesAll, bends and thickest over all ranks, so that all ranks use the same kernel options. Collective.
 void LatticeVoxels::ReduceGlobals()
 {
   const bool has = !this->squared.empty();
@@ -225,10 +226,11 @@ double LatticeVoxels::OpenWeight(std::size_t voxel) const
   {
     open -= bits >> pair & 1 ? 2.0 * LatticeWeight(this->Directions, 2 * pair) : 0.0;
   }
-  return std::max(open, LatticeWeight(this->Directions, this->Directions - 1)); // above 0 even if all lines are endless
+  // Above 0 also if all lines are endless.
+  return std::max(open, LatticeWeight(this->Directions, this->Directions - 1));
 }
 
-/// Sets incident light and the faces' albedo.
+/// Sets `incoming` and `albedo` of the box's faces.
 void LatticeVoxels::LoadBoundary()
 {
   const Illumination& shining = this->Problem.TheIllumination();
@@ -264,10 +266,10 @@ void LatticeVoxels::LoadSources(const Uncollided& direct)
   }
 }
 
-/// Moves a part of the first-collision source across the face that it is nearer to, Eq. (L13). The part is linear in
-/// the distance, so that lights superpose. With forward scattering light does not turn back at once, and its source
-/// stays.
-/// @param begin  light first scattered in each voxel, W / length^2
+/// Moves a fraction of the first-collision source of each voxel across its faces (Eq. (L13)). The fraction is linear in
+/// the distance of the mean collision position from the centre, so that lights superpose. It is 0 in voxels with g > 0,
+/// because forward-scattered light does not return to its entry face at once.
+/// @param begin  first-collision source of each voxel, W / length^2; changed
 void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& begin)
 {
   const Medium& medium = this->Problem.TheMedium();
@@ -281,7 +283,7 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
       continue;
     }
     std::array<double, 6> parts = {};
-    const double decays = 0.5 * DecaysAcross(medium, i, channel); // from the centre to a face
+    const double decays = 0.5 * DecaysAcross(medium, i, channel); // e-folds from the voxel's centre to a face
     const double normal = NearerOfNormalBeam(medium, i, channel);
     for (std::size_t face = 0; face < 6; ++face)
     {
@@ -289,7 +291,7 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
       const double part = nearer > 0.0 ? this->PartWithin(i, face) : 0.0;
       parts[face] = part > 0.0 ? nearer / normal * PartThatCrosses(2.0 * normal * part, decays / part) : 0.0;
     }
-    // In a corner, limit the total that crosses to the available light.
+    // Limits the sum over faces to the source of the voxel, in voxels lit through several faces.
     const double all = std::max(std::accumulate(parts.begin(), parts.end(), 0.0), 1.0);
     for (std::size_t face = 0; face < 6; ++face)
     {
@@ -305,7 +307,8 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
   }
 }
 
-/// Fraction within the voxel of the resistance from its centre to the next voxel's centre, or out of the box.
+/// Resistance from a voxel's centre to its face, relative to that from its centre to the next voxel's centre or out of
+/// the box.
 double LatticeVoxels::PartWithin(std::size_t voxel, std::size_t face) const
 {
   const std::size_t beyond = this->Problem.Box().Beyond(voxel, face);
@@ -332,7 +335,8 @@ double LatticeVoxels::ResistanceBetween(std::size_t a, std::size_t b, double lea
 
 double LatticeVoxels::ResistanceOfFace(std::size_t voxel, std::size_t face, double least) const
 {
-  const double black = LatticeSquares(this->Directions) * this->squared[voxel]; // Marshak's condition
+  // Inverse resistance of a black face, by Marshak's condition.
+  const double black = LatticeSquares(this->Directions) * this->squared[voxel];
   const double reflects = (1.0 + this->albedo[face]) / (1.0 - this->albedo[face]);
   return this->ResistanceWithin(voxel, least) + reflects / black;
 }

@@ -23,42 +23,44 @@ double LatticeSquares(int directions);
 /// Coefficients of the lattice step for one channel, by known voxel (numerics.md, Eqs. (L2) to (L6)).
 struct LatticeVoxels
 {
-  std::vector<float>
-    turning; ///< fraction of the density that collisions make isotropic; published scheme: that is scattered
-  std::vector<float> lost;    ///< fraction that is absorbed
-  std::vector<float> kept;    ///< fraction that is not absorbed; published scheme: neither absorbed nor scattered
-  std::vector<float> passes;  ///< fraction that links transmit
+  /// Fraction of the density that a step's collision makes isotropic; published scheme: fraction that is scattered.
+  std::vector<float> turning;
+  std::vector<float> lost; ///< fraction of the density that is absorbed in a step
+  /// Fraction of the density that is not absorbed in a step; published scheme: neither absorbed nor scattered.
+  std::vector<float> kept;
+  std::vector<float> passes;  ///< fraction of light that a link between two voxels like this one transmits
   std::vector<float> squared; ///< n^2
   std::vector<float> source;  ///< isotropic source, W / length^2 per step
-  /// First-collision source of uncollided light that is scattered so near to a face that the source lies on the other
-  /// side (Eq. (L13)), W / length^2, by voxel and face. Empty: none.
+  /// First-collision source that is moved across a face, to the next voxel or out of the box, because light is first
+  /// scattered near the face (Eq. (L13)), W / length^2, [voxel][face]. Empty: none is moved.
   std::vector<float> crossing;
-  /// By voxel, an integer whose bit k is set if the line of links along directions 2 k and 2 k + 1 wraps around
-  /// periodic axes and has almost no extinction, so that light on it would never end. No light is sent along such a
-  /// line; sources in its voxels emit along the other lines. Empty: there is none.
+  /// Endless lines, by voxel: bit k of the (integer) value is set if the line of links along directions 2 k and 2 k + 1
+  /// through the voxel closes around periodic axes and has almost no extinction, so that light on it would never end.
+  /// No light is sent along an endless line; sources in its voxels emit along the other lines. Empty: no line is
+  /// endless.
   std::vector<float> endless;
   std::vector<double> begins;       ///< fraction of the source that is not absorbed in its first step, Eq. (L4a)
-  bool bends = false;               ///< n^2 varies
-  bool passesAll = true;            ///< no link reflects light
-  double thickest = 0.0;            ///< largest sigma_t h, with the transport extinction
+  bool bends = false;               ///< whether n^2 varies between voxels
+  bool passesAll = true;            ///< whether no link reflects light
+  double thickest = 0.0;            ///< largest optical thickness of a voxel, sigma_t h with the transport extinction
   std::array<double, 6> incoming{}; ///< fluence / n^2 of the diffuse light outside -x, +x, ... +z, W / length^2
   std::array<double, 6> albedo{};   ///< albedo of the faces -x, +x, ... +z
 
-  /// Collective. @param problem  must outlive it
+  /// Collective. @param problem must outlive this object
   /// @throws InvalidInput if a voxel with a source has endless lines only (names the first such known voxel)
   LatticeVoxels(const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct, int channel);
 
-  /// Sets the sources: first-collision source and emission.
+  /// Sets `source` and `crossing` from the first-collision source of uncollided light and from emission.
   void LoadSources(const Uncollided& direct);
   /// Total weight of the directions along which a voxel sends light; 1 unless some of its lines are endless.
   double OpenWeight(std::size_t voxel) const;
 
   bool Reflects() const; ///< whether a face has an albedo above 0
-  double Given() const;  ///< above 0 if there is a source, in a voxel or outside a face
+  double Given() const;  ///< sum of sources and incident light; above 0 if there is any
 
-  /// Diffusive resistances: the difference of fluence / n^2 that drives a flux of 1 W / length^2 from a voxel's centre
-  /// to its faces, to the centre of the next voxel, and out of the box through a face (Eq. (L12)). Infinite at a face
-  /// of albedo 1.
+  /// Diffusive resistances (Eq. (L12)): difference of fluence / n^2 that drives a flux of 1 W / length^2 from a voxel's
+  /// centre to its faces (Within), between the centres of neighbours (Between), and from a centre out of the box
+  /// (OfFace; infinite at a face of albedo 1).
   /// @param least  lower bound for the fraction of light that a step turns or absorbs
   double ResistanceWithin(std::size_t voxel, double least = 0.0) const;
   double ResistanceBetween(std::size_t a, std::size_t b, double least = 0.0) const;

@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// Order of magnitude of the fluence, W / length^2, of light with the given power.
+/// Order of magnitude of the fluence of light that enters a grid with the given power, W / length^2.
 double UsualFluence(const Rgb& power, const Grid& grid)
 {
   const double x = grid.Length(0), y = grid.Length(1), z = grid.Length(2), area = x * y + y * z + z * x;
@@ -72,8 +72,8 @@ std::vector<float> ScattersOf(const Medium& medium, int channel, double unit, co
 
 namespace
 {
-constexpr double Overlap =
-  0.05; ///< fraction of the shorter part's time; with less overlap the device runs the queues one after the other
+/// Smallest overlap of photons and lattice, as a fraction of the shorter one's time, that counts as concurrent.
+constexpr double Overlap = 0.05;
 
 /// Number of lattice steps during the next turn of photons, after `done` steps. The last step is reserved for when all
 /// photons have ended.
@@ -147,7 +147,7 @@ void InterleavedLattice::Take(const cl::CommandQueue& queue, const Buffer<float>
   }
 }
 
-/// Takes over the light of all photons, in the problem's units and channels.
+/// Copies the light of all photons to Light, in the problem's units and channels.
 void InterleavedLattice::TakeAll(const PhotonLight& photons)
 {
   const auto all = static_cast<std::size_t>(this->Problem->Channels());
@@ -195,7 +195,7 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   const TurnTimes& times = turns.times;
   this->TakeAll(found);
   const double marched =
-    (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // rows sum over channels
+    (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // convergence rows are sums over channels
   LightField light = BeginLight(*this->Problem, this->Settings);
   double thickest = 0.0;
   for (std::size_t c = 0; c < this->Channels.size(); ++c)

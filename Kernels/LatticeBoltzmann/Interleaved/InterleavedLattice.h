@@ -22,42 +22,43 @@
 
 namespace tyndall
 {
-/// Synthetic uncollided light for photons that have not yet been marched, from which LatticeProblem chooses units and
-/// channels. Its fluence has the order of magnitude of theirs, and varies from voxel to voxel, in three channels
-/// independently if photons differ in colour, so that the problem keeps all channels that they need.
+/// Synthetic uncollided light in place of that of photons not yet marched, from which LatticeProblem chooses units and
+/// channels. Its fluence has the order of magnitude of the photons' fluence. It varies from voxel to voxel, and between
+/// channels if photons differ in colour, so that the problem keeps all channels that the photons need.
 struct PhotonsToCome
 {
-  /// @param given  channels that the photons' light will have
+  /// @param given  number of channels that the photons' light will have
   PhotonsToCome(const PackedPhotons& packed, int given, const Grid& grid);
 
-  UncollidedImage Image() const; ///< refers to the arrays of this object
+  UncollidedImage Image() const; ///< image that refers to the arrays of this object
 
   int channels;
-  std::vector<float> fluence; ///< [voxel][channel]
+  std::vector<float> fluence; ///< fluence of the synthetic light, [voxel][channel]
   std::array<Rgb, 6> escaped = {};
 };
 
-/// Which channel of the photons' light a channel of the problem uses, and the unit conversion.
+/// Channel of the photons' light that a channel of the problem uses, and the conversion of units.
 struct PhotonChannelMap
 {
   PhotonChannelMap() = default;
-  /// @param photons  the uncollided light that the problem was given
-  /// @param solved  the same light in the problem's units
+  /// @param photons  uncollided light that the problem was made with
+  /// @param solved  `photons` in the problem's units
   /// @param channels, channel  number of channels of the problem, and the index of one
   PhotonChannelMap(const PhotonsToCome& photons, const UncollidedImage& solved, int channels, int channel);
 
   int from = 0;         ///< channel of the photons' light
   double fluence = 1.0; ///< lattice units of fluence per unit of the photons' fluence
-  double power = 1.0;   ///< the same for power
+  double power = 1.0;   ///< lattice units of power per W of the photons
 };
 
-/// Fraction of a channel's fluence that is scattered in each voxel in a step, times the unit of that light.
+/// Fraction of a channel's fluence that is scattered in a step, times `unit`, by voxel: `scatters` of
+/// Lattice::SetSourceOf.
 /// @param begins  LatticeVoxels::begins
 std::vector<float> ScattersOf(const Medium& medium, int channel, double unit, const std::vector<double>& begins);
 
-/// Marches photons while lattice steps diffuse the light deposited so far (Bernabei et al., section III; numerics.md,
-/// section 10 c). Stepping continues after the last photon has ended, so that the result is, to the tolerance, the
-/// lattice solution for the light of all photons.
+/// Lattice solve interleaved with photons: photons march while lattice steps diffuse the light deposited so far
+/// (Bernabei et al., section III; numerics.md, section 10 c). Stepping continues after the last photon has ended, so
+/// that the result is, to the tolerance, the lattice solution for the light of all photons.
 class InterleavedLattice
 {
 public:
@@ -66,7 +67,8 @@ public:
   InterleavedLattice(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
     const Illumination& illumination, const LatticeSettings& settings);
 
-  /// @param marcher  set up for the same medium, one scattering order and no batches
+  /// Marches the photons, and solves for the light.
+  /// @param marcher  set up for the medium of this object, one scattering order and no batches
   LightField Solve(PhotonMarcher& marcher, const std::vector<Photon>& photons, const Monitor& monitor);
 
 private:
@@ -92,7 +94,7 @@ private:
 
   std::optional<PhotonsToCome> ToCome;
   std::optional<LatticeProblem> Problem;
-  Uncollided Light; ///< photons' light in the problem's units
+  Uncollided Light; ///< light of the photons in the problem's units
   std::vector<Channel> Channels;
   int Steps = 0;
 };

@@ -6,8 +6,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Reduction = 0.1; ///< reduction of the residual, in the preconditioner's norm
-constexpr double Thinnest = 0.05; ///< lower limit of sigma_t h; thinner voxels are treated as this thick
+/// Factor by which a solve reduces the residual, in the norm of the multigrid preconditioner.
+constexpr double Reduction = 0.1;
+constexpr double Thinnest = 0.05; ///< smallest optical thickness of a voxel, sigma_t h, in the matrix
 }
 
 LatticeDiffusion::LatticeDiffusion(
@@ -49,7 +50,7 @@ LatticeDiffusion::Matrix LatticeDiffusion::MatrixOf(
       const std::size_t axis = face / 2;
       if (settings.periodic[axis] && this->TheDomain.Whole().size[axis] == 1)
       {
-        continue; // the voxel is its own neighbour
+        continue; // on a periodic axis of one voxel, the voxel is its own neighbour
       }
       const std::size_t beyond = box.Beyond(at, face);
       std::array<int, 3> above = atHeld;
@@ -59,7 +60,7 @@ LatticeDiffusion::Matrix LatticeDiffusion::MatrixOf(
       {
         loss += 1.0 / voxels.ResistanceOfFace(known, face, thin);
       }
-      else if (!isHigh || hasGhostAbove) // else it is the low face of another own voxel
+      else if (!isHigh || hasGhostAbove) // other high faces are low faces of own voxels
       {
         matrix.conductance[axis][isHigh ? place + strides[axis] : place] =
           static_cast<float>(1.0 / voxels.ResistanceBetween(known, beyond, thin));

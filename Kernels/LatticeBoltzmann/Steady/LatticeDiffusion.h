@@ -13,8 +13,9 @@
 
 namespace tyndall
 {
-/// Diffusion limit of a lattice for fluence / n^2 (numerics.md, Eq. (L12)), the preconditioner of SteadyLattice: a
-/// symmetric positive definite seven-point stencil, solved by conjugate gradients with multigrid.
+/// Solver for the diffusion limit of a lattice, for fluence / n^2 (numerics.md, Eq. (L12)); preconditioner of
+/// SteadyLattice. The matrix is a symmetric positive definite seven-point stencil, solved by conjugate gradients with
+/// multigrid.
 class LatticeDiffusion
 {
 public:
@@ -24,15 +25,16 @@ public:
   LatticeDiffusion(
     Device& device, const LatticeProblem& problem, const LatticeSettings& settings, const LatticeVoxels& voxels);
 
-  /// Reduces the residual to a tenth. Collective.
+  /// Solves the diffusion system with `residual` as right-hand side, until its own residual has fallen to a tenth.
+  /// Collective.
   /// @param residual  by own voxel
   /// @param unit  root mean square of `residual` over all ranks, > 0
-  /// @return the correction by own voxel
+  /// @return the solution, fluence / n^2, by own voxel
   Values Solve(const Values& residual, double unit);
 
 private:
-  /// Conductances of the low faces of the block's voxels and of the ghosts above them, by axis, and losses of the
-  /// block's voxels; by voxel with ghosts.
+  /// Matrix in arrays by voxel with ghosts: conductances, by axis, of the low faces of the block's voxels and of the
+  /// ghosts above them, and losses of the block's voxels.
   struct Matrix
   {
     std::array<std::vector<float>, 3> conductance;

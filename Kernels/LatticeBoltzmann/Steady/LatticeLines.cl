@@ -1,19 +1,22 @@
-// Streaming along lines of links between collisions, for given collisions (numerics.md, Eqs. (L7) to (L10)). The host
-// defines what LatticeLink.cl and Numerics/Exact.cl require.
+// Streaming of light along lines of links, for given isotropic emission of collisions (numerics.md, Eqs. (L7) to
+// (L10)). The host defines the options of LatticeLink.cl and Numerics/Exact.cl.
 //
-// Light moves both ways along a line, because links reflect a part. The voxels up to a given one are described by U,
-// what they send up without light from ahead, and R, the fraction of light from ahead that they return. The upward pass
-// finds U and R of every voxel, the downward pass the densities. All terms are positive, so that there is no
-// cancellation.
+// Light moves up and down a line, because links reflect a fraction of it. The voxels of a line up to a given voxel are
+// described by two numbers: U, the light that they send up if none arrives from above, and R, the fraction of light
+// arriving from above that they send back up. The upward pass computes U and R of every voxel, the downward pass the
+// densities. All terms are positive, so that there is no cancellation.
 #include "LatticeBoltzmann/LatticeLink.cl"
 #include "Numerics/Exact.cl"
 
-// In single precision the weights add up to 1 only to 1e-8, and thick voxels would gain or lose that much in every
-// collision.
+// Weight of direction i in double precision: single-precision weights add up to 1 only to 1e-8, and thick voxels would
+// gain or lose that fraction in every collision.
 #define EXACT_WEIGHT(i) (DIRECTIONS == 6 ? (exact)1 / 6 : (i) < 6 ? (exact)1 / 12 : (exact)1 / 24)
 
-// Arrays by voxel: fraction of the density that continues straight, fraction that links transmit, n^2, and light that
-// collisions redistribute isotropically, W / length^2.
+// Arrays by voxel that all functions read:
+//   straight  fraction of the density that continues straight (a of Eq. (L7))
+//   passes    fraction of light that a link between two voxels like this one transmits
+//   squared   n^2
+//   even      light that collisions and sources emit isotropically, W / length^2 (e of Eq. (L7))
 #define MEDIUM                                                                                 \
   const __global exact *straight, const __global float *passes, const __global float *squared, \
     const __global exact *even
@@ -21,8 +24,9 @@
 typedef struct
 {
   int at[3];
-  int face;  // of the grid that was passed, -1: none. Then `at` is the last voxel; OtherBlock: the line goes on there
-  int other; // of a corner the second one, else the same
+  // Face of the grid beyond voxel `at`, where the line ends; OtherBlock: it continues in another block; -1: neither.
+  int face;
+  int other; // second face at an edge of the grid, else equal to `face`
 } Place;
 
 // Fractions of light that a link transmits up the line and down it.
@@ -65,7 +69,7 @@ static Place next_along(LatticeInfo lattice, Place place, int i)
   return next;
 }
 
-// The link between two voxels, from the fraction that links of each transmit (passes) and n^2 of each (squared).
+// Link between two voxels a and b (numerics.md, Eq. (L5)), from their values of `passes` and `squared`.
 static Link link_of(exact passes_a, exact passes_b, exact squared_a, exact squared_b)
 {
   const exact own = 1 / passes_a, other = 1 / passes_b;
@@ -80,8 +84,8 @@ static Link link_between(MEDIUM, ulong a, ulong b)
   return link_of(passes[a], passes[b], BENDS ? squared[a] : 1, BENDS ? squared[b] : 1);
 }
 
-// A face of the grid, or the mean of two at an edge: incident light, and the fraction of outgoing light that it
-// reflects.
+// Boundary condition of a line at a face of the grid, or the mean of two faces at an edge: incident light, W /
+// length^2, and the fraction of outgoing light that is reflected.
 typedef struct
 {
   exact in, back;
@@ -97,8 +101,9 @@ static Border border_at(LatticeInfo lattice, MEDIUM, ulong voxel, Place past, in
   return border;
 }
 
-// Finds where the work-item's line begins, and whether there is one. Lines along an axis are numbered by the two other
-// coordinates; diagonal lines by the coordinate along the third axis and an index along the first rows of the plane.
+// Finds the first voxel of the work-item's line in direction i, and whether the line is closed. @return whether the
+// work-item has a line. Lines along an axis are numbered by the two other coordinates; diagonal lines by the coordinate
+// along the third axis and an index along the two edges of the plane at which lines begin.
 static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
 {
   const int u = get_global_id(0), v = get_global_id(1);
@@ -146,20 +151,22 @@ static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
   return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
 }
 
-// U and R of a voxel, found in the upward pass.
+// U (sends) and R (returns) of a voxel, from the upward pass.
 typedef struct
 {
   exact sends, returns;
 } Behind;
 
-// Updates U and R across one voxel: light that arrives from behind is arrived + back * (what the voxel sends down).
+// Computes U and R of a voxel. The light that arrives in it from below is arrived + back * (light that the voxel sends
+// down).
 static Behind pass_voxel(exact straight, exact source, exact arrived, exact back)
 {
   const Behind behind = { straight * (arrived + back * source) + source, straight * straight * back };
   return behind;
 }
 
-// Light incident on the next voxel up: what arrives there, and the fraction of what it sends down that returns.
+// Crosses the link to the next voxel up: light that arrives there from below (V of Eq. (L10)), and the fraction of the
+// light it sends down that returns to it (Q).
 static Behind cross_up(Link link, Behind here)
 {
   const exact again = 1 / (1 - here.returns * (1 - link.up));
@@ -167,13 +174,14 @@ static Behind cross_up(Link link, Behind here)
   return next;
 }
 
-// Light at a link for known light sent down it: what arrives above and below the link, and what is sent up.
+// Light at a link: that arrives in the voxel above it (up_arrives), arrives in the voxel below it (lower), and is sent
+// up by the voxel below it (up).
 typedef struct
 {
   exact up_arrives, lower, up;
 } Crossed;
 
-// @param below  U and R of the voxel below: what it sends up, and the fraction of incident light that it returns
+// Light at a link for known light `down` that the voxel above sends down. `below`: U and R of the voxel below.
 static Crossed cross_down(Link link, Behind below, exact down)
 {
   const exact up = (below.sends + below.returns * link.down * down) / (1 - below.returns * (1 - link.up));
@@ -181,14 +189,14 @@ static Crossed cross_down(Link link, Behind below, exact down)
   return crossed;
 }
 
-// Beginning of a line or piece: light that arrives in its first voxel from behind, the fraction of what that voxel
-// sends down that returns, and, if it is cut there, the fraction transmitted of what is sent up the cut.
+// Lower end of a line or piece: light that arrives in its first voxel from below, the fraction of the light which that
+// voxel sends down that returns, and, at a cut, the fraction of the light sent up the cut that the link transmits.
 typedef struct
 {
   exact arrived, back, part;
 } Beginning;
 
-// Beginnings at a face of the grid, and at a cut, where the light sent up is not known yet.
+// Lower ends at a face of the grid, and at a cut, where the light sent up the cut is unknown during the upward pass.
 static Beginning begin_at_border(Border low)
 {
   const Beginning begin = { low.in, low.back, 0 };
@@ -200,14 +208,15 @@ static Beginning begin_at_cut(Link link)
   return begin;
 }
 
-// Light sent down to the cut of a line, if x is sent up there and B is sent down to the last voxel:
-// sent + round x + gives_back B.
+// Light that the first voxel of a cut line sends down to the cut, as a linear function of the light x sent up the cut
+// and of the light B that arrives from above at the last voxel: sent + round x + gives_back B.
 typedef struct
 {
   exact sent, round, gives_back;
 } Cut;
 
-// The last voxel of a line, and its response to light sent up the cut.
+// State at the last voxel reached by go_up(): its place and index, the number of voxels so far, the response of its
+// upward light to light sent up the cut (part), and Cut.
 typedef struct
 {
   Place place;
@@ -217,10 +226,10 @@ typedef struct
   Cut cut;
 } Top;
 
-// The upward pass.
-//   is_cut  true: the line is cut behind the first voxel
+// Upward pass of one line or piece in direction i.
+//   is_cut  true: the line is cut below its first voxel
 //   behind  [voxel][2], U and R
-//   share   [voxel], if the line is cut: T, the voxel's response to light sent up the cut
+//   share   [voxel], if the line is cut: T, the fraction of light sent up the cut that the voxel sends up
 static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begin, bool is_cut, __global exact* behind,
   __global exact* share)
 {
@@ -269,11 +278,12 @@ static ulong density_at(LatticeInfo lattice, const int* at)
   return (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + LatticeFirst;
 }
 
-// The downward pass.
-//   comes     light sent down to the last voxel
+// Downward pass of one line or piece, after go_up().
+//   comes     light that arrives from above at the last voxel
 //   round     light sent up the cut, if the line is cut; else 0
-//   first     light that arrives in the first voxel from before it, and the fraction of what it sends down that returns
-//   sum       [voxel], W / length^2: arriving light is added
+//   first     light that arrives in the first voxel from below, and the fraction of the light it sends down that
+//             returns
+//   sum       [voxel], W / length^2, added to: light that arrives in the voxel from above and from below
 static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, exact round, Border first, bool is_cut,
   const __global exact* behind, const __global exact* share, __global exact* sum, __global float* densities, int writes)
 {
@@ -307,8 +317,8 @@ static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, ex
 
 // Solves all lines of the directions 2 pair and 2 pair + 1. One work-item per line.
 //   behind    [voxel][2], scratch
-//   share     [voxel], scratch: T of closed lines, the voxel's response to light that wraps around
-//   sum       [voxel], W / length^2: arriving light is added
+//   share     [voxel], scratch: T of go_up() for closed lines
+//   sum       [voxel], W / length^2, added to: light that arrives in the voxel from above and from below
 //   endless   [voxel], with ENDLESS: bit mask of the direction pairs whose line is endless; such lines carry no light
 __kernel void sweep_lines(LinePass pass, MEDIUM, __global exact* behind, __global exact* share, __global exact* sum,
   __global float* densities, const __global float* endless)
@@ -341,7 +351,7 @@ __kernel void sweep_lines(LinePass pass, MEDIUM, __global exact* behind, __globa
   const Beginning begin = closed ? begin_at_cut(closing) : begin_at_border(low);
   const Top top = go_up(lattice, straight, passes, squared, even, place, i, begin, closed, behind, share);
 
-  // Light sent down to the last voxel, and light that wraps around a closed line.
+  // Light that arrives from above at the last voxel (comes), and light that wraps around a closed line (round).
   const exact sends = behind[2 * top.voxel], returns = behind[2 * top.voxel + 1];
   exact comes, round = 0;
   if (closed)
@@ -366,22 +376,24 @@ __kernel void sweep_lines(LinePass pass, MEDIUM, __global exact* behind, __globa
     pass.writes);
 }
 
-// Pieces of lines of links in a rank's block; the other pieces of a line lie in other blocks, or across a periodic axis
-// in this one. The upward pass finds a piece's response to light at its ends, and what it sends without such light.
-// When all pieces of a line have been joined (PiecesOfLines.h), the downward pass finds the densities.
+// Kernels for pieces of lines of links (PiecesOfLines.h): segments of a line in a rank's block, whose other pieces lie
+// in other blocks, or across a periodic axis in this one. The upward pass computes the response of a piece to light at
+// its ends, and the light it sends without such light. After the host has joined all pieces of a line, the downward
+// pass computes the densities.
 
 #define PIECE (get_global_id(1) * get_global_size(0) + get_global_id(0))
 
 typedef struct
 {
   Place place; // the first voxel
-  bool is_cut; // another piece precedes it
-  Link link;   // to that piece
-  Border low;  // the grid's face, if no piece precedes it
+  bool is_cut; // whether another piece precedes it
+  Link link;   // link to the preceding piece, if there is one
+  Border low;  // boundary condition at the grid's face, if no piece precedes it
 } Piece;
 
-// below    [piece][2], for the voxel before the piece: fraction that links transmit, n^2
-// endless  as in sweep_lines
+// Finds the first voxel and the lower end of the work-item's piece.
+//   below    [piece][2], of the voxel before the piece: passes and squared
+//   endless  as in sweep_lines
 // @return false: no piece begins here, or its line is endless
 static bool begin_piece(
   LatticeInfo lattice, MEDIUM, int pair, const __global exact* below, const __global float* endless, Piece* piece)
@@ -412,7 +424,7 @@ static bool begin_piece(
   return true;
 }
 
-// The last voxel of a piece.
+// Last voxel of the piece with the first voxel `place`, and the piece's number of voxels.
 static Top last_of_piece(LatticeInfo lattice, Place place, int i)
 {
   int ways = INT_MAX;
@@ -430,9 +442,9 @@ static Top last_of_piece(LatticeInfo lattice, Place place, int i)
 }
 
 // Upward pass of the pieces along a pair of directions. One work-item per piece; arrays as in sweep_lines, and
-//   sent  [piece][8], for x sent up the cut before it and B sent down to its last voxel (PieceOfLine). With s[k] for
-//         the eight values: the last voxel sends up s[0] + s[2] x + s[3] B, the first one sends down s[1] + s[4] x +
-//         s[5] B; the link before the piece transmits the fractions s[6] upwards and s[7] downwards
+//   sent  [piece][8], s[0] to s[7], for light x sent up the cut before the piece and light B arriving from above at its
+//         last voxel (PieceOfLine): the last voxel sends up s[0] + s[2] x + s[3] B, the first voxel sends down s[1] +
+//         s[4] x + s[5] B; the link before the piece transmits the fractions s[6] upwards and s[7] downwards
 __kernel void pieces_up(LinePass pass, MEDIUM, const __global exact* below, const __global float* endless,
   __global exact* behind, __global exact* share, __global exact* sent)
 {
@@ -472,9 +484,10 @@ __kernel void pieces_up(LinePass pass, MEDIUM, const __global exact* below, cons
   of[7] = piece.link.down;
 }
 
-// Downward pass of the pieces, after pieces_up.
-//   joined  [piece][3]: x, B, and what the first voxel of the next piece sends down
-//   densities  also those that the voxels before and after the piece send into it
+// Downward pass of the pieces along a pair of directions, after pieces_up. One work-item per piece; arrays as in
+// sweep_lines, and
+//   joined     [piece][3]: x, B, and the light that the first voxel of the next piece sends down (ComesToPiece)
+//   densities  if pass.writes, also the densities that the voxels before and after the piece send into it
 __kernel void pieces_down(LinePass pass, MEDIUM, const __global exact* below, const __global float* endless,
   const __global exact* behind, const __global exact* share, const __global exact* joined, __global exact* sum,
   __global float* densities)

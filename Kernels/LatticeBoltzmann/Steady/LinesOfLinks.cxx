@@ -14,11 +14,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr int PairsAtOnce = 3; ///< pairs of directions of cut lines swept together
-constexpr std::size_t PieceValues = 8, JoinedValues = 3,
-                      SweepValues = 2; ///< numbers of a piece, as LatticeLines.cl has them
+constexpr int PairsAtOnce = 3; ///< number of pairs of directions whose cut lines are swept concurrently
+/// Numbers of values per piece in the arrays `sent` and `joined` of LatticeLines.cl, and of the values of `sent` that
+/// are sent in every sweep.
+constexpr std::size_t PieceValues = 8, JoinedValues = 3, SweepValues = 2;
 
-/// Extracts the values of the box's own voxels.
+/// Extracts the values of own voxels from those of known voxels.
 std::vector<float> OwnOf(const LatticeBox& box, const std::vector<float>& known)
 {
   if (box.IsAll() || known.empty())
@@ -112,7 +113,7 @@ void LinesOfLinks::LoadCutLines()
   }
 }
 
-/// The lines that this rank joins, and the pieces that it exchanges with other ranks.
+/// Finds the lines of a pair of directions that this rank joins, and the pieces that it exchanges with other ranks.
 LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
 {
   const int self = this->TheDomain.Rank();
@@ -137,7 +138,7 @@ LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
       lines.push_back(line);
     }
   });
-  std::vector<std::size_t> next; // by rank, index of its first piece that has no place yet
+  std::vector<std::size_t> next; // by rank: index, among all received pieces, of its next piece
   std::size_t all = 0;
   for (int rank = 0; rank < static_cast<int>(sent.size()); ++rank)
   {
@@ -164,7 +165,8 @@ LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
   return pair;
 }
 
-/// The array `below` of LatticeLines.cl; 1 for pieces that begin at a face of the grid.
+/// The array `below` of LatticeLines.cl: properties of the voxel before each piece; 1 if the piece begins at a face of
+/// the grid.
 LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) const
 {
   const VoxelBox& block = this->TheDomain.Own();
@@ -188,7 +190,8 @@ LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) 
   return below;
 }
 
-/// Sends the responses of pieces (PieceOfLine) to the ranks that join them. They are the same in all sweeps.
+/// Sends the linear responses of pieces (PieceOfLine), which do not change between sweeps, to the ranks that join the
+/// pieces.
 void LinesOfLinks::ExchangeParts()
 {
   this->Failure = {};
@@ -212,9 +215,8 @@ void LinesOfLinks::ExchangeParts()
   this->TheDomain.Collective([&] { this->Failure.Throw(); });
 }
 
-/// Sends values of pieces to the ranks that wait for them; sends empty messages after a failure.
-/// @param values  values of all of this rank's pieces, by number; or, if `part.of` is 0, of the pieces sent, in their
-///   order
+/// Sends values of pieces to other ranks; after a failure sends empty messages, so that no rank waits.
+/// @param values  values of all pieces of this rank, by number; if `part.of` is 0, of the sent pieces in their order
 void LinesOfLinks::Send(const std::vector<Shared>& to, int tag, Part part, const Values& values)
 {
   auto next = values.begin();
@@ -234,7 +236,8 @@ void LinesOfLinks::Send(const std::vector<Shared>& to, int tag, Part part, const
   }
 }
 
-/// @return `width` values per piece, one piece after the other; undefined after a failure
+/// Receives values of pieces from other ranks.
+/// @return `width` values of each piece, consecutively; undefined after a failure
 LinesOfLinks::Values LinesOfLinks::Receive(const std::vector<Shared>& from, int tag, std::size_t width)
 {
   Values all;
@@ -256,7 +259,7 @@ std::string LinesOfLinks::Options() const
 }
 
 /// Runs a kernel of LatticeLines.cl.
-/// @param arguments  those after `even`
+/// @param arguments  arguments of the kernel after `even`
 template <class... Arguments>
 void LinesOfLinks::Run(const char* name, int pair, const Arguments&... arguments)
 {
@@ -280,7 +283,7 @@ void LinesOfLinks::GoUp(int pair, Slot& slot, Part part)
   this->Send(sentTo, 2 * pair, part, values);
 }
 
-/// Joins the lines that begin in this rank's block.
+/// Joins the pieces of the lines that begin in this rank's block, and sends each piece's owner the light at its ends.
 void LinesOfLinks::Join(int pair)
 {
   const Pair& of = this->Pairs[pair];
@@ -331,7 +334,7 @@ void LinesOfLinks::GoDown(int pair, Slot& slot)
   });
 }
 
-/// Upward and downward pass of lines that no block cuts.
+/// Sweeps the lines of a pair of directions that lie in this block.
 void LinesOfLinks::SweepWhole(int pair)
 {
   const Slot& slot = this->Slots.front();
@@ -339,7 +342,8 @@ void LinesOfLinks::SweepWhole(int pair)
     this->Densities->Densities(), this->Endless);
 }
 
-/// Sweeps several pairs at once, so that a rank need not wait for each.
+/// Sweeps the cut lines of pairs `begin` to `end` concurrently, so that a rank computes one pair while it waits for
+/// another.
 void LinesOfLinks::SweepCut(int begin, int end)
 {
   for (int pair = begin; pair < end; ++pair)
@@ -395,7 +399,8 @@ LinesOfLinks::Values LinesOfLinks::Sweep(const Values& even, bool withIncident, 
         this->SweepWhole(begin);
       }
       this->Work += end - begin;
-      Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work)); // the number of sweeps is not known in advance
+      // Progress towards 1, since the number of sweeps is not known in advance.
+      Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work));
     });
   }
   Values arrives;

@@ -16,10 +16,10 @@
 
 namespace tyndall
 {
-/// Streaming between collisions: light moves along lines of links (numerics.md, Eqs. (L7) to (L10)). Each line is
-/// solved directly, by a pass up and a pass down. A line cut by blocks is solved in pieces: each rank runs the upward
-/// pass of its pieces, the rank where a line begins joins them, and each rank runs the downward pass. The results are
-/// those of one rank, to rounding.
+/// Streaming of light along lines of links, for given isotropic emission of collisions (numerics.md, Eqs. (L7) to
+/// (L10)). Each line is solved directly, by an upward pass and a downward pass. A line that crosses several blocks is
+/// solved in pieces: each rank runs the upward pass of its pieces, the rank in whose block the line begins joins the
+/// pieces, and each rank runs the downward pass. The result equals that of one rank, to rounding.
 class LinesOfLinks
 {
 public:
@@ -30,21 +30,21 @@ public:
   LinesOfLinks(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
     const LatticeVoxels& voxels, const Lattice* lattice);
 
-  /// Collective.
-  /// @param even  W / length^2 that collisions and sources emit isotropically, by own voxel
+  /// Transports light along all lines of links. Collective.
+  /// @param even  light that collisions and sources emit isotropically, W / length^2, by own voxel
   /// @param withIncident  whether light is incident through the faces of the grid
-  /// @param writes  whether densities are written, including those beyond the block's faces
-  /// @return light that arrives in each own voxel, W / length^2
+  /// @param writes  whether the lattice's densities are written, including those beyond the block's faces
+  /// @return light that arrives in each own voxel, summed over directions, W / length^2
   Values Sweep(const Values& even, bool withIncident, bool writes, const Monitor& monitor);
 
 private:
-  /// Pieces whose values this rank exchanges with another, in an order that both know.
+  /// Pieces whose values this rank exchanges with another rank, in an order that both ranks know.
   struct Shared
   {
     int rank = 0;
     std::vector<std::size_t> pieces;
   };
-  /// A line that this rank joins: the index of each of its pieces among all pieces that this rank receives.
+  /// A line that this rank joins: for each of its pieces, the index among all pieces that this rank receives.
   struct Line
   {
     std::vector<std::size_t> places;
@@ -52,19 +52,19 @@ private:
   };
   struct Pair
   {
-    std::array<std::size_t, 2> range = {}; ///< of the work-item range
+    std::array<std::size_t, 2> range = {}; ///< range of work-items of the kernels
     std::vector<Shared> sentTo;            ///< this rank's pieces, by the rank that joins their lines
     std::vector<Shared> receivedFrom;      ///< pieces of the lines that this rank joins, by the rank that owns them
     std::vector<Line> lines;
     std::vector<PieceOfLine> parts; ///< responses of the received pieces, in one array
     ExactValues below;
   };
-  /// A range of each piece's values.
+  /// Range of values to send of each piece: `count` values from `first` on, of `of` values per piece.
   struct Part
   {
     std::size_t first = 0, count = 0, of = 0;
   };
-  struct Slot ///< scratch arrays of LatticeLines.cl for one pair in progress
+  struct Slot ///< scratch arrays of LatticeLines.cl for one pair of directions
   {
     ExactValues behind, share, sent, joined;
   };
@@ -97,8 +97,8 @@ private:
   std::size_t MostPieces = 1;
   ExactValues Straight, Even, Arriving;
   Buffer<float> Passes, Squared, Endless;
-  LinePass Pass = {};  ///< of the current sweep
-  HeldFailure Failure; ///< held during a sweep
+  LinePass Pass = {};  ///< parameters of the current sweep
+  HeldFailure Failure; ///< first failure of the current sweep
   double Work = 0.0;
 };
 }

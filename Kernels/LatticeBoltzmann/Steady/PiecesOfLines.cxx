@@ -45,7 +45,8 @@ int PiecesOfLines::RankAt(const Voxel& voxel) const
   return static_cast<int>(std::find_if(blocks.begin(), blocks.end(), holds) - blocks.begin());
 }
 
-/// @param first  its first voxel
+/// Piece of a rank's block with the given first voxel.
+/// @param first  in the whole grid
 PiecesOfLines::Piece PiecesOfLines::PieceAt(int rank, const Voxel& first) const
 {
   const VoxelBox& block = this->Partition.blocks[rank];
@@ -104,14 +105,14 @@ bool PiecesOfLines::Closes() const
   return std::all_of(this->Moving.begin(), this->Moving.end(), [&](int axis) { return this->Periodic[axis]; });
 }
 
-/// First voxels of lines through a box, in the order of begin_line; closed lines begin in a plane that all of them
-/// cross.
+/// First voxels of the lines through a box, in the order of begin_line() (LatticeLines.cl). Closed lines begin in a
+/// plane that all of them cross.
 std::vector<PiecesOfLines::Voxel> PiecesOfLines::FirstVoxels(
   const VoxelBox& box, const std::array<bool, 3>& periodic) const
 {
   const int a = this->Moving.front(), b = this->Moving.back();
   std::vector<Voxel> found;
-  // Adds the voxels in which lines begin, in the plane in which they enter along an axis.
+  // Adds the voxels for which begins(voxel) holds, of the plane in which lines enter the box along `axis`.
   const auto addFrom = [&](int axis, const auto& begins) {
     VoxelBox plane = box;
     plane.first[axis] = this->Entry(box, axis);
@@ -154,7 +155,8 @@ void PiecesOfLines::ForLines(const std::function<void(int rank, const Line& line
 
 namespace
 {
-/// A linear function of the light that wraps around a closed line, `round`, and of the light sent from ahead.
+/// Linear function of two unknowns: the light `round` that wraps around a closed line, and the light `ahead` that is
+/// sent down from the next piece.
 struct Linear
 {
   double own = 0.0, ofRound = 0.0, ofAhead = 0.0;
@@ -162,7 +164,7 @@ struct Linear
   double At(double round, double ahead) const { return this->own + this->ofRound * round + this->ofAhead * ahead; }
 };
 
-/// a + factor b
+/// Returns a + factor b.
 Linear Plus(const Linear& a, double factor, const Linear& b)
 {
   return { a.own + factor * b.own, a.ofRound + factor * b.ofRound, a.ofAhead + factor * b.ofAhead };
@@ -173,8 +175,8 @@ double Inverse(double rest)
   return rest > 0.0 ? 1.0 / rest : 0.0;
 }
 
-/// The pieces joined so far: light that the last one sends up and the first one sends down, as functions of the light
-/// sent down to the last piece.
+/// Pieces joined so far: light that the last piece sends up (sends) and light that the first piece sends down (cut), as
+/// linear functions of the light sent down to the last piece.
 struct WayUp
 {
   WayUp(const PieceOfLine& piece, const SentByPiece& sent, bool closed)
@@ -183,11 +185,11 @@ struct WayUp
   {
   }
 
-  /// @return light sent up into the next piece, as a function of the light sent down to that piece's last voxel
+  /// Joins the next piece. @return light sent up into `piece`, as a function of the light sent down to its last voxel
   Linear Add(const PieceOfLine& piece, const SentByPiece& sent)
   {
-    // The last piece so far receives `down` times the light that the next piece sends down, plus what the link
-    // reflects.
+    // Light sent down to the last piece so far: the transmitted fraction of the light that `piece` sends down, plus the
+    // fraction of its own upward light that the link reflects.
     const double again = piece.down * piece.givesBack + 1.0 - piece.up;
     const double inverse = Inverse(1.0 - this->sends.ofAhead * again);
     const Linear down = { piece.down * sent.down, 0.0, piece.down * piece.comesDown };
@@ -202,7 +204,7 @@ struct WayUp
   Linear sends, cut;
 };
 
-/// Light sent up the cut of a closed line, and down to it.
+/// Light of a closed line at the link between its last and its first piece: sent up through it, and sent down to it.
 SentByPiece RoundOf(const WayUp& way, const PieceOfLine& first)
 {
   const double inverse = Inverse(1.0 - first.down * way.cut.ofAhead);

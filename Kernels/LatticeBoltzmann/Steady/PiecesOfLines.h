@@ -13,13 +13,13 @@ namespace tyndall
 /// line.
 std::array<std::size_t, 2> LinesOfPair(const std::array<int, 3>& size, int pair);
 
-/// Lines of links along one pair of directions through a distributed grid. Each block holds pieces of the lines,
-/// numbered by the work-items of LatticeLines.cl. With periodic axes a line may pass through a block several times, and
-/// be closed.
+/// Lines of links along one pair of directions through a decomposed grid, each a sequence of pieces: a piece is the
+/// segment of a line in one block. Pieces of a block are numbered by the work-items of LatticeLines.cl. With periodic
+/// axes a line may pass through a block several times, and may be closed.
 class PiecesOfLines
 {
 public:
-  /// A piece: the rank of its block and its number there.
+  /// A piece, identified by the rank of its block and its number in that block.
   struct Piece
   {
     int rank = 0;
@@ -27,25 +27,25 @@ public:
   };
   struct Line
   {
-    std::vector<Piece> pieces; ///< in upward order
+    std::vector<Piece> pieces; ///< in upward order: in the direction 2 pair
     bool closed = false;
   };
 
   /// @param partition  must outlive this
   PiecesOfLines(const BlockPartition& partition, const std::array<bool, 3>& periodic, int pair);
 
-  /// Calls visit(rank in whose block it begins, line) for each line with several pieces, or closed, in the same order
-  /// on all ranks.
+  /// Calls visit(rank, line) for each line that has several pieces or is closed, with the rank in whose block the line
+  /// begins; in the same order on all ranks.
   void ForLines(const std::function<void(int rank, const Line& line)>& visit) const;
 
-  std::array<std::size_t, 2> Range(int rank) const; ///< of work-items
+  std::array<std::size_t, 2> Range(int rank) const; ///< range of work-items for the pieces of a rank's block
   /// Calls visit(piece number, its first voxel in the whole grid) for each piece of a rank's block.
   template <class Visit>
   void ForPieces(int rank, const Visit& visit) const;
 
 private:
   using Voxel = std::array<int, 3>;
-  /// Coordinate at which lines enter a box, along an axis that they move along.
+  /// Index of the voxel at which lines enter a box, along an axis with a component of the link vector.
   int Entry(const VoxelBox& box, int axis) const
   {
     return this->Way[axis] > 0 ? box.first[axis] : EndOf(box, axis) - 1;
@@ -61,7 +61,7 @@ private:
   std::array<bool, 3> Periodic;
   int Pair;
   std::array<int, 3> Way;
-  std::vector<int> Moving, Still; ///< axes
+  std::vector<int> Moving, Still; ///< axes along which lines move, and along which they do not
 };
 
 template <class Visit>
@@ -73,33 +73,35 @@ void PiecesOfLines::ForPieces(int rank, const Visit& visit) const
   }
 }
 
-/// Linear response of a piece of a line of links to light at its ends (numerics.md, Eq. (L15)): x, sent up by the voxel
-/// before its first voxel, and B, sent down to its last voxel. It depends on the medium alone.
+/// Linear response of a piece of a line of links to light at its ends (numerics.md, Eq. (L15)): x is sent up by the
+/// voxel before its first voxel, B arrives from above at its last voxel. The response depends on the medium alone.
 struct PieceOfLine
 {
   double passes = 0.0;    ///< fraction of x that its last voxel sends up
   double returns = 0.0;   ///< fraction of B that its last voxel sends up
   double givesBack = 0.0; ///< fraction of x that its first voxel sends down
   double comesDown = 0.0; ///< fraction of B that its first voxel sends down; 0: the piece ends at a face of the grid
-  double up = 0.0;        ///< fraction that the link before it transmits upwards
-  double down = 0.0;      ///< fraction that it transmits downwards
+  double up = 0.0;        ///< fraction of light that the link before the piece transmits upwards
+  double down = 0.0;      ///< fraction of light that the link before the piece transmits downwards
 };
 
-/// Light that a piece sends without light incident at its ends, W / length^2.
+/// Light that a piece sends for x = B = 0 (PieceOfLine), from its own sources, W / length^2.
 struct SentByPiece
 {
-  double up = 0.0;   ///< sent by its last voxel
-  double down = 0.0; ///< sent by its first voxel
+  double up = 0.0;   ///< light that the last voxel sends up
+  double down = 0.0; ///< light that the first voxel sends down
 };
 
-/// Light incident at the ends of a piece, and light that the first voxel of the next piece sends down, W / length^2.
+/// Light at the ends of a piece, W / length^2: `up` and `down` are x and B of PieceOfLine; `sentBeyond` is sent down by
+/// the first voxel of the next piece.
 struct ComesToPiece
 {
   double up = 0.0, down = 0.0, sentBeyond = 0.0;
 };
 
-/// Solves a line from its pieces, given in upward order, as sweep_lines solves one from its voxels (numerics.md, Eqs.
-/// (L10) and (L15)). All terms are positive.
+/// Solves for the light at the ends of all pieces of a line (numerics.md, Eqs. (L10) and (L15)). All terms are
+/// positive, so that there is no cancellation.
+/// @param pieces, sent  in upward order
 /// @param closed  whether the last piece continues in the first
 std::vector<ComesToPiece> JoinLine(
   const std::vector<PieceOfLine>& pieces, const std::vector<SentByPiece>& sent, bool closed);

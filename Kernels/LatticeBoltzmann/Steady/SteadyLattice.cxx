@@ -10,12 +10,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Imbalance = 1e-6; ///< largest relative error of the energy balance
+constexpr double Imbalance = 1e-6; ///< largest relative error of the energy balance at which the iteration may stop
 constexpr int MostIterations = 400;
-constexpr int Patience =
-  40; ///< iterations without a better estimate, after which rounding is taken to limit the accuracy
+constexpr int Patience = 40; ///< number of iterations without a smaller estimated error after which the iteration stops
 
-/// a += factor b
+/// Computes a += factor b.
 void Add(std::vector<double>& a, double factor, const std::vector<double>& b)
 {
   std::transform(a.begin(), a.end(), b.begin(), a.begin(), [&](double x, double y) { return x + factor * y; });
@@ -52,7 +51,8 @@ double SteadyLattice::Dot(const Values& a, const Values& b) const
   return this->TheDomain.Sum(std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
 }
 
-/// Light that collisions emit isotropically for a given fluence / n^2, with or without sources.
+/// Light that collisions emit isotropically, W / length^2 (e of Eq. (L7)), for a given fluence / n^2.
+/// @param withSources  whether to include the sources
 std::vector<double> SteadyLattice::EvenOf(const Values& scaled, bool withSources) const
 {
   Values even(this->Count);
@@ -60,14 +60,15 @@ std::vector<double> SteadyLattice::EvenOf(const Values& scaled, bool withSources
   {
     const std::size_t known = this->Box.Known(i);
     const double half = withSources ? 0.5 * this->Voxels.source[known] : 0.0, kept = 1.0 - this->Voxels.lost[known];
-    const double own =
-      half * (1.0 + kept * (1.0 - this->Voxels.turning[known])); // from the half of the source before the collision
+    // Half of the source is emitted before the collision, half after it.
+    const double own = half * (1.0 + kept * (1.0 - this->Voxels.turning[known]));
     even[i] = this->Turns(known) * this->Voxels.squared[known] * scaled[i] + own / this->Voxels.OpenWeight(known);
   }
   return even;
 }
 
-/// Light that arrives in each voxel in a sweep, with or without sources and incident light.
+/// Light that arrives in each voxel in a sweep, W / length^2 (m of Eq. (L8)), for a given fluence / n^2.
+/// @param withSources  whether to include sources and incident light
 std::vector<double> SteadyLattice::Arriving(const Values& scaled, bool withSources, bool writes, const Monitor& monitor)
 {
   Values even;
@@ -75,7 +76,7 @@ std::vector<double> SteadyLattice::Arriving(const Values& scaled, bool withSourc
   return this->Lines.Sweep(even, withSources, writes, monitor);
 }
 
-/// The residual of Eq. (L9), W / length^2.
+/// Residual of Eq. (L9), W / length^2, for a given fluence / n^2.
 std::vector<double> SteadyLattice::Residual(const Values& scaled, const Monitor& monitor)
 {
   Values residual = this->Arriving(scaled, true, false, monitor);
@@ -100,7 +101,7 @@ std::vector<double> SteadyLattice::Applied(const Values& scaled, const Monitor& 
   return applied;
 }
 
-/// Applies the preconditioner, Eq. (L11).
+/// Applies the preconditioner of Eq. (L11) to a residual.
 std::vector<double> SteadyLattice::Preconditioned(const Values& residual)
 {
   const double unit = std::sqrt(this->Dot(residual, residual) / this->CountOfAll);
@@ -180,7 +181,7 @@ std::vector<float> SteadyLattice::Solve(const Monitor& monitor, std::vector<Conv
       fluence.push_back(static_cast<float>(arrives[i] + 0.5 * this->Voxels.source[this->Box.Known(i)]));
     }
   });
-  if (rows.empty()) // no light collides: one sweep is enough
+  if (rows.empty()) // no light collides, so there was no iteration
   {
     this->Note(0.0, power > 0.0 ? change : 0.0, 1, rows);
   }

@@ -24,11 +24,11 @@ class SteadyLattice
 {
 public:
   /// Collective. All arguments must outlive this.
-  /// @param densities  densities of the block, written by Solve(); null if the block has no voxels
+  /// @param densities  lattice of the block, whose densities Solve() writes; null if the block has no voxels
   SteadyLattice(Device& device, const LatticeProblem& problem, const LatticeSettings& settings,
     const LatticeVoxels& voxels, const Lattice* densities);
 
-  /// Collective.
+  /// Solves for the steady state. Collective.
   /// @param rows  receives one convergence row per iteration
   /// @return steady fluence, W / length^2, by own voxel, never negative
   std::vector<float> Solve(const Monitor& monitor, std::vector<ConvergenceRow>& rows);
@@ -36,8 +36,8 @@ public:
 private:
   using Values = std::vector<double>;
 
-  /// Fraction of a density that a collision redistributes isotropically without absorption, over the total weight of
-  /// the open directions.
+  /// Fraction of a density that a collision redistributes isotropically and does not absorb, divided by the total
+  /// weight of the open directions (LatticeVoxels::OpenWeight).
   double Turns(std::size_t known) const;
   double Dot(const Values& a, const Values& b) const;
   Values EvenOf(const Values& scaled, bool withSources) const;
