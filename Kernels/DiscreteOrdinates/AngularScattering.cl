@@ -1,16 +1,16 @@
-// Scattering between the directions in a voxel, by N terms or by the full matrix (numerics.md, Eqs. (D7), (D8)).
-// Radiance is [group][stride][8 directions]. The host defines
+// Scattering of radiance between the directions in each voxel, by N terms or by the full matrix (numerics.md, Eqs.
+// (D7), (D8)). Radiance is [group][stride][8 directions]. The host defines
 //
-//   REAL_WIDTH  moments processed at once
+//   REAL_WIDTH  number of moments in a vector
 //   GROUPS      number of groups of eight directions
-//   TERMS       of the phase function
-//   ROWS        moments of a voxel, in vectors of REAL_WIDTH: fluence, the terms, net flux
-//   FLUX        1 if net flux is requested; it follows the terms
-//   POSITIVE    1: negative sources are set to 0, and the rest scaled to conserve the scattered power
+//   TERMS       number of terms of the phase function
+//   ROWS        number of vectors of REAL_WIDTH for the moments of a voxel: fluence, the terms, net flux
+//   FLUX        1: net flux is computed; it follows the terms among the moments
+//   POSITIVE    1: negative sources are set to 0, and positive ones scaled to conserve the scattered power
 #include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Numerics/Numerics.cl"
 
-#define BLOCK 8 // voxels per work-item
+#define BLOCK 8 // number of voxels per work-item
 #define MOMENTS (ROWS * REAL_WIDTH)
 
 typedef float8 float8_anywhere __attribute__((aligned(4)));
@@ -25,9 +25,9 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
-// Computes the moments of eight voxels, [voxel][MOMENTS]. Partial sums are summed pairwise, so that in uniform light
-// all moments round in the same way.
-//   weights  [direction][MOMENTS]: weight of each direction in each moment
+// Computes the moments of eight voxels from their radiance, [voxel][MOMENTS]. Sums over directions are sums of partial
+// sums by group, so that moments of uniform light round equally.
+//   weights  [direction][MOMENTS]: weight of each direction in each moment, sr
 inline void find_moments(
   const __global float* radiance, const __global float* weights, ulong stride, ulong first, __global float* moments)
 {
@@ -55,7 +55,7 @@ inline void find_moments(
   }
 }
 
-// Adds the moments of eight voxels to fluence and flux.
+// Writes the fluence of the order, and adds moments of eight voxels to fluence and net flux.
 inline void add_light(const __global float* moments, ulong voxels, ulong first, __global float* order,
   __global float* fluence, __global float* flux)
 {
@@ -74,8 +74,8 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
   }
 }
 
-// Processes eight voxels by eight directions at once. With POSITIVE, sets negative sources to 0 and records the factor
-// by which the rest must be multiplied to conserve power.
+// Macros for eight voxels b by eight directions. With POSITIVE, POSITIVE_PART sets negative sources to 0, and
+// NOTE_SCALE writes the factor by which positive sources must be multiplied to conserve power.
 #define POSITIVE_PART(b)                                            \
   source##b = POSITIVE ? fmax(source##b, (float8)0.0f) : source##b; \
   power##b = multiply_add8(angle, source##b, power##b);
@@ -96,12 +96,13 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
   if (first + b < voxels) \
     STORE8(source##b* sigma_s[first + b], (group * stride + first + b) * 8, source);
 
-// radiance  padded by BLOCK voxels
-// source    W / (length^3 sr), may be radiance; with POSITIVE to be multiplied by `scale` of the voxel
+// Scatters by the terms of the phase function. One work-item per BLOCK voxels.
+//   radiance  W / (length^2 sr), padded by BLOCK voxels
+//   source    W / (length^3 sr), may be the array `radiance`; with POSITIVE to be multiplied by `scale` of the voxel
 // moments   scratch, [voxel][MOMENTS], padded by BLOCK voxels
-// spread    [group][term][8]: factors of the directions
-// angles    [group][8], sr
-// order     W / length^2, fluence of this order alone; fluence and flux are added to
+// spread    [group][term][8]: factor of each term in the source of each direction
+//   angles    [group][8]: weights of the directions, sr
+// order     fluence of this order, W / length^2; `fluence` and `flux` are added to
 __kernel void scatter_terms(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* spread, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
@@ -129,8 +130,8 @@ __kernel void scatter_terms(const __global float* radiance, __global float* sour
   EACH_VOXEL(NOTE_SCALE)
 }
 
-// The same by the full matrix; source and radiance must be different arrays.
-//   matrix  [group][direction][8], 1/sr times the solid angle of the incident direction
+// Scatters by the full matrix, with the arguments of scatter_terms; source and radiance must be different arrays.
+//   matrix  [group][incident direction][8]: phase function, 1/sr, times the weight of the incident direction, sr
 __kernel void scatter_matrix(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* matrix, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
@@ -161,9 +162,10 @@ __kernel void scatter_matrix(const __global float* radiance, __global float* sou
   EACH_VOXEL(NOTE_SCALE)
 }
 
-// As published without factorisation: one pass per outgoing direction, which reads the radiance along all directions
-// (Gong et al., Eq. (13)).
-//   row  [direction]: row of the matrix, times the solid angle of the incident direction
+// Scatters into one direction by the full matrix, as published without factorisation (Gong et al., Eq. (13)). One
+// work-item per voxel.
+//   row          [incident direction]: phase function into the outgoing direction, times the weight of the incident one
+//   group, lane  of the outgoing direction
 __kernel void scatter_along(const __global float* radiance, __global float* source, const __global float* row,
   const __global float* sigma_s, int group, int lane, ulong stride)
 {
@@ -176,7 +178,7 @@ __kernel void scatter_along(const __global float* radiance, __global float* sour
   source[(group * stride + i) * 8 + lane] = sigma_s[i] * sum8(sum);
 }
 
-// Only adds moments to fluence and flux, for a medium that does not scatter.
+// Adds fluence and net flux of a radiance, without scattering.
 __kernel void gather_light(const __global float* radiance, __global float* moments, const __global float* weights,
   __global float* order, __global float* fluence, __global float* flux, ScatteringVoxels at)
 {

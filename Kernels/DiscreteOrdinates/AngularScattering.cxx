@@ -13,7 +13,7 @@ namespace
 {
 constexpr std::size_t Block = 8;        ///< voxels per work-item
 constexpr std::size_t GroupSize = 64;   ///< work-items per work-group
-constexpr std::size_t FirstBatch = 512; ///< work-items, until their run time has been measured
+constexpr std::size_t FirstBatch = 512; ///< work-items of the first launch, before the run time has been measured
 
 int RowsOf(int terms, bool netFlux, int width)
 {
@@ -82,8 +82,8 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
   this->LoadPhase(groups, phase);
 }
 
-/// Factors into each outgoing direction: of the terms, or the matrix [group][direction][lane], or its rows for
-/// PairSums::Passes.
+/// Loads the scattering factors into each outgoing direction: of the terms; or the matrix, [group][direction][lane];
+/// or, for PairSums::Passes, the rows of the matrix.
 void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
 {
   const auto ofMatrix = [&](int to, std::size_t from) {

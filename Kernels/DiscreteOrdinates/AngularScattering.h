@@ -11,43 +11,46 @@
 
 namespace tyndall
 {
-/// How the sum over pairs of directions is computed.
+/// Method by which the scattering sum over pairs of directions is computed.
 enum class PairSums
 {
-  Terms,  ///< by the terms of the separable phase function: N + N operations per direction
+  Terms,  ///< by the N terms of the separable phase function: N + N multiplications per direction
   Matrix, ///< by the full matrix, eight directions and eight voxels at once
-  Passes  ///< by the full matrix, one pass over the volume per direction, as published without factorisation
+  Passes  ///< by the full matrix, one pass over the volume per outgoing direction, as published without factorisation
 };
 
-/// Fluence of one order, and fluence and flux of all orders so far.
+/// Fluence of one scattering order, and fluence and net flux of all orders so far, by voxel.
 struct OrdinatesLight
 {
-  Buffer<float> order;   ///< W / length^2, fluence of the last order that was scattered
-  Buffer<float> fluence; ///< W / length^2, added to
-  Buffer<float> flux;    ///< W / length^2, [x, y, z][voxel], added to; empty: not requested
+  Buffer<float> order;   ///< fluence of the last order, W / length^2
+  Buffer<float> fluence; ///< fluence of all orders, W / length^2; added to
+  Buffer<float> flux;    ///< net flux of all orders, W / length^2, [x, y, z][voxel]; added to; empty: not requested
 };
 
-/// Scatters the radiance of each voxel from each direction into all directions.
+/// Scattering operator of discrete ordinates: computes the source in all directions from the radiance along all
+/// directions, voxel by voxel (numerics.md, Eqs. (D7), (D8)).
 class AngularScattering
 {
 public:
-  /// @param positive  negative sources, which N terms can produce, are set to 0, and the rest reduced to conserve
-  ///   power; false: sources are as the terms give them
+  /// @param positive  whether negative sources, which N terms can produce, are set to 0, and positive ones scaled to
+  ///   conserve power (Eq. (D8)); false: sources are not changed
   AngularScattering(Device& device, const OrdinateGroups& groups, const SeparablePhaseFunction& phase, PairSums sums,
     bool positive, bool netFlux, std::size_t voxels);
 
-  /// Floats of a radiance or source array: all voxels and directions, plus padding that vector loads may read.
+  /// Number of floats of a radiance or source array: all voxels and directions, plus padding that vector loads may
+  /// read.
   static std::size_t Floats(const OrdinateGroups& groups, std::size_t voxels);
   /// Bytes of device memory that an instance needs.
   static std::size_t Bytes(const OrdinateGroups& groups, int terms, PairSums sums, std::size_t voxels);
-  /// Whether source and radiance may be the same array.
+  /// Whether `source` and `radiance` of Scatter() may be the same array.
   bool WorksInPlace() const { return this->Sums == PairSums::Terms; }
 
-  /// Adds the moments of `radiance` to `light`, and writes its scattering source.
-  /// @param scale  a factor by voxel for all sources
+  /// Adds fluence and net flux of `radiance` to `light`, and writes the scattering source.
+  /// @param source  W / (length^3 sr), to be multiplied by `scale`
+  /// @param scale  factor by voxel for the sources of all directions; written if `positive`
   void Scatter(const Buffer<float>& radiance, const Buffer<float>& sigma_s, const Buffer<float>& source,
     const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor) const;
-  /// Only adds the moments of `radiance` to `light`.
+  /// Adds fluence and net flux of `radiance` to `light`, without scattering.
   void Gather(const Buffer<float>& radiance, const OrdinatesLight& light, const Monitor& monitor) const;
 
 private:
@@ -63,8 +66,8 @@ private:
   bool Positive, NetFlux;
   int GroupCount, TermCount, Width, Rows;
   std::size_t Voxels;
-  std::vector<std::array<int, 2>> Lanes; ///< group and lane of each direction
+  std::vector<std::array<int, 2>> Lanes; ///< group and lane of each direction (OrdinateGroups)
   Buffer<float> Moments, Weights, Spread, Angles;
-  std::vector<Buffer<float>> MatrixRows; ///< for PairSums::Passes
+  std::vector<Buffer<float>> MatrixRows; ///< rows of the matrix, for PairSums::Passes
 };
 }

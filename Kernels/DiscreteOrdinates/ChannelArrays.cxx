@@ -46,8 +46,8 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   }
 }
 
-/// @param emptyVoxels  emission of empty voxels that is swept separately; false: the rest
-/// @return W / (length^3 sr)
+/// Emission of a voxel, W / (length^3 sr).
+/// @param emptyVoxels  true: only if the voxel is empty and OfVacuum transports its emission; false: only if not
 float ChannelArrays::EmissionOf(std::size_t voxel, bool emptyVoxels) const
 {
   const double sigma_t = static_cast<double>(this->Absorption[voxel]) + this->Scattering[voxel];
@@ -62,7 +62,7 @@ void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
   {
     return;
   }
-  settings.netFlux = true; // gives the mean direction of uncollided light
+  settings.netFlux = true; // the net flux yields the mean direction of uncollided light
   bool any = false;
   this->Scene.domain.Collective([&] {
     this->OfVacuum = VacuumEmission::DirectionsFor(whole, settings);
@@ -93,7 +93,7 @@ Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scat
 
 std::size_t ChannelArrays::Bytes(const Grid& grid, bool netFlux)
 {
-  const std::size_t ofVoxels = grid.VoxelCount() * (9 + (netFlux ? 3 : 0)); // three of these for lamps
+  const std::size_t ofVoxels = grid.VoxelCount() * (9 + (netFlux ? 3 : 0)); // three of the nine are for lamps
   return sizeof(float) * (ofVoxels + 2 * BoxFaceCellCount(grid));
 }
 
@@ -136,8 +136,9 @@ void ChannelArrays::AddLamps(
   }
 }
 
-/// Adds the emission of empty voxels, first scattered by its mean direction.
-/// @param volume  its deposit has only a path, which is 0 on entry
+/// Adds the uncollided light of the emission of empty voxels, and its first-collision source for the mean direction in
+/// each voxel.
+/// @param volume  with only path integrals in its deposit, which are 0 on entry
 SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScattering& scattering,
   const Buffer<float>& sigma_s, const LampTarget& target, const Monitor& monitor) const
 {
@@ -179,7 +180,7 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
   return sweep;
 }
 
-/// Adds light from another solver.
+/// Adds the uncollided light of another solver, and its first-collision source.
 void ChannelArrays::AddGiven(
   const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source, OrdinatesResult& result)
 {
@@ -201,7 +202,7 @@ void ChannelArrays::AddGiven(
   const Domain& domain = this->Scene.domain;
   if (!IsFirstThatHas(domain.Comm(), domain.Partition()))
   {
-    image.escaped = {}; // every rank holds the sum over ranks
+    image.escaped = {}; // counted on one rank only: every rank holds the sum over ranks
   }
   const SweepTally tally = TallyOf(image, this->TheMedium, this->Scene.channel, 1);
   this->CountLamp(SumOf(domain, tally), result.ledger);
@@ -253,7 +254,7 @@ void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double facto
   cl::Kernel add = this->TheDevice.Kernel("add_even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
   With(add, source, even, cl_ulong(OrdinateStride(this->Voxels)));
   Launch(this->TheDevice, add, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
-  this->TheDevice.Finish(); // the values go
+  this->TheDevice.Finish(); // before the values on the host are destroyed
 }
 
 void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const
@@ -270,7 +271,7 @@ void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger
     cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
     With(even, source, values, cl_ulong(OrdinateStride(this->Voxels)));
     Launch(this->TheDevice, even, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
-    this->TheDevice.Finish(); // the values go
+    this->TheDevice.Finish(); // before the values on the host are destroyed
   });
   ledger.Emit(0, 4.0 * Pi * this->Scene.domain.Sum(sum * this->Layout.grid.VoxelVolume()));
 }

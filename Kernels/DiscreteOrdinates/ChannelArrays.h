@@ -16,9 +16,9 @@
 
 namespace tyndall
 {
-/// One channel of a medium on a device, its light, and the parts that both schemes share: uncollided light of lamps,
-/// and powers. The forward peak of the phase function is removed from sigma_s and sigma_t (numerics.md, Eq. (D6)),
-/// except for the uncollided light of lamps, which is exact.
+/// Arrays of one channel on a device, and the operations that both schemes share: uncollided light of lamps, and
+/// powers. The forward peak of the phase function is removed from sigma_s and sigma_t (numerics.md, Eq. (D6)), except
+/// in the transport of uncollided light of lamps, which is exact.
 class ChannelArrays
 {
 public:
@@ -26,36 +26,37 @@ public:
   /// @param scene, angles  must outlive this
   ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
 
-  /// Moves the emission of empty voxels from EmitEvenly to AddLamps: uncollided light along rays of its own
-  /// (UncollidedEmission.h). Collective.
+  /// Selects the transport of the emission of empty voxels: as uncollided light along a separate quadrature, added by
+  /// AddLamps() (UncollidedEmission.h), instead of by EmitEvenly(). Collective.
   void TakeVacuumApart(PropagationSettings settings);
-  /// Finds whether voxels of any rank emit or scatter; call first. Collective, as are most of the following methods.
+  /// Sets Emits() and Scatters() to whether voxels of any rank emit or scatter. To be called before all other methods.
+  /// Collective.
   void LookAtAllRanks();
 
-  /// Bytes of device memory that these arrays need.
+  /// Bytes of device memory that an instance needs.
   static std::size_t Bytes(const Grid& grid, bool netFlux);
 
-  /// Adds uncollided light of all lamps, of empty voxels and of another solver to fluence and powers, and adds its
-  /// first-collision source.
-  /// @param source  of all directions, relative to Scale
+  /// Adds the uncollided light of all lamps, of empty voxels and of another solver to fluence and powers, and its
+  /// first-collision source to `source`. Collective.
+  /// @param source  of all directions, W / (length^3 sr), relative to Scale
   void AddLamps(
     const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
-  /// Power of lamps whose rays wrap around periodic axes without end, W.
+  /// Power of lamp light that wraps around periodic axes without end, W.
   double Stranded() const { return this->GoingRound; }
 
-  /// Power that the medium absorbs and scatters of a fluence, W.
+  /// Power that the medium absorbs from a fluence, and power that it scatters, W.
   struct Powers
   {
     double absorbed = 0.0, scattered = 0.0;
   };
-  /// @param lamps  the fluence is uncollided light of lamps
+  /// Collective. @param lamps whether the fluence is that of uncollided light of lamps
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
-  /// Scattered power of the absolute difference of two fluences, W. Collective.
+  /// Power scattered from the absolute difference of two fluences, W. Collective.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
-  /// Writes the isotropic emission of the voxels, W / (length^3 sr). Collective if any voxel emits.
-  /// @param ledger  receives all emission
+  /// Writes the isotropic emission of the voxels to `source`, W / (length^3 sr). Collective if any voxel emits.
+  /// @param ledger  receives the power of all emission
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
-  /// Adds the isotropic scattering source of a fluence, which may be negative.
+  /// Adds the isotropic scattering source of a fluence, times `factor`, to `source`; the result may be negative.
   void ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const;
   bool Emits() const { return this->AnyEmission; }
   bool Scatters() const { return this->AnyScattering; }
@@ -64,9 +65,9 @@ public:
   const Medium& TheMedium;
   const std::size_t Voxels;
   const VolumeLayout Layout;
-  Buffer<float> SigmaT, SigmaS; ///< 1/length
+  Buffer<float> SigmaT, SigmaS; ///< coefficients without the forward peak, 1/length
   Buffer<float> Scale;          ///< factor of the sources of each voxel, initially 1
-  Buffer<float> Direct;         ///< W / length^2, uncollided
+  Buffer<float> Direct;         ///< uncollided fluence, W / length^2
   OrdinatesLight Light;
   const std::unique_ptr<FaceLight> Faces; ///< null: no face reflects
 
@@ -90,7 +91,8 @@ private:
   const OrdinatesAngles& Angles;
   std::vector<float> Absorption, Scattering;
   bool AnyEmission = false, AnyScattering = false;
-  std::unique_ptr<const SweptDirections> OfVacuum; ///< quadrature of emission of empty voxels; null: none, or swept
+  /// Quadrature for the emission of empty voxels; null: they do not emit, or EmitEvenly() emits it.
+  std::unique_ptr<const SweptDirections> OfVacuum;
   double GoingRound = 0.0;
   SweepWorkspace Workspace;
   BlockWorkspace BlocksWorkspace;

@@ -21,21 +21,21 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SlowestRate = 1.0 - 1e-6; ///< largest ratio of orders that is passed to the next solve
+constexpr double SlowestRate = 1.0 - 1e-6; ///< largest ratio of successive orders that is passed to the next solve
 
-/// First guess of each channel from the light of the previous solve (numerics.md, section 6.4). Each rank keeps the
-/// light of its block; either all ranks use theirs, or none does.
+/// First guesses of the channels from the light of the previous solve (numerics.md, section 6.4). Each rank keeps the
+/// light of its block; either all ranks use their kept light, or none does.
 class OrdinatesWarmStart
 {
 public:
-  /// @param kept  null: no first guess, nothing is kept; must outlive this, as settings
+  /// @param kept  null: no first guess, nothing is kept; `kept` and `settings` must outlive this object
   OrdinatesWarmStart(const KeptLight* kept, const OrdinatesSettings& settings)
     : Kept(kept)
     , Settings(settings)
   {
   }
 
-  /// First guess of a channel. Collective.
+  /// Makes the first guess of a channel. Collective.
   /// @param channels  number of channels of the solve
   OrdinatesGuess Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles);
   /// Stores the light of a channel for the next solve.
@@ -50,7 +50,7 @@ private:
   const KeptLight* Kept;
   const OrdinatesSettings& Settings;
   KeptLight Left;
-  std::string WhyNot; ///< reason of the first channel that cannot use the guess
+  std::string WhyNot; ///< why the first channel that does not use its guess does not
 };
 
 OrdinatesGuess OrdinatesWarmStart::Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles)
@@ -84,7 +84,7 @@ std::string OrdinatesWarmStart::WhyNotOf(const OrdinatesAngles& angles) const
   return WhyNotBegun(*this->Kept, this->Left.kind, this->Settings.maximumOrders);
 }
 
-/// One channel of kept light.
+/// First guess of one channel.
 OrdinatesGuess OrdinatesWarmStart::GuessOf(int channel, bool begins) const
 {
   OrdinatesGuess guess;
@@ -119,11 +119,11 @@ void OrdinatesWarmStart::Finish(LightField& light, KeptLight* kept)
   Keep(std::move(this->Left), this->WhyNot.empty(), light, *kept);
 }
 
-/// A scene in the units and channels of the solver.
+/// A scene in the units of the solver, with the channels that are solved.
 struct SolvedScene
 {
   const Domain& domain;
-  const Medium& medium; ///< of this rank's block
+  const Medium& medium; ///< medium of this rank's block
   const MediumTraits& traits;
   const Illumination& shining;
   int channels;
@@ -157,7 +157,7 @@ std::vector<std::string> Words(
   return words;
 }
 
-/// Solves one channel after the other, in the units of the scene. Collective.
+/// Solves all channels in sequence. @return light in the units of `scene`. Collective.
 LightField SolveChannels(
   Device& device, const SolvedScene& scene, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
@@ -201,7 +201,7 @@ LightField SolveChannels(
   return light;
 }
 
-/// Checks beyond those of PropagationProblem. Collective.
+/// Checks conditions that PropagationProblem does not check. Collective.
 void CheckOrdinates(const Domain& domain, const Medium& medium, const Illumination& illumination,
   const OrdinatesSettings& settings, bool warm)
 {
@@ -221,8 +221,8 @@ void CheckOrdinates(const Domain& domain, const Medium& medium, const Illuminati
     { 1.0 * static_cast<int>(settings.scattering), 1.0 * settings.spiralDirections, 1.0 * settings.terms });
 }
 
-/// Given uncollided light. On an empty block the result has an array, which is not read, if any rank has light given,
-/// so that all ranks take the same branches.
+/// Uncollided light given by another solver. If any rank has such light, the result on an empty block refers to an
+/// array that is not read, so that all ranks take the same branches.
 UncollidedImage UncollidedKnown(const Domain& domain, const UncollidedImage& own)
 {
   static const float nothing = 0.0f;

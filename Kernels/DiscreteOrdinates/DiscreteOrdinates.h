@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// Radiance along D directions in every voxel, by discrete ordinates on the grid with anisotropic scattering (Z. Gong
-///  et al., Interactive rendering of multiple scattering in participating media using separable phase functions).
+/// Solves for the radiance along D directions in every voxel by discrete ordinates with anisotropic scattering (Z. Gong
+/// et al., Interactive rendering of multiple scattering in participating media using separable phase functions).
 ///
 /// The default scheme is conservative (numerics.md, Eqs. (D7) to (D12)): an exponential step, stable and positive for
 /// any optical thickness of a voxel; scattering by the N terms of a SeparablePhaseFunction that keeps power and mean
@@ -25,10 +25,10 @@ namespace tyndall
 /// radiance of all directions is in memory at once. A mean cosine that varies by voxel is replaced by its mean weighted
 /// by sigma_s; `doubts` says so.
 ///
-/// Channels are solved one after the other; a row of `convergence` covers all of them.
+/// Channels are solved in sequence; a row of `convergence` is the sum over channels.
 ///
-/// A decomposed grid is swept in a pipeline over ranks (PipelinedSweep.h); conservative scheme only. The light equals
-/// that of one rank, order by order, to rounding. Collective.
+/// A decomposed grid is swept in a pipeline over ranks (PipelinedSweep.h); conservative scheme only. The light of each
+/// order equals that of a serial solve to rounding. Collective.
 ///
 /// @param medium  of this rank's block, on the grid domain.OwnGrid(); not read if that is empty
 /// @param illumination, settings  the same on all ranks

@@ -1,4 +1,4 @@
-// First-collision source of the uncollided light of a lamp, by the phase function between its ray and each direction
+// First-collision source of uncollided light of a lamp, by the phase function between the lamp's ray and each direction
 // (numerics.md, Eq. (D12)). Radiance is [group][stride][8 directions]. The host defines
 //
 //   GROUPS  number of groups of eight directions
@@ -7,9 +7,9 @@
 //           0: rays of a lamp
 #include "DiscreteOrdinates/OrdinatesShared.h"
 
-#define MOST_TILT 0.98f // as LampScattering.cxx has it
+#define MOST_TILT 0.98f // largest |t| in Eq. (D12); equal to MostTilt in LampScattering.cxx
 
-// Direction of the light of the lamp in a voxel; 0 in the voxel that contains the lamp, where light is isotropic.
+// Direction of a lamp's light in voxel i; 0 in the voxel that contains the lamp, where light is isotropic.
 inline float3 from_lamp(const LampInRays* lamp, ulong i)
 {
   const float3 place = (float3)(lamp->place[0], lamp->place[1], lamp->place[2]);
@@ -25,7 +25,7 @@ inline float3 from_lamp(const LampInRays* lamp, ulong i)
   return inside ? (float3)(0.0f) : way * rsqrt(dot(way, way));
 }
 
-// The angle over pi: cubic in the square root of 1 - |c|, to 7e-5 (Abramowitz and Stegun 4.4.45).
+// acos(cosine) / pi: sqrt(1 - |c|) times a cubic polynomial, to 7e-5 (Abramowitz and Stegun 4.4.45).
 inline float8 angle_of(float8 cosine)
 {
   const float8 c = fmin(fabs(cosine), (float8)1.0f);
@@ -33,7 +33,7 @@ inline float8 angle_of(float8 cosine)
   return select((float8)1.0f - p, p, cosine >= (float8)0.0f);
 }
 
-// Phase function interpolated in the table; not negative.
+// Phase function at a cosine, 1/sr, interpolated linearly in the table.
 inline float8 phase_at(const __global float* table, float8 cosine)
 {
   const float8 position = angle_of(cosine) * (float8)(TABLE - 1);
@@ -50,14 +50,15 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
-// Mean direction of the light in a voxel.
+// Mean direction of the uncollided light in voxel i.
 inline float3 way_of(const LampInRays* lamp, const __global float* ways, ulong i)
 {
   return WAYS ? vload3(i, ways) : from_lamp(lamp, i);
 }
 
+//   Adds uncollided light to fluence and net flux. One work-item per voxel.
 //   path     path integrals of the lamp, W length
-//   direct   W / length^2, added to, as are fluence and flux, [x, y, z][voxel], if has_flux
+//   direct   uncollided fluence, W / length^2, added to, as are `fluence` and, if has_flux, `flux`, [x, y, z][voxel]
 __kernel void add_lamp(const __global float* path, __global float* fluence, __global float* direct,
   __global float* flux, int has_flux, LampInRays lamp, const __global float* ways)
 {
@@ -74,9 +75,10 @@ __kernel void add_lamp(const __global float* path, __global float* fluence, __gl
   }
 }
 
-// Parallel light scatters into each direction by the same factor in every voxel.
+// Adds the first-collision source of parallel light, which scatters into each direction by the same factor in every
+// voxel.
 //   source  W / (length^3 sr); relative to scale on entry, absolute on return
-//   parts   [group][8], 1/sr
+//   parts   [group][8], 1/sr: LampScattering::PartsAlong
 __kernel void scatter_parallel(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* parts, ulong stride, float per_volume)
 {
@@ -85,11 +87,14 @@ __kernel void scatter_parallel(__global float* source, const __global float* sca
   *to = *to * scale[i] + ((const __global float8*)parts)[group] * (path[i] * per_volume * sigma_s[i]);
 }
 
-// The same for a lamp with a position.
+// Adds the first-collision source of light whose direction varies by voxel: of a lamp with a position or, with WAYS, of
+// given mean directions.
+//   source  W / (length^3 sr); relative to scale on entry, absolute on return
 //   omegas  [group][x, y, z, solid angle][8]
+//   table   phase function at equidistant angles, 1/sr
 //
-// The sums over directions of 1, the cosine and its square are used to correct the source so that it has the right
-// power and, as far as no direction becomes negative, the right mean cosine.
+// The source is corrected by the factor 1 + t cosine, normalised over directions, so that its power is exact and, as
+// far as no direction becomes negative, its mean cosine (numerics.md, Eq. (D12)).
 __kernel void scatter_from_place(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* omegas, const __global float* table, ulong stride,
   LampInRays lamp, const __global float* ways)
@@ -112,8 +117,8 @@ __kernel void scatter_from_place(__global float* source, const __global float* s
   const float sum = sum8(sums);
   const float mean = sum8(firsts) / sum, square = sum8(seconds) / sum;
   const float lacking = lamp.meanCosine - mean, slope = square - lamp.meanCosine * mean;
-  // A peak so narrow that it lies in a single direction cannot be corrected. Limiting the correction to less than 1
-  // avoids computing its power as a difference that cancels.
+  // The mean cosine of a peak that lies in a single direction cannot be corrected. |t| < 1 keeps the factor positive,
+  // so that the sum over directions does not cancel.
   const float tilt = slope > 1e-6f ? clamp(lacking / slope, -MOST_TILT, MOST_TILT) : copysign(MOST_TILT, lacking);
   float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
   power *= directed;

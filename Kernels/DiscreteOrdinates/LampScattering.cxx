@@ -19,13 +19,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr double MostTilt = 0.98; ///< as in LampScattering.cl
+constexpr double MostTilt = 0.98; ///< largest |t| in Eq. (D12); equal to MOST_TILT in LampScattering.cl
 constexpr double Least = 1e-9;    ///< smallest value of the phase function, 1/sr
 constexpr int TableSize = 1024;
-constexpr int MeansDegree = 256; ///< degree of moments; higher ones vanish in the mean over a cell
+constexpr int MeansDegree = 256; ///< highest degree of Legendre moments; higher ones vanish in the mean over a cell
 
 /// Phase function averaged over the cell of a direction, 1/sr, at equidistant angles from 0 to pi. All values are
-/// positive, so that ratios of them exist even if all light is in one direction.
+/// positive, so that normalisation does not divide by 0 for narrow peaks.
 std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle)
 {
   const std::vector<double> moments = function.Moments(MeansDegree), cap = CapMoments(solidAngle, MeansDegree);
@@ -39,7 +39,7 @@ std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle
     {
       mean += (2.0 * l + 1.0) / (4.0 * Pi) * moments[l] * cap[l] * p[l];
     }
-    table.push_back(static_cast<float>(std::max(mean, Least))); // truncated series oscillate
+    table.push_back(static_cast<float>(std::max(mean, Least))); // the truncated series oscillates and may be negative
   }
   return table;
 }
@@ -69,9 +69,8 @@ LampScattering::LampScattering(
   this->Table = Buffer<float>(device, this->ByAngle, "the phase function");
 }
 
-/// Scattering from a ray into each direction, 1/sr, [group][lane], corrected by the sums over directions of 1, the
-/// cosine and its square so that it has the right power and, as far as no direction becomes negative, the right mean
-/// cosine.
+/// Phase function between a ray and each direction, 1/sr, [group][lane], corrected so that its sum over directions is 1
+/// and, as far as no direction becomes negative, its mean cosine is exact (part_i of numerics.md, Eq. (D12)).
 std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) const
 {
   const auto cosine = [&](int g, int lane) {
@@ -156,7 +155,7 @@ void LampScattering::Add(
     With(scatter, target.source, target.scale, path, sigma_s, parts, stride, info.perVolume);
     const cl::NDRange all(this->TheGrid.VoxelCount(), this->Groups.Count());
     Launch(this->TheDevice, scatter, all);
-    this->TheDevice.Finish(); // the parts go
+    this->TheDevice.Finish(); // before the parts on the host are destroyed
   }
   else
   {

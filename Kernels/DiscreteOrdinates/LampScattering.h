@@ -12,18 +12,19 @@
 
 namespace tyndall
 {
-/// Arrays that receive the first-collision source of a lamp.
+/// Arrays that receive the first-collision source and the uncollided light of a lamp.
 struct LampTarget
 {
-  const Buffer<float>& source; ///< of all directions, relative to `scale`; added to
-  Buffer<float>& scale;        ///< set to 1
-  const Buffer<float>& direct; ///< W / length^2, uncollided fluence, added to
-  const OrdinatesLight& light; ///< its fluence and flux are added to
+  /// Source of all directions, W / (length^3 sr), relative to `scale` on entry; added to.
+  const Buffer<float>& source;
+  Buffer<float>& scale;        ///< factor by voxel of `source`, which is multiplied by it; set to 1
+  const Buffer<float>& direct; ///< uncollided fluence, W / length^2; added to
+  const OrdinatesLight& light; ///< whose fluence and net flux are added to
 };
 
-/// First-collision source of uncollided light: the phase function between a ray and each direction, averaged over the
-/// cell of the direction (numerics.md, Eq. (D12)). Power and mean cosine are exact, and no source is negative,
-/// regardless of the terms used for later scatterings.
+/// First-collision source of uncollided light: proportional to the phase function between the ray and each direction,
+/// averaged over the cell of the direction (numerics.md, Eq. (D12)). Power and mean cosine are exact, and no source is
+/// negative, regardless of the number of terms for later scatterings.
 ///
 /// Rays start at the position of the lamp; for a rectangle at its centre, which is inaccurate close to it. In the voxel
 /// that contains the lamp, first scattering is isotropic.
@@ -33,11 +34,12 @@ public:
   /// @param groups  must outlive this
   LampScattering(Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function);
 
-  /// @param path  path integrals of the light of the lamp, W length
+  /// Adds uncollided light and first-collision source of a lamp.
+  /// @param path  path integrals of the lamp's light, W length
   void Add(const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
-  /// The same for light that has a mean direction in each voxel. The length of that vector is the fraction of the light
-  /// along it; the rest is isotropic.
-  /// @param ways  mean directions, 3 values per voxel
+  /// Adds uncollided light that has a mean direction in each voxel, and its first-collision source. The length of that
+  /// vector is the fraction of the light along it; the rest is isotropic.
+  /// @param ways  mean directions, [voxel][x, y, z]
   void AddAlong(
     const Buffer<float>& ways, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
 
@@ -49,7 +51,7 @@ private:
   Grid TheGrid;
   const OrdinateGroups& Groups;
   double MeanCosine;
-  std::vector<float> ByAngle; ///< the phase function from 0 to pi, 1/sr
+  std::vector<float> ByAngle; ///< phase function averaged over a cell, 1/sr, at equidistant angles from 0 to pi
   Buffer<float> Omegas, Table;
 };
 }

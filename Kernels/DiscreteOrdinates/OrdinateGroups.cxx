@@ -9,7 +9,7 @@ OrdinateGroups::OrdinateGroups(std::vector<Direction> directions)
   : Directions(std::move(directions))
 {
   std::array<std::vector<int>, 8> octants;
-  std::vector<int> along; // in an axis plane: may join several octants
+  std::vector<int> along; // directions with a zero component, which may join any adjacent octant
   for (std::size_t d = 0; d < this->Directions.size(); ++d)
   {
     const std::array<double, 3>& omega = this->Directions[d].omega;
@@ -17,7 +17,7 @@ OrdinateGroups::OrdinateGroups(std::vector<Direction> directions)
     const int octant = (omega[0] > 0.0) + 2 * (omega[1] > 0.0) + 4 * (omega[2] > 0.0);
     (inside ? octants[octant] : along).push_back(static_cast<int>(d));
   }
-  for (const int d : along) // to the octant with most room in its last group
+  for (const int d : along) // each joins the octant whose last group has the most free lanes
   {
     const auto fits = [&](int octant) {
       bool same = true;

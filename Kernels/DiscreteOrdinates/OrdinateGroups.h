@@ -9,7 +9,7 @@
 
 namespace tyndall
 {
-constexpr int OrdinateLanes = 8; ///< directions that kernels process at once
+constexpr int OrdinateLanes = 8; ///< number of directions in a group, which kernels process as one vector
 
 /// Stride between the radiance arrays of successive groups, in voxels: at least the number of voxels, and such that the
 /// same voxel of different groups does not map to the same few cache lines (a power of two is ten times slower).
@@ -18,16 +18,17 @@ constexpr std::size_t OrdinateStride(std::size_t voxels)
   return (voxels + 127) / 128 * 128 + 8;
 }
 
-/// Eight directions of one octant, which visit the voxels in the same order.
+/// Eight directions of one octant, whose sweeps visit the voxels in the same order.
 struct OrdinateGroup
 {
-  std::array<bool, 3> up = {};                   ///< whether they go up each axis
-  std::array<int, OrdinateLanes> direction = {}; ///< indices; the last may be repeated to fill lanes
-  int count = 0;                                 ///< number of distinct directions
+  std::array<bool, 3> up = {}; ///< whether the directions are positive along each axis
+  /// Indices of the directions; the last one is repeated to fill all lanes.
+  std::array<int, OrdinateLanes> direction = {};
+  int count = 0; ///< number of distinct directions
 };
 
-/// Memory layout of directions in kernels. Radiance is [group][OrdinateStride][lane], voxels x fastest, so that a voxel
-/// and a group form one vector, and a row of voxels is contiguous.
+/// Directions sorted into groups, which define the memory layout of radiance: [group][voxel, x fastest, padded to
+/// OrdinateStride][lane], so that the radiance of a voxel and a group is one vector, and a row of voxels is contiguous.
 class OrdinateGroups
 {
 public:
@@ -43,7 +44,7 @@ public:
   {
     return lane < this->Groups[group].count ? this->Of(group, lane).weight : 0.0;
   }
-  /// Table [group][lane] of a function of group and lane.
+  /// Table [group][lane] of the values of a function of group and lane.
   std::vector<float> Table(const std::function<double(int group, int lane)>& value) const;
 
 private:

@@ -70,7 +70,8 @@ void OrdinatesRecord::Add(double goesOn, double more, const EnergyLedger& ledger
 
 namespace
 {
-constexpr int FacesPeaksAreSoughtFor = 25; ///< directions per face used to find peaks if directions are on a spiral
+/// Directions per cube face assumed in the search for peaks of the environment, if directions are on a spiral.
+constexpr int FacesPeaksAreSoughtFor = 25;
 
 void TakePowers(LightField& light, const EnergyLedger& ledger, int channel)
 {
@@ -86,7 +87,8 @@ void TakePowers(LightField& light, const EnergyLedger& ledger, int channel)
   }
 }
 
-/// Adds the rows of a channel to the sum over channels; the last row of a finished channel is repeated.
+/// Adds the convergence rows of a channel to the sum over channels. If a channel has fewer rows, its last one is
+/// repeated.
 void AddRows(std::vector<ConvergenceRow>& sum, const std::vector<ConvergenceRow>& rows, bool first)
 {
   const ConvergenceRow last = sum.empty() ? ConvergenceRow() : sum.back();
@@ -136,7 +138,7 @@ FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSet
 
 PhaseFunction FunctionOf(const Domain& domain, const Medium& medium, int channel)
 {
-  std::vector<double> sums = { 0.0, 0.0 }; // scattered, forwards
+  std::vector<double> sums = { 0.0, 0.0 }; // sums over voxels of sigma_s, and of sigma_s times mean cosine
   for (std::size_t i = 0; medium.phase.Varies() && i < medium.grid.VoxelCount(); ++i)
   {
     sums[0] += medium.sigma_s.At(i, channel);

@@ -25,12 +25,12 @@
 
 namespace tyndall
 {
-/// Light of the previous solve of one channel, the first guess of this one (KeptLight.h).
+/// First guess of one channel: scattered light of the previous solve (KeptLight.h).
 struct OrdinatesGuess
 {
-  bool keeps = false;        ///< keep the light of this solve
-  bool begins = false;       ///< there is a first guess
-  std::vector<float> values; ///< as OrdinatesResult::left
+  bool keeps = false;        ///< whether the light of this solve is kept for the next
+  bool begins = false;       ///< whether this solve begins from the guess
+  std::vector<float> values; ///< OrdinatesResult::left of the previous solve
   double firstScattered = 0.0;
   double rate = 0.0;
 };
@@ -39,19 +39,21 @@ struct OrdinatesGuess
 struct OrdinatesScene
 {
   const Domain& domain;
-  const Medium& medium; ///< of this rank's block
+  const Medium& medium; ///< medium of this rank's block
   int channel = 0;
-  std::vector<Light> lamps;  ///< of the scene, and the peaks of the environment; power of the channel in all three
-  IncomingRadiance incoming; ///< empty: no light is incident
-  std::array<Rgb, 6> faceAlbedo = {}; ///< of the channel in all three
-  UncollidedImage uncollided;         ///< of this channel
+  /// Lamps of the scene and peaks of the environment, with the power of this channel in all three components.
+  std::vector<Light> lamps;
+  IncomingRadiance incoming;          ///< boundary source; empty: no light is incident
+  std::array<Rgb, 6> faceAlbedo = {}; ///< albedo of this channel in all three components
+  UncollidedImage uncollided;         ///< of this channel, given by another solver
   OrdinatesGuess guess;
 };
 
-/// Sum over all ranks. Collective.
+/// Sums a tally over all ranks. Collective.
 SweepTally SumOf(const Domain& domain, const SweepTally& own);
 
-/// Directions, and the phase function between them.
+/// Directions of a solve, and the phase function between them: its separable form for later orders, and the function
+/// itself for first scattering.
 struct OrdinatesAngles
 {
   OrdinateGroups groups;
@@ -59,37 +61,39 @@ struct OrdinatesAngles
   PhaseFunction function;
 };
 
-/// Result of one channel. Arrays by voxel.
+/// Result of the solve of one channel. Arrays are by voxel of this rank's block, unless stated otherwise.
 struct OrdinatesResult
 {
-  std::vector<float> fluence, direct; ///< W / length^2
-  std::vector<float> flux;            ///< [x, y, z][voxel]; empty: not requested
-  EnergyLedger ledger;                ///< all in channel 0
-  std::vector<float> facePower;       ///< W / length^2, by cell of the box's faces; empty: none reflects
+  std::vector<float> fluence, direct; ///< total and uncollided fluence, W / length^2
+  std::vector<float> flux;            ///< net flux, W / length^2, [x, y, z][voxel]; empty: not requested
+  EnergyLedger ledger;                ///< energy balance, in channel 0 of the ledger
+  /// Outgoing power per area, W / length^2, by cell of the box's faces; empty: no face reflects.
+  std::vector<float> facePower;
   std::vector<ConvergenceRow> convergence;
   bool diverged = false;
-  std::vector<float> left;     ///< scattered fluence, for the next solve; empty: not requested
-  double firstScattered = 0.0; ///< W first scattered, by which the next guess is scaled
-  double rate = 0.0;           ///< ratio of the last two orders
+  std::vector<float> left;     ///< scattered fluence, W / length^2, to keep for the next solve; empty: not requested
+  double firstScattered = 0.0; ///< first-scattered power, W, by which the next solve scales its guess
+  double rate = 0.0;           ///< ratio of the powers of the last two orders
 };
 
-/// Reflection by the box faces along the directions of a solve: the albedo times the outgoing power of a cell re-enters
-/// as equal radiance along all incident directions (numerics.md, Eq. (D14)). Null if no face reflects.
+/// Makes the light by cell of the box faces for the directions of a solve: the albedo times the outgoing power of a
+/// cell is incident in the next sweep, as equal radiance along all incident directions (numerics.md, Eq. (D14)). Null
+/// if no face reflects.
 std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& scene, const OrdinateGroups& groups);
 
-/// Arrays of FaceLight for a sweep; none if no face reflects.
+/// Arrays of `faces` that a sweep adds to and reads; none if `faces` is null.
 std::optional<LightOfCells> CellsOf(const FaceLight* faces);
 
-/// Rows of the convergence table, with an estimate of the remainder from the ratio of successive orders.
+/// Rows of the convergence table of one channel, with the remainder estimated from the ratio of successive orders.
 class OrdinatesRecord
 {
 public:
-  /// Tells that the next order is the first correction to a first guess (RestOfOrders).
+  /// Declares the next order the first correction to a first guess (RestOfOrders::BeginWarm).
   void BeginWarm(double rate) { this->Rest.BeginWarm(rate); }
   /// @param goesOn  power that the next order carries, W (published scheme: change of fluence); after a first guess its
-  ///   magnitude, because orders may be negative
+  ///   absolute value summed over voxels, because orders may be negative
   void Add(double goesOn, const EnergyLedger& ledger) { this->Add(goesOn, goesOn, ledger); }
-  /// @param more  the increment of the sum of all orders
+  /// @param more  power by which the sum of all orders increases, W
   void Add(double goesOn, double more, const EnergyLedger& ledger);
   double Rate() const { return this->Rest.Ratio(); }
   double Residual() const { return this->Left; }
@@ -103,48 +107,52 @@ private:
   double Sum = 0.0, Left = 1.0;
 };
 
-/// Boundary light from far away, along the directions of a solve.
+/// Directions of a solve, the radiance of sky and environment along them, and the peaks of the environment, which are
+/// not part of that radiance.
 struct FarLight
 {
   std::vector<Direction> directions;
   std::vector<Rgb> radiance; ///< by direction, W / (length^2 sr)
-  std::vector<Light> peaks;  ///< peaks of the environment
+  std::vector<Light> peaks;  ///< peaks of the environment, represented by parallel beams
 };
 
-/// @param perFace  directions per cube face used in the solve
+/// @param perFace  directions per cube face of the solve
 FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings);
 
-/// Phase function of a channel. If its mean cosine varies by voxel, the mean weighted by sigma_s is used. Collective.
+/// Phase function of a channel. If its mean cosine varies by voxel, it has the mean cosine weighted by sigma_s.
+/// Collective.
 PhaseFunction FunctionOf(const Domain& domain, const Medium& medium, int channel);
 
 /// Warnings about properties of the medium that make the light inaccurate.
 /// @param thickestStep  largest ThickestStep of all channels
 std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thickestStep, bool cosineVaries);
 
-/// Face albedo with the value of one channel in all three.
+/// Albedo of each face, with the value of one channel in all three components.
 std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel);
 UncollidedImage UncollidedOf(const Illumination& shining, int channel);
 
 SeparablePhaseFunction SeparableOf(
   const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings);
 
-/// @throws DeviceError if the solve does not fit the device; the message states the memory needed
+/// Checks that the solve fits the device.
+/// @throws DeviceError if it does not; the message states the memory needed
 void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 
-/// Boundary radiance of a channel; empty if there is none. `far` and `shining` must outlive the result.
+/// Boundary source of a channel: environment, sky and faces; empty if there is none. `far` and `shining` must outlive
+/// the result.
 IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, int channel);
 
-/// Lamps of the scene and peaks of the environment, with the power of one channel in all three.
+/// Lamps of the scene and peaks of the environment, with the power of one channel in all three components.
 std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int channel);
 
-/// Stores the light of one channel in `light`.
+/// Copies the result of one channel to `light`.
 void TakeChannel(LightField& light, const OrdinatesResult& found, int channel);
 
-/// Sets the derived quantities of `light`, in the units of the solver.
+/// Sets the quantities of `light` that are derived from the fluence, in the units of the solver.
 void DescribeLight(LightField& light, const Device& device, const FarLight& far);
 
-/// Checks convergence and, except for the published scheme, the energy balance (Convergence.h). Collective.
-/// @param medium  of this rank, as solved
+/// Checks convergence and, except for the published scheme, the energy balance of `light` (Convergence.h). Collective.
+/// @param medium  of this rank's block, in the units of the solver
 /// @throws InvalidInput if the energy balance is off
 void Judge(
   const OrdinatesSettings& settings, bool diverged, const Domain& domain, const Medium& medium, LightField& light);

@@ -45,7 +45,7 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings)
   as.periodic = settings.periodic;
   as.netFlux = settings.netFlux;
   as.leaveOut = settings.leaveOut;
-  as.angularDegree = 0; // scattering is by direction, not in moments
+  as.angularDegree = 0; // no angular moments: scattering is between directions
   return as;
 }
 
@@ -61,7 +61,8 @@ struct Level
 
 constexpr Level Draft = { 3, 9, 1e-2 }, Fine = { 8, 49, 1e-4 }, Reference = { 12, 100, 1e-5 };
 
-/// Largest number of rows of directions for which one channel of radiance takes at most half of the memory.
+/// Largest number of directions along the edge of a cube face, at most `rows`, for which one channel of radiance takes
+/// at most half of `memory`, bytes.
 int RowsThatFit(int rows, int atLeast, std::size_t voxels, double memory)
 {
   constexpr std::size_t Faces = 6;
@@ -72,7 +73,8 @@ int RowsThatFit(int rows, int atLeast, std::size_t voxels, double memory)
   return rows;
 }
 
-/// @param voxels  of the whole grid
+/// Sets the settings of a quality level.
+/// @param voxels  number of voxels of the whole grid
 void SetLevel(const Level& level, OrdinatesSettings& settings, std::size_t voxels, bool isIsotropic, double memory)
 {
   const OrdinatesSettings byDefault;

@@ -1,32 +1,33 @@
-// Shared by C++ and the kernel of LampScattering.cl.
+// Shared by C++ and the kernels of discrete ordinates.
 #pragma once
 
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// Geometry of a lamp and of the box.
+/// Geometry of a lamp and of the grid, for LampScattering.cl.
 typedef struct
 {
   int size[3];
-  int parallel; ///< 0: the lamp has a position
+  int parallel; ///< 1: parallel rays; 0: the lamp has a position
   float spacing[3];
-  float place[3];   ///< position from the corner of the box; of parallel rays the unit direction
-  float meanCosine; ///< mean cosine of scattering to reproduce
-  float perVolume;  ///< 1 / length^3
+  /// Position of the lamp relative to the lowest corner of the box; for parallel rays their unit direction.
+  float place[3];
+  float meanCosine; ///< mean cosine of the phase function
+  float perVolume;  ///< 1 / volume of a voxel, 1 / length^3
 } LampInRays;
-/// Layers along z that a sweep crosses, of a grid of this size.
+/// Grid, and the range of layers along z that a launch of sweep_upwind processes.
 typedef struct
 {
   int size[3];
-  int begin, end; ///< layers, in the order in which a direction crosses them
-  ulong stride;   ///< voxels between groups of directions
+  int begin, end; ///< range of layers, counted in the order in which the directions of a group cross them
+  ulong stride;   ///< stride between groups of directions, voxels
 } SweptLayers;
 
-/// Voxels that a launch scatters the light of.
+/// Range of voxels that a launch of a scattering kernel processes.
 typedef struct
 {
-  ulong voxels; ///< of the grid
-  ulong stride; ///< voxels between groups of directions
+  ulong voxels; ///< number of voxels of the grid
+  ulong stride; ///< stride between groups of directions, voxels
   ulong begin;  ///< first voxel of the launch
 } ScatteringVoxels;
 SHARED_END

@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Bits of the faces of this rank's block that are interior to the grid.
+/// Bit mask of the faces -x, +x, ... +z of this rank's block that are interior to the grid (SweptFaces::inner).
 int InnerFacesOf(const Domain& domain)
 {
   const VoxelBox& block = domain.Own();
@@ -23,7 +23,7 @@ int InnerFacesOf(const Domain& domain)
   return inner;
 }
 
-/// Axis along which light crosses between two blocks. Rays march along z.
+/// Axis along which light crosses between two blocks in contact, for rays that march along z.
 int AxisOf(BlockContact::Kind kind)
 {
   return kind == BlockContact::AsideU ? 0 : kind == BlockContact::AsideV ? 1 : 2;
@@ -135,7 +135,8 @@ void PipelinedSweep::FindContacts(Octant& octant, const SweptFaces& faces) const
   octant.waiting.resize(octant.aroundFrom.size());
 }
 
-/// Boundary conditions of the block, with its own face cells if faces of the whole grid reflect.
+/// Boundary conditions of the block. Makes Cells, the light by cell of the block's faces, if faces of the whole grid
+/// reflect.
 SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
 {
   SweptFaces faces = ofWhole;
@@ -148,9 +149,9 @@ SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
   return faces;
 }
 
-/// Calls visit(index in the octant's values of the face) for each group and cell of a contact, in an order that both
-/// ranks share.
-/// @param cells  layer of this block at the face
+/// Calls visit(index in the values of ReadFace() for the octant) for each group and cell of a contact, in the same
+/// order on both ranks.
+/// @param cells  layer of voxels of this block at the contact
 template <class Visit>
 void PipelinedSweep::ForFace(
   const Octant& octant, const BlockContact& contact, const VoxelBox& cells, const Visit& visit) const
@@ -172,7 +173,8 @@ void PipelinedSweep::ForFace(
   }
 }
 
-/// Writes received radiance to the faces of the block, which are read from the device on first use.
+/// Copies received radiance of an octant to `faces`, the radiance through the faces of the block, which is read from
+/// the device on first use.
 void PipelinedSweep::Enter(
   const Octant& octant, const BlockContact& contact, const std::vector<float>& message, Faces& faces) const
 {
@@ -213,7 +215,8 @@ void PipelinedSweep::TakeFrom(const Octant& octant, int number)
   });
 }
 
-/// Receives radiance that wraps around periodic axes, after all octants are done.
+/// Receives the radiance that wraps around periodic axes, after all octants have been swept, and keeps it for the next
+/// sweep.
 void PipelinedSweep::TakeFromAround()
 {
   for (const int number : this->Order)

@@ -12,11 +12,12 @@
 
 namespace tyndall
 {
-/// Light by cell of the faces of this rank's block, and of the whole grid, which all ranks hold.
+/// Light by cell of the faces of this rank's block, exchanged with the light by cell of the faces of the whole grid,
+/// which all ranks hold.
 class CellsOfBlock
 {
 public:
-  /// @param own  grid of the block, or one voxel if it is empty
+  /// @param own  grid of the block; of one voxel if the block is empty
   /// @param ofWhole  must outlive this
   CellsOfBlock(Device& device, const Domain& domain, const Grid& own, const std::array<bool, 3>& periodic,
     const LightOfCells& ofWhole);
@@ -24,9 +25,9 @@ public:
   CellsOfBlock& operator=(const CellsOfBlock&) = delete;
 
   const LightOfCells& Seen() const { return this->OfBlock; }
-  /// Copies incident radiance from the cells of the whole grid to those of the block.
+  /// Copies the incident radiance from the cells of the whole grid to the cells of the block.
   void LetIn();
-  /// Adds outgoing power of the blocks of all ranks to the cells of the whole grid. Collective.
+  /// Adds the outgoing power of the blocks of all ranks to the cells of the whole grid. Collective.
   /// @param leave  adds outgoing power to Seen().out, which is zero before
   void LetOut(const std::function<void()>& leave);
 
@@ -36,24 +37,26 @@ private:
   const LightOfCells& OfWhole;
   Buffer<float> Out, In;
   const LightOfCells OfBlock;
-  std::vector<std::array<std::size_t, 2>> Places; ///< cell of the block, cell of the whole grid
+  /// Pairs of indices of a cell: among the cells of the block, and of the whole grid.
+  std::vector<std::array<std::size_t, 2>> Places;
 };
 
-/// Upwind sweep of a decomposed grid, pipelined over ranks. Each octant of directions visits the blocks in downwind
-/// order, several octants at a time. Radiance between blocks is passed on bit for bit, as in a serial sweep. Radiance
-/// that leaves at the end of a periodic axis is sent to the block at the other end, for the next sweep. Every rank
-/// holds the cells of all reflecting faces.
+/// Upwind sweep of a decomposed grid, pipelined over ranks. The directions of an octant are swept block by block in
+/// downwind order, several octants concurrently. Radiance crosses between blocks unchanged, so that it equals that of a
+/// serial sweep bit for bit. Radiance that leaves at the end of a periodic axis is sent to the block at the other end,
+/// where it is incident in the next sweep. Every rank holds the cells of all reflecting faces.
 class PipelinedSweep : public OrdinateSweep
 {
 public:
   /// Collective. All arguments must outlive this.
-  /// @param grid  of this rank's block; of one voxel if that is empty, which is then swept alone
-  /// @param faces  of the whole grid
+  /// @param grid  grid of this rank's block; of one voxel if the block is empty; this voxel exchanges no light with
+  ///   blocks
+  /// @param faces  boundary conditions of the whole grid
   /// @throws InvalidInput on every rank if the blocks have a cyclic sweep order
   PipelinedSweep(
     Device& device, const Domain& domain, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces);
 
-  /// Collective.
+  /// Sweeps the whole grid once. Collective.
   /// @return powers summed over ranks
   /// @throws on every rank if any rank throws
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
@@ -62,11 +65,11 @@ public:
 private:
   struct Octant
   {
-    ParallelBundles way; ///< direction only, without rays
+    ParallelBundles way; ///< direction of the octant, without rays
     int first = 0, groups = 0;
     std::vector<BlockContact> senders, receivers;
-    std::vector<BlockContact> aroundFrom, aroundTo; ///< across the ends of periodic axes
-    std::vector<std::vector<float>> waiting;        ///< received from aroundFrom, incident in the next sweep
+    std::vector<BlockContact> aroundFrom, aroundTo; ///< contacts across the ends of periodic axes
+    std::vector<std::vector<float>> waiting;        ///< radiance received from aroundFrom, incident in the next sweep
   };
   using Faces = std::array<std::vector<float>, 3>;
 
@@ -82,10 +85,10 @@ private:
   Device& TheDevice;
   const Domain& TheDomain;
   const Grid TheGrid;
-  std::optional<CellsOfBlock> Cells; ///< if faces reflect
+  std::optional<CellsOfBlock> Cells; ///< set if faces reflect
   std::vector<Octant> Octants;
-  std::vector<int> Order; ///< of the octants on this rank
+  std::vector<int> Order; ///< order in which this rank sweeps the octants
   UpwindSweep Sweep;
-  HeldFailure Failure; ///< of the current sweep
+  HeldFailure Failure; ///< first failure of the current sweep
 };
 }

@@ -14,14 +14,15 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 10000;
-constexpr double FastestSeries = 0.99; ///< largest ratio for extrapolated orders, to keep their sum bounded
+/// Largest ratio of successive orders in the extrapolated series, so that its sum is bounded.
+constexpr double FastestSeries = 0.99;
 
 PairSums SumsOf(const OrdinatesSettings& settings)
 {
   return settings.scattering == OrdinatesScattering::Matrix ? PairSums::Matrix : PairSums::Terms;
 }
 
-/// Whether the terms can make a source negative; not for isotropic scattering.
+/// Whether a scattering source can be negative: false for isotropic scattering by terms.
 bool CanBeNegative(const OrdinatesAngles& angles, const OrdinatesSettings& settings)
 {
   return SumsOf(settings) == PairSums::Matrix || angles.phase.Terms() > 1;
@@ -78,7 +79,8 @@ public:
 private:
   const Buffer<float>& Out() const { return this->Source.Size() > 0 ? this->Source : this->Radiance; }
 
-  /// Uncollided light: incident light and emission by a sweep, lamps along rays of their own.
+  /// Computes uncollided light, by a sweep for incident light and emission, and along separate rays for lamps, and its
+  /// first-collision source.
   void FirstOrder(const Monitor& monitor)
   {
     const bool swept = this->Scene.incoming || this->Arrays.Emits() || !this->Settings.leaveOut;
@@ -116,7 +118,7 @@ private:
 
   bool IsWarm() const { return this->Scene.guess.begins; }
 
-  /// Adds the scattering source of the guess to the first-collision source (numerics.md, section 6.4).
+  /// Warm start: adds the scattering source of the guess to the first-collision source (numerics.md, section 6.4).
   void BeginWarm()
   {
     if (!this->IsWarm())
@@ -182,7 +184,8 @@ private:
     return this->Settings.seriesAfter > 0 && static_cast<int>(this->Record.All().size()) >= this->Settings.seriesAfter;
   }
 
-  /// Extrapolates the unswept orders: each relative to the one before as the last swept one was.
+  /// Adds the orders that were not swept to the fluence: the last order, continued as a geometric series with the ratio
+  /// of the last two orders.
   void AddSeries()
   {
     if (this->GoesOnAsSeries() && this->GoesOn > 0.0)
@@ -198,7 +201,8 @@ private:
   {
     for (float& value : this->Result.fluence)
     {
-      value = this->IsWarm() ? std::max(value, 0.0f) : value; // a remainder that later sweeps would remove
+      // Negative remainders of the guess, which later sweeps would remove.
+      value = this->IsWarm() ? std::max(value, 0.0f) : value;
     }
     for (std::size_t i = 0; i < this->Result.fluence.size() && this->Scene.guess.keeps; ++i)
     {
@@ -228,12 +232,13 @@ private:
     }
     this->Scene.domain.Collective([&] {
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
-      this->Radiance.Fill(0.0f); // only light that wraps around periodic axes remains
+      this->Radiance.Fill(0.0f); // no scattering: the next sweep carries only light that wraps around periodic axes
       this->Source.Fill(0.0f);
     });
   }
 
-  /// Reflects the outgoing light of this order, and earlier that of lamps; reflected power has not escaped.
+  /// Reflects the outgoing light of this order (in the first order also that of lamps), and subtracts the reflected
+  /// power from the escaped power.
   void Reflect()
   {
     if (!this->Arrays.Faces)
@@ -267,7 +272,8 @@ private:
     {
       return true;
     }
-    const int least = this->IsWarm() ? 2 : 3; // after a guess the rate of decrease is known earlier
+    // Number of orders until the rate of decrease is known; a guess brings that of the previous solve.
+    const int least = this->IsWarm() ? 2 : 3;
     return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
                                             : orders >= least && this->Record.Residual() <= this->Settings.tolerance;
   }
@@ -278,13 +284,15 @@ private:
   const std::optional<LightOfCells> Cells;
   std::unique_ptr<OrdinateSweep> Sweep;
   AngularScattering Scattering;
-  Buffer<float> Radiance, Source; ///< Source: empty where scattering works in place
+  Buffer<float> Radiance, Source; ///< Source: empty if scattering works in place in Radiance
   OrdinatesRecord Record;
   OrdinatesResult Result;
-  std::vector<float> Guess;                             ///< W / length^2, until subtracted again
-  bool CountsGuess = false;                             ///< the source contains that of the guess
+  /// Guess, W / length^2; empty once its source has been subtracted.
+  std::vector<float> Guess;
+  bool CountsGuess = false;                             ///< whether the source contains that of the guess
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0; ///< W
-  double WasOnTheWay = 0.0;                             ///< W, before the last sweep
+  /// Power that wrapped around periodic axes in the last sweep, W.
+  double WasOnTheWay = 0.0;
 };
 }
 

@@ -6,16 +6,16 @@
 
 namespace tyndall
 {
-/// Conservative scheme: source iteration; each order is a sweep along all directions followed by scattering between
-/// them (numerics.md, Eqs. (D7) to (D12)). Energy is conserved to rounding.
+/// Solves one channel by the conservative scheme: source iteration, in which each order is a sweep along all directions
+/// followed by scattering between them (numerics.md, Eqs. (D7) to (D12)). Energy is conserved to rounding.
 /// @throws DeviceError, Aborted
 OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const Monitor& monitor);
 
-/// Whether a solve can use a first guess: only if no source can be negative. Negative sources that N terms produce are
-/// set to 0 order by order, so the light is not linear in its orders, which a guess requires.
+/// Whether a solve can use a first guess: if no source can be negative. Negative sources, which N terms can produce,
+/// are set to 0 order by order, so that the light is not a linear function of the sources, which a guess requires.
 bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 
-/// Bytes of device memory needed.
+/// Bytes of device memory that SolveSweptOrders() needs.
 std::size_t BytesOfSweptOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 }

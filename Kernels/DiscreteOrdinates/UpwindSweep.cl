@@ -1,13 +1,13 @@
-// One sweep along all directions: from source and incident radiance to mean and outgoing radiance (numerics.md, Eqs.
-// (D9) to (D11)). Radiance is [group][stride][8 directions]. The host defines
+// Upwind sweep along all directions: computes mean and outgoing radiance from source and incident radiance
+// (numerics.md, Eqs. (D9) to (D11)). Radiance is [group][stride][8 directions]. The host defines
 //
-//   REAL_WIDTH  8: a work-item processes the directions of a group; 1: one of them
+//   REAL_WIDTH  8: a work-item processes all directions of a group; 1: one direction
 #include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Numerics/Numerics.cl"
 
-#define THIN 0.3f // optical length below which the series are accurate to rounding
+#define THIN 0.3f // optical length below which the power series in cross_voxel() are accurate to rounding
 
-// Crosses a voxel along the mean chord.
+// Radiance after crossing a voxel along the mean chord (numerics.md, Eq. (D10)).
 //   tau   optical length, >= 0
 //   in    incident radiance, averaged over the faces
 //   gain  source times length of the chord
@@ -15,7 +15,7 @@
 // Returns the outgoing radiance: incident radiance plus gain - tau mean.
 inline real cross_voxel(real tau, real in, real gain, real* mean)
 {
-  // (1 - exp(-tau)) / tau and (tau - 1 + exp(-tau)) / tau^2 by series
+  // phi1 = (1 - exp(-tau)) / tau and phi2 = (tau - 1 + exp(-tau)) / tau^2 by power series, for small tau
   const real t = fmin(tau, (real)THIN);
   real p = multiply_add(t, (real)-1.98412698e-4f, (real)1.38888889e-3f);
   p = multiply_add(p, t, (real)-8.33333333e-3f);
@@ -23,7 +23,7 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
   p = multiply_add(p, t, (real)-1.66666667e-1f);
   const real thin2 = multiply_add(p, t, (real)0.5f);
   const real thin1 = multiply_add(-t, thin2, (real)1.0f);
-  // exact, for larger tau
+  // the exact functions, for larger tau
   const real thick = fmax(tau, (real)THIN);
   real left;
   const real gone = extinguished(thick, &left);
@@ -45,11 +45,12 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
   return multiply_add(in, transmitted, gain * p1);
 }
 
-// Sweeps `layers` along z, counted in the direction of each group.
-//   radiance  on entry source relative to scale, W / (length^3 sr); on return mean radiance
+// Sweeps a range of layers along z. One work-item per group of directions, or per direction.
+//   radiance  on entry the source, W / (length^3 sr), to be multiplied by scale; on return the mean radiance
 //   scale     factor by voxel for all sources
-//   shares    [group][x, y, z, chord][8]: share of each axis in the incident radiance; length of the mean chord
-//   up        [group][3]: whether the group goes up an axis
+//   shares    [group][x, y, z, chord][8]: weight of the radiance from each upwind neighbour in the incident radiance;
+//             length of the mean chord
+//   up        [group][3]: whether the directions of the group are positive along each axis
 //   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: incident before the
 //             sweep, outgoing after it
 __kernel void sweep_upwind(__global float* radiance, const __global float* sigma_t, const __global float* scale,
@@ -97,8 +98,9 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
   }
 }
 
-// Sums each row of a face: [group][row][8].
+// Sums the radiance of each row of a face.
 //   face  [group][row][count][8]
+//   sums  [group][row][8]
 __kernel void sum_rows(const __global float* face, __global float* sums, int count)
 {
   const ulong row = get_global_id(0);
@@ -111,18 +113,19 @@ __kernel void sum_rows(const __global float* face, __global float* sums, int cou
   ((__global float8*)sums)[row] = sum;
 }
 
-// Sets the incident radiance along each direction for every voxel of a face.
-//   values  [group][8]
-//   count   voxels of the face
+// Sets the incident radiance of a face, equal for all its voxels.
+//   values  [group][8], W / (length^2 sr)
+//   count   number of voxels of the face
 __kernel void fill_face(__global float* face, const __global float* values, int count)
 {
   const ulong i = get_global_id(0);
   ((__global float8*)face)[i] = ((const __global float8*)values)[i / count];
 }
 
-// Adds the radiance reflected by the cells of the two faces perpendicular to an axis, along every incident direction.
+// Adds the reflected radiance of the cells of the two faces perpendicular to an axis to the incident radiance along
+// every incident direction.
 //   face  [group][cell][8], as in fill_face
-//   in    radiance by cell of the box faces; those of the axis begin at `low` and `high`
+//   in    radiance by cell of the box faces; the cells of the two faces begin at `low` and `high`
 __kernel void enter_by_cells(
   __global float* face, const __global float* in, const __global int* up, int axis, ulong low, ulong high)
 {
@@ -132,7 +135,7 @@ __kernel void enter_by_cells(
 
 // Adds the outgoing power of each cell of the two faces perpendicular to an axis.
 //   out     W, by cell of the box faces
-//   across  [group][3][8]: W that radiance 1 carries through a cell perpendicular to each axis
+//   across  [group][3][8]: power that radiance 1 carries through a cell perpendicular to each axis, W
 __kernel void leave_by_cells(const __global float* face, __global float* out, const __global float* across,
   const __global int* up, int axis, int groups, ulong low, ulong high)
 {
@@ -150,14 +153,14 @@ __kernel void leave_by_cells(const __global float* face, __global float* out, co
   out[high + cell] += (of_high.x + of_high.y) + (of_high.z + of_high.w);
 }
 
-// Adds an isotropic source.
+// Adds an isotropic source, by voxel, to the source of all directions.
 __kernel void add_even_source(__global float* radiance, const __global float* source, ulong stride)
 {
   const ulong i = get_global_id(0), group = get_global_id(1);
   ((__global float8*)radiance)[group * stride + i] += (float8)source[i];
 }
 
-// Sets an isotropic source.
+// Sets the source of all directions to an isotropic emission, by voxel.
 __kernel void even_source(__global float* radiance, const __global float* emission, ulong stride)
 {
   const ulong i = get_global_id(0), group = get_global_id(1);

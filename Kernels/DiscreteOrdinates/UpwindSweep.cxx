@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LongestChord = 1e6; ///< in voxel edges, for directions along which nothing varies
+constexpr double LongestChord = 1e6; ///< largest chord, in voxel edges, for directions along which nothing varies
 
 std::size_t FaceVoxels(const Grid& grid, int axis)
 {
@@ -78,7 +78,7 @@ void UpwindSweep::LoadDirections()
     std::array<std::array<float, OrdinateLanes>, 3> powers;
     for (int lane = 0; lane < OrdinateLanes; ++lane)
     {
-      std::array<double, 3> crossed = {}; // faces crossed along each axis per unit length
+      std::array<double, 3> crossed = {}; // number of voxel faces crossed along each axis, per unit length
       for (int a = 0; a < 3; ++a)
       {
         crossed[a] = this->IsCarried(a) ? std::abs(this->Groups.Of(g, lane).omega[a]) / h[a] : 0.0;
@@ -183,7 +183,8 @@ void UpwindSweep::LeaveByCells() const
   }
 }
 
-/// Sets incident radiance. Periodic faces already hold the radiance that left at the other end.
+/// Sets the incident radiance of the boundary source. Periodic faces already hold the radiance that left at their other
+/// end.
 void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
 {
   for (int axis = 0; axis < 3; ++axis)
@@ -226,7 +227,7 @@ void UpwindSweep::FillFace(int axis, const IncomingRadiance& incoming, FacePower
   cl::Kernel fill = this->Kernel("fill_face");
   With(fill, this->Faces[axis], table, cl_int(voxels));
   Launch(this->TheDevice, fill, cl::NDRange(this->Groups.Count() * voxels));
-  this->TheDevice.Finish(); // the table goes
+  this->TheDevice.Finish(); // before the table on the host is destroyed
 }
 
 void UpwindSweep::Count(FacePowers& powers) const

@@ -11,46 +11,47 @@
 
 namespace tyndall
 {
-/// Incident radiance along a direction (an index) through a face -x, +x, -y, +y, -z, +z. W / (length^2 sr)
+/// Incident radiance, W / (length^2 sr), along a direction (an index) through a face -x, +x, -y, +y, -z, +z.
 using IncomingRadiance = std::function<double(int direction, int face)>;
 
 /// Power of one channel through the faces -x, +x, -y, +y, -z, +z, W.
 struct FacePowers
 {
   std::array<double, 6> in = {}, out = {};
-  double onTheWay = 0.0; ///< left through a periodic face, wraps around in the next sweep
+  double onTheWay = 0.0; ///< power that left through periodic faces and wraps around in the next sweep
 };
 
-/// Transports light along all directions through the grid, once.
+/// Sweep of discrete ordinates: transports light along all directions through the grid once.
 class OrdinateSweep
 {
 public:
   virtual ~OrdinateSweep() = default;
 
-  /// @param radiance  on entry the source relative to `scale`, W / (length^3 sr); on return the mean radiance, W /
-  ///   (length^2 sr)
-  /// @param incoming  empty: no incident light except reflected light
-  /// @return outgoing power before reflection, and incident power without reflection
+  /// @param radiance  on entry the source, W / (length^3 sr), to be multiplied by `scale`; on return the mean radiance
+  ///   of each voxel, W / (length^2 sr)
+  /// @param scale  factor of the source, by voxel
+  /// @param incoming  boundary source; empty: no light is incident except reflected light
+  /// @return outgoing power before reflection, and incident power of the boundary source
   virtual FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
     const IncomingRadiance& incoming, const Monitor& monitor) = 0;
 };
 
-/// One channel of light by cell of the box faces, as in FaceLight.
+/// Light of one channel by cell of the box faces: FaceLight::Out() and In().
 struct LightOfCells
 {
-  const Buffer<float>& out; ///< W; outgoing power is added
-  const Buffer<float>& in;  ///< incident radiance
+  const Buffer<float>& out; ///< outgoing power, W; sweeps add to it
+  const Buffer<float>& in;  ///< reflected radiance, W / (length^2 sr)
 };
 
 /// Boundary conditions of a sweep.
 struct SweptFaces
 {
-  /// Periodic axes: light wraps around in the next sweep.
+  /// Periodic axes, around which light wraps in the next sweep.
   std::array<bool, 3> periodic = {};
-  /// Axes of one voxel in the whole grid: nothing varies along them, and no light is transported.
+  /// Axes with one voxel in the whole grid that are periodic: nothing varies along them, and no light is transported.
   std::array<bool, 3> unvarying = {};
   const LightOfCells* reflecting = nullptr; ///< null: no face reflects
-  /// Bits of the faces -x, +x, ... +z that are interior to the whole grid: their power is not counted.
+  /// Bit mask of the faces -x, +x, ... +z of the block that are interior to the whole grid; their power is not counted.
   int inner = 0;
 
   /// Boundary conditions of the whole grid. `reflecting` must outlive the result.
@@ -59,36 +60,37 @@ struct SweptFaces
 
 /// Upwind sweep along all directions through a box of voxels (numerics.md, Eqs. (D9) to (D11)).
 ///
-/// Each voxel is crossed along the mean chord of the direction, with exponential attenuation: stable and positive for
-/// every optical thickness, and exact along an axis. Light that leaves a voxel enters the downwind voxels with equal
-/// radiance, so power is conserved to rounding. The scheme is diffusive sideways: first order in the voxel edges for
-/// oblique directions.
+/// Light crosses each voxel along the mean chord of the direction, with exponential attenuation: stable and positive
+/// for every optical thickness, and exact along an axis. Light leaves a voxel into its downwind neighbours with equal
+/// radiance, so that power is conserved to rounding. For oblique directions light spreads across the direction: first
+/// order in the voxel edges.
 class UpwindSweep : public OrdinateSweep
 {
 public:
   UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups& groups, const SweptFaces& faces);
 
-  /// Bytes of device memory for the faces.
+  /// Bytes of device memory for the radiance through the faces.
   static std::size_t Bytes(const Grid& grid, const OrdinateGroups& groups);
 
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
     const IncomingRadiance& incoming, const Monitor& monitor) override;
 
-  // The steps of Apply, for a pipeline over ranks: boundary source, some groups of directions, outgoing powers.
+  // Steps of Apply(), for a pipeline over ranks: LetIn() sets the boundary source, SweepGroups() sweeps `count` groups
+  // of directions, Count() and LeaveByCells() tally the outgoing power.
   void LetIn(const IncomingRadiance& incoming, FacePowers& powers);
   void SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
     const Buffer<float>& scale, const Monitor& monitor);
   void Count(FacePowers& powers) const;
-  void LeaveByCells() const; ///< does nothing if no face reflects
+  void LeaveByCells() const; ///< adds outgoing power by cell to SweptFaces::reflecting, if faces reflect
 
   /// Radiance through the faces perpendicular to an axis, [group][row][voxel of the row][8]: incident before the group
-  /// is swept, outgoing afterwards. Perpendicular to z rows run along y, else along z.
+  /// is swept, outgoing afterwards. Rows are numbered by z, of faces perpendicular to z by y.
   std::vector<float> ReadFace(int axis, int firstGroup, int groups) const;
   void WriteFace(int axis, int firstGroup, const std::vector<float>& values);
 
 private:
   bool IsCarried(int axis) const { return !this->At.unvarying[axis]; }
-  std::array<int, 2> FaceSize(int axis) const; ///< rows of a group, voxels of a row
+  std::array<int, 2> FaceSize(int axis) const; ///< number of rows of a group, and of voxels in a row
   void LoadDirections();
   bool IsCounted(int face) const { return !(this->At.inner >> face & 1); }
   void FillFace(int axis, const IncomingRadiance& incoming, FacePowers& powers);

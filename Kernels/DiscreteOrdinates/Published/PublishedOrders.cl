@@ -1,9 +1,9 @@
-// One explicit step of the radiance along all directions, as published (Gong et al., Eqs. (7) and (9)). Radiance is
-// [group][stride][8 directions].
+// Kernels of the published scheme: one explicit step of the radiance along all directions (Gong et al., Eqs. (7) and
+// (9)). Radiance is [group][stride][8 directions].
 
-// Radiance before advection: L + h (Q - sigma_t L + S).
-//   scattered  S, W / (length^3 sr)
-//   steady     Q, emission and first-collision source of lamps, likewise
+// Computes the radiance before advection: L + h (Q - sigma_t L + S), with the step h.
+//   scattered  S, scattering source, W / (length^3 sr)
+//   steady     Q, emission and first-collision source of lamps, W / (length^3 sr)
 __kernel void change_radiance(__global float* radiance, const __global float* scattered, const __global float* steady,
   const __global float* sigma_t, float step, ulong stride)
 {
@@ -13,12 +13,14 @@ __kernel void change_radiance(__global float* radiance, const __global float* sc
   *light += step * (gain - sigma_t[i] * *light);
 }
 
-// Advects the radiance by one step: each voxel reads it one step upwind, with trilinear interpolation between voxels.
-//   parts     [group][3][8]: the step along each axis in voxels, 0 to 1
-//   up        [group][3]: whether the group goes up an axis
-//   incoming  [group][3][8]: radiance outside the box, by the axis through whose face it enters
-//   size      voxels along the axes; groups are `stride` apart
-//   periodic  bits of the periodic axes
+// Advects the radiance by one step: each voxel takes the radiance one step upwind, interpolated trilinearly between
+// voxels.
+//   parts     [group][3][8]: length of the step along each axis in voxels, 0 to 1
+//   up        [group][3]: whether the directions of the group are positive along each axis
+//   incoming  [group][3][8]: radiance outside the box, by the axis perpendicular to the face through which it enters
+//   size      number of voxels along each axis
+//   stride    stride between groups, voxels
+//   periodic  bit mask of the periodic axes
 __kernel void move_on(const __global float* before, __global float* after, const __global float* parts,
   const __global int* up, const __global float* incoming, int4 size, ulong stride, int periodic)
 {
@@ -34,7 +36,7 @@ __kernel void move_on(const __global float* before, __global float* after, const
   {
     float8 weight = (float8)1.0f;
     int from[3];
-    int left = -1; // axis along which the corner is outside the box
+    int left = -1; // axis along which the interpolation point is outside the box; -1: inside
     for (int a = 0; a < 3; ++a)
     {
       const int upwind = corner >> a & 1;

@@ -16,11 +16,12 @@ namespace tyndall
 namespace
 {
 constexpr int MostSteps = 10000;
-constexpr double WithoutEnd = 1e4; ///< ratio of a step's change to that of the first step that counts as divergence
+/// Ratio of a step's change to that of the first step above which the radiance counts as diverging.
+constexpr double WithoutEnd = 1e4;
 
-/// One explicit step along every direction, as long as the shortest voxel edge (Gong et al., Eqs. (7) and (9)). The
-/// paper does not specify interpolation between voxels; here it is linear, as for textures. If sigma_t times the step
-/// is above 1, radiance becomes negative; above 2 it diverges (numerics.md, Eq. (D13)).
+/// One explicit step of the radiance along every direction, whose length is the shortest voxel edge (Gong et al., Eqs.
+/// (7) and (9)). The paper does not specify interpolation between voxels; here it is trilinear. If sigma_t times the
+/// step is above 1, radiance becomes negative; above 2 it diverges (numerics.md, Eq. (D13)).
 class ExplicitStep
 {
 public:
@@ -54,8 +55,10 @@ public:
     this->Up = Buffer<cl_int>(device, up, "the directions");
   }
 
-  /// @param radiance  overwritten with scratch values
+  /// Takes the step.
+  /// @param radiance  radiance before the step; overwritten with scratch values
   /// @param scattered, steady  sources, W / (length^3 sr)
+  /// @param after  receives the radiance after the step
   void Apply(const Buffer<float>& radiance, const Buffer<float>& scattered, const Buffer<float>& steady,
     const Buffer<float>& sigma_t, const Buffer<float>& after) const
   {
@@ -71,7 +74,7 @@ public:
     this->TheDevice.Finish();
   }
 
-  /// Power through each face, W.
+  /// Incident and outgoing power of a step through each face, W.
   FacePowers Powers(const Buffer<float>& radiance) const
   {
     FacePowers powers;
@@ -99,7 +102,8 @@ private:
       this->TheGrid.VoxelVolume() / this->TheGrid.spacing[axis];
   }
 
-  /// Radiance in the voxels at the exit faces of each group perpendicular to an axis, summed along rows.
+  /// Radiance in the voxels at the exit face, perpendicular to an axis, of each group, summed along the rows of the
+  /// face.
   std::vector<float> SumsLeaving(const Buffer<float>& radiance, int axis) const
   {
     const std::array<std::size_t, 3> strides = this->TheGrid.Strides();
@@ -179,7 +183,7 @@ private:
     this->LampFlux = this->Arrays.Light.flux.Read();
   }
 
-  /// After a step: computes the scattering source of the next step, and the powers.
+  /// Computes the scattering source of the next step, and the powers after this step.
   void Scatter(const Monitor& monitor)
   {
     this->Scattering.Scatter(
@@ -226,7 +230,7 @@ private:
   {
     if (this->Settings.netFlux)
     {
-      this->Arrays.Light.flux.Fill(0.0f); // holds the sum over all steps
+      this->Arrays.Light.flux.Fill(0.0f); // discards the sum over all steps
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
     }
     this->Arrays.Read(this->Result);
@@ -249,7 +253,7 @@ private:
   AngularScattering Scattering;
   Buffer<float> Radiance, Scattered, Steady;
   std::vector<float> Fluence, LampFluence, LampFlux;
-  EnergyLedger OfSources; ///< of lamps and emission
+  EnergyLedger OfSources; ///< power of lamps and emission
   OrdinatesRecord Record;
   OrdinatesResult Result;
   double Change = 0.0, FirstChange = 0.0;
