@@ -22,13 +22,15 @@ namespace tyndall
 {
 namespace
 {
-/// Values per block, which stays in the cache for the tests for finite values, extremes and norms.
+/// Number of values in a block. A block stays in the cache while its values are tested for being finite and their
+/// extremes and norms are found.
 constexpr std::size_t BlockValues = 8192;
 constexpr std::size_t ThreadValues = 65536; ///< minimum number of values per thread
-/// Minimum number of extremes computed in parallel: enough for vector units of any width.
+/// Minimum number of lanes, that is of extremes computed in parallel: enough for vector units of any width.
 constexpr std::size_t Lanes = 32;
 
-/// Whether any value has an exponent of all ones, as infinity and NaN do. The loop is written for vectorisation.
+/// Whether any floating-point number is infinite or NaN: all bits of its exponent (mask `exponent`) are 1. The loop is
+/// written for vectorisation.
 template <class Bits>
 bool HasExponent(const void* values, std::size_t count, Bits exponent)
 {
@@ -59,7 +61,7 @@ bool HasNotFinite(const Integer*, std::size_t)
   return false;
 }
 
-/// Extremes of the values that one thread has processed.
+/// Extremes, by component and of the tuples' norm, of the values that one thread has processed.
 template <class T>
 class SeenValues
 {
@@ -78,7 +80,7 @@ public:
   {
     const std::size_t components = this->Lowest.size();
     this->FindExtremesOfLanes(values, count);
-    double least = 0.0, most = 0.0; // extremes of the squared norm; rounding preserves order
+    double least = 0.0, most = 0.0; // bounds of the squared norm; rounding preserves order
     for (std::size_t c = 0; c < components; ++c)
     {
       T low = this->LaneLowest[c], high = this->LaneHighest[c];
@@ -167,7 +169,7 @@ private:
     this->LargestSquare = largest;
   }
 
-  std::vector<T> Lowest, Highest; ///< of each component
+  std::vector<T> Lowest, Highest; ///< extremes of each component
   double LeastSquare = std::numeric_limits<double>::max(), LargestSquare = 0.0;
   std::size_t Width; ///< number of lanes, a multiple of the number of components
   std::vector<T> LaneLowest, LaneHighest;
@@ -247,7 +249,7 @@ void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array)
         ->Set(vtkDataArray::COMPONENT_RANGE(), ranges.components[c].data(), 2);
     }
     information->Set(key, all);
-    all->FastDelete(); // Delete would search for reference cycles
+    all->FastDelete(); // faster than Delete, which would search for reference cycles
   }
   if (ranges.components.size() > 1)
   {

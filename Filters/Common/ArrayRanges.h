@@ -22,28 +22,29 @@ namespace tyndall
 struct ArrayRanges
 {
   std::vector<std::array<double, 2>> components; ///< range of each component; empty: there are no values
-  std::array<double, 2> norm = {};               ///< range of the tuples' Euclidean norm, in double as in vtkDataArray
+  /// Range of the Euclidean norm of the tuples; double, as in vtkDataArray
+  std::array<double, 2> norm = {};
   /// Index of the first value that is infinite or NaN; the number of values if all are finite.
   std::size_t firstNotFinite = 0;
 };
 
-/// Computes the ranges. If a value is not finite, only firstNotFinite is valid.
+/// Computes the ranges of an array's values. If a value is not finite, only firstNotFinite of the result is valid.
 /// @param count  number of values: components times tuples
 ArrayRanges RangesOf(const float* values, std::size_t count, int components);
 
-/// Stores ranges in an array whose values are all finite and final: Modified() removes them, as it does VTK's own
-/// ranges. Set the array's name and number of components before.
+/// Stores ranges in the information of an array, where VTK looks for them. The array's values must be finite and final,
+/// and its name and number of components set before: Modified() removes the ranges, as it does VTK's own.
 void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array);
 
-/// Copies the ranges that are stored in `from` to an array with the same values, as far as there are any.
+/// Copies the ranges that are stored in the array `from`, if any, to `array`, which must have the same values.
 void LeaveSameRanges(vtkDataArray* from, vtkDataArray* array);
 
 /// Computes and stores the ranges of an array. Does nothing if a value is not finite, or unless the array is an array
 /// of structures (AOS) of float, double, int or unsigned char.
 void LeaveRanges(vtkDataArray* array);
 
-/// A memory buffer of a vtkAOSDataArrayTemplate that is owned by a std::vector. It is reference counted: arrays that
-/// are shallow copies of each other share it.
+/// Memory buffer of a vtkAOSDataArrayTemplate, owned by a std::vector. The buffer is reference counted: shallow copies
+/// of an array share it.
 template <class Value>
 class VectorBuffer : public vtkBuffer<Value>
 {
@@ -53,8 +54,8 @@ public:
   std::vector<Value> Values;
 };
 
-/// A vtkFloatArray (vtkUnsignedCharArray) whose initial values are stored in a std::vector, so that results of kernels
-/// become VTK arrays without a copy. It behaves like its superclass, and has the same class name.
+/// A vtkFloatArray or vtkUnsignedCharArray (`Array`) whose initial values are stored in a std::vector, so that results
+/// of kernels become VTK arrays without a copy. It behaves like its superclass, and has the same class name.
 template <class Array>
 class VectorArray : public Array
 {
@@ -74,7 +75,7 @@ public:
 };
 
 /// Makes a VTK array from a vector without a copy.
-/// @param values  tuples of `components` values, one after the other
+/// @param values  tuples of `components` values each
 template <class Array, class Value = typename Array::ValueType>
 vtkSmartPointer<Array> ArrayOf(const char* name, std::vector<Value>&& values, int components)
 {

@@ -13,7 +13,7 @@ namespace
 {
 constexpr double Unknown = std::numeric_limits<double>::infinity();
 
-/// The number after a word in a file; Unknown if there is none.
+/// Reads the number that follows `word` in a text file; Unknown if there is none.
 double NumberAfter(const char* path, const std::string& word)
 {
   std::ifstream file(path);
@@ -28,7 +28,7 @@ double NumberAfter(const char* path, const std::string& word)
   return Unknown;
 }
 
-/// The number at the start of a file; Unknown if there is none (such as "max").
+/// Reads the number at the start of a text file; Unknown if the file starts with something else (such as "max").
 double NumberInFile(const char* path)
 {
   double number = 0.0;
@@ -38,7 +38,7 @@ double NumberInFile(const char* path)
 double LeftInContainer()
 {
   const double most = NumberInFile("/sys/fs/cgroup/memory.max"), taken = NumberInFile("/sys/fs/cgroup/memory.current");
-  // Memory that the kernel frees on demand.
+  // File cache that the kernel frees on demand, bytes; it is part of memory.current.
   const double cache = NumberAfter("/sys/fs/cgroup/memory.stat", "inactive_file");
   return most == Unknown || taken == Unknown ? Unknown : most - taken + (cache == Unknown ? 0.0 : cache);
 }

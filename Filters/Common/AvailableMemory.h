@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-/// Memory that filters may take: on this machine, and on the device.
+/// Limits of the memory that filters allocate on the host and on the OpenCL device.
 namespace tyndall
 {
 /// Memory that this process can still allocate, bytes: the smallest of three limits, which are the machine's free or
@@ -14,9 +14,9 @@ namespace tyndall
 /// if none of them is known.
 double AvailableMemory();
 
-// The filters' property MemoryBudget.
+// Converts the filters' property MemoryBudget to the kernels' MemoryBudget.
 
-/// @param mebibytes  limit, MiB; 0: only the device's own limit
+/// @param mebibytes  limit of device memory, MiB; 0: only the device's own limit
 /// @param spills  true: data beyond the limit are kept in host memory; false: exceeding it is an error
 inline MemoryBudget BudgetOf(int mebibytes, bool spills)
 {

@@ -60,7 +60,7 @@ vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
     return given;
   }
   auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  // VTK's own filters often produce doubles; levels of an octree are bytes.
+  // Array types that are converted in parallel: VTK's own filters often produce doubles; levels of an octree are bytes.
   if (!ConvertInThreads<vtkDoubleArray>(array, floats) && !ConvertInThreads<vtkUnsignedCharArray>(array, floats))
   {
     floats->DeepCopy(array);
@@ -107,7 +107,7 @@ vtkSmartPointer<vtkFloatArray> AveragedToCells(vtkImageData* image, vtkFloatArra
 {
   vtkNew<vtkImageData> points;
   points->CopyStructure(image);
-  vtkNew<vtkFloatArray> named; // The filter drops an array without a name.
+  vtkNew<vtkFloatArray> named; // vtkPointDataToCellData drops arrays without a name
   named->ShallowCopy(ofPoints);
   named->SetName("averaged");
   points->GetPointData()->AddArray(named);
@@ -117,14 +117,14 @@ vtkSmartPointer<vtkFloatArray> AveragedToCells(vtkImageData* image, vtkFloatArra
   return vtkArrayDownCast<vtkFloatArray>(average->GetOutput()->GetCellData()->GetArray("averaged"));
 }
 
-/// A cell or point array that was found; nothing is checked.
+/// A cell or point array that was found by its name; type and shape are not checked.
 struct Found
 {
   vtkDataArray* array = nullptr;
   bool ofPoints = false;
 };
 
-/// Returns the array, or a copy in which hidden cells have the value `empty` if there are any.
+/// Returns the array `ofCells`, or, if the image has hidden cells, a copy in which these have the value `empty`.
 vtkSmartPointer<vtkFloatArray> WithoutHidden(
   vtkImageData* image, const vtkSmartPointer<vtkFloatArray>& ofCells, float empty)
 {
@@ -154,11 +154,11 @@ FloatField ToField(vtkImageData* image, const Found& found, const std::string& n
   return FloatField(WithoutHidden(image, found.ofPoints ? AveragedToCells(image, floats) : floats, empty));
 }
 
-/// The array selected by SetInputArrayToProcess.
+/// The array selected by SetInputArrayToProcess: by its name or by its attribute type.
 struct Choice
 {
-  std::string name;   ///< name of the array
-  int attribute = -1; ///< or its attribute type, e.g. SCALARS
+  std::string name;   ///< name of the array; empty: selected by attribute
+  int attribute = -1; ///< attribute type, e.g. SCALARS; -1: selected by name
   bool pointsFirst = false;
   bool made = false; ///< selected by the user: neither VTK's default nor the name of the default array
 };
@@ -166,7 +166,7 @@ struct Choice
 /// The name that ParaView's panel passes if the input has no array of the default name (none_string of the proxies).
 const char* const NothingChosen = "(by name)";
 
-/// Value in field data `..._array`: the point array takes precedence.
+/// Second text in field data `..._array` (NoteChoices) if the point array takes precedence over the cell array.
 const char* const OfPoints = "points";
 
 std::string ChoiceFact(const std::string& quantity)
@@ -174,7 +174,8 @@ std::string ChoiceFact(const std::string& quantity)
   return quantity + "_array";
 }
 
-/// Uses the array that the filter upstream used for the quantity, if it recorded one that still exists.
+/// Changes the choice to the array that the filter upstream used for the quantity, if it recorded one that still
+/// exists.
 void FollowFilterBefore(vtkImageData* image, Choice& choice)
 {
   auto* const said =
@@ -204,7 +205,7 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std:
     choice.attribute = information->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
   }
   const bool nothing = choice.name == NothingChosen ||
-    (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS); // VTK's own default
+    (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS); // VTK's default, not a selection
   choice.made = !nothing && choice.name != otherwise;
   if (nothing)
   {
@@ -247,7 +248,7 @@ Found Find(vtkImageData* image, const Choice& choice)
 
 FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components components, float empty = 0.0f)
 {
-  GridOf(image); // throws the right error for an image without cells
+  GridOf(image); // throws the specific error for an image without cells
   const Found found = Find(image, choice);
   if (found.array)
   {

@@ -44,7 +44,7 @@ Ending EndingOf(const std::function<void()>& work)
   {
     return { Ending::Failed, NoMemory };
   }
-  catch (const std::length_error&) // requested size exceeds any memory
+  catch (const std::length_error&) // thrown by a container whose requested size exceeds any memory
   {
     return { Ending::Failed, NoMemory };
   }

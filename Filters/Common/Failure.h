@@ -23,14 +23,14 @@ struct Ending
   enum Kind
   {
     Done,
-    Aborted,     ///< no error; the outputs are empty
+    Aborted,     ///< stopped on request, without an error; the outputs are empty
     InputFailed, ///< the filter upstream failed and has reported it
-    Empty,       ///< no error; the input has no data
+    Empty,       ///< the input has no data, without an error
     Failed,
   };
 
   Kind kind = Done;
-  std::string why; ///< for Failed: message for users
+  std::string why; ///< message for users if kind is Failed
 };
 
 /// Runs `work`, catches any exception and returns it as an outcome.
@@ -39,17 +39,17 @@ Ending EndingOf(const std::function<void()>& work);
 /// Throws the exception that EndingOf turns into this outcome; for Failed, InvalidInput.
 void Throw(const Ending& ending);
 
-/// Names of field data. The empty outputs of a filter that failed or was aborted carry them to inform filters
-/// downstream.
+/// Names of field data that inform filters downstream: the outputs are empty because the filter was aborted, or because
+/// it failed.
 constexpr const char* AbortedFact = "aborted";
 constexpr const char* FailedFact = "failed";
-/// The output is empty because the file that it was read from contains no data, which is no error.
+/// Name of field data: the output is empty because the file that it was read from contains no data, which is no error.
 constexpr const char* EmptyFact = "nothing_in_file";
-/// Set in addition to FailedFact if a rank did not reach the filter, so that filters downstream do not wait for it
-/// again.
+/// Name of field data, set in addition to FailedFact if a rank did not reach the filter, so that filters downstream do
+/// not wait for that rank again.
 constexpr const char* MissingFact = "rank_missing";
 
-/// For an empty input: ends the work of Guarded (Pieces/GuardedWork.h) without an error if the filter upstream failed,
-/// was aborted, or read an empty file.
+/// Ends the work of Guarded (Pieces/GuardedWork.h) without an error if field data of the input say that the filter
+/// upstream failed, was aborted, or read an empty file. Called for empty inputs.
 void StopIfUpstreamFailed(vtkDataObject* input);
 }

@@ -34,7 +34,7 @@ namespace tyndall
 {
 namespace
 {
-/// Key in a filter's information for the medium axes.
+/// Key in a filter's information: the medium axes in which the filter works (NoteOwnAxes).
 vtkInformationDoubleVectorKey* AxesOfFilter()
 {
   static auto* const key = vtkInformationDoubleVectorKey::MakeKey("OWN_AXES", "Tyndall");
@@ -48,7 +48,7 @@ constexpr double Aslant = 1e-6; ///< an axis is oblique if its direction deviate
 vtkSmartPointer<vtkIdList> OrderOf(const AxisWays& ways, const std::array<vtkIdType, 3>& count)
 {
   const std::array<vtkIdType, 3> stride = { 1, count[0], count[0] * count[1] };
-  std::array<vtkIdType, 3> counts, first, step; // per world axis
+  std::array<vtkIdType, 3> counts, first, step; // along each world axis
   for (int axis = 0; axis < 3; ++axis)
   {
     const int world = ways.world[axis];
@@ -200,7 +200,7 @@ double FarthestFromUnit(const Rotation& matrix)
     for (int column = 0; column < 3; ++column)
     {
       const double off = std::abs(matrix[row][column] - (row == column ? 1.0 : 0.0));
-      farthest = off <= farthest ? farthest : off; // the comparison makes NaN count as far
+      farthest = off <= farthest ? farthest : off; // this form of comparison counts NaN as farthest
     }
   }
   return farthest;
@@ -226,7 +226,7 @@ Rotation NextRotation(Rotation matrix)
   return matrix;
 }
 
-/// The direction matrix for positive spacings.
+/// Direction matrix of an image after the signs of negative spacings have moved to it.
 Rotation DirectionOf(vtkImageData* image)
 {
   Rotation direction;
@@ -252,7 +252,7 @@ void SetDirection(vtkImageData* image, const Rotation& direction)
 
 using Turn = std::function<OwnAxes::Vec(const OwnAxes::Vec&)>;
 
-/// Components of a lamp in field data: the first one of its position, and of its direction.
+/// Index of the first component of the position, and of the direction, of a lamp in field data LampsApartFact.
 constexpr int LampPlace = 1, LampDirection = 4;
 
 vtkSmartPointer<vtkDataArray> NewLike(vtkDataArray* array)
@@ -265,7 +265,7 @@ vtkSmartPointer<vtkDataArray> NewLike(vtkDataArray* array)
   return made;
 }
 
-/// Transforms each three consecutive components from `first` on as a vector.
+/// Transforms components `first` to `last` - 1 of each tuple, three at a time, as vectors.
 void TurnComponents(vtkDataArray* from, int first, int last, const Turn& turn, vtkDataArray* to)
 {
   auto* const floats = vtkArrayDownCast<vtkFloatArray>(from);
@@ -306,7 +306,7 @@ vtkSmartPointer<vtkDataArray> TurnedArray(vtkDataArray* array, const Turn& turn)
   return turned;
 }
 
-/// Replaces the array of the same name, and keeps its role as active attribute.
+/// Replaces array number `index` by the array `other` of the same name, which keeps the role of active attribute.
 void Replace(vtkDataSetAttributes* arrays, int index, vtkDataArray* other)
 {
   const int attribute = arrays->IsArrayAnAttribute(index);
@@ -322,8 +322,8 @@ bool IsOfVectors(vtkDataArray* array)
   return array && array->GetName() && array->GetNumberOfComponents() % 3 == 0;
 }
 
-/// Rotates directions in field data, and positions and directions of lamps.
-/// @param note  whether to set TimeBeforeTurning
+/// Rotates directions in an image's field data, and transforms positions and directions of its lamps (LampsApartFact).
+/// @param note  whether to record the times of the originals in the copies (TimeBeforeTurning)
 void TurnFacts(vtkImageData* image, const Turn& place, const Turn& way, bool note)
 {
   vtkNew<vtkFieldData> own;
@@ -361,7 +361,7 @@ bool IsVectorName(const std::string& name)
   return std::find(std::begin(VectorNames), std::end(VectorNames), name) != std::end(VectorNames);
 }
 
-/// Name of the array selected as mean direction; empty: the default one.
+/// Name of the array that is selected as mean direction at an input port; empty: the default array.
 std::string ChosenMeanDirection(vtkAlgorithm* filter, int port, vtkImageData* image)
 {
   const std::vector<std::string> chosen = VoxelArraysOf(filter->GetInputPortInformation(port)).chosen;
@@ -372,7 +372,8 @@ std::string ChosenMeanDirection(vtkAlgorithm* filter, int port, vtkImageData* im
   return array && array->GetName() ? array->GetName() : "";
 }
 
-/// The original of a rotated copy, if it has the same number of tuples; null: not found.
+/// Finds the array of `image` of which `turned` is the rotated copy, if it has the same number of tuples; null: not
+/// found.
 vtkDataArray* BeforeTurning(vtkDataArray* turned, vtkImageData* image)
 {
   for (vtkDataSetAttributes* arrays : { static_cast<vtkDataSetAttributes*>(image ? image->GetCellData() : nullptr),

@@ -19,26 +19,26 @@ namespace tyndall
 /// both.
 struct AxisWays
 {
-  std::array<int, 3> world = { 0, 1, 2 }; ///< world axis of each image axis
+  std::array<int, 3> world = { 0, 1, 2 }; ///< world axis (0 to 2) along which each image axis lies
   /// For each image axis: whether it points in the negative direction of its world axis.
   std::array<bool, 3> down = { false, false, false };
-  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< along each world axis, above 0
+  std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< spacing along each world axis, above 0
 
   bool AreAlike() const; ///< whether the image axes are the world axes
-  /// The image's extent with indices that run along the world axes.
+  /// Converts the image's extent to indices that increase along the world axes.
   std::array<int, 6> Extent(const int* ofImage) const;
 };
 
 /// Finds the signed permutation of an image's axes.
 /// @param direction  direction matrix, 9 numbers; null: the unit matrix
-/// @return nothing if an axis is oblique, or if a spacing is 0 or not finite
+/// @return no value if an axis is oblique, or if a spacing is 0 or not finite
 std::optional<AxisWays> WaysOf(const double* spacing, const double* direction);
 
 /// Permutes an image's cells and points so that its axes are the world axes; every value keeps its position in the
 /// world. Returns the image itself if it is aligned already, or if its axes are oblique.
 vtkSmartPointer<vtkImageData> Aligned(vtkImageData* image);
 
-/// The same image, cell for cell, with positive spacings: signs of negative spacings move to the direction matrix.
+/// Returns an image with the same cells and positive spacings: signs of negative spacings move to the direction matrix.
 vtkSmartPointer<vtkImageData> WithSpacingsAbove0(vtkImageData* image);
 
 /// Medium axes: the axes of an image whose direction matrix is a rotation by other than right angles, mirrored or not.
@@ -49,10 +49,10 @@ struct OwnAxes
 {
   using Vec = std::array<double, 3>;
 
-  Vec origin = { 0.0, 0.0, 0.0 }; ///< of the image; this position has the same coordinates in both systems
-  /// Unit vectors of the medium axes in scene coordinates, one a row.
+  Vec origin = { 0.0, 0.0, 0.0 }; ///< image's origin; its coordinates are the same in both systems
+  /// Unit vectors of the medium axes in scene coordinates, one per row.
   Rotation axes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
-  /// Direction matrix for positive spacings.
+  /// Direction matrix of the image, for positive spacings.
   std::array<double, 9> direction = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
 
   bool AreThoseOfScene() const { return this->direction == OwnAxes().direction; }
@@ -75,14 +75,16 @@ OwnAxes OwnAxesOf(vtkImageData* image);
 OwnAxes OwnAxesOf(vtkAlgorithm* filter);
 void NoteOwnAxes(vtkAlgorithm* filter, const OwnAxes& axes);
 
-/// Transforms an image from the scene to the medium axes. Its vectors are rotated: net_flux, mean_direction,
-/// ior_gradient, the array that the filter reads from this port as mean direction, and directions in field data.
+/// Transforms an image from the scene to the medium axes. Vectors among its arrays are rotated: net_flux,
+/// mean_direction, ior_gradient, the array that the filter reads from input port `port` as mean direction, and
+/// directions in field data.
 vtkSmartPointer<vtkImageData> InOwnAxes(vtkImageData* image, const OwnAxes& axes, vtkAlgorithm* filter, int port);
 
-/// Transforms an output from the medium axes back to the scene.
-/// @param given  the filter's input in scene axes, whose original arrays replace their rotated copies; may be null
+/// Transforms an output image from the medium axes back to the scene axes.
+/// @param given  the filter's input in scene axes; its arrays replace their rotated copies in the output; may be null
 void PutIntoScene(vtkImageData* output, const OwnAxes& axes, vtkImageData* given);
 
-/// Transforms all outputs of a filter to the scene, except pictures, and photons, which are written in scene axes.
+/// Transforms all outputs of a filter to the scene axes. Excluded are pictures, and photons, which are written in scene
+/// axes.
 void PutIntoScene(vtkAlgorithm* filter, const OwnAxes& axes, vtkInformationVector* outputs, vtkImageData* given);
 }

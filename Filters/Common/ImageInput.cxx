@@ -48,21 +48,21 @@ namespace tyndall
 {
 namespace
 {
-/// Key in a port's information: its images are pictures.
+/// Key in a port's information: the images of this port are pictures (TakePictures).
 vtkInformationIntegerKey* ForPictures()
 {
   static auto* const key = vtkInformationIntegerKey::MakeKey("FOR_PICTURES", "Tyndall");
   return key;
 }
 
-/// Key in a port's information: it is for images, although it accepts any data.
+/// Key in a port's information: the port is for images (TakeImages), although it accepts any data.
 vtkInformationIntegerKey* ForImages()
 {
   static auto* const key = vtkInformationIntegerKey::MakeKey("FOR_IMAGES", "Tyndall");
   return key;
 }
 
-/// Key in a port's information: names of the arrays that the filter reads from its image.
+/// Key in a port's information: names of the arrays that the filter reads from the image at this port (ReadsVoxels).
 vtkInformationStringVectorKey* ChosenArrays()
 {
   static auto* const key = vtkInformationStringVectorKey::MakeKey("CHOSEN_ARRAYS", "Tyndall");
@@ -75,7 +75,7 @@ vtkInformationStringVectorKey* NamedArrays()
   return key;
 }
 
-/// Key in a filter's information: names of point arrays that it averages to cells.
+/// Key in a filter's information: names of point arrays that the filter averages to cells (NoteAveraged).
 vtkInformationStringKey* AveragedArrays()
 {
   static auto* const key = vtkInformationStringKey::MakeKey("AVERAGED_ARRAYS", "Tyndall");
@@ -98,7 +98,7 @@ bool HasArrays(vtkDataSetAttributes* attributes)
   return attributes->GetNumberOfArrays() > flags;
 }
 
-/// Converts flags of points to flags of the voxels around them.
+/// Converts vtkGhostType of points to vtkGhostType of the voxels around these points.
 void FlagVoxels(vtkImageData* points, vtkImageData* voxels)
 {
   const char* const name = vtkDataSetAttributes::GhostArrayName();
@@ -119,7 +119,7 @@ void FlagVoxels(vtkImageData* points, vtkImageData* voxels)
   voxels->GetCellData()->AddArray(flags);
 }
 
-/// Position of the corner of the voxel around point 0 that has the lowest indices.
+/// World position of that corner of the voxel around point 0 which has the lowest indices.
 std::array<double, 3> CornerBefore(const double* origin, const double* spacing, const double* direction)
 {
   std::array<double, 3> corner;
@@ -134,7 +134,8 @@ std::array<double, 3> CornerBefore(const double* origin, const double* spacing, 
   return corner;
 }
 
-/// The same before the image is known: from announced information.
+/// Whether an image may be read with one voxel around each point (AreAroundPoints), as far as announced information
+/// tells before the image exists.
 bool MayBeAroundPoints(vtkAlgorithm* filter, int port, vtkInformation* input)
 {
   auto* const image = vtkImageData::SafeDownCast(vtkDataObject::GetData(input));
@@ -151,7 +152,7 @@ std::string NameOfInput(int port)
   return "The input" + (port > 0 ? " " + std::to_string(port) : std::string());
 }
 
-/// @return a sentence naming filters of ParaView that convert such data to an image
+/// @return a sentence naming filters of ParaView that convert data of this type to an image
 std::string HowToMakeAnImage(vtkDataObject* data)
 {
   const std::string resample = "ResampleToImage (Resample To Image)";

@@ -26,7 +26,8 @@ namespace tyndall
 /// of a vtkMultiBlockDataSet or partitioned dataset. Adaptive meshes (AMR) are refused, since their blocks overlap.
 void TakeImages(vtkInformation* port);
 
-/// The same for a writer: composite data are refused, because VTK does not run a writer once for each block.
+/// In FillInputPortInformation of a writer: declares the port as one for a single image. Composite data are refused,
+/// because VTK does not run a writer once for each block.
 void TakeOneImage(vtkInformation* port);
 
 /// In FillInputPortInformation or FillOutputPortInformation: declares that the image is a picture without a position in
@@ -34,17 +35,17 @@ void TakeOneImage(vtkInformation* port);
 void TakePictures(vtkInformation* port);
 
 bool TakesPictures(vtkInformation* port);
-bool IsForImagesOfScene(vtkInformation* port); ///< whether the port is for images that are not pictures
+bool IsForImagesOfScene(vtkInformation* port); ///< whether the port is for images that are not pictures (TakePictures)
 
 /// In FillInputPortInformation: declares that the filter reads these arrays of the image as voxel values.
 /// @param chosen  default names of the arrays that SetInputArrayToProcess selects, by index; "": the active scalars
-/// @param named   names of further arrays that the filter reads; AnyArray: all arrays if none of the others exists
+/// @param named   names of further arrays that the filter reads; AnyArray: all arrays if none of the named ones exists
 void ReadsVoxels(
   vtkInformation* port, std::initializer_list<const char*> chosen, std::initializer_list<const char*> named = {});
 constexpr const char* AnyArray = "";
 struct VoxelArrays
 {
-  std::vector<std::string> chosen, named; ///< both empty: the port is not read as voxels
+  std::vector<std::string> chosen, named; ///< parameters of ReadsVoxels; both empty: the port is not read as voxels
 };
 VoxelArrays VoxelArraysOf(vtkInformation* port);
 
@@ -60,29 +61,30 @@ vtkSmartPointer<vtkImageData> PointsAsVoxels(vtkImageData* points);
 
 /// Records the point arrays that a filter averages to cells because it reads cell arrays of the same image.
 void NoteAveraged(vtkAlgorithm* filter, const std::vector<std::string>& arrays);
-/// Appends these names as a line to the settings used.
+/// Appends the names recorded by NoteAveraged, as one line, to the settings for field data `settings_used`.
 void AddAveraged(vtkAlgorithm* filter, std::vector<std::string>& settings);
 
-/// In ProcessRequest, for each request, of a filter in which light crosses voxels: warns once per update if VTK's
-/// pipeline will run the filter separately for each block of a composite input (RequestData sees only single blocks).
+/// Warns once per update if VTK's pipeline will run the filter separately for each block of a composite input. Called
+/// in ProcessRequest, for each request (RequestData sees only single blocks), by filters in which light crosses voxels.
 /// With several ranks only the first warns, about its own blocks.
 void WarnOfBlocks(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs);
 
-/// Called by Guarded before a filter works.
+/// Checks that ports for images have images. Called by Guarded before a filter works.
 /// @throws InvalidInput with advice if a port for images has data of another type
 void RequireImages(vtkAlgorithm* filter);
 
-/// Called by Guarded before anything reads arrays: an array that is shorter than its dataset would be read beyond its
-/// end.
+/// Checks that arrays are as long as their dataset, so that no array is read beyond its end. Called by Guarded before
+/// anything reads arrays.
 /// @throws InvalidInput if an array does not have one tuple for each point, cell or row
 void RequireWholeArrays(vtkAlgorithm* filter);
 
-/// In RequestInformation of a filter whose output has the voxels of the input at `port`: announces their extent, along
-/// aligned axes. If voxels are around points, as far as that is known, the extent is one larger along each axis. If the
-/// input has no extent because it is no image, one voxel is announced so that the pipeline runs the filter.
+/// In RequestInformation of a filter whose output has the voxels of the input at `port`: announces the extent of these
+/// voxels, along aligned axes. If voxels are around points, as far as that is known, the announced extent is one larger
+/// along each axis. If the input has no extent because it is no image, one voxel is announced so that the pipeline runs
+/// the filter.
 void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vtkInformationVector* outputs);
 
-// Meaning of vtkGhostType of an input image:
+// Meaning of the flags vtkGhostType of an input image:
 //
 // Hidden cells (HIDDENCELL, and as everywhere in VTK cells with a hidden point, HIDDENPOINT) are empty in all filters:
 // every array is read as 0 there, the refractive index as 1 (ReadCells, ReadChosenCells). Their values may be anything,
@@ -96,13 +98,13 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
 // Hidden and duplicate lights and photons are skipped: every rank asks for all of them, so the original of each
 // duplicate is present.
 
-/// A flag for each cell, not 0 if the cell is hidden; empty if no cell is.
+/// Flag of each cell of an image, not 0 if the cell is hidden; empty if no cell is hidden.
 std::vector<unsigned char> HiddenCells(vtkImageData* image);
 
 /// Indices of the points that are neither hidden nor duplicates, ascending.
 std::vector<long long> PointsThatCount(vtkPolyData* data);
 
-/// @throws InvalidInput if an input image has duplicate cells and more than one piece of the output is asked for,
-///   unless the filter works cell by cell
+/// @throws InvalidInput if an input image has duplicate cells and several pieces of the output are requested, unless
+///   the filter works cell by cell
 void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs);
 }

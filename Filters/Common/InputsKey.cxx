@@ -91,7 +91,7 @@ void AddCellArray(Digest& digest, vtkCellArray* cells)
   }
 }
 
-/// @param kinds  attribute types of the arrays to include
+/// @param kinds  attribute types of the arrays to include: vtkDataObject::POINT, CELL, FIELD
 std::uint64_t KeyOf(vtkDataObject* data, const std::vector<int>& kinds)
 {
   Digest digest;

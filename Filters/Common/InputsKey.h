@@ -32,7 +32,7 @@ inline vtkInformationUnsignedLongKey* TimeBeforeTurning()
   return key;
 }
 
-/// Modification time of an array; for a rotated copy, that of the original.
+/// Modification time of an array; for a rotated copy, that of the original array.
 inline vtkMTimeType TimeOf(vtkAbstractArray* array)
 {
   const bool isCopy = array->HasInformation() && array->GetInformation()->Has(TimeBeforeTurning());
@@ -61,13 +61,13 @@ inline std::vector<vtkMTimeType> TimesOfArrays(vtkDataObject* data)
 }
 
 /// Hash of everything a dataset holds, byte by byte: position, grid, points, arrays with their names. Unlike
-/// modification times it does not change if a filter upstream runs again with the same result, as ParaView's readers
-/// do, which read a file twice if one time step is requested in two ways.
-/// @param data  may be null, which has a hash of its own
+/// modification times, the hash does not change if a filter upstream runs again with the same result, as ParaView's
+/// readers do, which read a file twice if one time step is requested in two ways.
+/// @param data  may be null, for which the hash is a constant
 std::uint64_t ContentKey(vtkDataObject* data);
 
-/// The same without field data arrays. Ranks that hold the same photons may have different field data about the medium
-/// if one of them has no piece of it.
+/// Hash of a dataset as by ContentKey, but without field data arrays. Ranks that hold the same photons may have
+/// different field data about the medium if one of them has no piece of it.
 std::uint64_t ContentKeyButFacts(vtkDataObject* data);
 
 /// Key of a result computed on a device from a filter's inputs: keys are equal as long as nothing has changed, since
@@ -95,6 +95,7 @@ struct InputsKey
     this->Add(image->GetPointGhostArray());
   }
 
+  /// Adds the modification time of an array.
   /// @param array  null: no such array
   void Add(vtkDataArray* array) { this->times.push_back(array ? TimeOf(array) : 0); }
 
@@ -112,9 +113,9 @@ struct InputsKey
   }
 };
 
-/// Whether filters upstream of an input port have run since `time`, or will run. The modification time of their data is
-/// no substitute: ParaView's internal filters create these anew, with the same arrays, on every access, and values may
-/// change without Modified() of their array.
+/// Whether filters upstream of an input port have run since `time`, or will run. The modification time of the input
+/// data is no substitute: ParaView's internal filters create a new data object, with the same arrays, on every access,
+/// and values may change without Modified() of their array.
 inline bool RanSince(vtkAlgorithm* filter, int port, vtkMTimeType time)
 {
   bool ran = false;

@@ -122,7 +122,8 @@ MomentsInput ReadMoments(vtkImageData* image)
 
 namespace
 {
-/// Power through each face, W, in the order of FaceRadiance; 0 if there is no such field data.
+/// Net escaped power through each face, W, in the order of FaceRadiance, from field data `face_power_out`; 0 if
+/// missing.
 std::array<Rgb, 6> FacePowersOf(vtkDataObject* data)
 {
   std::array<Rgb, 6> powers = {};
@@ -163,7 +164,7 @@ UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium)
 
 namespace
 {
-/// A row of an array; zeros if the array is missing. Missing components repeat the last one.
+/// Tuple number `row` of an array; zeros if the array is missing. Missing components repeat the last one.
 template <std::size_t N>
 std::array<double, N> Row(vtkDataArray* array, vtkIdType row)
 {
@@ -270,7 +271,7 @@ Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes)
 
 namespace
 {
-/// Hidden pixels are set to black.
+/// Sets hidden pixels (vtkGhostType) to black.
 void DarkenHidden(vtkImageData* image, std::vector<float>& rgb)
 {
   vtkUnsignedCharArray* const flags = image->GetPointGhostArray();

@@ -60,23 +60,23 @@ Value FogInside(Value distance, double voxel)
   return std::min(std::max(static_cast<Value>(-distance / voxel), Value(0)), Value(1));
 }
 
-/// Indices for SetInputArrayToProcess in filters whose port 0 takes a medium.
+/// Indices for SetInputArrayToProcess of the medium's arrays, in filters whose port 0 takes a medium.
 enum MediumArray
 {
   SigmaA = 0,
   SigmaS = 1,
   Emission = 2,
 };
-/// The index for the refractive index, in filters that use it.
+/// Index for SetInputArrayToProcess of the refractive index, in filters that use it.
 constexpr int RefractiveIndex = 3;
 
-Quantities QuantitiesOfMedium(); ///< those of MediumArray, and RefractiveIndex
+Quantities QuantitiesOfMedium(); ///< indices of MediumArray, and RefractiveIndex, with default names
 
-/// Texts for field data `ignored` (IgnoredFact): for a filter that ignores refraction, and for one that ignores the
-/// medium's emission because its photons start from lights only. Empty if nothing is ignored.
+/// Texts for field data `ignored` (IgnoredFact): IgnoredIndex for a filter that ignores refraction, IgnoredEmission for
+/// one that ignores the medium's emission because its photons start from lights only. Empty if nothing is ignored.
 std::vector<std::string> IgnoredIndex(bool isUnusual);
 std::vector<std::string> IgnoredEmission(bool isUnusual);
-/// The same texts as one warning.
+/// Joins texts of IgnoredIndex and IgnoredEmission to one warning; empty if there are none.
 std::string WarningOf(const std::vector<std::string>& ignored);
 
 /// A medium together with the arrays that it refers to.
@@ -85,7 +85,7 @@ struct MediumInput
   Medium medium;
   FloatField sigma_a, sigma_s, emission, g;
 
-  bool Emits() const; ///< whether emission is above 0 anywhere
+  bool Emits() const; ///< whether emission is above 0 in any voxel
 };
 
 /// Reads the medium of an image and checks it. Cell arrays `sigma_a` and `sigma_s` (1 or 3 components, 1/length) and
@@ -93,12 +93,13 @@ struct MediumInput
 /// `g` (optional, 1 or 3 components) if the mean cosine varies by voxel, otherwise field data `g` (1 or 3 numbers;
 /// default 0); field data `phase_function` and the parameters in PhaseFunctionData.h (default Henyey-Greenstein).
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
-/// The same for a rank's block of a domain. Collective.
+/// Reads the medium of a rank's block of a domain, as ReadMedium does for an image on one process. Collective.
 /// @param own  the block's image; null if it has no voxels
 /// @throws InvalidInput, the same on all ranks, if ReadMedium throws on any
 MediumInput ReadMedium(vtkAlgorithm* filter, const Domain& domain, vtkImageData* own);
 
-/// Angular moments as WriteLight writes them; empty if the solver computed none or some of the arrays are missing.
+/// Angular moments of scattered light, as WriteLight writes them; empty if the solver computed none or some of the
+/// arrays are missing.
 struct MomentsInput
 {
   FloatField moments, straightOn;
@@ -126,6 +127,7 @@ struct IlluminationInput
 /// @throws InvalidInput if its voxels are not those of the medium, or an array is missing or has the wrong shape
 UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium);
 
+/// Reads the angular moments of scattered light from an image.
 /// @throws InvalidInput if an array has the wrong shape
 MomentsInput ReadMoments(vtkImageData* image);
 
@@ -134,7 +136,7 @@ MomentsInput ReadMoments(vtkImageData* image);
 /// without polydata or points.
 std::vector<Light> ReadLights(vtkPolyData* lights);
 
-/// Transforms lights, or illumination with its sky, from the scene to the medium axes.
+/// Transforms lights, or illumination with its environment, from the scene axes to the medium axes.
 std::vector<Light> InOwnAxes(std::vector<Light> lights, const OwnAxes& axes);
 Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes);
 

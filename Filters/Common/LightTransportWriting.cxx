@@ -29,7 +29,7 @@ namespace tyndall
 {
 namespace
 {
-/// Names the components of colours.
+/// Names the components of a colour array R, G, B.
 void NameChannels(vtkDataArray* array)
 {
   const char* const names[] = { "R", "G", "B" };

@@ -26,21 +26,22 @@ namespace tyndall
 void AddCells(
   vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice = nullptr);
 
-/// The same for light. With 3 channels the components are named R, G, B.
+/// Adds a cell array of light to an image, as AddCells does. With 3 channels the components are named R, G, B.
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
 /// Adds the image's array `as` a second time, under the name `name`. The arrays share memory; values are not checked.
 void AddSameLight(vtkImageData* image, const char* name, const char* as);
 
-/// The same as AddLight for light that a user gave, which may be NaN where it is unknown; values are not checked.
+/// Adds a cell array of light that a user gave, as AddLight does, but without a check of the values: they may be NaN
+/// where the light is unknown.
 void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
 /// Name of field data of an image that was read: fraction of its voxels that are active in the file. Missing: unknown.
 constexpr const char* ActivePartFact = "active_part";
 /// Name of field data of light from scattered photons: total number of scattering events. Missing: no scattering.
 constexpr const char* ScatteringsFact = "scatterings";
-/// Adds field data.
-/// @param values  tuples of `components` values, one after the other
+/// Adds an array to the field data of a data object, under the name `name`.
+/// @param values  tuples of `components` values each
 void AddFact(vtkDataObject* data, const char* name, const std::vector<double>& values, int components = 1);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::string>& values);
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors);
@@ -48,15 +49,16 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array
 /// Name of field data: radiance that leaves optically thick voxels at the domain's faces, see
 /// LightField::surfaceRadiance; one tuple for each cell of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
-/// Name of field data: arrays of the medium that the solver ignores, and which filters use them; one text each.
+/// Name of field data: arrays of the medium that the solver ignores, and filters that use them; one text for each
+/// array.
 constexpr const char* IgnoredFact = "ignored";
-/// Names of field data: LightField::facePower, and the albedo by which each face reflects it; red, green, blue for each
-/// face, -x to +z.
+/// Names of field data. FacePowerFact: outgoing partial current LightField::facePower, W / length^2, one tuple for each
+/// cell of BoxFaces.h. FaceAlbedoFact: fraction of it that is reflected, red, green, blue for each face, -x to +z.
 constexpr const char* FacePowerFact = "face_power";
 constexpr const char* FaceAlbedoFact = "face_albedo";
 
 /// Names of cell arrays: angular moments of the scattered light (LightField::scatteredMoments, straightOn). Name of
-/// field data: the lamps whose light these moments exclude until its first scattering; one tuple each: type, position,
+/// field data: the lamps whose first-collision source these moments exclude; one tuple for each lamp: type, position,
 /// direction, power, size, angle.
 constexpr const char* MomentsArray = "scattered_moments";
 constexpr const char* StraightOnArray = "straight_on";
@@ -65,10 +67,10 @@ constexpr int LampComponents = 13;
 
 // Names of arrays and field data that vtkLPMPropagate writes and vtkLPMCollect reads.
 
-/// The arrays that hold T, by the face that light travels towards.
+/// Names of the cell arrays with T, by the face towards which light travels.
 constexpr const char* const NamesOfT[6] = { "T_xmin", "T_xmax", "T_ymin", "T_ymax", "T_zmin", "T_zmax" };
 
-/// Field data: settings of the propagation.
+/// Names of field data: settings of the propagation by vtkLPMPropagate.
 constexpr const char* const MapResolutionFact = "map_resolution";
 constexpr const char* const StoredDirectionsFact = "stored_directions_count";
 constexpr const char* const OrderFact = "scattering_order";
@@ -84,8 +86,8 @@ std::string Lines(const std::vector<std::string>& texts);
 /// removed.
 void WriteLight(LightField&& light, vtkImageData* output);
 
-/// Names. Cell array: LitColor::rgba, unsigned char, 4 components. Field data: its distance, in units of length, and
-/// its exposure.
+/// Names of a lit colour's data. Cell array: LitColor::rgba, unsigned char, 4 components. Field data: the colour's unit
+/// distance, in units of length, and its exposure.
 constexpr const char* LitColorArray = "lit_color";
 constexpr const char* LitColorDistanceFact = "lit_color_distance";
 constexpr const char* LitColorExposureFact = "lit_color_exposure";
@@ -98,11 +100,12 @@ void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector
 /// Writes one vertex for each light, with the point arrays that vtkLightRig lists.
 void WriteLights(const std::vector<Light>& lights, vtkPolyData* output);
 
-/// Gives the output the input's arrays, but field data of its own. A shallow copy alone would share the field data:
-/// what a filter adds would appear in its input, and vanish when the input is made again.
+/// Copies the input to the output: the output shares the input's arrays but has a separate field data object. After a
+/// shallow copy alone, arrays that a filter adds to the output's field data would appear in the input, and vanish when
+/// the input is recomputed.
 void PassOn(vtkDataObject* input, vtkDataObject* output);
 
-/// Checks that all values are finite.
+/// Checks that all values of an array are finite.
 /// @param place   describes the position of a tuple to a user: "voxel (1, 2, 3)", "photon 5"
 /// @param advice  what the user can do; null: advice for light and coefficients of a medium
 /// @return ranges of the values, to be stored in the array
@@ -111,7 +114,7 @@ void PassOn(vtkDataObject* input, vtkDataObject* output);
 ArrayRanges RequireFinite(const char* array, const float* values, std::size_t count, int components,
   const std::function<std::string(std::size_t)>& place, const char* advice = nullptr);
 
-/// The same for cells of an image.
+/// Checks that all values of an image's cells are finite, as RequireFinite does; messages give a voxel's indices.
 ArrayRanges RequireFiniteCells(vtkImageData* image, const char* array, const float* values, std::size_t count,
   int components, const char* advice = nullptr);
 }

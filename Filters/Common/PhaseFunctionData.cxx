@@ -23,7 +23,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Contradicts = 0.01; ///< tolerance of g for functions that determine their mean cosine
+/// Largest accepted deviation of g from the mean cosine that the function determines
+constexpr double Contradicts = 0.01;
 
 constexpr const char* NameFact = "phase_function";
 constexpr const char* GFact = "g";
@@ -45,7 +46,7 @@ bool IsGrey(const Rgb& rgb)
   return rgb[0] == rgb[1] && rgb[0] == rgb[2];
 }
 
-/// All numbers of a field data array; empty if there is none of that name.
+/// All numbers of the field data array `name`; empty if there is no such array.
 std::vector<double> ReadNumbers(vtkDataObject* data, const char* name)
 {
   vtkAbstractArray* const found = data->GetFieldData()->GetAbstractArray(name);
@@ -192,7 +193,7 @@ PhaseDescription ReadPhaseDescription(vtkDataObject* medium)
 
 std::string PhaseInWords(vtkDataObject* medium)
 {
-  constexpr vtkIdType most = 9; // maximum number of values to list
+  constexpr vtkIdType most = 9; // maximum number of values to list in a message
   std::string words;
   for (const char* name : Facts)
   {

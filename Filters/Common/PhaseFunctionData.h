@@ -19,7 +19,7 @@ class vtkImageData;
 /// | `phase_second_g`   | 1 or 3  | mean cosine of the second lobe |
 /// | `phase_first_part` | 1 or 3  | fraction of the light that the first lobe scatters, 0 to 1 |
 /// | `phase_cosine`     | n       | rows of a table: cosine of the scattering angle, -1 to 1, ascending or descending |
-/// | `phase_value`      | n       | the phase function there, in any unit |
+/// | `phase_value`      | n       | the phase function at these cosines, in any unit |
 ///
 /// Names: `isotropic`, `henyey_greenstein`, `double_henyey_greenstein`, `schlick`, `rayleigh`, `tabulated`. The
 /// functions `isotropic`, `rayleigh` and `tabulated` determine their mean cosine themselves: `g` is optional there and
@@ -40,23 +40,24 @@ struct PhaseDescription
   std::vector<double> cosines, values;
   bool gByVoxel = false; ///< the cell array `g` takes precedence: field data `g` is not written
 
-  /// The phase function of each channel.
+  /// Phase functions of the red, green and blue channel.
   /// @throws InvalidInput naming the channel whose number, or the row of the table, is out of range
   std::array<PhaseFunction, 3> Functions() const;
-  /// The kind of phase function, without g, for a medium whose mean cosine varies by voxel.
-  /// @throws InvalidInput if the function has no mean cosine to choose
+  /// The phase function without its parameter g, for a medium whose mean cosine varies by voxel.
+  /// @throws InvalidInput unless the phase function has a parameter g that can vary by voxel
   PhaseFunction KindOfVaryingG() const;
 };
 
+/// Reads the phase function of a medium from field data.
 /// @throws InvalidInput if field data have another type or shape than the table above says
 PhaseDescription ReadPhaseDescription(vtkDataObject* medium);
 
-/// A summary of the field data, for messages and comparisons: names and numbers; for a table the number of rows and a
-/// hash.
+/// Summary of the field data about the phase function, for messages and comparisons: names and numbers; for a table the
+/// number of rows and a hash.
 std::string PhaseInWords(vtkDataObject* medium);
 
-/// Writes the description as field data and removes field data that it does not need. For functions that determine
-/// their mean cosine, `g` is written as that mean cosine.
+/// Writes the description as field data and removes field data that this phase function does not need. For functions
+/// that determine their mean cosine, `g` is written as that mean cosine.
 void WritePhaseDescription(vtkDataObject* medium, const PhaseDescription& description);
 
 /// Reads the cell array `g` of an image; empty if there is none. Values in voxels that do not scatter have no meaning:

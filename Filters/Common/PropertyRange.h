@@ -28,7 +28,7 @@ constexpr double AboveZero = std::numeric_limits<double>::min(); ///< lower boun
 constexpr double LargestFloat =
   std::numeric_limits<float>::max(); ///< upper bound of light and coefficients, which are floats
 
-/// Records whether a property's value is out of its range, for CheckProperties.
+/// Records for CheckProperties whether a property's `count` values are in [low, high].
 TYNDALL_EXPORT void NoteProperty(
   vtkAlgorithm* filter, const char* property, const double* values, int count, double low, double high);
 
@@ -42,14 +42,14 @@ enum PointDataKind
 /// Implements the setter of tyndallPointDataMacro. @return whether the property has changed
 TYNDALL_EXPORT bool SetPointData(vtkAlgorithm* filter, int& held, int kind);
 
-/// The value of that property.
+/// Value of the property PointData of a filter.
 PointDataKind PointDataOf(vtkAlgorithm* filter);
 
-/// Called by Guarded before a filter works.
+/// Checks that all properties are in their ranges. Called by Guarded before a filter works.
 /// @throws InvalidInput that names every property out of its range, with its value and range
 void CheckProperties(vtkAlgorithm* filter);
 
-/// Implements the setters below.
+/// Implements the setters of the macros below: stores the values, and records whether they are in [low, high].
 /// @return whether the property has changed
 template <class Type>
 bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, std::initializer_list<Type> values,
@@ -80,7 +80,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     }                                                                              \
   }
 
-/// The same with a Get method.
+/// Set method of tyndallSetRangeMacro, and a Get method.
 #define tyndallRangeMacro(name, type, low, high)                       \
   tyndallSetRangeMacro(name, type, low, high) virtual type Get##name() \
   {                                                                    \
@@ -169,7 +169,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     return this->PointData;                                 \
   }
 
-/// Methods for an optional input, set by connection or as data; null: none.
+/// Methods that set an optional input, by connection or as data, or remove it.
 #define tyndallInputMacro(name, port)                    \
   void Set##name##Connection(vtkAlgorithmOutput* output) \
   {                                                      \
