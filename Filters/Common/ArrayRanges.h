@@ -22,7 +22,7 @@ namespace tyndall
 struct ArrayRanges
 {
   std::vector<std::array<double, 2>> components; ///< range of each component; empty: there are no values
-  /// Range of the Euclidean norm of the tuples; double, as in vtkDataArray
+  /// Range of the Euclidean norm of the tuples; double, as in vtkDataArray.
   std::array<double, 2> norm = {};
   /// Index of the first value that is infinite or NaN; the number of values if all are finite.
   std::size_t firstNotFinite = 0;

@@ -31,7 +31,7 @@ std::uint64_t ReadableSize(const std::string& path)
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
   stream.seekg(0);
-  // A folder can be opened and has a size, but cannot be read.
+  // Detects folders: a folder can be opened and has a size, but cannot be read.
   if (size < 0 || (size > 0 && stream.peek() == std::ifstream::traits_type::eof()))
   {
     throw InvalidInput("\"" + path + "\" cannot be read. Check that it is a file, is there and may be read.");
@@ -47,7 +47,7 @@ std::string FolderOf(const std::string& path)
   return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
 }
 
-/// The umask, read without changing it if possible, since other threads may create files meanwhile.
+/// Returns the umask, if possible without setting it, since other threads may create files meanwhile.
 mode_t Umask()
 {
   std::ifstream status("/proc/self/status");
@@ -95,7 +95,7 @@ void WholeFile::Fail(const std::string& why) const
 
 void WholeFile::LookAtTarget()
 {
-  constexpr int mostLinks = 40; // the same limit as the system's
+  constexpr int mostLinks = 40; // maximum number of symbolic links to follow, as in Linux
   char link[PATH_MAX];
   for (int links = 0;; ++links)
   {
@@ -121,8 +121,8 @@ void WholeFile::LookAtTarget()
   {
     this->Fail(S_ISDIR(this->Before.st_mode) ? "there is a folder of that name" : "what has that name is not a file");
   }
-  // Replacing a file requires write permission for its folder only, and root has every permission; a read-only file is
-  // respected all the same.
+  // Replacing a file requires write permission for its folder only, and root has every permission; nevertheless a
+  // read-only file is not replaced.
   const bool readOnly = this->WasThere &&
     ((this->Before.st_mode & 0222) == 0 || faccessat(AT_FDCWD, this->Target.c_str(), W_OK, AT_EACCESS) != 0);
   if (readOnly)
@@ -131,8 +131,8 @@ void WholeFile::LookAtTarget()
   }
 }
 
-/// Opens an unnamed file if file system and process allow it: it is accessible through its descriptor only, which
-/// closes when the process ends.
+/// Opens an unnamed file if file system and process allow it. Such a file is accessible through its descriptor only,
+/// and is deleted when the process ends.
 bool WholeFile::OpenUnnamed()
 {
 #ifdef O_TMPFILE
@@ -181,7 +181,7 @@ void WholeFile::KeepOwnerAndMode()
     (now.st_uid != this->Before.st_uid || now.st_gid != this->Before.st_gid) &&
     fchown(this->File, this->Before.st_uid, this->Before.st_gid) != 0)
   {
-    mode &= 0777; // another owner's file: drop the set-user and set-group bits
+    mode &= 0777; // a file of another owner loses its set-user and set-group bits
   }
   if (fchmod(this->File, mode) != 0)
   {

@@ -6,12 +6,12 @@
 
 namespace tyndall
 {
-/// Whether a path is not a pipe, a socket or a device, which a process may wait for forever after opening. True if
+/// Whether a path is not a pipe, a socket or a device, from which a process might wait for data forever. True if
 /// nothing exists at the path.
 bool HasAnEnd(const std::string& path);
 
-/// Size of a file to be read, bytes.
-/// @throws InvalidInput if it does not exist, may not be read, is a folder, or has no end, such as a pipe
+/// Returns the size of a file that is to be read, bytes.
+/// @throws InvalidInput if the file does not exist, may not be read, is a folder, or has no end, such as a pipe
 std::uint64_t ReadableSize(const std::string& path);
 
 /// A file that replaces another one atomically: completely, or not at all.
@@ -29,7 +29,7 @@ public:
   /// Creates an empty file in the folder of the target.
   /// @throws InvalidInput if the target exists and may not be written, or is not a regular file
   explicit WholeFile(const std::string& path);
-  ~WholeFile(); ///< deletes what was written, unless Finish has put it in place
+  ~WholeFile(); ///< deletes the unfinished file, unless Finish has moved it to the target
 
   WholeFile(const WholeFile&) = delete;
   void operator=(const WholeFile&) = delete;
@@ -56,6 +56,6 @@ private:
   bool WasThere = false;
   int File = -1;
   std::string Work;
-  std::string Name; ///< of the temporary file beside Target, to be removed; empty: unnamed
+  std::string Name; ///< name of the temporary file in Folder; empty: the file is unnamed
 };
 }

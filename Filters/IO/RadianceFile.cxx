@@ -24,8 +24,8 @@ namespace tyndall
 {
 namespace
 {
-/// Upper bound of the number of pixels that one byte of a file can encode, with a wide margin: black pixels in large
-/// compressed blocks.
+/// Upper bound of the number of pixels that one byte of a file can encode, with a wide margin: large compressed blocks
+/// of black pixels need the fewest bytes.
 constexpr std::uint64_t MostPixelsAByte = 20000;
 constexpr std::int64_t LongestEdge = 1 << 17;
 
@@ -63,24 +63,24 @@ void CheckSize(const std::string& path, std::int64_t width, std::int64_t height,
 }
 
 //
-// Radiance
+// Radiance files (.hdr, .pic)
 //
 
 struct HdrHeader
 {
-  int Width = 0, Height = 0; ///< size of the displayed picture
-  int Rows = 0, Columns = 0; ///< size as stored
-  bool Transposed = false;   ///< each stored row is a column of the picture
-  bool FromTop = true;       ///< Y decreases along the file
-  bool FromLeft = true;      ///< X increases along the file
+  int Width = 0, Height = 0; ///< size of the displayed picture, pixels
+  int Rows = 0, Columns = 0; ///< numbers of stored rows, and of pixels per row
+  bool Transposed = false;   ///< whether each stored row is a column of the picture
+  bool FromTop = true;       ///< whether Y decreases along the file: from the top to the bottom of the picture
+  bool FromLeft = true;      ///< whether X increases along the file: from the left to the right of the picture
   bool Xyz = false;
-  double Exposure = 1.0;  ///< factor by which the radiance was multiplied
-  std::size_t Pixels = 0; ///< offset of the pixel data, bytes
+  double Exposure = 1.0;  ///< product of the EXPOSURE lines, by which the stored radiance was multiplied
+  std::size_t Pixels = 0; ///< offset of the pixel data in the file, bytes
 };
 
 constexpr std::size_t LongestHdrHeader = 1 << 16;
 
-/// Reads the lines of a header one by one.
+/// Reads the lines of a Radiance file's header one by one.
 class HdrLines
 {
 public:
@@ -107,7 +107,7 @@ public:
     return text;
   }
 
-  std::size_t At() const { return this->Place; } ///< offset of the next line, bytes
+  std::size_t At() const { return this->Place; } ///< offset of the next line in the file, bytes
 
 private:
   const std::string& Path;
@@ -134,7 +134,7 @@ double ParseHdrExposure(const std::string& path, const std::string& text)
   return exposure;
 }
 
-/// Reads the line that gives the picture's size and the order of its rows, e.g. "-Y 512 +X 1024".
+/// Parses the line of the header that states the picture's size and the order of its rows, e.g. "-Y 512 +X 1024".
 void ParseHdrSize(const std::string& path, const std::string& size, HdrHeader& header)
 {
   char signs[2] = {}, axes[2] = {};
@@ -200,7 +200,7 @@ public:
   {
   }
 
-  /// @param rgbe  4 * columns
+  /// @param rgbe  receives the row: red, green, blue and exponent of each of Columns pixels
   void Next(std::vector<unsigned char>& rgbe)
   {
     ++this->Row;
@@ -236,8 +236,8 @@ public:
   }
 
 private:
-  /// Decodes pixels one by one; (1, 1, 1, n) repeats the last pixel n times, and n is shifted by 8 bits for each such
-  /// code directly before it.
+  /// Decodes a row of pixels in the old run-length encoding: the code (1, 1, 1, n) repeats the last pixel n times, and
+  /// n is shifted left by 8 bits for each such code directly before it.
   void OldRow(const unsigned char* start, std::vector<unsigned char>& rgbe)
   {
     unsigned char pixel[4];
@@ -304,16 +304,17 @@ private:
 void XyzToRgb(float* pixel)
 {
   const float x = pixel[0], y = pixel[1], z = pixel[2];
-  pixel[0] = 3.2404542f * x - 1.5371385f * y - 0.4985314f * z; // IEC 61966-2-1, D65
+  pixel[0] = 3.2404542f * x - 1.5371385f * y - 0.4985314f * z; // XYZ to linear sRGB, IEC 61966-2-1, D65
   pixel[1] = -0.9692660f * x + 1.8760108f * y + 0.0415560f * z;
   pixel[2] = 0.0556434f * x - 0.2040259f * y + 1.0572252f * z;
 }
 
 //
-// OpenEXR
+// OpenEXR files (.exr)
 //
 
-/// The windows of the first part, read by OpenEXR's C interface, which accepts a limit for the picture's size.
+/// Data and display window of the first part of an OpenEXR file, read by OpenEXR's C interface, which accepts a limit
+/// for the picture's size.
 struct ExrWindows
 {
   exr_attr_box2i_t Data, Display;
@@ -375,11 +376,11 @@ ExrWindows WindowsOfExr(const std::string& path)
   return windows;
 }
 
-/// The channels that hold a picture's colours.
+/// Names of the channels of an OpenEXR file that hold the colours of the picture.
 struct ExrChannels
 {
-  std::string Names[3]; ///< the same channel three times if the picture is grey
-  bool Chroma = false;  ///< Y, RY, BY, which OpenEXR converts to RGB
+  std::string Names[3]; ///< red, green, blue; the same channel three times if the picture is grey
+  bool Chroma = false;  ///< whether the channels are Y, RY, BY, which OpenEXR converts to RGB
 };
 
 ExrChannels FindChannels(const std::string& path, const Imf::ChannelList& list)

@@ -47,8 +47,8 @@ Kind KindOf(const std::string& path)
   return text == "\x76\x2f\x31\x01" ? Kind::OpenExr : text.compare(0, 2, "#?") == 0 ? Kind::Radiance : Kind::Unknown;
 }
 
-/// The file's type by content, or by extension if the content is not recognised: the reader for that type then reports
-/// the error.
+/// File type by content, or by extension if the content is not recognised: the reader of that type then reports the
+/// error.
 Kind KindToRead(const char* path)
 {
   if (path == nullptr || path[0] == '\0')
@@ -70,9 +70,9 @@ PictureSize Shrunk(const PictureSize& size, int width)
   return { width, std::max(1, static_cast<int>(std::lround(double(size.Height) * width / size.Width))) };
 }
 
-/// Sets negative values to 0.
+/// Sets negative values of a picture to 0.
 /// @throws InvalidInput if a pixel is not finite
-/// @return number of negative values
+/// @return number of values that were negative
 std::size_t Clean(RadiancePicture& picture, const std::string& path)
 {
   std::size_t negative = 0;
@@ -95,7 +95,7 @@ std::size_t Clean(RadiancePicture& picture, const std::string& path)
   return negative;
 }
 
-/// Applies Exposure and MaximumRadiance.
+/// Applies the properties Exposure and MaximumRadiance to a picture.
 void Expose(RadiancePicture& picture, double exposure, double maximum)
 {
   const double scale = std::exp2(exposure);
@@ -111,8 +111,8 @@ void Expose(RadiancePicture& picture, double exposure, double maximum)
   }
 }
 
-/// Overlap of old and new intervals of [0, 1]: new interval k is the mean of old intervals from First[k] on with
-/// weights Weights[k], which sum to 1.
+/// Overlap of two divisions of [0, 1] into `from` old and `to` new intervals of equal length: new interval k is the
+/// mean of old intervals from First[k] on with weights Weights[k], which sum to 1.
 struct Overlaps
 {
   std::vector<std::size_t> First;
@@ -138,7 +138,7 @@ struct Overlaps
   }
 };
 
-/// Averages a picture over the solid angle of larger pixels.
+/// Averages a picture, weighted by solid angle, over the larger pixels of a smaller picture.
 RadiancePicture Shrink(const RadiancePicture& picture, const PictureSize& size)
 {
   const Overlaps columns(picture.Width, size.Width, [](double u) { return u; });

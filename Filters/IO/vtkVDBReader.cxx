@@ -55,7 +55,7 @@ std::string Bytes(double bytes)
   return Text(bytes >= 999.5 ? "%.4g" : "%.3g", bytes) + " " + units[unit];
 }
 
-/// Memory of an image of that extent with one grid's values as a cell array, bytes.
+/// Memory of an image of this extent that has one grid's values as a cell array, bytes.
 double BytesAsImage(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent)
 {
   return tyndall::CellsOf(extent) * static_cast<double>(tyndall::FindValueType(grid.Type)->Size);
@@ -84,7 +84,7 @@ std::string Summary(const VDBFile& file)
   return lines;
 }
 
-/// The largest fraction of an image's voxels that is active in one of its grids.
+/// Fraction of an image's voxels that is active, in the grid in which it is largest.
 double ActivePart(const std::vector<const VDBGrid*>& grids, const std::array<std::int64_t, 6>& extent)
 {
   double most = 0.0;
@@ -96,7 +96,7 @@ double ActivePart(const std::vector<const VDBGrid*>& grids, const std::array<std
 }
 
 /// Default limit of an image's memory, unless the file notes that it was an image of that size: the larger of
-/// SmallImage bytes and MostOfFile bytes per byte of the file. Clouds with a sparse outline take 10 to 300 bytes per
+/// SmallImage (bytes) and MostOfFile bytes per byte of the file. Clouds with a sparse outline need 10 to 300 bytes per
 /// byte of their file; a single changed bit in a small file can demand terabytes.
 constexpr double SmallImage = 1073741824.0, MostOfFile = 1000.0;
 
@@ -125,7 +125,7 @@ std::array<int, 6> WholeExtentOf(const tyndall::VDBGeometry& image)
   return extent;
 }
 
-/// Announces time steps: none for one file; for several, each file's index is its time.
+/// Announces time steps: none for one file; for a series, the index of each file is its time.
 void TellTimes(vtkInformation* info, int files)
 {
   if (files < 2)
@@ -146,23 +146,24 @@ void TellTimes(vtkInformation* info, int files)
 
 struct vtkVDBReader::Internals
 {
-  /// The file that was listed last.
+  /// The file that was listed last, and its path.
   std::unique_ptr<VDBFile> File;
   std::string Path;
   std::string Summary;
-  std::vector<std::string> Files; ///< in order of time for a series
-  int ListedFile = -1;            ///< index of the listed file
+  std::vector<std::string> Files; ///< paths of the files, in order of time for a series
+  int ListedFile = -1;            ///< index of the listed file in Files; -1: none
   std::set<std::string> Listed;   ///< names added to the selection because a file has them
-  std::string OnlyGrid;           ///< set by SetGridName, not applied yet
+  std::string OnlyGrid;           ///< name passed to SetGridName, not applied yet; empty: none
 
   std::vector<const VDBGrid*> Chosen;
   tyndall::VDBGeometry Image;
   bool IsBare = false;    ///< no chosen grid has an active voxel
-  std::string NoImageYet; ///< why the chosen grids are no image unless Resample is on; empty: they are
+  std::string NoImageYet; ///< why the chosen grids cannot become an image unless Resample is on; empty: they can
 
-  bool Resample = false;    ///< resample grids with oblique axes
-  bool Resampled = false;   ///< the grids are oblique and Image lies along the world axes
-  tyndall::VDBGeometry Own; ///< geometry of the grids if they are resampled
+  bool Resample = false; ///< whether grids with oblique axes are resampled
+  /// Whether the grids are oblique and are resampled to Image, which is aligned with the world axes.
+  bool Resampled = false;
+  tyndall::VDBGeometry Own; ///< geometry of the grids themselves if they are resampled
 
   bool IsSeries() const { return this->Files.size() > 1; }
   void Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory);
@@ -180,7 +181,7 @@ struct vtkVDBReader::Internals
   Limit LimitOfMemory(vtkIdType maximum) const;
 };
 
-/// Lists one of the files, and determines the image of its chosen grids.
+/// Lists the grids of one of the files, and determines the geometry of the image of its chosen grids.
 void vtkVDBReader::Internals::Look(int file, vtkDataArraySelection* selection, vtkIdType maximumMemory)
 {
   this->Chosen.clear();
@@ -191,8 +192,8 @@ void vtkVDBReader::Internals::Look(int file, vtkDataArraySelection* selection, v
   this->CheckMemory(maximumMemory);
 }
 
-/// Lists the file anew each time: it takes milliseconds, and time stamp and length do not tell whether a file was
-/// rewritten.
+/// Lists the grids of a file. The file is read again at each call: this takes milliseconds, and time stamp and length
+/// do not tell whether the file was rewritten.
 void vtkVDBReader::Internals::List(int file)
 {
   this->File.reset();
@@ -225,8 +226,8 @@ const VDBGrid* FirstToChoose(const std::vector<VDBGrid>& grids)
 }
 }
 
-/// Adds the file's grids to the selection. By default those are selected that share the transform of FirstToChoose.
-/// Grids of other files of a series remain.
+/// Adds the file's grids to the selection. By default the grids that share the transform of FirstToChoose are selected.
+/// Grids of other files of a series remain in the selection.
 void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
 {
   for (auto name = this->Listed.begin(); name != this->Listed.end();)
@@ -258,7 +259,7 @@ void vtkVDBReader::Internals::Offer(vtkDataArraySelection* selection)
   }
 }
 
-/// Adds a grid to the chosen ones. Grids of other files of a series are skipped.
+/// Adds a grid to the chosen grids. Names of grids that only other files of a series have are skipped.
 void vtkVDBReader::Internals::ChooseGrid(const std::string& name)
 {
   const VDBGrid* const grid = this->File->Find(name);
@@ -322,7 +323,7 @@ void vtkVDBReader::Internals::Choose(vtkDataArraySelection* selection)
     this->Chosen.clear();
     return;
   }
-  // Use the order of the file, not that of the selection.
+  // Chosen grids are in the order of the file, not of the selection.
   std::sort(this->Chosen.begin(), this->Chosen.end());
   if (!this->Chosen.empty())
   {
@@ -385,7 +386,7 @@ vtkVDBReader::Internals::Limit vtkVDBReader::Internals::LimitOfMemory(vtkIdType 
   return limit;
 }
 
-/// An executive for series whose files differ in extent. VTK requests the extent before it specifies the time step. If
+/// Executive for series of files that differ in extent. VTK requests the extent before it specifies the time step. If
 /// that time step belongs to another file than the one announced, this executive announces the new extent; filters
 /// downstream may still request a part of a former extent, and then receive the complete one. (VTK's list of consumers
 /// cannot be used to inform them: it includes consumers that no longer exist.)
@@ -655,7 +656,8 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     std::array<int, 6> extent = this->ExtentToRead(info);
     if (!internal.NoImageYet.empty())
     {
-      throw InvalidInput(internal.NoImageYet); // not earlier: Resample may be set after the file was listed
+      // Thrown here, not when the file is listed: Resample may be set after that.
+      throw InvalidInput(internal.NoImageYet);
     }
     if (internal.IsSeries())
     {

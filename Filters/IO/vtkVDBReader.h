@@ -65,14 +65,14 @@ public:
   ///@{
   /// The .vdb file, or the files of a series: the first at time 0, the next at time 1, and so on. Each time step is the
   /// image of its file alone, with its own extent; a file without active voxels is an empty image.
-  void SetFileName(VTK_FILEPATH const char* fileName); ///< replaces all files; null: none
+  void SetFileName(VTK_FILEPATH const char* fileName); ///< replaces all files by this one; null: no file
   void AddFileName(VTK_FILEPATH const char* fileName);
   void RemoveAllFileNames();
   int GetNumberOfFileNames() const;
-  const char* GetFileName(int index = 0); ///< null: there is none
+  const char* GetFileName(int index = 0); ///< path of the file of this index; null: no such file
   ///@}
 
-  /// The file that was read or listed last.
+  /// Path of the file that was read or listed last.
   const char* GetCurrentFileName();
 
   /// Whether the file starts like an OpenVDB file.
@@ -88,11 +88,11 @@ public:
   vtkDataArraySelection* GetGridSelection();
   ///@}
 
-  /// Selects this grid only.
+  /// Selects this grid, and deselects all others.
   void SetGridName(const char* name);
 
-  /// A list of the grids, one per line: name, type, number of active voxels and their bounding box, memory. Available
-  /// after UpdateInformation.
+  /// Text that lists the grids, one per line: name, type, number of active voxels and their bounding box, memory.
+  /// Available after UpdateInformation.
   const char* GetGridSummary();
 
   ///@{
@@ -118,10 +118,10 @@ public:
   tyndallRangeMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
   ///@}
 
-  /// Ignores other executives: a series needs the reader's own, but ParaView assigns a new one to every source.
+  /// Ignores executives other than the reader's own, which a series needs; ParaView assigns a new one to every source.
   void SetExecutive(vtkExecutive* executive) override;
 
-  /// Includes the modification time of the grid selection.
+  /// Modification time of the reader, including that of the grid selection.
   vtkMTimeType GetMTime() override;
 
 protected:

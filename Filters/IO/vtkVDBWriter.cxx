@@ -36,7 +36,7 @@ using tyndall::InvalidInput;
 
 namespace
 {
-/// Makes the grids of one array, with its metadata and the image's transform.
+/// Makes the grids of one array, with the metadata of the array and the transform of the image.
 openvdb::GridPtrVec GridsOf(
   vtkDataArray* array, vtkFieldData* field, const tyndall::VDBPlacement& place, const tyndall::VoxelOptions& options)
 {
@@ -67,7 +67,7 @@ std::uint32_t CompressionFlags(int compression)
   return flags;
 }
 
-/// Writes the file, and checks it by reading back its structure before it replaces the target.
+/// Writes the file under a temporary name, and checks it by reading back its structure before it replaces the target.
 void WriteWholeOrNot(const std::string& path, const openvdb::GridPtrVec& grids, const openvdb::MetaMap& metadata,
   std::uint32_t compression)
 {
@@ -96,7 +96,7 @@ void WriteWholeOrNot(const std::string& path, const openvdb::GridPtrVec& grids, 
   whole.Finish();
 }
 
-/// The arrays that become grids: cell arrays, and point arrays averaged to cells unless a cell array has the same name.
+/// Arrays that become grids: cell arrays, and point arrays averaged to cells unless a cell array has the same name.
 std::vector<vtkSmartPointer<vtkDataArray>> CellArraysOf(vtkImageData* image)
 {
   std::vector<vtkSmartPointer<vtkDataArray>> arrays;
@@ -127,7 +127,7 @@ std::vector<vtkSmartPointer<vtkDataArray>> CellArraysOf(vtkImageData* image)
   return arrays;
 }
 
-/// Makes the grids of all arrays on the first rank, and none on other ranks.
+/// Makes the grids of all arrays of a gathered image on the first rank, and no grids on other ranks. Collective.
 /// @param progress  called with the completed fraction
 openvdb::GridPtrVec GridsOf(tyndall::GatheredImage& image, vtkMultiProcessController* controller,
   const tyndall::VoxelOptions& options, const std::function<void(double)>& progress)
@@ -190,7 +190,7 @@ int vtkVDBWriter::Write()
   const int written = this->Superclass::Write();
   if (!this->HasTakenPart && this->Controller && this->Controller->GetNumberOfProcesses() > 1)
   {
-    this->WriteData(); // the pipeline stopped here, but other ranks wait for this one's piece
+    this->WriteData(); // an error upstream has stopped the pipeline on this rank, but other ranks wait for its piece
     return 0;
   }
   return written;
@@ -223,7 +223,7 @@ void vtkVDBWriter::WriteData()
         throw InvalidInput("No file: set FileName.");
       }
     });
-    this->SetErrorCode(vtkErrorCode::FileFormatError); // until the file is written
+    this->SetErrorCode(vtkErrorCode::FileFormatError); // error code until the file is written
     vtkSmartPointer<vtkImageData> voxels;
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
     tyndall::OnAllRanks(this->Controller, [&] {

@@ -63,12 +63,12 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// The .vdb file.
+  /// Path of the .vdb file to write.
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
-  /// Values of Compression.
+  /// Values of the property Compression.
   enum Compressions
   {
     NONE = 0,
@@ -96,9 +96,10 @@ public:
   ///@}
 
   ///@{
-  /// Stores real numbers in 16 bits: 11 significant bits, at most 65504 (65520 and more are an error), fewer bits below
-  /// 6.1e-5. A number that would lose more than 0.1% is an error, also if it is the background. Infinity and NaN are
-  /// preserved. Default off. The precision of the file from which an image was read has no influence.
+  /// Whether real numbers are stored in 16 bits: 11 significant bits, at most 65504 (65520 and more are an error),
+  /// fewer bits below 6.1e-5. A number that would lose more than 0.1% is an error, also if it is the background.
+  /// Infinity and NaN are preserved. Default off. The precision of the file from which an image was read has no
+  /// influence.
   tyndallFlagMacro(SaveAsHalf);
   ///@}
 
@@ -117,13 +118,13 @@ public:
   vtkImageData* GetImageInput();
 
   ///@{
-  /// The controller of the ranks that hold the pieces of the image. Default: the global controller; null: this process
-  /// has the complete image and writes it alone.
+  /// Controller of the ranks that hold the pieces of the image. Default: the global controller; null: this process has
+  /// the complete image and writes it alone.
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
-  /// Writes the file. Collective if there are several ranks.
+  /// Writes the file. Collective if several ranks hold pieces of the image.
   /// @return 1 if the file was written, 0 otherwise; the same on all ranks
   int Write() override;
 
@@ -147,7 +148,7 @@ private:
   double Tolerance = 0.0;
   bool SaveAsHalf = false;
   vtkMultiProcessController* Controller = nullptr;
-  bool HasTakenPart = false; ///< in the collective operations of this write
+  bool HasTakenPart = false; ///< whether this rank has taken part in the collective operations of this write
 };
 
 #endif

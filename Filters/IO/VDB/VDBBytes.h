@@ -18,7 +18,7 @@
 
 namespace tyndall
 {
-/// Reads the bytes of a .vdb file through a buffer; never reads beyond its end.
+/// Reads the bytes of a .vdb file through a buffer, never beyond the end of the file.
 ///
 /// Every member function throws InvalidInput that names the file, the error and its byte position. The parameter `what`
 /// names the item that is being read, for messages, e.g. "a grid".
@@ -44,7 +44,7 @@ public:
 
   std::string Text(std::uint64_t length, const char* what);
 
-  /// A string as OpenVDB stores it: its length, then its bytes.
+  /// Reads a string as OpenVDB stores it: its length, then its bytes.
   std::string LengthAndText(const char* what) { return this->Text(this->Value<std::uint32_t>(what), what); }
 
   [[noreturn]] void Fail(const std::string& what) const;

@@ -32,8 +32,8 @@ namespace tyndall
 /// so only numbers below 2^-14, which have fewer bits, can exceed it.
 constexpr double LargestHalfLoss = 1e-3;
 
-/// Whether a real number can be stored in 16 bits, as OpenVDB rounds it, without overflow or loss. True for infinity
-/// and NaN.
+/// Whether a real number can be stored in 16 bits, rounded as OpenVDB does, without overflow or a relative error above
+/// LargestHalfLoss. True for infinity and NaN.
 template <typename Real>
 bool FitsHalf(Real number)
 {
@@ -41,9 +41,10 @@ bool FitsHalf(Real number)
   return !std::isfinite(exact) || (std::isfinite(kept) && std::abs(kept - exact) <= LargestHalfLoss * std::abs(exact));
 }
 
-/// Does nothing for values of a type that is not stored in 16 bits.
+/// Checks that all numbers of a value can be stored in 16 bits (FitsHalf); does nothing for types that are not stored
+/// in 16 bits.
 /// @param where  describes the position of the value, e.g. "in voxel (1, 2, 3)"
-/// @throws InvalidInput with part of a sentence about the array, if a number of the value does not fit
+/// @throws InvalidInput with the end of a sentence about the array, if a number of the value does not fit
 template <typename Value, typename Where>
 void RequireHalf(const Value& value, const Where& where)
 {
@@ -69,7 +70,7 @@ void RequireHalf(const Value& value, const Where& where)
 
 namespace
 {
-/// A type of grid: OpenVDB's type, and the type of the cell array, with N numbers per voxel.
+/// A type of grid: OpenVDB's type G, and the type A of the VTK cell array, with N numbers per voxel.
 template <typename G, typename A, int N = 1>
 struct GridKind
 {
@@ -79,7 +80,7 @@ struct GridKind
   static constexpr int Count = N;
 };
 
-/// Calls act with the GridKind for a type of FindValueType.
+/// Calls `act` with the GridKind for the type of values that has this name in FindValueType.
 template <typename Do>
 void WithKind(const std::string& type, const Do& act)
 {
@@ -119,12 +120,12 @@ void AddCellsOf(
   image->GetFieldData()->AddArray(background);
 }
 
-/// Converts numbers of an array of any type to those of a grid.
+/// Converts numbers of a VTK array of any type to the grid's type Number.
 template <typename Number>
 class Numbers
 {
 public:
-  /// @param first  component of the array that is the voxel's first number
+  /// @param first  index of the component that is the first number of a voxel's value
   Numbers(vtkDataArray* array, int first)
     : Values(array->GetVoidPointer(0))
     , Components(array->GetNumberOfComponents())
@@ -164,7 +165,8 @@ private:
   Number (*ReadOne)(const void*, vtkIdType, vtkIdType) = nullptr;
 };
 
-/// Makes one value of a grid from the numbers number(component).
+/// Makes the value of a voxel from its numbers.
+/// @param number  returns the number of a component
 template <typename Value, typename Get>
 Value VoxelFrom(const Get& number)
 {
@@ -207,7 +209,8 @@ std::string ToString(const openvdb::Coord& voxel)
   return "(" + std::to_string(voxel[0]) + ", " + std::to_string(voxel[1]) + ", " + std::to_string(voxel[2]) + ")";
 }
 
-/// Fills one block of a tree, at most a leaf: background is skipped, a block of one value becomes a tile.
+/// Fills one block of a tree, no larger than a leaf: a block of background is skipped, a block of equal values becomes
+/// a tile.
 /// @param valueAt  returns the value of a voxel
 template <typename TreeT, typename ValueAt>
 void FillBlock(TreeT& tree, openvdb::CoordBBox block, const openvdb::CoordBBox& voxels, const VoxelOptions& options,
@@ -249,7 +252,7 @@ void FillBlock(TreeT& tree, openvdb::CoordBBox block, const openvdb::CoordBBox& 
   }
 }
 
-/// Fills a tree block by block; no leaves are made for blocks of background.
+/// Fills a tree with the values of an array, block by block, without making leaves for blocks of background.
 template <typename TreeT, typename Number>
 void FillTree(
   TreeT& tree, const Numbers<Number>& numbers, const openvdb::CoordBBox& voxels, const VoxelOptions& options)
@@ -280,14 +283,15 @@ void FillTree(
   }
 }
 
-/// Field data `key` about an array; null if missing or of another type.
+/// Finds field data `key` about an array; null if missing or of a type other than ArrayT.
 template <typename ArrayT>
 ArrayT* FactOf(vtkFieldData* field, const std::string& array, const char* key)
 {
   return ArrayT::SafeDownCast(field->GetAbstractArray(FieldName(array, key).c_str()));
 }
 
-/// The background in an array's field data, otherwise the value `otherwise` for each component.
+/// Background of an array's grid: the value in the array's field data, otherwise the value `otherwise` for each
+/// component.
 template <typename K>
 typename K::Grid::ValueType BackgroundOf(K, const std::string& array, vtkFieldData* field, double otherwise)
 {
@@ -301,7 +305,7 @@ typename K::Grid::ValueType BackgroundOf(K, const std::string& array, vtkFieldDa
   return VoxelFrom<Value>([&](int component) { return numbers.At(0, component); });
 }
 
-/// The type of an array's grids, and the number of components in each grid.
+/// Type of the grids that an array becomes, and number of the array's components in each grid.
 struct GridsOfArray
 {
   std::string Type;
@@ -361,7 +365,7 @@ void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const 
 
 namespace
 {
-/// Interpolates the values of a box of voxels between their centres.
+/// Interpolates a grid within a box of voxels: linearly between voxel centres, for integers the nearest voxel.
 template <typename K>
 class BoxSampler
 {
@@ -376,7 +380,7 @@ public:
   {
   }
 
-  /// @param at  position in index space; whole numbers are voxel centres
+  /// @param at  position in index space, where voxel centres have whole numbers
   void Sample(const openvdb::Vec3d& at, Number* value) const
   {
     if constexpr (std::is_integral<Number>::value)

@@ -22,7 +22,7 @@ bool EndsWith(const std::string& text, const std::string& end)
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Sets type and storage format of a grid from the type name in its file.
+/// Sets value type and storage format of a grid from the name of its type in the file.
 void SetType(VDBGrid& grid, std::string type)
 {
   const std::string half = "_HalfFloat", prefix = "Tree_", suffix = "_5_4_3";
@@ -87,7 +87,7 @@ void VDBFile::ReadHeader()
     throw InvalidInput("\"" + this->FilePath +
       "\" was written as a stream, without the places of its grids. Write it again with OpenVDB's io::File.");
   }
-  bytes.Skip(36, "the header"); // a UUID
+  bytes.Skip(36, "the header"); // the UUID of the file
   this->FileMetadata = ReadMetadata(bytes);
   this->FirstDescriptor = bytes.Position();
 }
@@ -152,7 +152,7 @@ void VDBFile::ShareTree(VDBGrid& grid, const VDBGrid& with)
 {
   VDBBytes bytes(this->FilePath, this->FileSize);
   bytes.Seek(static_cast<std::uint64_t>(grid.Place.Topology), "a grid");
-  bytes.Skip(sizeof(std::uint32_t), "a grid"); // its compression
+  bytes.Skip(sizeof(std::uint32_t), "a grid"); // compression of the grid
   grid.Metadata = ReadMetadata(bytes);
   ReadTransform(bytes, grid);
   grid.Unusable = grid.Unusable.empty() ? with.Unusable : grid.Unusable;
@@ -236,7 +236,7 @@ openvdb::GridBase::Ptr VDBFile::Read(const VDBGrid& grid, const openvdb::CoordBB
   this->CheckLeaves(grid);
 
   const auto metadata = std::make_shared<openvdb::io::StreamMetadata>();
-  metadata->setSeekable(true); // so that leaves outside the box are skipped
+  metadata->setSeekable(true); // required to skip leaves outside of the box
   metadata->setFileVersion(this->FormatVersion);
   metadata->setLibraryVersion(this->LibraryVersion);
   metadata->setCompression(grid.Place.Compression);
@@ -276,8 +276,8 @@ bool DescribesTheFile(const std::string& key)
 
 namespace
 {
-/// Reads one of OpenVDB's linear maps.
-/// @return whether the type is one of them
+/// Reads a grid's map from index to world space if it is one of OpenVDB's linear maps.
+/// @return whether `type` is a linear map
 bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)
 {
   const auto vector = [&] { return bytes.Value<std::array<double, 3>>("the transform"); };
@@ -287,7 +287,7 @@ bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)
       grid.Axes[axis][axis] = scale[axis];
     }
   };
-  if (type == "AffineMap" || type == "UnitaryMap") // a matrix that multiplies row vectors from the right
+  if (type == "AffineMap" || type == "UnitaryMap") // 4 x 4 matrix that multiplies row vectors from the right
   {
     for (int row = 0; row < 4; ++row)
     {
@@ -295,7 +295,7 @@ bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)
       bytes.Skip(sizeof(double), "the transform");
     }
   }
-  else if (type == "ScaleMap" || type == "UniformScaleMap") // followed by numbers derived from the scale
+  else if (type == "ScaleMap" || type == "UniformScaleMap") // the other numbers are derived from the scale
   {
     diagonal(vector());
     bytes.Skip(4 * 3 * sizeof(double), "the transform");
@@ -324,7 +324,7 @@ double TripleProduct(const std::array<std::array<double, 3>, 3>& v)
     v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
 }
 
-/// Why an image cannot have the grid's map; empty if it can. Also sets Shears.
+/// Returns why an image cannot represent the grid's map; empty if it can. Also sets VDBGrid::Shears.
 std::string FaultOfMap(VDBGrid& grid)
 {
   const auto dot = [&](int i, int j) {

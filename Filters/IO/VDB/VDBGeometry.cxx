@@ -18,7 +18,7 @@ constexpr const char* CellsKey = "image_cells";
 constexpr const char* OriginKey = "image_origin";
 constexpr const char* SpacingKey = "image_spacing";
 
-using Steps = std::array<std::array<double, 3>, 3>; ///< world vectors of a step of one voxel along i, j, k
+using Steps = std::array<std::array<double, 3>, 3>; ///< world vectors of a step by one voxel along i, j, k
 
 template <typename T>
 const T* NoteOf(const VDBGrid& grid, const char* key)
@@ -37,8 +37,9 @@ double LengthOf(const std::array<double, 3>& vector)
   return std::sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
-/// One coordinate of the centre of voxel 0 in world space, for an image with that origin.
-/// @param half  -0.5 to compute the origin from the centre
+/// One world coordinate of the centre of voxel 0 of an image.
+/// @param origin  the same coordinate of the image's origin, which is a corner of voxel 0
+/// @param half    0.5; -0.5 to compute the origin from the centre
 double CentreOfFirstVoxel(double origin, const Steps& steps, int axis, double half = 0.5)
 {
   return origin + half * (steps[0][axis] + steps[1][axis] + steps[2][axis]);
@@ -66,7 +67,8 @@ std::array<std::int64_t, 6> ExtentOfAll(const std::vector<const VDBGrid*>& grids
   return all.Extent;
 }
 
-/// Restores the noted origin and spacing to the last bit, if the transform has not changed since.
+/// Sets origin and spacing of an image to the values noted in the grid's metadata, exact to the last bit, unless the
+/// grid's transform has changed since.
 void ApplyNotes(VDBGeometry& geometry, const VDBGrid& grid, bool aligned)
 {
   const auto* origin = NoteOf<openvdb::Vec3d>(grid, OriginKey);

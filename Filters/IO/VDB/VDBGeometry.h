@@ -9,21 +9,22 @@
 
 class vtkImageData;
 
-/// Converts between the geometry of images and the transforms of grids.
+/// Converts between the geometry of VTK images and the transforms of OpenVDB grids.
 ///
-/// The index of a voxel is that of its cell: voxel i is the cell that covers [i - 1/2, i + 1/2] in index space. A grid
-/// made from an image has notes in its metadata about what the grid itself does not express: the extent of points
-/// (border voxels may be background) with the number of cells, and origin and spacing to the last bit (OpenVDB computes
-/// the scale of a transform as the difference of two positions).
+/// A voxel has the index of its cell: voxel i is the cell that covers [i - 1/2, i + 1/2] in index space. A grid made
+/// from an image has notes in its metadata about what the grid itself does not express: the extent of points (border
+/// voxels may be background) with the number of cells, and origin and spacing to the last bit (OpenVDB computes the
+/// scale of a transform as the difference of two positions).
 namespace tyndall
 {
-/// Whether the metadata of this name are such a note.
+/// Whether metadata of this name are a note on the geometry of an image.
 bool IsGeometry(const std::string& key);
 
-/// Geometry of grids, expressed as that of an image.
+/// Geometry of a grid, or of several grids, as a VTK image has it.
 struct VDBGeometry
 {
-  std::array<std::int64_t, 6> Extent = { 0, -1, 0, -1, 0, -1 }; ///< of points; may exceed the range of VTK's extents
+  /// Extent of points, which may exceed the range of VTK's extents.
+  std::array<std::int64_t, 6> Extent = { 0, -1, 0, -1, 0, -1 };
   std::array<double, 3> Origin = { 0, 0, 0 };
   std::array<double, 3> Spacing = { 1, 1, 1 };
   std::array<double, 9> Direction = { 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -31,31 +32,31 @@ struct VDBGeometry
   bool Empty() const { return this->Extent[0] > this->Extent[1]; }
 };
 
-/// The voxels for the cells of an extent of points; a flat extent has one layer of cells.
+/// Voxels that correspond to the cells of an extent of points; a flat extent has one layer of cells.
 VDBBox VoxelsOf(const std::array<std::int64_t, 6>& extent);
 
-/// Number of cells; 0 for an empty extent.
+/// Number of cells of an extent of points; 0 for an empty extent.
 double CellsOf(const std::array<std::int64_t, 6>& extent);
 
 /// The extent of points that a grid covers: the noted extent if it still contains every active voxel, otherwise the
 /// extent of the active voxels.
 std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid);
 
-/// Whether a grid has a note that it was an image of this extent with this number of cells. Then the extent does not
-/// result from a corrupt file, however few voxels are active.
+/// Whether a grid's metadata note that the grid was an image of this extent with this number of cells. If so, the
+/// extent does not result from a corrupt file, however few voxels are active.
 bool NotesExtent(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent);
 
-/// Whether the voxels of two grids coincide, up to rounding.
+/// Whether the voxels of two grids coincide, up to rounding of their transforms.
 bool SharesTransform(const VDBGrid& a, const VDBGrid& b);
 
 /// The common geometry of one or more grids that share a transform.
 VDBGeometry GeometryOf(const std::vector<const VDBGrid*>& grids);
 
-/// An image along the world axes that contains the voxels of some grids; its spacing is the shortest edge of their
-/// voxels.
+/// Geometry of an image along the world axes that contains the voxels of all given grids; its spacing is the shortest
+/// edge of their voxels.
 VDBGeometry BoxAround(const std::vector<const VDBGrid*>& grids);
 
-/// Geometry of an image, expressed as that of a grid.
+/// Geometry of a VTK image, as an OpenVDB grid has it.
 struct VDBPlacement
 {
   openvdb::CoordBBox Voxels;
@@ -63,6 +64,7 @@ struct VDBPlacement
   openvdb::MetaMap Notes;
 };
 
+/// Converts the geometry of an image to that of a grid.
 /// @throws InvalidInput if a spacing is not positive, or spacing or origin is not finite
 VDBPlacement PlacementOf(vtkImageData* image);
 }

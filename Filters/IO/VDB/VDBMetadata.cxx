@@ -27,7 +27,8 @@ namespace tyndall
 {
 namespace
 {
-/// Correspondence between metadata of OpenVDB's type V, with N numbers, and the VTK array that holds them as one tuple.
+/// Correspondence between metadata of OpenVDB's type V, with N numbers, and the type A of the VTK array that holds them
+/// as one tuple.
 template <typename V, typename A, int N = 1>
 struct ValueKind
 {
@@ -45,7 +46,7 @@ constexpr std::tuple<ValueKind<bool, vtkUnsignedCharArray>, ValueKind<Int32, vtk
   ValueKind<Mat4s, vtkFloatArray, 16>, ValueKind<Mat4d, vtkDoubleArray, 16>>
   Kinds;
 
-/// Calls act for each kind until it returns true.
+/// Calls `act` with each ValueKind until it returns true.
 template <typename Do>
 void ForKinds(const Do& act)
 {
@@ -95,7 +96,7 @@ bool InsertIfOfKind(K, MetaMap& map, const std::string& key, vtkAbstractArray* f
   return true;
 }
 
-/// Inserts an array of one 64-bit integer, whatever VTK calls its type.
+/// Inserts a VTK array that holds one 64-bit integer, of whatever VTK type.
 bool InsertIfLong(MetaMap& map, const std::string& key, vtkAbstractArray* found)
 {
   auto* array = vtkDataArray::SafeDownCast(found);
@@ -141,11 +142,11 @@ struct MediumFact
 };
 constexpr MediumFact MediumFacts[] = { { "g", "medium_g" }, { "phase_function", "medium_phase_function" },
   { "phase_second_g", "medium_phase_second_g" }, { "phase_first_part", "medium_phase_first_part" } };
-/// Tables with any number of rows, for which OpenVDB has no type.
+/// Field data with any number of rows, for which OpenVDB has no type: they are stored as text.
 constexpr MediumFact MediumTables[] = { { "phase_cosine", "medium_phase_cosine" },
   { "phase_value", "medium_phase_value" } };
 
-/// Writes numbers with all of their digits, separated by blanks.
+/// Writes all numbers of an array with all of their digits, separated by blanks.
 std::string TextOf(vtkDataArray* array)
 {
   std::string text;

@@ -10,22 +10,21 @@ class vtkFieldData;
 /// Converts metadata of .vdb files to field data of images, and back.
 namespace tyndall
 {
-/// Name of the field data for metadata `key` of a grid; of the file if `grid` is empty.
+/// Name of the field data that hold metadata `key` of a grid, or of the file if `grid` is empty.
 inline std::string FieldName(const std::string& grid, const std::string& key)
 {
   return "vdb:" + grid + ":" + key;
 }
 
-/// Adds field data `<prefix><key>` for metadata of all types that VTK has as well, except what the image itself
-/// expresses.
+/// Adds metadata as field data `<prefix><key>`, if VTK has their type, except metadata that the image itself expresses.
 void AddMetadata(vtkDataObject* image, const std::string& prefix, const openvdb::MetaMap& map);
 
 /// Restores metadata from field data whose names start with `prefix`, except a grid's type and background and the
 /// entries that describe the file it was read from.
 void RestoreMetadata(openvdb::MetaMap& map, vtkFieldData* field, const std::string& prefix);
 
-/// Field data that define a medium in addition to its cell arrays (`g`, `phase_function` and its parameters). In a file
-/// they are metadata of the same names with the prefix `medium_`; rows of a table are stored as text.
+/// Adds field data that define a medium in addition to its cell arrays (`g`, `phase_function` and its parameters). In a
+/// file they are metadata of the same names with the prefix `medium_`; rows of a table are stored as text.
 void AddMediumFacts(vtkDataObject* image, const openvdb::MetaMap& file);
 void NoteMediumFacts(openvdb::MetaMap& file, vtkFieldData* field);
 }

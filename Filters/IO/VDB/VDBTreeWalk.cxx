@@ -66,7 +66,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   const bool half = this->Half && this->Type.IsReal();
   if (half && count == 0)
   {
-    return; // OpenVDB stores nothing then, not even a length.
+    return; // OpenVDB then stores neither values nor a length
   }
   const std::uint64_t expected = count * (half ? this->Type.HalfSize : this->Type.Size);
   if (!(this->Compression & (COMPRESS_BLOSC | COMPRESS_ZIP)))
@@ -76,7 +76,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   }
   const std::uint64_t start = bytes.Position();
   const auto length = bytes.Value<std::int64_t>(NodesValues);
-  if (length <= 0) // stored uncompressed
+  if (length <= 0) // the values are stored uncompressed
   {
     if (length != -static_cast<std::int64_t>(expected))
     {
@@ -92,7 +92,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   }
   if (this->Compression & COMPRESS_BLOSC)
   {
-    // Blosc trusts the sizes in its header.
+    // Header of a Blosc block: Blosc trusts the sizes in it, so they are checked here.
     std::array<std::uint32_t, 4> header = {};
     if (length >= static_cast<std::int64_t>(sizeof(header)))
     {
@@ -134,7 +134,7 @@ void VDBValues::Decompress(VDBBytes& bytes, std::uint64_t compressed, std::uint6
 
 namespace
 {
-constexpr int LeafEdge = 8, UpperEdge = 4096; ///< voxels per edge: 2^3, 2^(3+4+5)
+constexpr int LeafEdge = 8, UpperEdge = 4096; ///< voxels per edge of a leaf, 2^3, and of an upper node, 2^(3+4+5)
 
 VDBBox BoxOf(const VoxelCorner& corner, std::int64_t edge)
 {
@@ -149,7 +149,7 @@ VDBMask<Log2Dim> ReadMask(VDBBytes& bytes, const char* what)
   return mask;
 }
 
-/// Corner (lowest voxel index) of a node's child.
+/// Corner (lowest voxel index) of child number `bit` of a node.
 template <int Log2Dim>
 VoxelCorner ChildCorner(const VoxelCorner& corner, int bit, int childEdge)
 {
@@ -161,7 +161,7 @@ VoxelCorner ChildCorner(const VoxelCorner& corner, int bit, int childEdge)
 /// The bounding box of a leaf's active voxels; at least one voxel must be active.
 VDBBox ActiveBoxOf(const VDBLeafMask& mask, const VoxelCorner& corner)
 {
-  // Voxel (x, y, z) is bit 64 x + 8 y + z: each word has one x, each of its bytes one y.
+  // Voxel (x, y, z) is bit 64 x + 8 y + z of the mask: each 64-bit word has one x, each of its bytes one y.
   std::uint64_t yz = 0;
   int first = -1, last = -1;
   for (int x = 0; x < LeafEdge; ++x)

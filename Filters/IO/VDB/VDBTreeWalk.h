@@ -11,40 +11,42 @@ namespace tyndall
 {
 class VDBBytes;
 
-/// Storage of a grid type's values in a file and in an image.
+/// A type of voxel values: its storage in a file and in an image.
 struct VDBValueType
 {
   const char* Name;
-  std::uint64_t Size;     ///< bytes of a value
-  std::uint64_t HalfSize; ///< bytes of a value whose numbers are stored in 16 bits
+  std::uint64_t Size;     ///< size of a value, bytes
+  std::uint64_t HalfSize; ///< size of a value whose numbers are stored in 16 bits, bytes
   enum
   {
     Numbers,
     Bool,
     Mask
-  } Leaves; ///< what a leaf stores besides its mask
+  } Leaves; ///< what a leaf stores besides its active mask
 
   bool IsReal() const { return this->HalfSize < this->Size; }
-  std::string GridType() const { return std::string("Tree_") + this->Name + "_5_4_3"; } ///< OpenVDB's name of it
+  /// OpenVDB's name of the grid type.
+  std::string GridType() const { return std::string("Tree_") + this->Name + "_5_4_3"; }
 };
 
-/// Finds a type that can become an image: float, double, int32, int64, bool, mask, vec3i, vec3s, vec3d. Else null.
+/// Finds the type of values with this name, if such grids can become images: float, double, int32, int64, bool, mask,
+/// vec3i, vec3s, vec3d. Null for other names.
 const VDBValueType* FindValueType(const std::string& name);
 
-/// Checks the stored values of a grid's nodes without keeping them.
+/// Checks the stored values of a tree's nodes without keeping them.
 class VDBValues
 {
 public:
   /// @param half         whether real numbers are stored in 16 bits
-  /// @param compression  OpenVDB's flags
+  /// @param compression  OpenVDB's compression flags
   VDBValues(const VDBValueType& type, bool half, std::uint32_t compression);
 
-  /// Checks the values of one node: a flag, up to two inactive values and the mask that selects between them, then a
-  /// block of numbers.
+  /// Checks the values of one node, which are stored as a flag, up to two inactive values, the mask that selects
+  /// between these, and a block of numbers.
   /// @param active      number of active values
   /// @param all         number of values of the node
-  /// @param decompress  whether to decompress the block as a test: OpenVDB leaks an inner node whose values do not
-  ///   decompress
+  /// @param decompress  whether to decompress the block as a test; needed for inner nodes, because OpenVDB leaks an
+  ///   inner node whose values do not decompress
   /// @throws InvalidInput if the block does not match the node: OpenVDB would write beyond the node
   void Check(VDBBytes& bytes, std::uint64_t active, std::uint64_t all, bool decompress);
 
@@ -60,10 +62,10 @@ private:
 
 class VDBBytes;
 
-/// Index of a voxel; 64 bits hold any corner that a file can specify.
+/// Lowest voxel index of a node; 64 bits hold any corner that a file can specify.
 using VoxelCorner = std::array<std::int64_t, 3>;
 
-/// A box of voxels, inclusive, of any size. Not the kernels' VoxelBox, which is part of a grid.
+/// A box of voxels of any size, with inclusive bounds. The kernels' VoxelBox, in contrast, is part of a grid.
 struct VDBBox
 {
   VoxelCorner Min = { INT64_MAX, INT64_MAX, INT64_MAX };
@@ -77,14 +79,15 @@ struct VDBBox
 struct VDBTopology
 {
   VDBBox ActiveBox;
-  std::uint64_t ActiveVoxels = 0; ///< a tile counts as the voxels that it covers; saturates
-  std::uint64_t TreeBytes = 0;    ///< memory of the tree with all its leaves loaded
+  /// Number of active voxels, where a tile counts as the voxels that it covers; saturates at the largest number.
+  std::uint64_t ActiveVoxels = 0;
+  std::uint64_t TreeBytes = 0; ///< memory of the tree with all its leaves loaded, bytes
 
-  /// Adds a cube of active voxels that share one value.
+  /// Adds to the statistics a cube of active voxels that share one value.
   void AddTile(const VoxelCorner& corner, std::int64_t edge);
 };
 
-/// The bit mask of one node, x slowest, as OpenVDB's NodeMask.
+/// The bit mask of one node, x slowest, in the order of OpenVDB's NodeMask.
 template <int Log2Dim>
 struct VDBMask
 {
@@ -112,11 +115,11 @@ public:
   /// Called with the corner and the active mask of each leaf, in the order in which leaves are stored.
   using OnLeaf = std::function<void(const VoxelCorner&, const VDBLeafMask&)>;
 
-  /// @param topology  positioned at the start of the tree
+  /// @param topology  positioned at the start of the tree in the file
   /// @param values    checks the values of inner nodes
   VDBTreeWalk(VDBBytes& topology, const VDBValueType& type, VDBValues& values, OnLeaf onLeaf = {});
 
-  /// Walks to the end of the tree.
+  /// Walks from the start to the end of the tree, and returns its statistics.
   /// @throws InvalidInput if the topology is invalid
   VDBTopology Walk();
 
