@@ -208,8 +208,8 @@ void TakeOneImage(vtkInformation* port)
 
 namespace
 {
-/// Whether vtkCompositeDataPipeline runs the filter for each block of this input. If there are several such inputs, it
-/// iterates over the first and refuses the others.
+/// Whether vtkCompositeDataPipeline runs the filter for each block of the data at a port. If several inputs have
+/// blocks, the pipeline iterates over the first and refuses the others.
 bool IsTakenByBlocks(vtkAlgorithm* filter, int port, vtkDataObject* input)
 {
   vtkInformation* const information = filter->GetInputPortInformation(port);
@@ -221,8 +221,8 @@ bool IsTakenByBlocks(vtkAlgorithm* filter, int port, vtkDataObject* input)
   return taken;
 }
 
-/// @return number of blocks that the port processes; in a port for images, blocks of other types are errors and not
-///   counted
+/// Counts the blocks of composite data that an input port processes.
+/// @return number of blocks; in a port for images, blocks of other types are errors and not counted
 int CountBlocks(vtkCompositeDataSet* composite, vtkInformation* port)
 {
   int count = 0;
@@ -235,7 +235,7 @@ int CountBlocks(vtkCompositeDataSet* composite, vtkInformation* port)
   return count;
 }
 
-/// Explains what it means that the filter runs for each block of an input, and what to do about it.
+/// Text that explains what it means that the filter runs for each block of an input, and what to do about it.
 std::string AboutBlocks(vtkInformation* port)
 {
   if (IsForImagesOfScene(port))
@@ -255,7 +255,7 @@ std::string AboutBlocks(vtkInformation* port)
 void WarnOfBlocks(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** inputs)
 {
   vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
-  // This request comes once, with the complete input, before the REQUEST_DATA requests for the blocks.
+  // REQUEST_DATA_NOT_GENERATED comes once, with the complete input, before the REQUEST_DATA requests for the blocks.
   if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA_NOT_GENERATED()) || (ranks && ranks->GetLocalProcessId() > 0))
   {
     return;
@@ -322,7 +322,7 @@ void RequireWholeArrays(vtkAlgorithm* filter)
     {
       vtkDataObject* const input = filter->GetInputDataObject(port, i);
       auto* const image = vtkImageData::SafeDownCast(input);
-      // VTK emptied it, but may have left old arrays.
+      // An image without points, which VTK has emptied, may still have its old arrays.
       const bool isCutToNothing = image && image->GetNumberOfPoints() == 0;
       for (const auto& [kind, elements] : kinds)
       {
@@ -456,7 +456,7 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
   vtkInformation* const input = inputs->GetInformationObject(0);
   if (!input || IsTakenByBlocks(filter, port, vtkDataObject::GetData(input)))
   {
-    return; // each block has its own voxels
+    return; // not announced: each block has its own voxels
   }
   std::array<int, 6> told = { 0, 1, 0, 1, 0, 1 };
   const bool isKnown = input->Has(Pipeline::WHOLE_EXTENT()) != 0;
@@ -480,7 +480,7 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
     const int* const copied = output->Get(Pipeline::WHOLE_EXTENT());
     if (copied ? !isKnown || !std::equal(told.begin(), told.end(), copied) : isKnown)
     {
-      continue; // it has no voxels, or other ones
+      continue; // this output has no voxels, or not those of the input
     }
     output->Set(Pipeline::WHOLE_EXTENT(), extent.data(), 6);
     if (ways && origin)
@@ -514,7 +514,7 @@ bool Any(vtkUnsignedCharArray* flags, unsigned char flag)
     std::any_of(values, values + flags->GetNumberOfTuples(), [=](unsigned char value) { return (value & flag) != 0; });
 }
 
-/// The cells that share a point.
+/// Flags as hidden the cells that share a point.
 void HideAround(vtkImageData* image, vtkIdType point, std::vector<unsigned char>& hidden)
 {
   int points[3];
@@ -580,7 +580,7 @@ void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
   auto* const pieces = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
   if (filter->IsA("vtkParticipatingMedium"))
   {
-    return; // such filters work cell by cell: a duplicate has the medium of its cell
+    return; // this filter works cell by cell: a duplicate gets the same medium as the cell that it copies
   }
   bool divided = false;
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)

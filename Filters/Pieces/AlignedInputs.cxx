@@ -49,7 +49,7 @@ AlignedInputs::AlignedInputs(vtkMultiProcessController* ranks, vtkAlgorithm* fil
   this->NoteAveragedArrays();
 }
 
-/// Aligns images that are read as voxels, and their announced extents, with the world axes.
+/// Aligns the images at ports that are read as voxels, and their announced extents, with the world axes.
 void AlignedInputs::AlignGiven(vtkInformationVector** given)
 {
   for (int port = 0; port < this->Filter->GetNumberOfInputPorts(); ++port)
@@ -83,7 +83,7 @@ void AlignedInputs::AlignGiven(vtkInformationVector** given)
   }
 }
 
-/// Determines the medium axes from the first port's image, on any rank where it has points.
+/// Determines the medium axes from the image at port 0, on any rank whose image has points. Collective.
 void AlignedInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
 {
   const bool reads =
@@ -116,7 +116,7 @@ void AlignedInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
   NoteOwnAxes(this->Filter, this->Axes);
 }
 
-/// Rotates images into the axes of the first port's image.
+/// Rotates the images at all ports into the axes of the image at port 0.
 void AlignedInputs::TurnGiven()
 {
   for (int port = 0; port < this->Filter->GetNumberOfInputPorts() && !this->Axes.AreThoseOfScene(); ++port)
@@ -143,7 +143,7 @@ void AlignedInputs::PutIntoScene(vtkInformationVector* outputs)
   tyndall::PutIntoScene(this->Filter, this->Axes, outputs, vtkImageData::SafeDownCast(this->Medium));
 }
 
-/// Records the names of point arrays that are averaged because cell arrays are read as well.
+/// Records for each image the names of point arrays that are averaged to cells because cell arrays are read as well.
 void AlignedInputs::NoteAveragedArrays()
 {
   std::vector<std::string> averaged;

@@ -14,25 +14,26 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// Returns other data for a connection of a port, or the same.
+/// Function that returns the data to use for a connection of a port: other data, or `data` itself.
 using ChangeOfData = std::function<vtkSmartPointer<vtkDataObject>(int connection, vtkDataObject* data)>;
-/// A port's connections with their data changed; null if no data change.
+/// Returns a port's connections with their data changed; null if all data stay the same.
 vtkSmartPointer<vtkInformationVector> WithData(vtkInformationVector* given, const ChangeOfData& change);
 
-/// Inputs of a filter, its images in the axes in which it works.
+/// Inputs of a filter, with images transformed to the axes in which the filter works.
 ///
-/// Images that a filter reads as voxels are aligned with the world axes if their axes are a permutation of these. If
-/// the first input is rotated otherwise, the filter works in the axes of that image (OwnAxes), the same on all ranks.
+/// Images that a filter reads as voxels are aligned with the world axes if their axes are a signed permutation of the
+/// world axes. If the image at port 0 is rotated by other than right angles, the filter works in the axes of that image
+/// (OwnAxes), the same on all ranks.
 class AlignedInputs
 {
 public:
-  /// Collective.
+  /// Aligns the inputs of a filter. Collective.
   /// @param ranks  null: this process is alone
   /// @param given  the filter's inputs by port
   /// @throws InvalidInput, the same on all ranks, if pieces of an image have different axes
   AlignedInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given);
 
-  /// Rotates outputs from the medium axes back to the scene axes.
+  /// Rotates output images from the medium axes back to the scene axes.
   void PutIntoScene(vtkInformationVector* outputs);
 
   std::vector<vtkSmartPointer<vtkInformationVector>> ports;
@@ -44,7 +45,7 @@ private:
   void NoteAveragedArrays();
 
   vtkAlgorithm* Filter;
-  OwnAxes Axes;                          ///< axes of the first port's image
-  vtkSmartPointer<vtkDataObject> Medium; ///< that image in scene axes; null: none
+  OwnAxes Axes;                          ///< axes of the image at port 0
+  vtkSmartPointer<vtkDataObject> Medium; ///< image at port 0 in scene axes; null: none
 };
 }

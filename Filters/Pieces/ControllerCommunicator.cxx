@@ -28,7 +28,8 @@ namespace tyndall
 {
 double SecondsToWait()
 {
-  constexpr double usual = 600.0, longest = 1e8; // limit for clocks, which overflow after centuries
+  // Default timeout, and upper limit because clocks overflow after centuries.
+  constexpr double usual = 600.0, longest = 1e8;
   const char* const said = std::getenv("TYNDALL_RANKS_WAIT");
   const double seconds = NumberIn(said ? said : "").value_or(0.0);
   return seconds > 0.0 ? std::min(seconds, longest) : usual;
@@ -37,8 +38,8 @@ double SecondsToWait()
 #ifdef TYNDALL_HAS_MPI
 namespace
 {
-constexpr int FirstOfAll = 1000000; ///< first tag, above those of VTK and of Ranks.cxx
-constexpr double Grace = 1.0;       ///< seconds to wait for messages sent before a stop
+constexpr int FirstOfAll = 1000000; ///< first message tag, above the tags of VTK and of Ranks.cxx
+constexpr double Grace = 1.0;       ///< how long to wait, after a stop, for messages that were sent before it, seconds
 
 /// Keeps messages whose sends are not complete when an error occurs: MPI may read their memory until the process ends.
 template <class Messages>
@@ -48,7 +49,7 @@ void LeaveBehind(Messages& messages)
   left.splice(left.end(), messages);
 }
 
-/// Throws an error if an MPI call failed.
+/// Throws an error unless an MPI call to another rank succeeded.
 void RequireSent(bool done, const char* what, int rank)
 {
   if (!done)
@@ -94,8 +95,8 @@ int ControllerCommunicator::Ranks() const
   return this->Controller->GetNumberOfProcesses();
 }
 
-/// Sends without blocking: rays of different octants travel in both directions between two subdomains, so blocking
-/// sends could deadlock.
+/// Sends a message without blocking: rays of different octants travel in both directions between two subdomains, so
+/// blocking sends could deadlock.
 void ControllerCommunicator::Give(int to, int tag, std::vector<char> bytes)
 {
   this->ForgetSent();
@@ -162,7 +163,7 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
 std::vector<std::vector<char>> ControllerCommunicator::Swap(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
-  if (this->Stopped && this->Stopped()) // a rank has stopped: DIY would wait for it
+  if (this->Stopped && this->Stopped()) // a rank has stopped, and DIY would wait for it without limit
   {
     throw Aborted();
   }
@@ -173,7 +174,7 @@ std::vector<std::vector<char>> ControllerCommunicator::Swap(
 
 namespace
 {
-constexpr int Conversations = 64, Works = 16; ///< numbers before tags are reused; tags of frames follow those of work
+constexpr int Conversations = 64, Works = 16; ///< numbers before tags are reused; tags of frames follow tags of work
 int Work = 0, Conversation = 0, Frame = 0;
 
 std::unique_ptr<Communicator> Make(vtkMultiProcessController* ranks, [[maybe_unused]] std::function<bool()> stopped,
@@ -220,14 +221,14 @@ std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks
 #ifdef TYNDALL_HAS_DIY
 namespace
 {
-/// Ends this process as a last resort; MPI then ends all ranks.
+/// Ends this process after an error that cannot be reported to other ranks; MPI then ends all ranks.
 [[noreturn]] void EndAllRanks(int rank, const std::string& why)
 {
   std::cerr << "Tyndall, rank " << rank << ": " << why << " All ranks are ended." << std::endl;
   std::_Exit(EXIT_FAILURE);
 }
 
-/// Ends all ranks unless it is destroyed before the timeout.
+/// Timer that ends all ranks unless it is destroyed before the timeout.
 class Deadline
 {
 public:
@@ -258,18 +259,18 @@ private:
   std::mutex Guard;
   std::condition_variable Changed;
   bool Kept = false;
-  std::thread Watch; // last: the thread uses the other members
+  std::thread Watch; // last member: the thread uses the other members
 };
 
-/// Content of a rank's block: the parcels to send, then the received ones.
+/// Content of a rank's DIY block: first the parcels to send, later the received ones.
 struct Parcels
 {
   std::vector<std::vector<char>> ofRanks;
 };
 
-/// DIY's master for the ranks of a controller, with one block per rank. It is made collectively at the first exchange,
-/// with its own communicator because DIY's tags are small numbers. It is stored as an attribute of the controller's
-/// communicator and never deleted, since MPI may be finalised first.
+/// DIY's master for the ranks of a controller, with one block per rank. Collective at the first exchange, when the
+/// master is made, with its own MPI communicator because DIY's tags are small numbers. The master is stored as an
+/// attribute of the controller's communicator and never deleted, since MPI may be finalised first.
 diy::Master& MasterOf(vtkMPIController* controller)
 {
   static int key = MPI_KEYVAL_INVALID;
@@ -291,7 +292,7 @@ diy::Master& MasterOf(vtkMPIController* controller)
   return *static_cast<diy::Master*>(kept);
 }
 
-/// Exchanges parcels; they become DIY's queues without a copy.
+/// Exchanges one parcel with each rank of `with`; parcels become DIY's queues without a copy. Collective.
 std::vector<std::vector<char>> Exchange(
   diy::Master& master, const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
@@ -330,7 +331,7 @@ std::vector<std::vector<char>> ExchangeByDIY(
     const Deadline deadline(rank, patience);
     return Exchange(MasterOf(controller), with, std::move(parcels));
   }
-  catch (const std::exception& error) // other ranks would wait forever
+  catch (const std::exception& error) // ends all ranks, which would wait for this one without limit
   {
     EndAllRanks(rank, std::string("an exchange has failed: ") + error.what() + ".");
   }

@@ -20,15 +20,15 @@ class vtkMultiProcessController;
 namespace tyndall
 {
 /// Timeout for waiting on another rank, seconds: the current value of the environment variable TYNDALL_RANKS_WAIT,
-/// default 600. Filters upstream may take that much longer on one rank than on another.
+/// default 600. Filters upstream may run longer on one rank than on another by this time.
 double SecondsToWait();
 
-/// Called at the start of WorkOnAllRanks: new communicators get new tags, so that messages left over from earlier work
-/// are not received.
+/// Starts a new range of message tags, so that messages left over from earlier work are not received. Called on all
+/// ranks at the start of WorkOnAllRanks.
 void BeginConversations();
 
-/// Makes a communicator for the ranks that run a filter together. Collective: all ranks make their communicators in the
-/// same order.
+/// Makes a communicator for the ranks that run a filter together. Collective: if a filter makes several communicators,
+/// all ranks make them in the same order.
 /// @param ranks    must outlive the communicator; null: this process is alone
 /// @param stopped  returns whether to stop waiting for other ranks; a pending receive then throws Aborted one second
 ///   later
@@ -36,11 +36,12 @@ void BeginConversations();
 std::unique_ptr<Communicator> CommunicatorOf(
   vtkMultiProcessController* ranks, std::function<bool()> stopped = {}, double patience = SecondsToWait());
 
-/// The same for ranks that render a frame together, outside WorkOnAllRanks. It uses a separate range of tags.
+/// Makes a communicator, as CommunicatorOf does, for the ranks that render a frame together, outside WorkOnAllRanks. It
+/// uses a separate range of tags.
 std::unique_ptr<Communicator> CommunicatorOfFrame(vtkMultiProcessController* ranks);
 
-/// The communicator for the end of WorkOnAllRanks. Its tags do not depend on how many communicators a rank made before
-/// an error.
+/// Makes the communicator for the end of WorkOnAllRanks. Its tags do not depend on how many communicators a rank made
+/// before an error.
 std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks);
 
 #ifdef TYNDALL_HAS_MPI
@@ -53,7 +54,7 @@ public:
   /// @param conversation  number >= 0, the same on all ranks, that selects the tags
   explicit ControllerCommunicator(vtkMPIController* controller, double patience = SecondsToWait(),
     std::function<bool()> stopped = {}, int conversation = 0);
-  /// Completes pending sends, unless an error is being thrown.
+  /// Waits until pending sends are complete, unless an error is being thrown.
   ~ControllerCommunicator() override;
 
   int Rank() const override;
@@ -67,7 +68,7 @@ protected:
 #endif
 
 private:
-  /// A message whose nonblocking send is not complete.
+  /// A message whose nonblocking send is not complete, and its MPI request.
   struct Underway
   {
     std::vector<char> bytes;

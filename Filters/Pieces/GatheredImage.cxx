@@ -33,30 +33,30 @@ struct PieceValues
   std::vector<unsigned char> flags; ///< vtkGhostType of each value; empty: no flags
 };
 
-/// Assigns each value of an image to one of its pieces, which may overlap: to the first piece in which vtkGhostType
-/// flags it neither as a duplicate nor as hidden, else the first in which it is hidden, else one that has a duplicate
-/// of it.
+/// Assigns each value (cell or point) of an image to one of its pieces, which may overlap: to the first piece in which
+/// vtkGhostType flags the value neither as duplicate nor as hidden, else to the first piece in which it is hidden, else
+/// to a piece in which it is a duplicate.
 class PieceLayout
 {
 public:
-  /// @param duplicate, hidden  bits of vtkGhostType with this meaning
+  /// @param duplicate, hidden  bits of vtkGhostType that flag a value as duplicate, or as hidden
   PieceLayout(const ValueBox& whole, std::vector<PieceValues> pieces, unsigned char duplicate, unsigned char hidden);
 
-  /// Index of the first value that no piece has; the number of values if there is none.
+  /// Index of the first value that is in no piece; the number of values if there is no gap.
   std::size_t FirstGap() const;
 
-  /// The piece to which a value is assigned.
+  /// Index of the piece to which a value is assigned.
   int OwnerOf(std::size_t value) const { return this->Owners[value]; }
 
-  /// vtkGhostType of each value, from the piece to which it is assigned.
+  /// vtkGhostType of each value, as in the piece to which the value is assigned.
   std::vector<unsigned char> Flags() const;
 
-  /// Copies the values that are assigned to a piece into the complete array.
-  /// @param size  bytes of a value
+  /// Copies those values of a piece that are assigned to it into the array of the complete image.
+  /// @param size  size of a value, bytes
   void Paste(int piece, const char* values, std::size_t size, char* whole) const;
 
-  /// Calls act(index in the piece, index in the image) for each value that is neither a duplicate nor hidden in the
-  /// piece, but is assigned to another piece.
+  /// Calls act(index in the piece, index in the image) for each value of a piece that is neither duplicate nor hidden
+  /// there but is assigned to another piece.
   template <typename Do>
   void ForOverlap(int piece, const Do& act) const
   {
@@ -156,12 +156,12 @@ void PieceLayout::Paste(int piece, const char* values, std::size_t size, char* w
 
 namespace
 {
-constexpr int Tag = 745201;                      ///< of messages of this class
-constexpr vtkIdType LongestMessage = 1073741824; ///< bytes; MPI counts in int
+constexpr int Tag = 745201;                      ///< tag of messages of this class
+constexpr vtkIdType LongestMessage = 1073741824; ///< maximum length of a message, bytes: MPI counts in int
 constexpr const char* KindNames[] = { "cell", "point" };
 using Flags = vtkDataSetAttributes;
 
-/// Bytes of a tuple; 0 for types smaller than a byte, which no writer accepts.
+/// Size of a tuple of an array, bytes; 0 for types smaller than a byte, which no writer accepts.
 vtkIdType TupleSize(vtkDataArray* array)
 {
   return static_cast<vtkIdType>(array->GetDataTypeSize()) * array->GetNumberOfComponents();
@@ -173,7 +173,7 @@ std::vector<unsigned char> FlagsOf(vtkUnsignedCharArray* ghosts)
                 : std::vector<unsigned char>();
 }
 
-/// Masks the flags of each value by `flag`; empty if no value has any of its bits.
+/// Returns `flags` with only the bits of `flag`; empty if these bits are 0 for all values.
 std::vector<unsigned char> Only(unsigned char flag, std::vector<unsigned char> flags)
 {
   bool any = false;
@@ -185,7 +185,7 @@ std::vector<unsigned char> Only(unsigned char flag, std::vector<unsigned char> f
   return any ? flags : std::vector<unsigned char>();
 }
 
-/// Whether two pieces belong to one grid, up to rounding.
+/// Whether the origins, spacings and directions of two pieces are those of one grid, up to rounding.
 bool SamePlace(const std::array<double, 15>& a, const std::array<double, 15>& b)
 {
   for (int i = 0; i < 15; ++i)
@@ -204,7 +204,7 @@ std::string RanksInWords(int first, int other)
   return "ranks " + std::to_string(first) + " and " + std::to_string(other);
 }
 
-/// Whether two values of arrays are equal, up to rounding.
+/// Whether the tuples number `inA` of array `a` and `inB` of array `b` are equal, up to rounding.
 bool SameValue(vtkDataArray* a, vtkIdType inA, vtkDataArray* b, vtkIdType inB)
 {
   for (int component = 0; component < a->GetNumberOfComponents(); ++component)
@@ -371,7 +371,7 @@ void GatheredImage::CheckArrays(int first, int other, Kind kind) const
   check(other, first);
 }
 
-/// Sorts this rank's arrays in the order of the first piece. Ranks without cells have none of the arrays.
+/// Sorts this rank's arrays in the order of the first piece's arrays. Ranks without cells have no arrays.
 void GatheredImage::Sort(Kind kind, const Piece& first)
 {
   Arrays sorted;
@@ -384,7 +384,7 @@ void GatheredImage::Sort(Kind kind, const Piece& first)
   this->Own[kind] = std::move(sorted);
 }
 
-/// Makes an image with the extent of all pieces and the geometry of the first one.
+/// Makes an image without arrays, with the extent of all pieces and the geometry of piece number `first`.
 void GatheredImage::MakeWhole(int first)
 {
   OnAllRanks(this->Controller, [&] {
@@ -419,8 +419,8 @@ void GatheredImage::MakeWhole(int first)
   });
 }
 
-/// Collects the boxes of all pieces and, on ranks that gather the image, their flags.
-/// @param own  flags of this rank's piece
+/// Gathers the boxes of all pieces and, on ranks that gather the image, the flags of all pieces. Collective.
+/// @param own  vtkGhostType of this rank's piece
 std::vector<PieceValues> GatheredImage::ShareFlags(Kind kind, const std::vector<unsigned char>& own) const
 {
   std::vector<PieceValues> pieces(this->Pieces.size());
@@ -448,8 +448,8 @@ std::vector<PieceValues> GatheredImage::ShareFlags(Kind kind, const std::vector<
   return pieces;
 }
 
-/// Assigns values to pieces, and finds hidden values.
-/// @param own  flags of this rank's piece
+/// Assigns the cells, or points, of the image to pieces, and finds those that are hidden. Collective.
+/// @param own  vtkGhostType of this rank's piece
 void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
 {
   constexpr std::array<unsigned char, Kinds> duplicates = { Flags::DUPLICATECELL, Flags::DUPLICATEPOINT };
@@ -470,7 +470,7 @@ void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
     for (std::size_t rank = 0; rank < pieces.size(); ++rank)
     {
       const std::array<int, 6>& extent = this->Pieces[rank].Extent;
-      for (int axis = 0; axis < 3; ++axis) // a flat piece has no cells of an image that is not flat
+      for (int axis = 0; axis < 3; ++axis) // flat pieces of an image that is not flat have no cells
       {
         if (kind == Cells && extent[2 * axis] == extent[2 * axis + 1] && all[2 * axis] < all[2 * axis + 1])
         {
@@ -495,10 +495,10 @@ void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
   });
 }
 
-/// Broadcasts the field data of the first piece.
+/// Broadcasts the field data of the piece on rank `from`. Collective.
 void GatheredImage::ShareFieldData(vtkImageData* piece, int from)
 {
-  vtkNew<vtkImageData> carrier; // carries field data only
+  vtkNew<vtkImageData> carrier; // image without values, to send field data
   carrier->SetDimensions(1, 1, 1);
   if (this->Rank == from)
   {
@@ -528,9 +528,9 @@ vtkIdType GatheredImage::CountOf(Kind kind, int rank) const
   return static_cast<vtkIdType>((kind == Cells ? CellBoxOf(extent) : PointBoxOf(extent)).Count());
 }
 
-/// Sends an array's bytes from one rank to the ranks that gather the image.
-/// @param own     the bytes, on the rank that sends
-/// @param values  buffer for the bytes, on ranks that gather the image
+/// Sends an array's bytes from rank `from` to the ranks that gather the image. Collective.
+/// @param own     the array's bytes, on rank `from`
+/// @param values  receives the bytes, on ranks that gather the image
 void GatheredImage::Bring(const char* own, char* values, vtkIdType bytes, int from) const
 {
   const bool mine = this->Rank == from;
@@ -603,8 +603,10 @@ vtkSmartPointer<vtkDataArray> GatheredImage::Array(Kind kind, int index)
   return this->IsHere() ? whole : nullptr;
 }
 
-/// @param values  the piece's array on `rank`; pieces of lower ranks are already in `whole`
-/// @throws InvalidInput if that piece owns a value that differs from the value in the gathered array
+/// Checks that pieces have equal values where they overlap.
+/// @param values  array of the piece on `rank`; pieces of lower ranks are already in `whole`
+/// @throws InvalidInput if a value of that piece, neither duplicate nor hidden, differs from the value in the gathered
+///   array
 void GatheredImage::CheckOverlap(Kind kind, int rank, const char* values, vtkDataArray* whole) const
 {
   const auto own = vtkSmartPointer<vtkDataArray>::Take(whole->NewInstance());

@@ -20,11 +20,11 @@ class StreamedMembers;
 struct PieceValues;
 
 /// Gathers an image that is distributed in pieces, on the first rank or on every rank. Arrays are gathered one at a
-/// time, so that only one of them is in memory twice.
+/// time, so that only one array is in memory twice.
 ///
 /// Pieces may overlap and may have ghost cells (vtkGhostType). PieceLayout chooses the piece from which a cell or point
 /// is taken; values owned by several pieces must be equal. Ranks without cells are ignored. Field data are taken from
-/// the first piece; the phase function in them must be the same on all pieces. With one rank nothing is copied.
+/// the first piece; the phase function in field data must be the same on all pieces. With one rank nothing is copied.
 ///
 /// The constructor and the access to arrays are collective, with the arrays in the same order on all ranks; an error on
 /// one rank throws InvalidInput on all.
@@ -43,7 +43,7 @@ public:
   /// @param piece       may be null or without cells
   /// @param cells, points  arrays of the piece, one tuple for each cell or point, in any order
   /// @param refusal     beginning of error messages, e.g. "The image is not written"
-  /// @throws InvalidInput if pieces leave a gap, lie on different grids or have different arrays
+  /// @throws InvalidInput if the pieces leave a gap, lie on different grids or have different arrays
   GatheredImage(vtkMultiProcessController* controller, vtkImageData* piece, Arrays cells, Arrays points, On where,
     const std::string& refusal);
   ~GatheredImage();
@@ -52,16 +52,17 @@ public:
   int NumberOfCellArrays() const { return static_cast<int>(this->Own[Cells].size()); }
   int NumberOfPointArrays() const { return static_cast<int>(this->Own[Points].size()); }
 
-  /// Extent, geometry and field data of the complete image, without arrays. Null if no piece has cells, and on ranks on
-  /// which the image is not gathered.
+  /// The complete image, with extent, geometry and field data but without arrays. Null if no piece has cells, and on
+  /// ranks on which the image is not gathered.
   vtkImageData* Frame() const { return this->Whole; }
 
-  /// A flag for each cell, or point: whether vtkGhostType hides it. Null if none is hidden, or the image is not
-  /// gathered here.
+  /// Flag of each cell, or of each point: whether vtkGhostType hides it. Null if none is hidden, or on ranks on which
+  /// the image is not gathered.
   const std::vector<unsigned char>* HiddenCells() const { return this->HiddenOf(Cells); }
   const std::vector<unsigned char>* HiddenPoints() const { return this->HiddenOf(Points); }
 
-  /// The gathered array; null on ranks on which the image is not gathered.
+  /// Gathers the cell, or point, array number `index`. Collective.
+  /// @return null on ranks on which the image is not gathered
   vtkSmartPointer<vtkDataArray> CellArray(int index) { return this->Array(Cells, index); }
   vtkSmartPointer<vtkDataArray> PointArray(int index) { return this->Array(Points, index); }
 
@@ -82,14 +83,14 @@ private:
     void Stream(StreamedMembers& members);
   };
 
-  /// Description of a piece, known to every rank.
+  /// Description of the piece on one rank, known to every rank.
   struct Piece
   {
     std::array<int, 6> Extent = { 0, -1, 0, -1, 0, -1 };
-    std::array<double, 15> Place = {}; ///< origin, spacing, direction
+    std::array<double, 15> Place = {}; ///< origin, spacing and direction matrix
     std::array<std::vector<ArrayKind>, Kinds> Arrays;
     std::array<bool, Kinds> HasFlags = {};
-    std::string Phase; ///< the phase function in its field data
+    std::string Phase; ///< the phase function in the piece's field data
 
     void Stream(StreamedMembers& members);
     bool HasCells() const { return this->Extent[0] <= this->Extent[1]; }
@@ -122,7 +123,8 @@ private:
   std::array<Arrays, Kinds> Own; ///< arrays of this rank's piece; null if it has none
   vtkSmartPointer<vtkImageData> Whole;
   std::vector<Piece> Pieces;
-  std::array<std::unique_ptr<PieceLayout>, Kinds> Layouts; ///< on ranks that gather the image
+  /// Assignment of cells, and of points, to pieces; on ranks that gather the image.
+  std::array<std::unique_ptr<PieceLayout>, Kinds> Layouts;
   std::array<std::vector<unsigned char>, Kinds> Hidden;
 };
 }

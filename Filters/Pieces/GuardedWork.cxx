@@ -40,7 +40,7 @@ namespace tyndall
 {
 namespace
 {
-/// Records when and how a filter's last run failed, to avoid reporting the same error repeatedly: VTK runs a filter
+/// Record of when and how a filter's last run failed, to avoid reporting the same error repeatedly: VTK runs a filter
 /// again on every update as long as its output does not cover the requested extent, which empty outputs never do, and
 /// ParaView makes several updates.
 class LastFailure
@@ -51,7 +51,7 @@ public:
     Error,
     Abort,
     Information, ///< an error in RequestInformation
-    Missing,     ///< a rank did not arrive
+    Missing,     ///< a rank did not reach the filter
   };
 
   explicit LastFailure(vtkAlgorithm* filter)
@@ -64,7 +64,7 @@ public:
   {
     auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(this->Filter->GetExecutive());
     const vtkMTimeType time = this->Facts->Has(Time()) ? this->Facts->Get(Time()) : 0;
-    // Includes the filter's own time: ParaView's reader for series bypasses the reader's pipeline.
+    // The filter's own modification time counts as well: ParaView's reader for series bypasses the reader's pipeline.
     bool holds = pipeline && std::max(pipeline->GetPipelineMTime(), this->Filter->GetMTime()) < time;
     for (int port = 0; holds && port < this->Filter->GetNumberOfInputPorts(); ++port)
     {
@@ -89,8 +89,8 @@ public:
   void Forget() { this->Facts->Remove(Time()); }
 
 private:
-  /// Modification time of the arrays. That of the data object is no use: ParaView's internal filters make it anew, with
-  /// the same arrays, on every access.
+  /// Latest modification time of the arrays of a data object. The time of the data object itself is not useful:
+  /// ParaView's internal filters make the object anew, with the same arrays, on every access.
   static vtkMTimeType TimeOf(vtkDataObject* data)
   {
     const std::vector<vtkMTimeType> times = TimesOfArrays(data);
@@ -113,7 +113,7 @@ private:
   vtkInformation* Facts;
 };
 
-/// Reports progress unless an abort was requested, after which nothing more is reported.
+/// Reports a filter's progress, a fraction from 0 to 1, unless an abort was requested: then nothing more is reported.
 void ReportProgress(vtkAlgorithm* filter, const char* text, double fractionDone)
 {
   if (filter->GetAbortExecute() == 0)
@@ -165,7 +165,7 @@ void ForgetAbort(vtkAlgorithm* filter)
 
 namespace
 {
-/// Issues the device layer's warnings, once per process, from the filter that opened the device.
+/// Issues the device layer's warnings, once per process, as warnings of the filter that opened the device.
 void WarnOfDevices(vtkAlgorithm* filter)
 {
   for (const std::string& warning : Device::TakeWarnings())
@@ -189,7 +189,8 @@ void EmptyWithout(vtkInformationVector* outputs)
   }
 }
 
-/// Whether a rank is known to be missing: at this filter, if nothing has changed since, or at a filter upstream.
+/// Whether a rank is known not to reach this filter: it was missing here and nothing has changed since, or at a filter
+/// upstream.
 bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
 {
   bool known = last.Was(LastFailure::Missing) && last.StillHolds();
@@ -204,7 +205,8 @@ bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
   return known;
 }
 
-/// Reports a rank that did not arrive or is at another filter, and records it so that no rank waits for it again.
+/// Reports a rank that did not arrive or is at another filter, and records the failure so that no rank waits for that
+/// rank again.
 void FailWithout(const MissingRank& missing, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
 {
   EmptyWithout(outputs);
@@ -257,7 +259,7 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     return 1;
   }
   last.Forget();
-  // The compiler cannot be interrupted; the filter stops after compilation.
+  // OpenCL's compiler cannot be interrupted: the listener shows that it runs, and an abort takes effect afterwards.
   const CompilationListener listener([filter] { ReportProgress(filter, Compiling, filter->GetProgress()); });
   const Ending ending = EndingOf([&] { WorkOnAllRanks(ranks, filter, work); });
   if (ending.kind == Ending::Aborted)
@@ -287,7 +289,7 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
 
 namespace
 {
-/// Adds the names of averaged arrays to field data `settings_used`, for filters that do not write them themselves.
+/// Adds the names of averaged arrays to field data `settings_used`, for filters that do not write these themselves.
 void TellAveraged(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   std::vector<std::string> settings;
@@ -313,7 +315,7 @@ int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::func
 
 namespace
 {
-/// Inputs of a filter that stay in pieces.
+/// Input ports of a filter whose data stay in pieces.
 struct PortsInPieces
 {
   int image = WholeInputs::NoPort, shares = WholeInputs::NoPort;
@@ -330,7 +332,7 @@ int GuardedWithInputs(vtkAlgorithm* filter, vtkInformation* request, vtkInformat
       RequireImages(filter);
       RequireWholeArrays(filter);
       CheckProperties(filter);
-      if (!ranks) // with several ranks WholeInputs takes each cell once
+      if (!ranks) // with several ranks WholeInputs counts each cell once
       {
         CheckDuplicates(filter, outputs);
       }
@@ -340,7 +342,7 @@ int GuardedWithInputs(vtkAlgorithm* filter, vtkInformation* request, vtkInformat
   });
 }
 
-/// Completes the outputs of this rank: names of averaged arrays, and the axes of the scene.
+/// Completes the outputs on this rank: adds the names of averaged arrays, and rotates images back to the scene axes.
 void Complete(vtkAlgorithm* filter, WholeInputs& inputs, vtkInformationVector* outputs)
 {
   TellAveraged(filter, outputs);
@@ -368,15 +370,15 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
 
 namespace
 {
-constexpr int PartTag = 745205; ///< of messages with parts of outputs
+constexpr int PartTag = 745205; ///< tag of messages with parts of outputs
 
-/// Whether the extent of a port's image becomes known by the work only.
+/// Whether the extent of an output port's image becomes known only when the work is done.
 bool TellsExtent(const WorkOnSubdomains& work, int port)
 {
   return work.tellsExtents || port > 0;
 }
 
-/// Crops complete output images to what this rank is asked for.
+/// Crops complete output images to the parts that are requested from this rank.
 void KeepParts(const WorkOnSubdomains& work, vtkInformation* asking, vtkInformationVector* outputs)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -395,7 +397,7 @@ void KeepParts(const WorkOnSubdomains& work, vtkInformation* asking, vtkInformat
   }
 }
 
-/// Gives each rank its part of an image that the first rank made. Collective.
+/// Sends to each rank the requested part of an image that the first rank made. Collective.
 void DistributeImage(vtkMultiProcessController* ranks, const WorkOnSubdomains& work, vtkInformation* asking,
   vtkInformationVector* outputs, int port)
 {
@@ -445,14 +447,14 @@ void DistributeImage(vtkMultiProcessController* ranks, const WorkOnSubdomains& w
     else if (ranks->GetLocalProcessId() == rank)
     {
       ranks->Receive(part, 0, PartTag);
-      part->SetDirectionMatrix(direction.data()); // VTK does not send it
+      part->SetDirectionMatrix(direction.data()); // VTK does not send the direction matrix
       output->ShallowCopy(part);
     }
   }
   KeepWhatIsAskedFor(information, output, whole);
 }
 
-/// Works on the complete inputs: on the first rank, which then distributes the outputs. Collective.
+/// Works on the complete inputs on the first rank, which then distributes the outputs. Collective.
 void WorkOnWhole(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformation* asking,
   vtkInformationVector* outputs, const WorkOnSubdomains& work, WholeInputs& inputs)
 {
@@ -530,7 +532,7 @@ bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)
   LastFailure last(filter);
   try
   {
-    if (filter->GetNumberOfInputPorts() == 0) // filters with inputs report it in Guarded
+    if (filter->GetNumberOfInputPorts() == 0) // Guarded checks the properties of filters with inputs
     {
       CheckProperties(filter);
     }

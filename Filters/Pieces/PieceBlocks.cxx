@@ -33,9 +33,9 @@ constexpr Extent Nothing = { 0, 0, 0, 0, 0, 0 };
 struct Piece
 {
   Extent given = Nothing;
-  Extent own = Nothing; ///< without duplicates
+  Extent own = Nothing; ///< extent without duplicate cells
   AskedPiece asked;
-  std::array<double, 6> place = {}; ///< origin, spacing
+  std::array<double, 6> place = {}; ///< origin and spacing
 };
 constexpr std::size_t WordsOfPiece = 4 * 6 + 6;
 
@@ -49,7 +49,7 @@ std::size_t CellsOf(const Extent& extent)
   return cells;
 }
 
-/// The smallest extent of the cells that are not duplicates.
+/// Smallest extent that contains all cells of an image which are not duplicates.
 Extent OwnExtentOf(vtkImageData* image, const Extent& all)
 {
   vtkUnsignedCharArray* const ghosts = image->GetCellGhostArray();
@@ -57,7 +57,8 @@ Extent OwnExtentOf(vtkImageData* image, const Extent& all)
   return CellsOf(own) > 0 ? own : Nothing;
 }
 
-/// The requested piece. If every rank is asked for the complete image, the work is still divided among the ranks.
+/// The piece of the output that is requested from this rank. If every rank is asked for the complete image, the image
+/// is divided among the ranks nevertheless.
 AskedPiece AskedOf(vtkInformation* asked, const Extent& given, int rank, int ranks)
 {
   AskedPiece piece = AskedPieceOf(asked, given);
@@ -82,7 +83,7 @@ Piece PieceOf(vtkInformation* asked, vtkImageData* image, int rank, int ranks)
   return piece;
 }
 
-/// Serialises a piece at this rank's position in an array for all ranks, 0 elsewhere.
+/// Converts a piece to numbers in an array for all ranks: at the position of this rank; 0 elsewhere.
 std::vector<double> WordsOf(const Piece& piece, int rank, int ranks)
 {
   std::vector<double> words(WordsOfPiece * static_cast<std::size_t>(ranks), 0.0);
@@ -107,7 +108,7 @@ Piece PieceIn(const double* words)
   return piece;
 }
 
-/// Whether two pieces lie on one grid, up to rounding.
+/// Whether the origins and spacings of two pieces are those of one grid, up to rounding.
 bool OfOneGrid(const Piece& a, const Piece& b)
 {
   bool same = true;
@@ -131,7 +132,7 @@ VoxelBox BoxOf(const Extent& extent, const std::array<int, 3>& base)
   return box;
 }
 
-/// Whether the blocks are disjoint and have as many voxels as the grid in total.
+/// Whether the blocks are disjoint and together have as many voxels as the grid.
 bool Tile(const BlockPartition& partition)
 {
   std::size_t voxels = 0;
@@ -301,7 +302,7 @@ namespace
 {
 constexpr double FewVoxels = 64.0 * 64.0 * 64.0;
 
-/// Number of voxels that the source announces.
+/// Number of voxels of the whole extent that the source of an image announces.
 double VoxelsOf(vtkInformationVector* image)
 {
   vtkInformation* const input = image->GetInformationObject(0);

@@ -28,15 +28,17 @@ namespace tyndall
 class PieceBlocks
 {
 public:
-  /// Serial: the subdomain is the complete image, duplicates included. Its grid is not checked (GridOf).
+  /// Makes a serial domain: its one subdomain is the complete image, duplicate cells included. The grid is not checked
+  /// (GridOf).
   explicit PieceBlocks(vtkImageData* whole);
-  /// Collective.
-  /// @param asked  information of the output that is made; null: there is none, and subdomains are the pieces as given
+  /// Makes the domain of all ranks, with one subdomain per rank. Collective.
+  /// @param asked  information of the output that is made; null: there is no such output, and subdomains are the pieces
+  ///   as given
   /// @param given  this rank's piece; null or without cells: this rank has no voxels
   PieceBlocks(Communicator& communicator, vtkInformation* asked, vtkImageData* given);
 
-  /// Whether the subdomains lie on one grid and contain each of its voxels exactly once. The same on all ranks; if
-  /// false, no other member may be called.
+  /// Whether the subdomains lie on one grid and contain each of its voxels exactly once. The result is the same on all
+  /// ranks; if it is false, no other member may be called.
   bool MakeUpTheWhole() const { return this->Tiled; }
   /// Whether the domain is decomposed into pieces of several ranks; otherwise it is serial.
   bool IsDecomposed() const { return !this->OfRanks->IsSerial(); }
@@ -52,18 +54,18 @@ public:
   /// Whether an image contains this rank's subdomain.
   bool HasOwnOf(vtkImageData* image) const;
 
-  /// The part of an image that is this rank's subdomain, with its arrays: the image itself if it is the subdomain, or
-  /// if the domain is not decomposed; null if the subdomain has no voxels.
+  /// Crops an image to this rank's subdomain, with its arrays: the image itself if it is the subdomain, or if the
+  /// domain is not decomposed; null if the subdomain has no voxels.
   vtkSmartPointer<vtkImageData> OwnImage(vtkImageData* given) const;
 
   /// Selects the values of the subdomain's voxels from the values of all voxels of an image.
   std::vector<float> OwnOf(vtkImageData* given, std::vector<float>&& values) const;
 
-  /// Crops an output, whose arrays cover the given image, to Held().
+  /// Crops an output, whose arrays cover the image given to the constructor, to Held().
   void KeepHeld(vtkImageData* output) const;
 
-  /// Extends values of the voxels Own() to the voxels Held(): ghost values come from the ranks that own these cells.
-  /// Values stay empty if they are empty on all ranks. Collective.
+  /// Extends values from the voxels Own() to the voxels Held(): ghost values are received from the ranks that own these
+  /// cells. Values stay empty if they are empty on all ranks. Collective.
   /// @param components  values per voxel, the same on all ranks
   void SpreadToHeld(std::vector<float>& values, int components) const;
 
@@ -71,8 +73,8 @@ private:
   std::array<int, 6> ExtentOf(const VoxelBox& box) const;
 
   std::shared_ptr<Domain> OfRanks;
-  std::vector<VoxelBox> OfOutputs; ///< by rank
-  std::array<int, 3> Base = {};    ///< index of the grid's first voxel in terms of VTK extents
+  std::vector<VoxelBox> OfOutputs; ///< Held() of each rank
+  std::array<int, 3> Base = {};    ///< VTK index of the grid's first voxel
   bool Tiled = false, GivenAll = false;
 };
 
@@ -83,9 +85,9 @@ struct AgreedBlocks
   std::unique_ptr<PieceBlocks> pieces;
 };
 
-/// Decides whether to work on subdomains. Collective.
+/// Decides whether the ranks work on subdomains. Collective.
 /// @param wanted  whether this rank would work on its piece; one such rank suffices
-/// @return nothing, on all ranks, if no rank wants to, or if the pieces do not make up one grid
+/// @return no value, on all ranks, if no rank wants to work on its piece, or if the pieces do not make up one grid
 std::optional<AgreedBlocks> AgreeOnBlocks(
   vtkMultiProcessController* ranks, vtkAlgorithm* filter, bool wanted, vtkInformation* asked, vtkImageData* given);
 

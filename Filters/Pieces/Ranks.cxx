@@ -34,9 +34,10 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-constexpr int StopTag = 745202; ///< tag of the message that requests a stop
+constexpr int StopTag = 745202; ///< tag of the message by which a rank requests a stop
 
-/// Number of ranks that make a request together; the request carries it upstream through all filters.
+/// Key in a request: number of ranks that make the request together. The request carries this number upstream through
+/// all filters.
 class TogetherKey : public vtkInformationIntegerKey
 {
 public:
@@ -58,7 +59,7 @@ public:
 
 vtkInformationIntegerKey* Collective()
 {
-  static auto* const key = new TogetherKey; // VTK deletes it
+  static auto* const key = new TogetherKey; // VTK deletes the key
   return key;
 }
 
@@ -75,14 +76,14 @@ int PiecesAsked(vtkInformation* request, vtkInformationVector* outputs)
   return asking ? std::max(1, asking->Get(Pipeline::UPDATE_NUMBER_OF_PIECES())) : 1;
 }
 
-/// Number of requested pieces, or of ranks that make the request together; 1: neither.
+/// Number of requested pieces, or number of ranks that make the request together, whichever is larger.
 int Asking(vtkInformation* request, vtkInformationVector* outputs)
 {
   vtkInformation* const asking = AskingPort(request, outputs);
   return asking ? std::max(PiecesAsked(request, outputs), asking->Get(Collective())) : 1;
 }
 
-/// Collective error: makes the outcome of one rank the outcome of all.
+/// Makes the outcome of the work on one rank the outcome on all: throws the same on each. Collective.
 void EndTogether(Communicator& communicator, const Ending& own)
 {
   try
@@ -97,7 +98,7 @@ void EndTogether(Communicator& communicator, const Ending& own)
   {
     if (own.kind == Ending::InputFailed || own.kind == Ending::Empty)
     {
-      Throw(own); // not an error of this filter on this rank
+      Throw(own); // on this rank, the input failed or is empty, which is no error of this filter
     }
     throw;
   }
@@ -108,7 +109,7 @@ bool IsOne(vtkMultiProcessController* controller)
   return controller == nullptr || controller->GetNumberOfProcesses() == 1;
 }
 
-/// Messages that ask other ranks to stop. All of them are received before the ranks continue.
+/// Messages by which a rank asks the other ranks to stop. All such messages are received before the ranks continue.
 class StopMessages
 {
 public:
@@ -120,7 +121,7 @@ public:
     (void)controller;
   }
 
-  /// Whether such a message is waiting for this rank.
+  /// Whether a request to stop is waiting for this rank.
   bool Waits() const
   {
     int waits = 0;
@@ -134,7 +135,8 @@ public:
     return waits != 0;
   }
 
-  /// @return whether messages were sent; without MPI no rank could probe for them
+  /// Asks all other ranks to stop.
+  /// @return whether messages were sent; without MPI none are sent, because no rank could probe for them
   bool Send()
   {
 #ifdef TYNDALL_HAS_MPI
@@ -150,8 +152,8 @@ public:
     return false;
   }
 
-  /// Receives the messages that other ranks sent.
-  /// @param senders  by rank: above 0 if it sent messages
+  /// Receives the requests to stop that other ranks have sent.
+  /// @param senders  for each rank: above 0 if the rank has sent messages
   void Receive(const std::vector<double>& senders)
   {
 #ifdef TYNDALL_HAS_MPI
@@ -232,7 +234,7 @@ void OnAllRanks(vtkMultiProcessController* controller, const std::function<void(
 
 void OnFirstRank(vtkMultiProcessController* controller, const std::function<void()>& work)
 {
-  constexpr double endless = 1e8; // seconds
+  constexpr double endless = 1e8; // timeout that never ends, seconds
   const bool isOne = IsOne(controller);
   const auto stopped = [controller] { return StopMessages(controller).Waits(); };
   Ending ending = isOne || controller->GetLocalProcessId() == 0 ? EndingOf(work) : Ending();
@@ -251,7 +253,8 @@ void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter,
   }
   StopMessages messages(controller);
   BeginConversations();
-  vtkObjectBase* const before = filter->GetInformation()->Get(WorkingRanks()); // of enclosing work
+  // Controller of an enclosing call of WorkOnAllRanks.
+  vtkObjectBase* const before = filter->GetInformation()->Get(WorkingRanks());
   filter->GetInformation()->Set(WorkingRanks(), controller);
   const Ending own = EndingOf(work);
   filter->GetInformation()->Set(WorkingRanks(), before);
@@ -283,8 +286,8 @@ namespace
 {
 #ifdef TYNDALL_HAS_MPI
 constexpr int Nobody = -1;
-constexpr int ArriveTag = 745203, AnswerTag = 745204; ///< tags of messages to the first rank, and from it
-constexpr double Slack = 5.0; ///< seconds that other ranks wait longer than the first rank, which decides
+constexpr int ArriveTag = 745203, AnswerTag = 745204; ///< tags of messages to the first rank, and from the first rank
+constexpr double Slack = 5.0; ///< additional timeout of other ranks, seconds: the first rank decides
 
 bool IsPast(const std::chrono::steady_clock::time_point& start, double seconds)
 {
@@ -296,15 +299,15 @@ void Rest()
   std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-/// Message of a rank on arrival: the number of this barrier in the rank's own count, or 0 to withdraw, and a hash of
-/// the filter's class name.
+/// Message that a rank sends on arrival at the barrier: the number of the barrier in the rank's own count, or 0 to
+/// withdraw, and a hash of the filter's class name.
 using Arrival = std::array<int, 2>;
-/// The first rank's answer: the number of the barrier, then the members of MissingRank.
+/// Answer of the first rank to an arrival: the number of the barrier, then the members of MissingRank.
 using Decision = std::array<int, 3>;
 
 int NumberOf(const char* filter)
 {
-  unsigned int number = 2166136261u; // FNV-1a: equal in all processes
+  unsigned int number = 2166136261u; // FNV-1a hash: equal in all processes
   for (; *filter; ++filter)
   {
     number = (number ^ static_cast<unsigned char>(*filter)) * 16777619u;
@@ -312,8 +315,8 @@ int NumberOf(const char* filter)
   return static_cast<int>(number >> 1);
 }
 
-/// Receives arrivals until all ranks have arrived or time is up, then every message sent so far: a rank that was too
-/// late for the last barrier has withdrawn its arrival.
+/// Receives arrivals until all ranks have arrived or the timeout `wait` (seconds) is over, then every message sent so
+/// far: a rank that was too late for the previous barrier has withdrawn its arrival.
 void Collect(vtkMPIController* ranks, double wait, std::vector<Arrival>& arrived)
 {
   const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
@@ -335,7 +338,7 @@ void Collect(vtkMPIController* ranks, double wait, std::vector<Arrival>& arrived
   }
 }
 
-/// First rank: collects arrivals and answers them.
+/// Part of the barrier on the first rank: collects arrivals, and answers them.
 MissingRank Decide(vtkMPIController* ranks, double wait, int filter)
 {
   std::vector<Arrival> arrived(static_cast<std::size_t>(ranks->GetNumberOfProcesses()), Arrival{ 0, 0 });
@@ -362,8 +365,8 @@ MissingRank Decide(vtkMPIController* ranks, double wait, int filter)
   return missingRank;
 }
 
-/// Other ranks: announce their arrival and wait for the answer. A rank that times out withdraws; an answer already
-/// under way still counts.
+/// Part of the barrier on other ranks: announces this rank's arrival, and waits for the answer. A rank that times out
+/// withdraws its arrival; an answer that has already been sent still counts.
 MissingRank Arrive(vtkMPIController* ranks, double wait, int filter)
 {
   static int barriers = 0;
@@ -378,7 +381,7 @@ MissingRank Arrive(vtkMPIController* ranks, double wait, int filter)
     {
       Decision decision = {};
       ranks->Receive(decision.data(), 3, 0, AnswerTag);
-      if (decision[0] == own[0]) // otherwise it answers a barrier at which this rank no longer waits
+      if (decision[0] == own[0]) // another number belongs to a barrier at which this rank no longer waits
       {
         return { decision[1], decision[2] != 0 };
       }

@@ -16,10 +16,10 @@ class vtkInformationVector;
 
 /// MPI ranks that run a filter together, each for its piece of the output.
 ///
-/// This is the case if ParaView distributes data (pvbatch --symmetric, pvserver), and in VTK programs in which the
-/// number of requested pieces equals the number of ranks. The ranks then agree by collective operations of VTK's global
-/// controller, which every rank reaches even if its own part of the work failed. If fewer pieces are requested, as by
-/// one rank that updates alone, ranks neither communicate nor wait.
+/// Ranks run filters together if ParaView distributes data (pvbatch --symmetric, pvserver), and in VTK programs in
+/// which the number of requested pieces equals the number of ranks. The ranks then agree by collective operations of
+/// VTK's global controller, which every rank reaches even if its own part of the work failed. If fewer pieces are
+/// requested, as by one rank that updates alone, ranks neither communicate nor wait.
 namespace tyndall
 {
 class Communicator;
@@ -28,27 +28,28 @@ class Communicator;
 /// each requests the complete input.
 void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
 
-/// In RequestData.
-/// @return the controller of the ranks that run the filter together; null: this process runs it alone
+/// Determines in RequestData whether ranks run the filter together.
+/// @return the controller of these ranks; null: this process runs the filter alone
 vtkMultiProcessController* RanksTogether(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestUpdateExtent or RequestData: whether the number of requested pieces equals the number of ranks.
+/// Whether the number of requested pieces equals the number of ranks. Called in RequestUpdateExtent or RequestData.
 bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs);
 
-/// Runs `act` on each rank. Collective.
+/// Runs `act` on each rank, and reports an error of one rank on all. Collective.
 /// @param controller  null: there is one rank
 /// @throws on every rank what `act` threw on any rank: InvalidInput with the same message, which names the rank unless
 ///   all ranks threw. An abort (Aborted) and a failure upstream (InputFailed) are not errors of this filter
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
-/// Runs long work on the first rank, for which the others wait. Collective.
+/// Runs long work on the first rank only, while the other ranks wait. Collective.
 /// @throws on every rank what `work` threw, as Throw does (Common/Failure.h)
 void OnFirstRank(vtkMultiProcessController* controller, const std::function<void()>& work);
 
-/// The same for long work that can be stopped: if the work ends early on one rank, the filter's Monitor (MonitorOf)
-/// stops it on the other ranks. Calls may be nested.
+/// Runs long work on each rank, as OnAllRanks does, and stops it on all ranks if it ends early on one: the filter's
+/// Monitor (MonitorOf) then requests a stop. Collective. Calls may be nested.
 void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter, const std::function<void()>& work);
 
-/// Writes the members of a struct to a stream, or reads them. The struct lists its members once, for both directions.
+/// Stream to which the members of a struct are written, or from which they are read. The struct lists its members once,
+/// for both directions.
 class StreamedMembers
 {
 public:
@@ -93,7 +94,7 @@ public:
       (*this)(value);
     }
   }
-  /// Any other struct provides a member function Stream(StreamedMembers&).
+  /// Streams a struct that is neither a number nor a text: it provides a member function Stream(StreamedMembers&).
   template <class Struct>
   void operator()(Struct& value)
   {
@@ -136,25 +137,27 @@ std::vector<Struct> AllGather(vtkMultiProcessController* ranks, Struct own)
 
 double OfFirstRank(Communicator& ranks, double own);
 std::string OfFirstRank(Communicator& ranks, const std::string& own);
-/// Sets numbers and texts to those of the first rank. Collective.
+/// Replaces the values, numbers and texts, by the values on the first rank. Collective.
 template <class... Values>
 void TakeFromFirstRank(Communicator& ranks, Values&... values)
 {
   ((values = static_cast<Values>(OfFirstRank(ranks, values))), ...);
 }
 
-/// Whether the filter's work has ended early on another rank, within WorkOnAllRanks.
+/// Whether the filter's work has ended early on another rank. For use within WorkOnAllRanks.
 bool IsStoppedByOthers(vtkAlgorithm* filter);
 
-/// A rank that did not reach the barrier.
+/// A rank that did not reach the barrier of FindMissingRank.
 struct MissingRank
 {
-  int rank = -1;          ///< the first such rank; 0 on a rank that arrives after the others gave up; -1: none
-  bool elsewhere = false; ///< that rank reached another filter than the first rank
+  /// Number of the first such rank; 0 on a rank that arrives after the others gave up; -1: none.
+  int rank = -1;
+  bool elsewhere = false; ///< whether that rank reached another filter than the first rank
 };
 
-/// A barrier with a timeout (SecondsToWait). A rank never arrives if its script does not update the filter, or if its
-/// pipeline stopped upstream. Without MPI there is no barrier.
-/// @param filter  class name of the filter that this rank has reached
+/// Waits, up to a timeout (SecondsToWait), until all ranks reach this barrier, and returns the first rank that did not.
+/// A rank never arrives if its script does not update the filter, or if its pipeline stopped upstream. Without MPI
+/// there is no barrier.
+/// @param filter  class name of the filter that runs on this rank
 MissingRank FindMissingRank(vtkMultiProcessController* ranks, const char* filter);
 }

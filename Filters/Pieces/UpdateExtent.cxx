@@ -93,14 +93,15 @@ namespace
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using Extent = std::array<int, 6>;
 
-/// Key in an output's information: the number of this rank, then an extent for each rank.
+/// Key in an output's information: the number of this rank, then the extent that each rank is asked for
+/// (NotePartsOfRanks).
 vtkInformationIntegerVectorKey* PartsOfRanks()
 {
   static auto* const key = vtkInformationIntegerVectorKey::MakeKey("PARTS_OF_RANKS", "Tyndall");
   return key;
 }
 
-/// Key in an output's information: the whole extents announced when its data were made.
+/// Key in an output's information: the whole extents that were announced when its data were made (NoteExtentTold).
 vtkInformationIntegerVectorKey* ExtentsTold()
 {
   static auto* const key = vtkInformationIntegerVectorKey::MakeKey("EXTENTS_TOLD", "Tyndall");
@@ -114,6 +115,7 @@ Extent ExtentOf(vtkImageData* image)
   return extent;
 }
 
+/// Flags the ghost cells of an image's piece, and their points, as duplicates.
 /// @param own  extent of the piece without ghost cells
 void MarkDuplicates(vtkImageData* image, const Extent& own)
 {
@@ -124,7 +126,7 @@ void MarkDuplicates(vtkImageData* image, const Extent& own)
     [&](const auto& point) { return !PointBoxOf(own).Holds(point); });
 }
 
-/// The part that a rank is asked for.
+/// The extent that a rank is asked for, as recorded by NotePartsOfRanks.
 Extent PartOfRank(vtkInformation* information, int rank)
 {
   Extent extent;
@@ -132,7 +134,7 @@ Extent PartOfRank(vtkInformation* information, int rank)
   return extent;
 }
 
-/// Flags cells as duplicates if lower ranks are asked for them, too.
+/// Flags cells of this rank's output as duplicates if a lower rank is asked for them, too (NotePartsOfRanks).
 void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
 {
   const int rank = information->Get(PartsOfRanks())[0];
@@ -152,18 +154,18 @@ void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
   }
 }
 
-/// The requested part of an output.
+/// The part of an output that is requested.
 struct Part
 {
-  bool isOfRank = false; ///< see NotePartsOfRanks
+  bool isOfRank = false; ///< whether the part is one recorded by NotePartsOfRanks
   bool divided = false;
-  AskedPiece piece; ///< empty: nothing; if not divided, the complete output
+  AskedPiece piece; ///< the requested extents; empty: nothing is requested; if not divided: the complete output
 };
 
-/// Determines the requested part. A request for a complete announced extent means the complete `image`, which may
-/// differ from it because its file belongs to another time step, or because it was not known that voxels are around
-/// points. The same holds for pieces of such an extent if `image` contains it (if not, perhaps only the piece was
-/// made).
+/// Determines the requested part of an output. A request for a complete announced extent means the complete `image`,
+/// which may differ from it because its file belongs to another time step, or because it was not known that voxels are
+/// around points. The same holds for pieces of such an extent if `image` contains it (if not, perhaps only the piece
+/// was made).
 /// @param image  the extent of the output as it was made
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {
@@ -171,7 +173,7 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   part.divided = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
   if (const int* const parts = information->Get(PartsOfRanks()))
   {
-    part.isOfRank = part.divided; // otherwise each rank is asked for the complete output
+    part.isOfRank = part.divided; // if not divided, each rank is asked for the complete output
     const Extent own = part.divided ? PartOfRank(information, parts[0]) : AskedPiece::Nothing;
     part.piece = { own, own };
     return part;
@@ -183,8 +185,8 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   return part;
 }
 
-/// Updates the information of inputs to the requested time step. VTK does not pass the new extent of a time series to
-/// filters downstream of its source. Not collective.
+/// Updates the information of time-dependent inputs to the requested time step. VTK does not pass the new extent of a
+/// time series to filters downstream of its source. Not collective.
 /// @return whether the extent of an input depends on time
 bool HearOfTime(vtkInformationVector* inputs)
 {
@@ -204,7 +206,8 @@ bool HearOfTime(vtkInformationVector* inputs)
   return any;
 }
 
-/// Repeats REQUEST_INFORMATION for the outputs with extent, origin and spacing of the first input.
+/// Repeats REQUEST_INFORMATION of a filter, so that its outputs get extent, origin and spacing of the first input at
+/// the new time step.
 void TellAgain(vtkExecutive* own, vtkInformationVector* outputs)
 {
   vtkInformation* const first = own->GetInputInformation()[0]->GetInformationObject(0);
@@ -247,7 +250,7 @@ UpdateRequest::UpdateRequest(vtkInformation* information)
   : Information(information)
   , All(!information->Has(Pipeline::UPDATE_EXTENT()) || AsksForAll(information))
 {
-  NoteExtentTold(information); // consumers that are not informed will request this extent again
+  NoteExtentTold(information); // filters downstream that were not informed will request this extent again
   for (vtkInformationKey* key : Keys())
   {
     this->Before->CopyEntry(information, key);
@@ -332,7 +335,7 @@ void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inp
 
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs)
 {
-  // -1: the request came from the filter itself.
+  // Port -1 means that the filter itself made the request.
   const int port = std::max(request->Get(vtkExecutive::FROM_OUTPUT_PORT()), 0);
   return outputs->GetInformationObject(port);
 }
@@ -388,7 +391,7 @@ void KeepPiece(const AskedPiece& piece, vtkImageData* output)
 {
   if (piece.IsEmpty())
   {
-    output->Initialize(); // more ranks than voxels
+    output->Initialize(); // empty piece: there are more ranks than voxels
     return;
   }
   Extent extent = piece.withGhosts;
@@ -463,7 +466,7 @@ void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output, const
 {
   NoteExtentTold(information);
   const Part part = PartAskedFor(information, image);
-  if (!part.divided && part.piece.own == image) // it may be larger than was announced
+  if (!part.divided && part.piece.own == image) // the complete output may be larger than was announced
   {
     information->Set(Pipeline::WHOLE_EXTENT(), image.data(), 6);
     information->Set(Pipeline::UPDATE_EXTENT(), image.data(), 6);

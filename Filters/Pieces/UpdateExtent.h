@@ -16,8 +16,8 @@ class vtkInformationVector;
 class vtkUnsignedCharArray;
 
 /// Update extents of filters in which light crosses the boundaries between pieces. Such a filter requests its complete
-/// inputs (WholeInputs.h gathers them if a source does not deliver everything to each rank), works on these, and keeps
-/// the requested piece of the output.
+/// inputs (WholeInputs.h gathers pieces if a source does not deliver everything to each rank), works on the complete
+/// inputs, and keeps the requested piece of the output.
 namespace tyndall
 {
 /// A box of cells or of points with inclusive bounds; x varies fastest.
@@ -39,7 +39,7 @@ struct ValueBox
   }
   void Add(const ValueBox& other); ///< extends this box to contain `other`
 
-  /// Calls act(index, position) for each value, x fastest.
+  /// Calls act(index, position) for each value of the box, x fastest. `index` counts from 0.
   template <typename Do>
   void ForEach(const Do& act) const
   {
@@ -58,9 +58,9 @@ struct ValueBox
   }
 };
 
-/// The box of an extent's points.
+/// Box of an extent's points.
 ValueBox PointBoxOf(const std::array<int, 6>& extent);
-/// The box of an extent's cells; a flat extent has one layer of cells.
+/// Box of an extent's cells; a flat extent has one layer of cells.
 ValueBox CellBoxOf(const std::array<int, 6>& extent);
 
 /// The smallest extent that contains all cells that vtkGhostType does not flag as duplicates, or all such points if the
@@ -68,42 +68,42 @@ ValueBox CellBoxOf(const std::array<int, 6>& extent);
 std::array<int, 6> ExtentWithoutDuplicates(
   const std::array<int, 6>& extent, vtkUnsignedCharArray* flags, bool flagsPoints);
 
-/// Sets a flag in vtkGhostType for values that are duplicates. Other flags remain. The input's arrays, which the image
-/// may share, are not changed.
+/// Sets the bit `flag` in vtkGhostType for values of a box that are duplicates; other bits remain. A new array is made:
+/// the array of the input, which the image may share, is not changed.
 void FlagDuplicates(vtkDataSetAttributes* attributes, const ValueBox& box, unsigned char flag,
   const std::function<bool(const std::array<int, 3>&)>& isDuplicate);
 
 /// In RequestUpdateExtent: requests the complete image, or all pieces of polydata, from the inputs of a port.
-/// @param request, outputs  those of RequestUpdateExtent
+/// @param request, outputs  parameters of RequestUpdateExtent
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
-/// Requests from the inputs of a port what is requested from the output, as the pipeline does by default.
+/// Requests from the inputs of a port the part that is requested from the output, as the pipeline does by default.
 void AskForSame(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
-/// Calls AskForAll for all ports except one or a few, and AskForSame for these.
+/// Calls AskForSame for one or a few input ports, and AskForAll for all others.
 /// @param ports    number of input ports
 /// @param piece    port for AskForSame; -1: none
 /// @param besides  further ports for AskForSame
 void AskForAllBut(int piece, vtkInformation* request, vtkInformationVector** inputs, int ports,
   vtkInformationVector* outputs, const std::vector<int>& besides = {});
 
-/// Requests this rank's piece with one layer of ghost cells if ranks run the filter together; otherwise calls
-/// AskForAll.
+/// Requests from the inputs of a port this rank's piece with one layer of ghost cells, if ranks run the filter
+/// together; otherwise calls AskForAll.
 void AskForPiece(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
 
-/// In RequestData: information of the output port from which the request came.
+/// Information of the output port from which a request came. Called in RequestData.
 vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestData: whether the first piece is requested, which receives data that cannot be divided. Determined from
-/// the port that the request came from; the requests of other ports may not be set yet.
+/// Whether the first piece is requested, which receives data that cannot be divided. Determined from the output port
+/// that the request came from; the requests of other ports may not be set yet. Called in RequestData.
 bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 
-/// In RequestData: records which part of an output each rank is asked for, if these are not the pieces of VTK's extent
-/// translator but those that each rank's source announces.
+/// Records which part of an output each rank is asked for, if the parts are not the pieces of VTK's extent translator
+/// but those that each rank's source announces. Called in RequestData.
 /// @param parts  one extent for each rank; empty: the translator's pieces
 /// @param rank   this rank
 void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<int, 6>>& parts, int rank);
 
-/// The requested piece of an image's extent, with and without ghost cells; the complete extent if it is not divided.
-/// Empty if there are more pieces than cells.
+/// The requested piece of an image's extent, with and without ghost cells: the complete extent if it is not divided,
+/// and empty if there are more pieces than cells.
 struct AskedPiece
 {
   static constexpr std::array<int, 6> Nothing = { 0, -1, 0, -1, 0, -1 };
@@ -118,19 +118,20 @@ struct AskedPiece
 };
 AskedPiece AskedPieceOf(vtkInformation* information, const std::array<int, 6>& whole);
 
-/// A piece of an extent according to VTK's extent translator; empty if there are more pieces than cells.
+/// Computes a piece of an extent with VTK's extent translator; empty if there are more pieces than cells.
 std::array<int, 6> PartOfExtent(const std::array<int, 6>& whole, int piece, int pieces, int ghostLevels = 0);
 
 /// Crops an image to a piece and flags its ghost cells (vtkGhostType); makes it empty if the piece is empty.
 void KeepPiece(const AskedPiece& piece, vtkImageData* output);
 
-/// Whether the first extent contains the other one; six numbers each.
+/// Whether an extent of VTK, six numbers, contains the extent `other`.
 bool Covers(const int* extent, const int* other);
 
 /// Whether the update extent of an output is its whole extent, or a whole extent announced earlier for another time
-/// step. A consumer may not know the current one: VTK announces extents before it requests a time step.
+/// step. A filter downstream may not know the current whole extent: VTK announces extents before it requests a time
+/// step.
 bool AsksForAll(vtkInformation* information);
-/// In RequestData: records the announced whole extent for AsksForAll. KeepWhatIsAskedFor calls it.
+/// Records the announced whole extent of an output for AsksForAll. Called in RequestData. KeepWhatIsAskedFor calls it.
 void NoteExtentTold(vtkInformation* information);
 
 /// Saves and restores an update request, which VTK resets if a source announces a new extent. A request for the
@@ -138,30 +139,31 @@ void NoteExtentTold(vtkInformation* information);
 class UpdateRequest
 {
 public:
-  explicit UpdateRequest(vtkInformation* information); ///< must outlive it
+  explicit UpdateRequest(vtkInformation* information); ///< `information` must outlive this object
   void Restore() const;
 
 private:
-  static std::array<vtkInformationKey*, 4> Keys(); ///< the extent is the last one
+  static std::array<vtkInformationKey*, 4> Keys(); ///< keys of a request; that of the extent is last
 
   vtkInformation* Information;
   vtkNew<vtkInformation> Before;
   bool All;
 };
 
-/// In RequestData: the extent to which KeepWhatIsAskedFor will crop an image; inverted if it is empty.
+/// Extent to which KeepWhatIsAskedFor will crop an image in RequestData; inverted if the extent is empty.
 std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);
 
 /// In RequestData: crops the output to the requested extent or piece. Ghost cells are flagged (vtkGhostType), so that
 /// sums over pieces count each cell once.
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);
-/// The same for an output of which this rank has only the requested part.
+/// Crops an output to the requested extent or piece, as the function above does, if this rank has only that part of it.
 /// @param image  extent of the complete output
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output, const std::array<int, 6>& image);
 
 /// In RequestData: announces the extent of an output that becomes known only when it is made. Otherwise the pipeline
-/// would run the filter again for the part of its guess that lies beyond this extent. Its pieces are those of VTK's
-/// extent translator.
-/// @param asking  the port that the request came from: VTK assumes that all ports then have its piece
+/// would run the filter again for that part of the extent it assumed which lies beyond this extent. Pieces of the
+/// output are those of VTK's extent translator.
+/// @param asking  information of the output port that the request came from: VTK assumes that all ports then have its
+///   piece
 void TellExtent(vtkInformation* asking, vtkInformation* information, const int extent[6]);
 }

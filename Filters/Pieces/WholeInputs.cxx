@@ -40,17 +40,18 @@ using Extent = std::array<int, 6>;
 constexpr Extent NoExtent = { 0, -1, 0, -1, 0, -1 };
 }
 
-/// Summary of what one connection provides on one rank.
+/// Summary of the data that one input connection provides on one rank.
 struct InputSummary
 {
-  bool isThere = false; ///< it has data with any values
+  bool isThere = false; ///< whether there are data with any values
   bool isImage = false;
   Extent extent = NoExtent;
-  Extent whole = NoExtent;           ///< whole extent that its source announces
-  bool changes = false;              ///< the whole extent depends on time, and `whole` may belong to another time step
-  std::uint64_t key = 0;             ///< hash of its content
-  std::array<std::string, 2> active; ///< names of active scalars, of cells and of points
-  bool aroundPoints = false;         ///< its voxels are around points
+  Extent whole = NoExtent; ///< whole extent that the source announces
+  /// Whether the whole extent depends on time, so that `whole` may belong to another time step.
+  bool changes = false;
+  std::uint64_t key = 0;             ///< hash of the data's content (ContentKey)
+  std::array<std::string, 2> active; ///< names of the active scalars of cells, and of points
+  bool aroundPoints = false;         ///< whether voxels are around the image's points
   Extent points = NoExtent;          ///< extent of the points that are not duplicates
 
   void Stream(StreamedMembers& members)
@@ -67,12 +68,12 @@ struct InputSummary
   }
 };
 
-/// Summaries of all connections on one rank, and the extents requested from it.
+/// Summaries of all input connections on one rank, and the extents that are requested from the rank.
 struct RankSummary
 {
-  std::vector<int> connections; ///< number of connections at each port
+  std::vector<int> connections; ///< number of connections at each input port
   std::vector<InputSummary> inputs;
-  std::vector<Extent> asked; ///< for each output
+  std::vector<Extent> asked; ///< requested extent of each output
 
   void Stream(StreamedMembers& members)
   {
@@ -107,7 +108,7 @@ std::string ActiveName(vtkDataSetAttributes* attributes)
   return active && active->GetName() ? active->GetName() : "";
 }
 
-/// Fills all members except the key.
+/// Summarizes the data of a connection; the key is not computed.
 InputSummary Summarize(vtkInformation* connection)
 {
   InputSummary summary;
@@ -130,7 +131,7 @@ InputSummary Summarize(vtkInformation* connection)
   return summary;
 }
 
-/// Summaries of one connection on all ranks.
+/// Summaries of one input connection, on each rank.
 using OnRanks = std::vector<InputSummary>;
 
 bool Alike(const OnRanks& summaries)
@@ -146,7 +147,7 @@ std::string Named(int port)
   return "The input" + (port > 0 ? " " + std::to_string(port) : std::string());
 }
 
-/// The arrays that can be gathered: numeric, one tuple for each cell or point.
+/// Arrays that can be gathered: numeric, with one tuple for each cell or point, except vtkGhostType.
 GatheredImage::Arrays ArraysOf(vtkDataSetAttributes* attributes, vtkIdType values)
 {
   GatheredImage::Arrays arrays;
@@ -175,7 +176,7 @@ void AddHidden(vtkDataSetAttributes* attributes, const std::vector<unsigned char
   }
 }
 
-/// Gathers an image; where it is not gathered, the piece is returned.
+/// Gathers an image from its pieces; on ranks on which the image is not gathered, returns the piece. Collective.
 vtkSmartPointer<vtkDataObject> WholeImageOf(vtkMultiProcessController* ranks, vtkImageData* piece,
   const OnRanks& summaries, const std::string& named, GatheredImage::On where)
 {
@@ -221,8 +222,8 @@ std::string Words(const Extent& extent)
   return text;
 }
 
-/// Checks that the pieces cover the announced extent, if all of them announce the same one. If only one rank can read a
-/// file, that rank receives just its requested piece, and no rank receives the others.
+/// Checks that the pieces of an image cover the announced whole extent, if all ranks announce the same one. If only one
+/// rank can read a file, that rank receives just its requested piece, and no rank receives the others.
 void CheckExtent(const OnRanks& summaries, const std::string& named)
 {
   const auto isPiece = [](const InputSummary& summary) { return summary.isThere && summary.isImage; };
@@ -255,7 +256,7 @@ void CheckExtent(const OnRanks& summaries, const std::string& named)
             "whole on the first rank."));
 }
 
-/// Broadcasts data other than images from the one rank that has any.
+/// Broadcasts data other than images, such as lights, from the one rank that has any. Collective.
 vtkSmartPointer<vtkDataObject> FromOneRank(
   vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries, const std::string& named)
 {
@@ -281,7 +282,8 @@ vtkSmartPointer<vtkDataObject> FromOneRank(
   return all;
 }
 
-/// Appends the points of all ranks in the order of ranks; points that are identical on all ranks are taken once.
+/// Appends the points of all ranks in the order of ranks; points that are the same on all ranks are used once.
+/// Collective.
 vtkSmartPointer<vtkDataObject> AllShares(vtkMultiProcessController* ranks, vtkDataObject* own, const OnRanks& summaries)
 {
   if (!own || Alike(summaries))
@@ -328,7 +330,8 @@ vtkSmartPointer<vtkDataObject> WholeOf(vtkMultiProcessController* ranks, vtkData
   return WholeImageOf(ranks, vtkImageData::SafeDownCast(own), summaries, named, where);
 }
 
-/// Requires complete images if only one of several ranks updates: there are no ranks to gather the missing pieces from.
+/// Checks that input images are complete if only one of several ranks updates: there are no ranks to gather the missing
+/// pieces from.
 void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
 {
   vtkMultiProcessController* const all = vtkMultiProcessController::GetGlobalController();
@@ -348,7 +351,8 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
-/// The smallest extent of the points that are not duplicates, according to point flags or else cell flags.
+/// Smallest extent that contains all points of an image which are not duplicates, according to point flags or else cell
+/// flags.
 Extent OwnPointsOf(vtkImageData* image)
 {
   Extent extent;
@@ -358,8 +362,8 @@ Extent OwnPointsOf(vtkImageData* image)
   return flags ? ExtentWithoutDuplicates(extent, flags, ofPoints != nullptr) : extent;
 }
 
-/// Makes voxels around the points of a rank's piece. Voxels are duplicates if this rank does not own their point, or if
-/// a lower rank owns it as well.
+/// Makes voxels around the points of a rank's piece. A voxel is a duplicate if this rank does not own its point, or if
+/// a lower rank owns the point as well.
 vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& summaries, int rank)
 {
   const vtkSmartPointer<vtkImageData> voxels = PointsAsVoxels(piece);
@@ -427,7 +431,7 @@ std::vector<RankSummary> Share(vtkMultiProcessController* ranks, const RankSumma
   return all;
 }
 
-/// Summaries of one connection of a port on all ranks.
+/// Summaries of connection number `connection` of a port, on each rank.
 OnRanks SummariesOf(const std::vector<RankSummary>& all, int port, int connection)
 {
   const std::vector<int>& connections = all[0].connections;
@@ -440,7 +444,7 @@ OnRanks SummariesOf(const std::vector<RankSummary>& all, int port, int connectio
   return summaries;
 }
 
-/// The extent of the voxels around points.
+/// Extent of the voxels around the points of an extent.
 Extent Around(Extent points)
 {
   for (int axis = 0; axis < 3 && PointBoxOf(points).Count() > 0; ++axis)
@@ -450,8 +454,8 @@ Extent Around(Extent points)
   return points;
 }
 
-/// Records the parts of outputs that the ranks are asked for, if they differ, as with sources that know only their own
-/// piece.
+/// Records the part of each output that each rank is asked for, if ranks are asked for different parts, as with sources
+/// that know only their own piece.
 void NoteParts(const std::vector<RankSummary>& all, int rank, vtkInformationVector* outputs)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -462,7 +466,7 @@ void NoteParts(const std::vector<RankSummary>& all, int rank, vtkInformationVect
       parts.push_back(of.asked[static_cast<std::size_t>(port)]);
       const InputSummary medium = of.inputs.empty() ? InputSummary() : of.inputs.front();
       if (medium.aroundPoints &&
-        parts.back() == medium.whole) // announced before it was known that voxels are around points
+        parts.back() == medium.whole) // was announced before it was known that voxels are around points
       {
         parts.back() = Around(parts.back());
       }
@@ -528,7 +532,7 @@ WholeInputs::WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter,
   }
 }
 
-/// Replaces the data of a port.
+/// Replaces the data of a port's connections by the results of `change`.
 void WholeInputs::Change(int port, const ChangeOfData& change)
 {
   const auto number = static_cast<std::size_t>(port);

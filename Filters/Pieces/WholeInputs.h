@@ -16,7 +16,7 @@ class vtkMultiProcessController;
 
 namespace tyndall
 {
-/// In RequestData: the complete inputs of a filter, the same on all ranks that run it together (Ranks.h).
+/// The complete inputs of a filter in RequestData, the same on all ranks that run the filter together (Ranks.h).
 ///
 /// Light crosses the boundaries between pieces, so most filters request their complete inputs (AskForAll,
 /// UpdateExtent.h). If the source gives every rank the complete input, only a hash is exchanged. If ranks have pieces,
@@ -37,27 +37,27 @@ public:
 
   /// @param ranks  null: this process is alone
   /// @param given  the filter's inputs by port
-  /// @param outputs  receive the part of the output that each rank is asked for, for KeepWhatIsAskedFor
-  /// @param inPieces  port that stays in pieces until MakeWhole, and whose data Replace sets
-  /// @param alsoInPieces  further ports that stay in pieces
-  /// @param inShares  another such port, of points (photons) that are distributed among ranks
+  /// @param outputs  information objects that receive the part which each rank is asked for, for KeepWhatIsAskedFor
+  /// @param inPieces  port whose data stay in pieces until MakeWhole; Replace sets the data of this port
+  /// @param alsoInPieces  further ports whose data stay in pieces
+  /// @param inShares  port of points (photons) that stay distributed among ranks until MakeWhole
   /// @throws InvalidInput, the same on all ranks, if pieces cannot be gathered
   WholeInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given,
     vtkInformationVector* outputs, int inPieces = NoPort, int inShares = NoPort,
     const std::vector<int>& alsoInPieces = {});
   ~WholeInputs();
 
-  /// The inputs by port, as RequestData takes them.
+  /// The inputs by port, in the form that RequestData receives them.
   vtkInformationVector** Vectors() { return this->Ports.data(); }
 
-  /// Rotates outputs from the medium axes back to the scene axes.
+  /// Rotates output images from the medium axes back to the scene axes.
   void PutIntoScene(vtkInformationVector* outputs) { this->Aligned.PutIntoScene(outputs); }
 
-  /// Replaces the data at the port that stays in pieces, until MakeWhole.
+  /// Replaces the data at the port `inPieces` of the constructor, until MakeWhole.
   void Replace(vtkDataObject* data);
 
-  /// Gathers the ports that have stayed in pieces. Collective.
-  /// @param where  ranks that get the complete data; on the others these ports keep their pieces
+  /// Gathers the data of the ports that have stayed in pieces. Collective.
+  /// @param where  ranks that receive the complete data; on the other ranks these ports keep their pieces
   /// @throws InvalidInput as the constructor does
   void MakeWhole(GatheredImage::On where = GatheredImage::On::EveryRank);
 
