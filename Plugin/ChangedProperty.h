@@ -3,8 +3,9 @@
 
 #include <cstring>
 
-/// Whether the property `name` is the one that has changed.
-/// @param data  call data of a vtkCommand::PropertyModifiedEvent: the property's name, or null if it is a subproxy's
+/// Whether a property-modified event is about the property `name`.
+/// @param data  call data of the vtkCommand::PropertyModifiedEvent: the changed property's name, or null if a
+///   subproxy's property has changed
 inline bool IsChangeOf(const void* data, const char* name)
 {
   return data && std::strcmp(static_cast<const char*>(data), name) == 0;

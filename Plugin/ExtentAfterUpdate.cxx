@@ -20,8 +20,8 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// Copies the whole extent, and the update extent, to which VTK crops the data (EXACT_EXTENT, which representations
-/// request).
+/// Copies the whole extent and the update extent from a post filter's input to its output. VTK crops the data to the
+/// update extent (EXACT_EXTENT, which representations request).
 void PassExtentOn(vtkObject* caller, unsigned long, void*, void*)
 {
   auto* const filter = vtkAlgorithm::SafeDownCast(caller);
@@ -43,7 +43,8 @@ public:
   static vtkSIExtentAfterUpdateProxy* New();
   vtkTypeMacro(vtkSIExtentAfterUpdateProxy, vtkSISourceProxy);
 
-  /// Output port of the post filter, which the superclass creates in the first call; this starts observing it.
+  /// Output port of the post filter. The superclass creates the post filter in the first call, in which this method
+  /// starts observing it.
   vtkAlgorithmOutput* GetOutputPort(int port) override
   {
     vtkAlgorithmOutput* const output = this->Superclass::GetOutputPort(port);
@@ -66,8 +67,8 @@ vtkStandardNewMacro(vtkSIExtentAfterUpdateProxy);
 
 namespace
 {
-/// Registers the class with an interpreter, with its superclass's commands, which the interpreter looks up by class
-/// name.
+/// Registers vtkSIExtentAfterUpdateProxy with a client-server interpreter, with the commands of its superclass, which
+/// the interpreter looks up by class name.
 void Teach(vtkClientServerInterpreter* interpreter)
 {
   const char* const name = "vtkSIExtentAfterUpdateProxy";
@@ -79,7 +80,7 @@ void Teach(vtkClientServerInterpreter* interpreter)
 }
 }
 
-/// Registers with the interpreters of all sessions: each session has its own.
+/// Registers the class with the client-server interpreters of all sessions: each session has its own.
 void TeachExtentAfterUpdate()
 {
   vtkClientServerInterpreterInitializer::GetInitializer()->RegisterCallback(&Teach);

@@ -21,8 +21,8 @@ namespace
 {
 using Information = vtkSMProxyManager::RegisteredProxyInformation;
 
-/// Sessions whose server has ended. ParaView 5.11 does not check whether a reply to PullState arrived before it parses
-/// it: asking such a server for properties aborts the client.
+/// Sessions whose server has ended, of which properties must not be requested. ParaView 5.11 does not check whether a
+/// reply to PullState arrived before it parses it: asking such a server for properties aborts the client.
 std::vector<vtkWeakPointer<vtkObject>>& LostSessions()
 {
   static std::vector<vtkWeakPointer<vtkObject>> sessions;
@@ -52,7 +52,7 @@ void ReadResults(vtkObject* caller, unsigned long, void*, void*)
   }
 }
 
-/// Reads the exposures with which a frame was rendered.
+/// Reads the exposures (property UsedExposure) with which a view's visible representations rendered a frame.
 void ReadExposures(vtkObject* view, unsigned long, void*, void* isInteractive)
 {
   const vtkSMPropertyHelper representations(vtkSMProxy::SafeDownCast(view), "Representations", true);
@@ -100,7 +100,7 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   {
     Observe(proxy, vtkCommand::UpdateDataEvent, read);
   }
-  vtkNew<vtkCollection> views; // some views exist before the plugin is loaded
+  vtkNew<vtkCollection> views; // includes views that existed before the plugin was loaded
   proxy->GetSessionProxyManager()->GetProxies("views", views);
   for (int i = 0; i < views->GetNumberOfItems(); ++i)
   {

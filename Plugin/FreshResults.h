@@ -3,7 +3,7 @@
 
 /// Keeps result properties (information_only) current: those of sources and filters with the hint <FreshResults/> are
 /// read again after each update of their data, those of representations after each rendering of a view. Panels and
-/// scripts then show the results of the last update, also with a server, as long as it runs.
+/// scripts then show the results of the last update, also with a server, until the server ends.
 ///
 /// To be called when the plugin is loaded; serves windows and scripts.
 void FollowResults();

@@ -5,9 +5,10 @@
 #include "vtkNew.h"
 #include "vtkSMProxyManager.h"
 
-/// Registers `notice` as observer of vtkCommand::RegisterEvent: it is called for each proxy that is registered from now
-/// on, with a vtkSMProxyManager::RegisteredProxyInformation as call data.
-/// @param listening  false before the first call, then set to true; further calls have no effect
+/// Registers `notice` as observer of vtkCommand::RegisterEvent: `notice` is called for each proxy that is registered
+/// from then on, with a vtkSMProxyManager::RegisteredProxyInformation as call data.
+/// @param listening  whether `notice` is registered already: false before the first call, which sets it to true;
+///   further calls have no effect
 inline void FollowRegisteredProxies(bool& listening, void (*notice)(vtkObject*, unsigned long, void*, void*))
 {
   vtkSMProxyManager* const manager = vtkSMProxyManager::GetProxyManager();

@@ -10,7 +10,8 @@
 #include "vtkNew.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
-#include "vtkSMPVRepresentationProxy.h" // RemotingViews needs GLEW; only its inline and virtual functions are called
+// Calls only inline and virtual functions of this class, so that RemotingViews, which needs GLEW, is not linked.
+#include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMTransferFunctionProxy.h"
 
@@ -23,8 +24,9 @@
 
 namespace
 {
-constexpr double LogarithmicFrom = 100.0; ///< ratio of largest to smallest value from which on a map is logarithmic
-constexpr double Decades = 1e-4;          ///< lower end over upper end of such a map, if the smallest value is 0
+constexpr double LogarithmicFrom = 100.0; ///< minimum ratio of largest to smallest value for a logarithmic colour map
+/// Ratio of lower to upper end of a logarithmic colour map whose array has the smallest value 0.
+constexpr double Decades = 1e-4;
 
 void ShowDirectColors(vtkSMProxy* representation)
 {
@@ -32,7 +34,7 @@ void ShowDirectColors(vtkSMProxy* representation)
   representation->UpdateVTKObjects();
 }
 
-/// Whether there are representations with that colour map, but none of them maps scalars through it.
+/// Whether representations refer to a colour map, but none of them maps scalars through it.
 bool IsLookedUpByNone(vtkSMProxy* map)
 {
   vtkNew<vtkCollection> representations;
@@ -54,7 +56,8 @@ bool IsLookedUpByNone(vtkSMProxy* map)
   return isThere;
 }
 
-/// Hides the colour bar of a map that no representation uses: ParaView shows one for every representation with scalars.
+/// Hides the colour bar of a map that no representation uses: ParaView shows one for every representation that has
+/// scalars.
 void HideUnusedBar(vtkSMProxy* bar)
 {
   vtkSMPropertyHelper isVisible(bar, "Visibility", true);
@@ -82,12 +85,14 @@ void WatchBar(vtkSMProxy* bar)
   HideUnusedBar(bar);
 }
 
-/// Rescales a colour map to the array's range, logarithmically if that spans decades.
+/// Rescales a colour map to the array's range, logarithmically if the largest value is at least LogarithmicFrom times
+/// the smallest.
 /// @param colors  a new colour map, not shown yet
 void FitColors(vtkSMProxy* colors, vtkPVArrayInformation* array)
 {
   double range[2];
-  array->GetComponentRange(array->GetNumberOfComponents() > 1 ? -1 : 0, range); // -1: range of the magnitude
+  // Component -1: the range of the magnitude.
+  array->GetComponentRange(array->GetNumberOfComponents() > 1 ? -1 : 0, range);
   const bool spansDecades = range[1] > 0.0 && range[1] >= LogarithmicFrom * range[0];
   if (spansDecades && range[0] <= 0.0)
   {
@@ -126,8 +131,8 @@ vtkCallbackCommand* FirstChange()
   return command;
 }
 
-/// Colours a representation that opened as Lit Volume when its type is first changed: Lit Volume does not use the color
-/// map, whose colour bar would mislead.
+/// Colours by the array of hint <ColoredBy> a representation that opened as Lit Volume, when its type is first changed:
+/// Lit Volume does not use the color map, whose colour bar would mislead.
 void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
 {
   auto* const representation = vtkSMProxy::SafeDownCast(caller);
@@ -145,7 +150,8 @@ void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
   }
 }
 
-/// Makes axes logarithmic in charts that are still empty: the new representation will be in one of them.
+/// Makes the given axes logarithmic in line charts that are still empty: the new representation will be shown in one of
+/// these charts.
 void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::vector<const char*>& axes)
 {
   vtkNew<vtkCollection> views;
@@ -165,7 +171,8 @@ void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::ve
   }
 }
 
-/// Sets the value of series, in a property whose elements are name, value, name, value, ...
+/// Sets a property of a chart representation to `value` for the given series. Its elements are name, value, name,
+/// value, ...
 void SetSeries(
   vtkSMProxy* representation, const char* property, const std::vector<std::string>& series, const char* value)
 {
@@ -188,7 +195,7 @@ void Plot(vtkSMProxy* representation, vtkPVXMLElement* hint)
   const std::set<std::string> plotted{ std::istream_iterator<std::string>(names), {} };
   const std::string begin = hint->GetAttributeOrEmpty("y_begin");
   std::vector<std::string> series, others;
-  const vtkSMPropertyHelper all(representation, "SeriesVisibility"); // name, 0 or 1, name, ...
+  const vtkSMPropertyHelper all(representation, "SeriesVisibility"); // elements: name, 0 or 1, name, ...
   for (unsigned int i = 0; i + 1 < all.GetNumberOfElements(); i += 2)
   {
     const std::string name = all.GetAsString(i);
@@ -203,14 +210,15 @@ void Plot(vtkSMProxy* representation, vtkPVXMLElement* hint)
   if (std::strcmp(hint->GetAttributeOrEmpty("style"), "points") == 0)
   {
     SetSeries(representation, "SeriesLineStyle", series, "0");
-    SetSeries(representation, "SeriesMarkerStyle", series, "4"); // circles
+    SetSeries(representation, "SeriesMarkerStyle", series, "4"); // markers are circles
     axes.push_back("BottomAxisLogScale");
   }
   representation->UpdateVTKObjects();
   MakeEmptyChartsLogarithmic(representation->GetSessionProxyManager(), axes);
 }
 
-/// Called when a representation is registered: its input is then known, and it has not been shown yet.
+/// Applies the hints to a new representation. Called when the representation is registered: its input is then known,
+/// and it has not been shown yet.
 void Notice(vtkObject*, unsigned long, void*, void* data)
 {
   const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);

@@ -14,9 +14,10 @@
 ///   all columns over the row number. Its left axis is logarithmic if nothing else is in the view. With y_begin="TEXT"
 ///   columns whose names begin with TEXT are plotted as well; with style="points" rows are points without lines, and
 ///   both axes are logarithmic.
-/// - <VolumeColors .../>: see VolumeColors.h.
+/// - <VolumeColors .../>: shows the output as a volume in its own colours; see VolumeColors.h.
 ///
-/// To be called when the plugin is loaded; serves windows and scripts.
+/// Installs the observers that apply these hints. To be called when the plugin is loaded; works in windows and in
+/// scripts.
 void FollowRepresentationHints();
 
 #endif

@@ -56,7 +56,7 @@ public:
   }
 
 private:
-  /// Watches the algorithm of a new proxy in this process, if it stops on abort or has results for the panel.
+  /// Watches the algorithm of a new proxy, if it runs in this process and stops on abort or has results for the panel.
   void Watch(vtkObject*, unsigned long, void* data)
   {
     const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);
@@ -118,7 +118,7 @@ private:
     if (this->Running)
     {
       vtkLogF(TRACE, "%s is aborted", this->Running->GetClassName());
-      this->Running->AbortExecute = 1; // SetAbortExecute would mark the filter modified, so that it runs again
+      this->Running->AbortExecute = 1; // SetAbortExecute would mark the filter as modified, so that it runs again
       this->Button->setDown(true);
       this->IsAborted = true;
     }
@@ -135,7 +135,7 @@ private:
     }
   }
 
-  /// Shows results once ParaView has finished the current update.
+  /// Updates the results on the panel once ParaView has finished the current update.
   void ShowResults(vtkAlgorithm* algorithm)
   {
     const vtkWeakPointer<vtkSMProxy> proxy = this->Proxies[algorithm];
@@ -146,7 +146,8 @@ private:
   void ShowLater(const vtkWeakPointer<vtkSMProxy>& proxy, bool isAborted, int milliseconds)
   {
     QTimer::singleShot(milliseconds, this, [this, proxy, isAborted] {
-      if (this->Running) // the update is still running other filters, and timers fire between their progress events
+      // Waits longer: the update is still running other filters, and timers fire between their progress events.
+      if (this->Running)
       {
         this->ShowLater(proxy, isAborted, 50);
         return;
@@ -166,9 +167,9 @@ private:
     });
   }
 
-  /// Processes pending window events; called on progress events, because the window is blocked while an algorithm runs
-  /// in its process. Timers do not fire, and user input other than pressing the button is discarded: nothing may start
-  /// a second update within the first.
+  /// Processes pending window events. Called on progress events, because the window is blocked while an algorithm runs
+  /// in its process. Timers do not fire, and user input is discarded except pressing the abort button: nothing may
+  /// start a second update within the first.
   void HandleWaitingEvents()
   {
     const bool soonAfterTheLast = this->SinceLast.isValid() && this->SinceLast.elapsed() < 50;
@@ -189,7 +190,8 @@ private:
     switch (event->type())
     {
       case QEvent::MouseButtonPress:
-        // The window receives the event before the button, and ParaView's own event filter would stop it there.
+        // The window receives a mouse event before the button does, and ParaView's own event filter would stop the
+        // event there.
         if (receiver->isWindowType() && IsOver(this->Button, static_cast<QMouseEvent*>(event)->globalPos()))
         {
           this->Abort();
@@ -212,7 +214,7 @@ private:
       case QEvent::Drop: return true;
       case QEvent::Close: event->ignore(); return true;
       case QEvent::Paint:
-      case QEvent::UpdateRequest: return receiver->inherits("QOpenGLWidget"); // a view, which may not render now
+      case QEvent::UpdateRequest: return receiver->inherits("QOpenGLWidget"); // a view must not render during an update
       default: return false;
     }
   }
@@ -224,7 +226,7 @@ private:
   QElapsedTimer SinceLast;
   StoppedFilters Stopped;
   bool HandlesEvents = false;
-  bool IsAborted = false; ///< whether the running filter has been aborted
+  bool IsAborted = false; ///< whether the algorithm Running has been aborted
 };
 }
 
@@ -232,6 +234,6 @@ void FollowRunningFilters()
 {
   if (qobject_cast<QApplication*>(QCoreApplication::instance()))
   {
-    new RunningFilters(qApp); // owned by qApp
+    new RunningFilters(qApp); // deleted by its parent qApp
   }
 }

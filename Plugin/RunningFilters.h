@@ -9,7 +9,8 @@
 /// - The results on the panel (information_only) are those of the last run. ParaView alone reads them before the run
 ///   that Apply starts.
 ///
-/// To be called when the plugin is loaded. Without a window (pvpython, pvbatch, pvserver) it does nothing.
+/// Installs both for ParaView's window. To be called when the plugin is loaded. Without a window (pvpython, pvbatch,
+/// pvserver) the function does nothing.
 void FollowRunningFilters();
 
 #endif

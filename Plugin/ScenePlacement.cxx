@@ -25,8 +25,8 @@
 
 namespace
 {
-/// Adds the bounds of a source's volumes to the box, without updating the source. Flat images are pictures and skies,
-/// and are skipped.
+/// Adds the bounds of a source's volumes to the scene's box, without updating the source. Flat images are pictures and
+/// skies, and are skipped.
 void AddVolumesOf(vtkSMSourceProxy* source, vtkBoundingBox& box)
 {
   for (unsigned int port = 0; port < source->GetNumberOfOutputPorts(); ++port)
@@ -60,7 +60,7 @@ vtkBoundingBox BoxOfScene(vtkSMSessionProxyManager* manager)
   return box;
 }
 
-/// Rounds a number for display on a panel.
+/// Rounds a number for display on a panel, to digits that are counted from the first digit of `size`.
 /// @param digits  number of digits to keep after the first digit of `size`
 double Rounded(double value, double size, int digits)
 {
@@ -84,7 +84,7 @@ void Place(vtkSMProperty* property, vtkPVXMLElement* hint, const vtkBoundingBox&
   }
 }
 
-/// Properties of a proxy that have the hint and still have their default value, with their hints.
+/// Properties of a proxy that have the hint <ScenePlacement> and still have their default value, with their hints.
 std::vector<std::pair<vtkSMProperty*, vtkPVXMLElement*>> PropertiesToPlace(vtkSMProxy* proxy)
 {
   std::vector<std::pair<vtkSMProperty*, vtkPVXMLElement*>> found;

@@ -9,7 +9,7 @@
 #include "vtkSMProxy.h"
 #include "vtkSMSourceProxy.h"
 
-/// The output of a source that a representation shows.
+/// An output port of a source, which a representation shows.
 struct Shown
 {
   vtkSMSourceProxy* source;
@@ -22,7 +22,7 @@ inline Shown ShownBy(vtkSMProxy* representation)
   return { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), static_cast<int>(input.GetOutputPort()) };
 }
 
-/// The source's hint of that name for the shown output, or null.
+/// Returns the hint `name` of the source that applies to the shown output; null if there is none.
 inline vtkPVXMLElement* HintFor(const Shown& shown, const char* name)
 {
   vtkPVXMLElement* const hints = shown.source ? shown.source->GetHints() : nullptr;
@@ -32,7 +32,7 @@ inline vtkPVXMLElement* HintFor(const Shown& shown, const char* name)
   return isOfOther ? nullptr : hint;
 }
 
-/// The cell array that the hint names, or null where the output does not have it.
+/// Returns information about the cell array that a hint names; null if the output does not have this array.
 inline vtkPVArrayInformation* HintedArray(const Shown& shown, vtkPVXMLElement* hint)
 {
   const char* const name = hint->GetAttributeOrEmpty("array");

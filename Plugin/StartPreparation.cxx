@@ -66,5 +66,6 @@ void StartPreparation()
     return;
   }
   vtkLogF(TRACE, "%s is process %d", program.c_str(), static_cast<int>(process));
-  std::thread([process] { waitpid(process, nullptr, 0); }).detach(); // no zombie is left
+  // Waits for the process to end, so that no zombie is left.
+  std::thread([process] { waitpid(process, nullptr, 0); }).detach();
 }

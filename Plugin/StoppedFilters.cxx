@@ -18,8 +18,8 @@
 
 namespace
 {
-/// Finds one of ParaView's widgets. ParaView's GUI libraries are not linked, so that the plugin loads in servers
-/// without them: widgets and signals are accessed by name.
+/// Finds a widget of ParaView by its class and object name. ParaView's GUI libraries are not linked, so that the plugin
+/// loads in servers without them: widgets and signals are accessed by name.
 QWidget* FindWidget(const char* type, const QString& name = {})
 {
   for (QWidget* window : QApplication::topLevelWidgets())
@@ -57,14 +57,14 @@ vtkDataObject* OutputOf(vtkSMProxy* proxy)
   return vtkAlgorithm::SafeDownCast(proxy->GetClientSideObject())->GetOutputDataObject(0);
 }
 
-/// Whether the stopped filter shows the light of its previous run.
+/// Whether the output of a stopped filter is the light of its previous run.
 bool ShowsLight(vtkSMProxy* proxy)
 {
   vtkDataObject* const output = OutputOf(proxy);
   return output && output->GetNumberOfElements(vtkDataObject::CELL) > 0;
 }
 
-/// Whether the filter's output is still that of an aborted run, even if it has been updated again.
+/// Whether the output of a stopped filter is still that of an aborted run, even if the filter has been updated again.
 bool IsStillStopped(vtkSMProxy* proxy)
 {
   vtkDataObject* const output = OutputOf(proxy);
@@ -149,7 +149,7 @@ void StoppedFilters::FollowPanel()
   QObject::connect(panel, SIGNAL(applyEnableStateChanged()), &this->PanelChanged, SLOT(start()));
 }
 
-/// Enables Apply for a stopped filter on the panel; ParaView enables it only for changed properties.
+/// Enables the Apply button if a stopped filter is on the panel; ParaView enables it only for changed properties.
 void StoppedFilters::OfferApply()
 {
   const auto isOffered = [](const vtkWeakPointer<vtkSMProxy>& proxy) {

@@ -11,8 +11,9 @@
 
 class vtkSMProxy;
 
-/// Filters that the user stopped, in ParaView's window. Until such a filter has run to its end, the status bar says
-/// that it was stopped; while it is on the panel, Apply is enabled and runs it again, although no property has changed.
+/// The filters that the user has stopped in ParaView's window. Until such a filter has run to its end, the status bar
+/// says that it was stopped; while it is on the panel, Apply is enabled and runs it again, although no property has
+/// changed.
 class StoppedFilters
 {
 public:
@@ -29,5 +30,5 @@ private:
   std::vector<vtkWeakPointer<vtkSMProxy>> Stopped;
   QPointer<QAbstractButton> Apply;
   QTimer PanelChanged; ///< fires after the panel has enabled or disabled Apply
-  QString Said;        ///< last message in the status bar
+  QString Said;        ///< last message shown in the status bar
 };

@@ -14,7 +14,8 @@
 #include "vtkSMProxyManager.h"
 #include "vtkSMProxySelectionModel.h"
 #include "vtkSMSessionProxyManager.h"
-#include "vtkSMViewProxy.h" // RemotingViews needs GLEW; only its inline and virtual functions are called
+// Calls only inline and virtual functions of this class, so that RemotingViews, which needs GLEW, is not linked.
+#include "vtkSMViewProxy.h"
 
 #include <algorithm>
 #include <functional>
@@ -62,7 +63,7 @@ std::vector<vtkSMViewProxy*> Views(vtkSMSessionProxyManager* manager)
   return views;
 }
 
-/// The view whose camera the source takes, or null.
+/// Finds the view whose camera the source takes (ViewCameras.h); null: none.
 vtkSMViewProxy* ViewFor(vtkSMProxy* source)
 {
   vtkSMSessionProxyManager* const manager = source->GetSessionProxyManager();
@@ -100,7 +101,7 @@ void SetNumbers(vtkSMProxy* proxy, const std::string& property, const std::vecto
   }
 }
 
-/// Current values of a camera property of the view, mouse interaction included; properties that the mouse does not
+/// Current values of a camera property of the view, including changes by mouse; properties that the mouse does not
 /// change have no "Info" property.
 std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
 {
@@ -108,7 +109,7 @@ std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
   return Numbers(view, moves ? property + "Info" : property);
 }
 
-/// The values that a Property of the hint gets.
+/// Values for the source's property that a <Property> of the hint names.
 std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
 {
   std::vector<double> numbers = OfView(view, property->GetAttributeOrEmpty("of"));
@@ -120,8 +121,8 @@ std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
   return numbers;
 }
 
-/// Copies the view's camera to the source.
-/// @return whether anything changed
+/// Copies the view's camera to the source, as its hint requests.
+/// @return whether any property of the source changed
 bool Take(vtkSMProxy* view, vtkSMProxy* source)
 {
   view->UpdatePropertyInformation();
@@ -168,7 +169,8 @@ void Press(vtkObject* caller, unsigned long, void*, void* property)
 
 void Follow(vtkObject* caller, unsigned long, void*, void* isInteractive)
 {
-  static bool drawing = false; // what shows a source is drawn by its change
+  // True while views are rendered because a source's camera changed, so that this does not cause another change.
+  static bool drawing = false;
   auto* const view = vtkSMViewProxy::SafeDownCast(caller);
   if (drawing || (isInteractive && *static_cast<int*>(isInteractive) != 0))
   {
@@ -211,7 +213,8 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   {
     proxy->AddObserver(vtkCommand::UpdatePropertyEvent, press);
   }
-  for (vtkSMViewProxy* const view : Views(proxy->GetSessionProxyManager())) // views older than the plugin, too
+  // Includes views that existed before the plugin was loaded.
+  for (vtkSMViewProxy* const view : Views(proxy->GetSessionProxyManager()))
   {
     if (!view->HasObserver(vtkCommand::EndEvent, follow))
     {

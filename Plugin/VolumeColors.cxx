@@ -6,7 +6,8 @@
 #include "vtkCallbackCommand.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
-#include "vtkSMPVRepresentationProxy.h" // RemotingViews needs GLEW; only its inline and virtual functions are called
+// Calls only inline and virtual functions of this class, so that RemotingViews, which needs GLEW, is not linked.
+#include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMSessionProxyManager.h"
 
 #include <cstring>
@@ -14,7 +15,8 @@
 
 namespace
 {
-constexpr double Opacity[] = { 0.0, 0.0, 0.5, 0.0, 255.0, 1.0, 0.5, 0.0 }; ///< value, opacity, midpoint, sharpness
+/// One control point each: value, opacity, midpoint, sharpness.
+constexpr double Opacity[] = { 0.0, 0.0, 0.5, 0.0, 255.0, 1.0, 0.5, 0.0 };
 constexpr int NeverRescaled = -1;
 
 vtkPVXMLElement* HintOf(vtkSMProxy* representation)
@@ -40,8 +42,8 @@ bool IsColoredByThem(vtkSMProxy* representation)
   return name && std::strcmp(name, HintOf(representation)->GetAttributeOrEmpty("array")) == 0;
 }
 
-/// Unit distance from the field data.
-/// @return 0 if it is not known
+/// Unit distance of the shown volume's alpha, from the field data that the hint names, in units of length.
+/// @return 0 if the field data are missing
 double DistanceOf(vtkSMProxy* representation)
 {
   const Shown shown = ShownBy(representation);
@@ -51,7 +53,7 @@ double DistanceOf(vtkSMProxy* representation)
   return fact ? fact->GetComponentRange(0)[0] : 0.0;
 }
 
-/// Sets the unit distance of alpha, for which ParaView has no property: see vtkVolumeUnitDistance.
+/// Sets the unit distance of a volume's alpha, for which ParaView has no property: see vtkVolumeUnitDistance.
 void GiveDistance(vtkSMProxy* representation)
 {
   const double distance = DistanceOf(representation);
@@ -67,7 +69,8 @@ void GiveDistance(vtkSMProxy* representation)
   }
 }
 
-/// Resets the opacity function if its range is not 0 to 255; otherwise leaves the user's points alone.
+/// Resets an opacity function to opacity 0 to 1 over the range 0 to 255 if it has another range; otherwise keeps the
+/// control points that the user has set.
 void GiveRange(vtkSMProxy* function)
 {
   vtkSMPropertyHelper points(function, "Points");
@@ -81,7 +84,7 @@ void GiveRange(vtkSMProxy* function)
   }
 }
 
-/// Restores the range after ParaView has rescaled it to the range of the colours' norm.
+/// Restores the opacity function's range after ParaView has rescaled it to the range of the colours' norm.
 void GiveRangeAtChange(vtkObject* caller, unsigned long, void*, void* property)
 {
   if (IsChangeOf(property, "Points"))
@@ -144,7 +147,8 @@ void FollowProperty(vtkObject* caller, unsigned long, void*, void* data)
   }
   if (IsChangeOf(data, "Representation") && IsVolume(representation) && HasColors(representation))
   {
-    representation->UpdateVTKObjects(); // so that the representation already shows the volume
+    // Before the unit distance is set: the representation must already show the volume.
+    representation->UpdateVTKObjects();
     ShowColors(representation);
   }
   else if (IsChangeOf(data, "ColorArrayName") || IsChangeOf(data, "ScalarOpacityFunction"))
@@ -153,7 +157,7 @@ void FollowProperty(vtkObject* caller, unsigned long, void*, void* data)
   }
 }
 
-/// Sets the unit distance again after an update: it may change with time, or when a state is loaded.
+/// Sets the unit distance again after an update: it may change with time, or a state may have been loaded.
 void FollowData(vtkObject* caller, unsigned long, void*, void*)
 {
   auto* const representation = vtkSMProxy::SafeDownCast(caller);
@@ -183,7 +187,8 @@ void FollowVolumeColors(vtkSMProxy* representation)
   Follow(representation);
   if (HasColors(representation))
   {
-    vtkSMPropertyHelper(representation, "Representation").Set("Volume"); // FollowProperty then does the rest
+    // The observer FollowProperty then sets the colours.
+    vtkSMPropertyHelper(representation, "Representation").Set("Volume");
     representation->UpdateVTKObjects();
   }
 }

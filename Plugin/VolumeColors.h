@@ -3,14 +3,14 @@
 
 class vtkSMProxy;
 
-/// Shows a volume in its own colours: follows a representation of an output whose proxy has the hint
+/// Shows a volume in its own colours. Follows a representation of an output whose proxy has the hint
 ///
 ///   <VolumeColors port="P" array="NAME" distance="FACT"/>
 ///
 /// Cell array NAME has red, green, blue and alpha of voxels, as bytes; field data FACT is the unit distance, over which
 /// alpha is the opacity. If the array exists, the output opens as ParaView's Volume in these colours: Map Scalars off,
-/// an opacity function from 0 to 1 over 0 to 255 that is not rescaled, the unit distance from the data. The same is set
-/// when Volume is chosen later. If another array is chosen, Map Scalars is on again.
+/// an opacity function from 0 to 1 over 0 to 255 that is not rescaled, the unit distance from the data. These settings
+/// are also made when Volume is chosen later. If another array is chosen, Map Scalars is switched on again.
 ///
 /// To be called when the representation is registered.
 void FollowVolumeColors(vtkSMProxy* representation);

@@ -16,7 +16,7 @@ import subprocess
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-WIDTH, WIDTH_IN_TABLE = 720, 360  # pixels of a picture at most
+WIDTH, WIDTH_IN_TABLE = 720, 360  # maximum width of a picture, pixels
 PAGE = """<!DOCTYPE html>
 <html>
 <head><meta http-equiv="Content-Type" content="text/html; charset=utf-8"><title>%s</title>
@@ -42,7 +42,7 @@ def picture_width(file):
     if data.startswith(b"\x89PNG"):
         return struct.unpack(">I", data[16:20])[0]
     at = 2
-    while not 0xC0 <= data[at + 1] <= 0xC3:  # the segments before the frame's head
+    while not 0xC0 <= data[at + 1] <= 0xC3:  # skips the JPEG segments before the frame header, which holds the size
         at += 2 + struct.unpack(">H", data[at + 2:at + 4])[0]
     return struct.unpack(">H", data[at + 7:at + 9])[0]
 

@@ -7,7 +7,7 @@ from paraview.simple import *
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 os.chdir(sys.argv[1] if len(sys.argv) > 1 else os.environ.get("TYNDALL_TEST_OUTPUT", "."))
 
-# A cloud 480 m wide, in grams of water per cubic metre: waves on a ball.
+# A cloud 480 m wide: mass of water in g/m^3, a ball modulated by waves.
 box = Wavelet(WholeExtent=[-24, 24] * 3, Maximum=1, XMag=0.13, YMag=0.11, ZMag=0.14,
               XFreq=17, YFreq=13, ZFreq=19, StandardDeviation=0.3)
 water = Calculator(Input=box, ResultArrayName="density", Function="0.5*max(0,RTData-0.5)")

@@ -11,7 +11,7 @@ from paraview.simple import *
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 folder = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("TYNDALL_TEST_OUTPUT", ".")
 
-# A cloud in a box 960 m wide and 640 m high, in grams of water per cubic metre; a voxel is 20 m. Its ground is -z.
+# A cloud in a box 960 m wide and 640 m high: mass of water in g/m^3, in voxels of 20 m. The ground is the face -z.
 box = Wavelet(WholeExtent=[-24, 24, -24, 24, -16, 16], Maximum=1, XMag=0.13, YMag=0.11, ZMag=0.14,
               XFreq=17, YFreq=13, ZFreq=19, StandardDeviation=0.25)
 water = Calculator(Input=box, ResultArrayName="density", Function="0.3*max(0,RTData-0.62)")
@@ -25,7 +25,7 @@ picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[400, 300], Exposur
 
 from_below = {}
 for ground, albedo, colour in ("grass", 0.3, [0.5, 1.0, 0.3]), ("snow", 0.8, [1.0, 1.0, 1.0]):
-    light.FaceAlbedo = [0, 0, 0, 0, albedo, 0]  # of -z, and its colour below
+    light.FaceAlbedo = [0, 0, 0, 0, albedo, 0]  # albedo of the ground, the face -z; FaceAlbedoColor sets its colour
     light.FaceAlbedoColor = [1] * 12 + colour + [1] * 3
     SaveData(os.path.join(folder, "cloud-over-%s.png" % ground), proxy=picture)
     light.UpdatePropertyInformation()

@@ -35,14 +35,15 @@ def stage(name, work):
 
 
 def data(name):
-    return os.path.abspath(os.path.join(arguments.data, name)) # so that the state finds it from anywhere
+    # Absolute path, so that the state finds the file from any folder.
+    return os.path.abspath(os.path.join(arguments.data, name))
 
 
 def output(name):
     return os.path.join(arguments.output, name)
 
 
-# The scan: 64^3 floats behind a header of 256 bytes, in which the voxel's edges stand in mm.
+# The scan: 64^3 floats after a header of 256 bytes, which contains the edges of a voxel in mm.
 header = dict(line.split("=", 1) for line in open(data("skull_2.9.inr"), "rb").read(256).decode("latin-1").split("\n") if "=" in line)
 scan = ImageReader(registrationName="Scan", FileNames=[data("skull_2.9.inr")], DataScalarType="float",
                    DataByteOrder="LittleEndian", FileDimensionality=3, ScalarArrayName="density",
@@ -52,8 +53,8 @@ fine = ResampleToImage(registrationName="Finer scan", Input=scan, UseInputBounds
                        SamplingDimensions=[arguments.grid] * 3)
 stage("read and resample the scan", fine.UpdatePipeline)
 
-# Bone: what the scanner calls 2.9 is its surface. Bone scatters nearly all light and absorbs more blue than red. Real bone is
-# some twenty times denser in optics; this is bone as a thin fog would have it, which lets light into the skull.
+# Bone: its surface has the value 2.9 in the scan. Bone scatters nearly all light and absorbs more blue than red. The
+# optical thickness of real bone is some twenty times larger; this thin fog lets light into the skull.
 medium = ParticipatingMedium(registrationName="Bone", Input=fine, MinimumDensity=1.9, MaximumDensity=3.5,
                              ExtinctionScale=0.3, Albedo=[0.93, 0.87, 0.76])
 stage("make the medium", medium.UpdatePipeline)
@@ -61,7 +62,7 @@ stage("make the medium", medium.UpdatePipeline)
 sky = EnvironmentReader(registrationName="Sky", FileName=data("sunset.exr"))
 stage("read the sky", sky.UpdatePipeline)
 
-# Low, from the left and behind, so that it shines through the bone.
+# The sun is low, to the left and behind the skull, so that its light shines through the bone.
 sun = LightRig(registrationName="Sun", SunElevation=30, SunAzimuth=130, SunPower=[34, 26, 17])
 
 light = LightPropagationMaps(registrationName="Light", Input=medium, Lights=sun, Environment=sky, Tolerance=1e-2)
@@ -100,7 +101,7 @@ def slice_through_light():
     cut.SliceType.Normal = [1, 0, 0]
     shown = Show(cut, view)
     ColorBy(shown, ("CELLS", "fluence", "Magnitude"))
-    shown.Ambient, shown.Diffuse = 1, 0  # the colours of the bar, unshaded
+    shown.Ambient, shown.Diffuse = 1, 0  # the colours of the colour bar, without shading
     table = GetColorTransferFunction("fluence")
     table.ApplyPreset("Inferno (matplotlib)", True)
     shown.RescaleTransferFunctionToDataRange()

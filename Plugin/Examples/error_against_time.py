@@ -24,7 +24,7 @@ from paraview.vtk.vtkRenderingCore import vtkWindowToImageFilter
 from paraview.vtk.vtkViewsContext2D import vtkContextView
 
 TARGETS = (0.1, 0.01, 0.001)
-# The colours of Okabe and Ito, which the colour-blind can tell apart, and shapes for print in grey.
+# Colours of Okabe and Ito, which colour-blind readers can tell apart, and shapes of markers for print in grey.
 STYLES = {
     "light propagation maps": ((0, 114, 178), vtkPlotPoints.CIRCLE),
     "constant source, not accelerated": ((230, 159, 0), vtkPlotPoints.SQUARE),
@@ -164,7 +164,7 @@ class Plot:
         self.view.GetRenderWindow().SetOffScreenRendering(True)
         self.chart = vtkChartXY()
         self.view.GetScene().AddItem(self.chart)
-        self.chart.SetTitle(title + "\n ")  # some room below it
+        self.chart.SetTitle(title + "\n ")  # empty line between title and chart
         self.chart.GetTitleProperties().SetFontSize(26)
         self.chart.GetTitleProperties().SetBold(True)
         self.chart.SetShowLegend(True)
@@ -194,7 +194,7 @@ class Plot:
         axis.LogScaleOn()
         positions, labels = vtkDoubleArray(), vtkStringArray()
         for tick in ticks:
-            positions.InsertNextValue(math.log10(tick))  # of the axis, which is logarithmic
+            positions.InsertNextValue(math.log10(tick))  # position on the logarithmic axis
             labels.InsertNextValue("%g%%" % (100.0 * tick) if which == vtkAxis.LEFT else "%g" % tick)
         axis.SetCustomTickPositions(positions, labels)
 
@@ -207,7 +207,7 @@ class Plot:
         for row in rows:
             table.GetColumn(0).InsertNextValue(row["seconds"])
             table.GetColumn(1).InsertNextValue(row[error])
-        self.tables.append(table)  # the chart does not keep it alive
+        self.tables.append(table)  # keeps a reference, because the chart does not
         return table
 
     def line(self, rows, label, error, color, width, alpha=255):
@@ -299,7 +299,7 @@ def parse():
     return parser.parse_args()
 
 
-# The properties that switch methods on.
+# Names of the properties that switch each method on.
 SWITCHES = {
     "light propagation maps": "LightPropagationMaps",
     "constant source, not accelerated": "ConstantSource",

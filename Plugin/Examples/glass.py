@@ -7,7 +7,7 @@ from paraview.simple import *
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
 folder = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("TYNDALL_TEST_OUTPUT", ".")
 
-# A mesh becomes voxels with a refractive index: glass inside, thin fog outside.
+# Converts a mesh to voxels with a refractive index: glass inside, thin fog outside.
 ball = Sphere(Radius=0.5, ThetaResolution=80, PhiResolution=80)
 medium = MeshVoxelizer(Input=ball, ModelBounds=[-1, 1, -1, 1, -0.6, 1.4], SampleDimensions=[96] * 3, InsideIndex=1.5,
                        InsideScattering=[0.02] * 3, OutsideScattering=[0.35] * 3, OutsideAbsorption=[0.03] * 3)

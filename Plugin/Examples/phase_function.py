@@ -19,8 +19,9 @@ from paraview.vtk.vtkRenderingCore import vtkWindowToImageFilter
 from paraview.vtk.vtkViewsContext2D import vtkContextView
 
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
-PUBLISHED = dict(DirectionSet=2, Repaired=0)  # equal weights, point values, not repaired
-# The colours of Okabe and Ito, which the colour-blind can tell apart.
+# As published: directions of equal weights, point values of the phase function, no repair.
+PUBLISHED = dict(DirectionSet=2, Repaired=0)
+# Colours of Okabe and Ito, which colour-blind readers can tell apart.
 COLORS = ((0, 114, 178), (230, 159, 0), (0, 158, 115), (213, 94, 0))
 
 
@@ -58,7 +59,7 @@ class Chart:
             for value in values:
                 array.InsertNextValue(value)
             table.AddColumn(array)
-        self.tables.append(table)  # the chart does not keep it alive
+        self.tables.append(table)  # keeps a reference, because the chart does not
         plot = self.chart.AddPlot(vtkChart.POINTS if marks else vtkChart.LINE)
         plot.SetInputData(table, 0, 1)
         plot.SetColor(*color, 255)
@@ -113,7 +114,7 @@ def draw_function(arguments, g=0.5):
     for terms, color in ((8, COLORS[1]), (24, COLORS[0])):
         pairs = sorted((math.degrees(math.acos(max(-1.0, min(1.0, cosines[i])))),
                         sum(eigenvalues[k] * u[k][0] * u[k][i] for k in range(terms))) for i in range(count))
-        pairs = [pair for pair in pairs if pair[1] > 0.0]  # what is negative has no logarithm
+        pairs = [pair for pair in pairs if pair[1] > 0.0]  # values below 0 cannot be shown on a logarithmic axis
         chart.line([p[0] for p in pairs], [p[1] for p in pairs], "%d terms" % terms, color)
     chart.save(os.path.join(arguments.output, "phase-function.png"))
 

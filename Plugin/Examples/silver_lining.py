@@ -32,7 +32,8 @@ def output(name):
     return os.path.join(arguments.output, name)
 
 
-# Grams of water per cubic metre, metres. Droplets of 10 um extinguish 0.15 1/m at 1 g/m^3, and absorb nearly nothing.
+# Density is the mass of water in g/m^3, length is in metres. Droplets of 10 um have an extinction of 0.15 1/m at 1
+# g/m^3, and absorb nearly nothing.
 water = VDBReader(registrationName="Liquid water",
                   FileName=os.path.join(here, "..", "..", "Data", "Scenes", "cumulus.vdb"))
 water.UpdatePipeline()

@@ -14,8 +14,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-// Solves and renders small scenes, so that OpenCL's compiler cache has the kernels that the first solve in ParaView
-// needs:
+// Solves and renders small scenes, so that the cache of OpenCL's compiler contains the kernels that the first solve in
+// ParaView needs:
 //
 //     TyndallPreparation [COUNT [PARENT]]
 //
@@ -25,7 +25,8 @@
 
 namespace
 {
-/// Record of what has been prepared. Its file lies in the compiler's cache, so that both are deleted together.
+/// Record of the scenes that have been prepared. Its file is in the cache of OpenCL's compiler, so that both are
+/// deleted together.
 struct Note
 {
   std::string file, content;
@@ -44,7 +45,7 @@ Note NoteOfAll()
   return { tyndall::PreparePocl().folder + "/tyndall-prepared", LibraryVersion() + (device ? device : "") + "\n" };
 }
 
-/// Runs at the lowest priority, and ends with the parent process.
+/// Sets the lowest priority for this process, and ends it when the parent process ends.
 void ServeParent(pid_t parent)
 {
   setpriority(PRIO_PROCESS, 0, 19);

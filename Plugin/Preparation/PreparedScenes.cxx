@@ -22,7 +22,7 @@ struct Scene
 {
   int length; ///< voxels along x; sweeps are compiled for rows of up to 32, 64 and 128
   int preset;
-  double around; ///< density at the faces
+  double around; ///< density of the box outside of the ellipsoid
 };
 
 const Scene Scenes[] = {
@@ -33,10 +33,11 @@ const Scene Scenes[] = {
   { 128, vtkParticipatingMedium::CLOUD, 0.0 },
 };
 
-/// Voxels along y and z: few, because only compilation matters, but enough that kernels are those of cubes.
+/// Voxels along y and z: few, because only compilation matters, but enough that the same kernels are compiled as for a
+/// cube.
 constexpr int Across = 40;
 
-/// Density of an ellipsoid that decreases from 1 at its centre.
+/// Density of an ellipsoid: 1 at its centre, decreasing outwards.
 vtkSmartPointer<vtkImageData> Density(int length, double around)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -65,7 +66,7 @@ bool PrepareScene(int number)
 {
   const Scene& scene = Scenes[number];
   int errors = 0;
-  vtkNew<vtkCallbackCommand> count; // of errors and warnings, which are not printed
+  vtkNew<vtkCallbackCommand> count; // counts errors of the filters; errors and warnings are not printed
   count->SetClientData(&errors);
   count->SetCallback([](vtkObject*, unsigned long event, void* all, void*) {
     *static_cast<int*>(all) += event == vtkCommand::ErrorEvent ? 1 : 0;
@@ -80,7 +81,7 @@ bool PrepareScene(int number)
   }
   medium->SetInputDataObject(Density(scene.length, scene.around));
   medium->SetPreset(scene.preset);
-  medium->SetMillimetresPerUnit(1e4); // length unit of the presets, with which a cloud is optically thick
+  medium->SetMillimetresPerUnit(1e4); // unit of length of the presets, mm, with which a cloud is optically thick
   light->SetInputConnection(medium->GetOutputPort());
   picture->SetInputConnection(light->GetOutputPort());
   picture->Update();

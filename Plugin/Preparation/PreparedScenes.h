@@ -2,14 +2,14 @@
 
 #include <string>
 
-/// Number of prepared scenes. Kernels are compiled for the same variants as in typical user scenes: classes of grid
-/// sizes, and a density field with default filter settings.
+/// Number of prepared scenes. Scenes are such that the kernels of typical user scenes are compiled: several classes of
+/// grid sizes, and a density field with default filter settings.
 int PreparedSceneCount();
 
-/// Runs the default pipeline, from density to medium, light and picture; only the medium's preset and unit of length
-/// are set.
+/// Runs the default pipeline on a prepared scene, from density to medium, light and picture. All filters have default
+/// settings, except the medium's preset and unit of length.
 /// @param number  number of the scene, from 0, most likely scenes first
-/// @return whether no filter reported an error
+/// @return whether the scene was prepared without an error of a filter
 bool PrepareScene(int number);
 
 /// Identifies the build of the filters' library.

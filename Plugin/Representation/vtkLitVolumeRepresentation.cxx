@@ -52,7 +52,7 @@ int vtkLitVolumeRepresentation::FillInputPortInformation(int port, vtkInformatio
 {
   information->Set(
     vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == vtkMediumRayCaster::LIGHTS ? "vtkPolyData" : "vtkImageData");
-  information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // other processes have no inputs
+  information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // processes without data have no inputs
   return 1;
 }
 
@@ -67,7 +67,8 @@ int vtkLitVolumeRepresentation::RequestData(
   return done;
 }
 
-/// Gives the mapper this rank's piece with ghost cells; the superclass has given it the piece without. Collective.
+/// Passes this rank's piece with ghost cells, `surrounded`, to the mapper; the superclass has passed the piece without
+/// ghost cells. Collective.
 void vtkLitVolumeRepresentation::SharePieces(vtkDataObject* surrounded)
 {
   vtkMultiProcessController* const ranks = vtkMultiProcessController::GetGlobalController();
@@ -79,7 +80,8 @@ void vtkLitVolumeRepresentation::SharePieces(vtkDataObject* surrounded)
   }
 }
 
-/// Requests one layer of ghost cells, because light is interpolated across pieces.
+/// Requests one layer of ghost cells around this rank's piece, because light is interpolated between cells of different
+/// pieces.
 int vtkLitVolumeRepresentation::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -95,7 +97,8 @@ int vtkLitVolumeRepresentation::RequestUpdateExtent(
   return done;
 }
 
-/// Called before a frame, when all ranks have its camera: vtkSynchronizedRenderers has handled the same event before.
+/// Lets the mapper exchange the pixels of all ranks' pieces before a frame. Called when all ranks have the frame's
+/// camera: vtkSynchronizedRenderers has handled the same event before.
 void vtkLitVolumeRepresentation::BeforeFrame(vtkObject* renderer, unsigned long, void*)
 {
   if (this->GetVisibility())
@@ -127,14 +130,14 @@ bool vtkLitVolumeRepresentation::RemoveFromView(vtkView* view)
   return this->Superclass::RemoveFromView(view);
 }
 
-/// Sets mapper and visibility only: the mapper uses neither an active array nor transfer functions.
+/// Passes only mapper and visibility to the actor: the mapper uses neither an active array nor transfer functions.
 void vtkLitVolumeRepresentation::UpdateMapperParameters()
 {
   this->Actor->SetMapper(this->VolumeMapper);
   this->Actor->SetVisibility(this->GetVisibility());
 }
 
-// Properties of the ray caster.
+// Setters that pass a property to the ray caster.
 #define FORWARD(Name, Type)                              \
   void vtkLitVolumeRepresentation::Set##Name(Type value) \
   {                                                      \

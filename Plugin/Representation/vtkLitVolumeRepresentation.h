@@ -27,7 +27,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// See vtkMediumRayCaster. SetShowBackground is off by default.
+  /// Properties of vtkMediumRayCaster; see there. SetShowBackground is off by default.
   void SetQuality(int quality);
   void SetSingleScatteringOnly(bool only);
   void SetShadowRays(bool cast);
@@ -49,16 +49,16 @@ public:
   void SetDevice(const char* name);
   ///@}
 
-  /// Factor by which radiance was multiplied in the last frame; 0 before the first.
+  /// Exposure of the last frame: factor by which radiance was multiplied; 0 before the first frame.
   double GetUsedExposure();
 
   ///@{
-  /// Disconnect inputs 1 and 2.
+  /// Disconnects input 1 (lights), or input 2 (environment).
   void RemoveLights();
   void RemoveEnvironment();
   ///@}
 
-  /// See vtkLitVolumeMapper.
+  /// Properties of vtkLitVolumeMapper; see there.
   void SetFrameTime(double seconds);
 
 protected:

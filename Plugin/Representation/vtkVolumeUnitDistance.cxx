@@ -8,7 +8,7 @@
 
 namespace
 {
-constexpr int Alpha = 3; ///< component of alpha
+constexpr int Alpha = 3; ///< index of the component that is alpha
 }
 
 vtkStandardNewMacro(vtkVolumeUnitDistance);

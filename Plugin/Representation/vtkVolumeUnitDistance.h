@@ -20,11 +20,11 @@ public:
   vtkTypeMacro(vtkVolumeUnitDistance, vtkObject);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Sets the representation, a vtkCompositeRepresentation. To be called before SetDistance.
+  /// Sets the representation whose volume is changed, a vtkCompositeRepresentation. To be called before SetDistance.
   void SetRepresentation(vtkObject* representation);
 
-  /// Sets the unit distance, a length above 0. No effect for other values, or if the representation does not show a
-  /// volume.
+  /// Sets the unit distance of alpha, a length above 0. No effect for other values, or if the representation does not
+  /// show a volume.
   void SetDistance(double distance);
 
 protected:

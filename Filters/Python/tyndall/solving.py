@@ -28,8 +28,8 @@ class SolvingError(RuntimeError):
 class Light:
     """What a solver found. `light["name"]` is any cell array of `image`, as it lies in memory there, not a copy."""
 
-    image: vtkImageData  # the medium's voxels with all arrays: for further filters, files, a plotter
-    table: vtkTable  # convergence, a row an iteration
+    image: vtkImageData  # the medium's voxels with all arrays, as input of further filters, writers or plotters
+    table: vtkTable  # convergence of the solve, one row per iteration
 
     def __getitem__(self, name):
         array = self.image.GetCellData().GetArray(name)

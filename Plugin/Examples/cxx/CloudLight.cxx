@@ -1,5 +1,5 @@
-// A cloud under the sun, from density to light, in a plain VTK pipeline: writes the light and says where its power
-// went.
+// Computes the light of a cloud under the sun from its density, in a plain VTK pipeline; writes the light to a file and
+// prints the energy balance.
 
 #include <vtkCellData.h>
 #include <vtkFieldData.h>
@@ -17,7 +17,7 @@
 
 namespace
 {
-/// A ball of 32^3 voxels of 10 m that gets thinner outwards, in grams of water per cubic metre.
+/// Density of a ball of 32^3 voxels of 10 m, which decreases outwards: mass of water in g/m^3.
 vtkSmartPointer<vtkImageData> Cloud()
 {
   constexpr int n = 32;
@@ -55,7 +55,7 @@ int main(int argc, char* argv[])
   vtkDataArray* balance = result->GetFieldData()->GetArray("energy_balance");
   if (!balance)
   {
-    return 1; // what went wrong is on the error stream
+    return 1; // the error has been printed to the error stream
   }
   std::cout << "entered " << balance->GetTuple1(0) << " W, absorbed " << balance->GetTuple1(2) << " W, escaped "
             << balance->GetTuple1(3) << " W, left over " << balance->GetTuple1(4) << " W after " << light->GetOrders()

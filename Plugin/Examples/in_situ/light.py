@@ -9,13 +9,13 @@ from paraview import catalyst
 from paraview.simple import *
 
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
-options = catalyst.Options()  # when, and more: as they are, at each step
+options = catalyst.Options()  # when Catalyst runs this script; default: at each time step
 folder = os.environ.get("IN_SITU_FOLDER", ".")
 
-simulation = TrivialProducer(registrationName="input")  # the simulation's, by this name
+simulation = TrivialProducer(registrationName="input")  # the simulation's data: Catalyst finds the source by this name
 medium = ParticipatingMedium(Input=simulation, DensityArray=["CELLS", "density"], ExtinctionScale=30,
                              Albedo=[0.95, 0.93, 0.9])
-medium.MaximumDensity = 1  # once it is made: see the guide
+medium.MaximumDensity = 1  # set after creation: an argument equal to the default, 1, would be replaced
 sun = LightRig(SunElevation=35, SunAzimuth=160, SunPower=[3, 2.8, 2.5])
 light = LightPropagationMaps(Input=medium, Lights=sun, SkyColor=[0.1, 0.14, 0.2], Tolerance=1e-3)
 picture = MediumRayCaster(Input=light, Lights=sun, ImageSize=[240, 320], BackgroundRadiance=[0.1, 0.14, 0.2], Exposure=2,

@@ -15,8 +15,8 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 VOXELS = 40
-SPACING = 1.0 / VOXELS  # m
-STEP = 0.06  # s
+SPACING = 1.0 / VOXELS  # edge of a voxel, m
+STEP = 0.06  # time step, s
 
 
 def velocity(place, time):
@@ -67,7 +67,7 @@ def main():
     parser.add_argument("folder", nargs="?", default=os.environ.get("TYNDALL_TEST_OUTPUT", "."))
     parser.add_argument("--steps", type=int, default=24)
     options = parser.parse_args()
-    os.environ["IN_SITU_FOLDER"] = os.path.abspath(options.folder)  # for the script
+    os.environ["IN_SITU_FOLDER"] = os.path.abspath(options.folder)  # folder of the output, for the Catalyst script
     bridge.initialize()
     bridge.add_pipeline(options.script, 2)
     centres = (numpy.arange(VOXELS) + 0.5) * SPACING
