@@ -5,7 +5,8 @@
 /// read again after each update of their data, those of representations after each rendering of a view. Panels and
 /// scripts then show the results of the last update, also with a server, until the server ends.
 ///
-/// To be called when the plugin is loaded; serves windows and scripts.
+/// Installs the observers that read the results. To be called when the plugin is loaded; works in windows and in
+/// scripts.
 void FollowResults();
 
 #endif

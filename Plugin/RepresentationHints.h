@@ -16,8 +16,8 @@
 ///   both axes are logarithmic.
 /// - <VolumeColors .../>: shows the output as a volume in its own colours; see VolumeColors.h.
 ///
-/// Installs the observers that apply these hints. To be called when the plugin is loaded; works in windows and in
-/// scripts.
+/// Installs the observers that apply these hints to new representations. To be called when the plugin is loaded; works
+/// in windows and in scripts.
 void FollowRepresentationHints();
 
 #endif

@@ -10,9 +10,9 @@
 /// A property whose value differs from default_values when the source is registered keeps that value, for example in
 /// loaded states.
 ///
-/// Installs the observers that apply these hints. To be called when the plugin is loaded; works in windows and in
-/// scripts. ScenePlacement is a hint, not a domain, because a script's client may know a server's proxies without
-/// having loaded the plugin's library, which would define the domain.
+/// Installs the observers that apply the hint <ScenePlacement>. To be called when the plugin is loaded; works in
+/// windows and in scripts. ScenePlacement is a hint, not a domain, because a script's client may know a server's
+/// proxies without having loaded the plugin's library, which would define the domain.
 void FollowScenePlacement();
 
 #endif

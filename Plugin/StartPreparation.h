@@ -9,7 +9,7 @@
 /// The program is a process, not a thread, because a running compilation cannot be stopped and would keep ParaView from
 /// quitting.
 ///
-/// To be called when the plugin is loaded.
+/// Starts the program. To be called when the plugin is loaded.
 void StartPreparation();
 
 #endif

@@ -13,8 +13,8 @@
 /// been rendered with another camera. The view is the active one, or else the first one, that has a camera; with
 /// `elsewhere`, one that does not show the source itself. Views that show the source are rendered again.
 ///
-/// Installs the observers that apply this hint. To be called when the plugin is loaded; works in windows and in
-/// scripts.
+/// Installs the observers that apply the hint <ViewCamera>. To be called when the plugin is loaded; works in windows
+/// and in scripts.
 void FollowViewCameras();
 
 #endif

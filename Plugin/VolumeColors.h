@@ -12,7 +12,8 @@ class vtkSMProxy;
 /// an opacity function from 0 to 1 over 0 to 255 that is not rescaled, the unit distance from the data. These settings
 /// are also made when Volume is chosen later. If another array is chosen, Map Scalars is switched on again.
 ///
-/// To be called when the representation is registered.
+/// Applies the hint <VolumeColors> to a representation, and follows its changes. To be called when the representation
+/// is registered.
 void FollowVolumeColors(vtkSMProxy* representation);
 
 #endif

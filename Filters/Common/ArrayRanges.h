@@ -74,7 +74,7 @@ public:
   }
 };
 
-/// Makes a VTK array from a vector without a copy.
+/// Makes a VTK array of the values of a vector, without a copy.
 /// @param values  tuples of `components` values each
 template <class Array, class Value = typename Array::ValueType>
 vtkSmartPointer<Array> ArrayOf(const char* name, std::vector<Value>&& values, int components)

@@ -88,7 +88,7 @@ struct InputsKey
     }
   }
 
-  /// Adds the flags of the hidden cells of an image (ImageInput.h).
+  /// Adds the modification times of an image's flags vtkGhostType, which hide cells (ImageInput.h).
   void AddGhosts(vtkImageData* image)
   {
     this->Add(image->GetCellGhostArray());
@@ -99,7 +99,7 @@ struct InputsKey
   /// @param array  null: no such array
   void Add(vtkDataArray* array) { this->times.push_back(array ? TimeOf(array) : 0); }
 
-  /// Adds all arrays of a dataset; null: no dataset.
+  /// Adds the modification times of all arrays of a dataset; null: no dataset.
   void Add(vtkDataObject* data)
   {
     const std::vector<vtkMTimeType> ofArrays = TimesOfArrays(data);

@@ -118,13 +118,14 @@ struct IlluminationInput
 {
   Illumination illumination;
   UncollidedInput uncollided;
-  bool isDefaultSky = false; ///< true if no light is given; see vtkPropagationAlgorithm
+  bool isDefaultSky = false; ///< whether no light is given, so that a default sky is used; see vtkPropagationAlgorithm
 };
 
 /// Reads the uncollided light of PhotonMarcher or PhotonReconstruction: cell array `fluence_direct` (1 or 3
 /// components), optional cell array `mean_direction` (3 components; default isotropic), optional field data
 /// `face_power_out` (default 0).
-/// @throws InvalidInput if its voxels are not those of the medium, or an array is missing or has the wrong shape
+/// @throws InvalidInput if the image's voxels are not those of the medium, or an array is missing or has the wrong
+///   shape
 UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium);
 
 /// Reads the angular moments of scattered light from an image.

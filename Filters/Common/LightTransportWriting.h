@@ -21,7 +21,7 @@ namespace tyndall
 {
 /// Adds a cell array to an image without copying the values.
 /// @param values  `components` per cell, x fastest
-/// @param advice  see RequireFinite
+/// @param advice  what the user can do about a value that is not finite (RequireFinite)
 /// @throws InvalidInput if a value is not finite
 void AddCells(
   vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice = nullptr);
@@ -53,7 +53,8 @@ constexpr const char* SurfaceRadianceFact = "surface_radiance";
 /// array.
 constexpr const char* IgnoredFact = "ignored";
 /// Names of field data. FacePowerFact: outgoing partial current LightField::facePower, W / length^2, one tuple for each
-/// cell of BoxFaces.h. FaceAlbedoFact: fraction of it that is reflected, red, green, blue for each face, -x to +z.
+/// cell of BoxFaces.h. FaceAlbedoFact: fraction of that current which a face reflects, red, green, blue for each face,
+/// -x to +z.
 constexpr const char* FacePowerFact = "face_power";
 constexpr const char* FaceAlbedoFact = "face_albedo";
 
@@ -93,8 +94,8 @@ constexpr const char* LitColorDistanceFact = "lit_color_distance";
 constexpr const char* LitColorExposureFact = "lit_color_exposure";
 void WriteLitColor(LitColor&& lit, vtkImageData* output);
 
-/// Writes one row per iteration: `iteration`, `seconds`, `residual`, `change`, `absorbed`, `escaped`, `left_over`, and
-/// `sweeps_saved` if light is kept between solves (LightField.h).
+/// Writes the convergence of a solve to a table, one row per iteration: `iteration`, `seconds`, `residual`, `change`,
+/// `absorbed`, `escaped`, `left_over`, and `sweeps_saved` if light is kept between solves (LightField.h).
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table);
 
 /// Writes one vertex for each light, with the point arrays that vtkLightRig lists.

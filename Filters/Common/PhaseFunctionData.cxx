@@ -23,7 +23,7 @@ namespace tyndall
 {
 namespace
 {
-/// Largest accepted deviation of g from the mean cosine that the function determines
+/// Largest accepted deviation of g from the mean cosine that the phase function determines.
 constexpr double Contradicts = 0.01;
 
 constexpr const char* NameFact = "phase_function";

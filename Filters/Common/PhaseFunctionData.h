@@ -15,7 +15,7 @@ class vtkImageData;
 /// | name               | numbers | meaning |
 /// |--------------------|---------|---------|
 /// | `phase_function`   | a text  | one of the names below; missing: `henyey_greenstein` |
-/// | `g`                | 1 or 3  | mean cosine, of all or each channel; with two lobes, of the first. Default 0 |
+/// | `g`                | 1 or 3  | mean cosine, for all channels or each; of two lobes, that of the first. Default 0 |
 /// | `phase_second_g`   | 1 or 3  | mean cosine of the second lobe |
 /// | `phase_first_part` | 1 or 3  | fraction of the light that the first lobe scatters, 0 to 1 |
 /// | `phase_cosine`     | n       | rows of a table: cosine of the scattering angle, -1 to 1, ascending or descending |

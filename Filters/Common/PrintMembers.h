@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// In PrintSelf: prints one line "Name: value" for each of these members.
+/// In PrintSelf: prints one line "Name: value" for each member that is passed.
 #define tyndallPrintMacro(...) tyndall::PrintMembers(os, indent, #__VA_ARGS__, __VA_ARGS__)
 
 namespace tyndall

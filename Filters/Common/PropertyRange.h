@@ -22,8 +22,10 @@ class vtkAlgorithm;
 /// must be a square, a camera that looks along its view up, a sum of two properties) are refused there in the same way.
 namespace tyndall
 {
-constexpr double AnyHigh = std::numeric_limits<double>::max();   ///< no upper bound, but finite
-constexpr double AnyLow = -AnyHigh;                              ///< no lower bound, but finite
+/// Upper bound of a property without upper limit; infinity is out of range.
+constexpr double AnyHigh = std::numeric_limits<double>::max();
+/// Lower bound of a property without lower limit; -infinity is out of range.
+constexpr double AnyLow = -AnyHigh;
 constexpr double AboveZero = std::numeric_limits<double>::min(); ///< lower bound of values that must be positive
 constexpr double LargestFloat =
   std::numeric_limits<float>::max(); ///< upper bound of light and coefficients, which are floats
@@ -32,14 +34,15 @@ constexpr double LargestFloat =
 TYNDALL_EXPORT void NoteProperty(
   vtkAlgorithm* filter, const char* property, const double* values, int count, double low, double high);
 
-/// How a filter reads point arrays; see tyndallPointDataMacro.
+/// Values of the property PointData: how a filter reads point arrays (tyndallPointDataMacro).
 enum PointDataKind
 {
   VoxelsAroundPoints = 0,
   AverageToCells = 1,
 };
 
-/// Implements the setter of tyndallPointDataMacro. @return whether the property has changed
+/// Implements the setter of tyndallPointDataMacro.
+/// @return whether the property has changed
 TYNDALL_EXPORT bool SetPointData(vtkAlgorithm* filter, int& held, int kind);
 
 /// Value of the property PointData of a filter.
@@ -70,7 +73,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
 }
 }
 
-/// Replaces vtkSetMacro and vtkSetClampMacro: a number in [low, high].
+/// Setter of a property that is a number in [low, high]; replaces vtkSetMacro and vtkSetClampMacro.
 #define tyndallSetRangeMacro(name, type, low, high)                                \
   virtual void Set##name(type value)                                               \
   {                                                                                \
@@ -80,14 +83,14 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     }                                                                              \
   }
 
-/// Set method of tyndallSetRangeMacro, and a Get method.
+/// Setter (tyndallSetRangeMacro) and Get method of a property that is a number in [low, high].
 #define tyndallRangeMacro(name, type, low, high)                       \
   tyndallSetRangeMacro(name, type, low, high) virtual type Get##name() \
   {                                                                    \
     return this->name;                                                 \
   }
 
-/// Replaces vtkSetMacro, vtkGetMacro and vtkBooleanMacro for a bool.
+/// Setter, Get, On and Off method of a property that is a bool; replaces vtkSetMacro, vtkGetMacro and vtkBooleanMacro.
 #define tyndallFlagMacro(name)    \
   virtual void Set##name(bool on) \
   {                               \
@@ -110,7 +113,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     this->Set##name(false);       \
   }
 
-/// Replaces vtkSetVector2Macro: two numbers, each in [low, high].
+/// Setter of a property of two numbers, each in [low, high]; replaces vtkSetVector2Macro.
 #define tyndallSetRange2Macro(name, type, low, high)                                      \
   virtual void Set##name(type first, type second)                                         \
   {                                                                                       \
@@ -124,7 +127,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     this->Set##name(values[0], values[1]);                                                \
   }
 
-/// Replaces vtkSetVector3Macro: three numbers, each in [low, high].
+/// Setter of a property of three numbers, each in [low, high]; replaces vtkSetVector3Macro.
 #define tyndallSetRange3Macro(name, type, low, high)                                             \
   virtual void Set##name(type first, type second, type third)                                    \
   {                                                                                              \
@@ -138,7 +141,7 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     this->Set##name(values[0], values[1], values[2]);                                            \
   }
 
-/// Replaces vtkSetVector6Macro: six numbers, each in [low, high].
+/// Setter of a property of six numbers, each in [low, high]; replaces vtkSetVector6Macro.
 #define tyndallSetRange6Macro(name, type, low, high)                                                                   \
   virtual void Set##name(type first, type second, type third, type fourth, type fifth, type sixth)                     \
   {                                                                                                                    \

@@ -102,7 +102,7 @@ void WholeFile::LookAtTarget()
     const ssize_t length = readlink(this->Target.c_str(), link, sizeof(link));
     if (length < 0)
     {
-      break; // not a symbolic link
+      break; // the path is not a symbolic link
     }
     if (links == mostLinks)
     {

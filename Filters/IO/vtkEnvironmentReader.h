@@ -21,8 +21,8 @@
  *
  * Errors, each with one message and an empty output: a file that does not exist, is truncated, corrupt or of another
  * type, a cube map, a deep picture; a pixel that is not finite (named). Negative values, which image filters leave in
- * photographs, become 0, with a warning that counts them. A changed pixel is not detected in formats without check
- * sums.
+ * photographs, become 0, with a warning that states their number. A changed pixel is not detected in formats without
+ * check sums.
  *
  * @sa vtkLightPropagationMaps vtkMediumRayCaster
  */
@@ -34,12 +34,12 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// The .exr or .hdr file; its content, not its name, determines the format.
+  /// Path of the .exr or .hdr file; its content, not its name, determines the format.
   vtkSetFilePathMacro(FileName);
   vtkGetFilePathMacro(FileName);
   ///@}
 
-  /// Whether the file starts like an OpenEXR or Radiance file.
+  /// Whether a file starts like an OpenEXR or Radiance file.
   virtual int CanReadFile(const char* fileName);
 
   ///@{
@@ -55,7 +55,7 @@ public:
 
   ///@{
   /// Maximum width in pixels. A wider picture is averaged over the solid angle of the larger pixels, which conserves
-  /// the power from each part of the sky. Default 0: no limit.
+  /// the power from each region of the sky. Default 0: no limit.
   tyndallRangeMacro(Width, int, 0, VTK_INT_MAX);
   ///@}
 

@@ -152,12 +152,12 @@ struct vtkVDBReader::Internals
   std::string Summary;
   std::vector<std::string> Files; ///< paths of the files, in order of time for a series
   int ListedFile = -1;            ///< index of the listed file in Files; -1: none
-  std::set<std::string> Listed;   ///< names added to the selection because a file has them
+  std::set<std::string> Listed;   ///< names of grids that were added to the selection because a file has them
   std::string OnlyGrid;           ///< name passed to SetGridName, not applied yet; empty: none
 
   std::vector<const VDBGrid*> Chosen;
   tyndall::VDBGeometry Image;
-  bool IsBare = false;    ///< no chosen grid has an active voxel
+  bool IsBare = false;    ///< whether no chosen grid has an active voxel
   std::string NoImageYet; ///< why the chosen grids cannot become an image unless Resample is on; empty: they can
 
   bool Resample = false; ///< whether grids with oblique axes are resampled
@@ -388,8 +388,9 @@ vtkVDBReader::Internals::Limit vtkVDBReader::Internals::LimitOfMemory(vtkIdType 
 
 /// Executive for series of files that differ in extent. VTK requests the extent before it specifies the time step. If
 /// that time step belongs to another file than the one announced, this executive announces the new extent; filters
-/// downstream may still request a part of a former extent, and then receive the complete one. (VTK's list of consumers
-/// cannot be used to inform them: it includes consumers that no longer exist.)
+/// downstream may still request a former extent, or a part of it that the new extent does not cover, and then receive
+/// the complete new extent. (VTK's list of consumers cannot be used to inform them: it includes consumers that no
+/// longer exist.)
 class vtkVDBReader::SeriesPipeline : public vtkCompositeDataPipeline
 {
 public:
@@ -497,7 +498,7 @@ const char* vtkVDBReader::GetCurrentFileName()
 /// The last file whose time is not later than the requested time.
 int vtkVDBReader::FileAskedFor(vtkInformation* output) const
 {
-  constexpr double rounding = 1e-6; // tolerance for times that are computed
+  constexpr double rounding = 1e-6; // tolerance for times that are results of computations
   const double time = output->Has(Pipeline::UPDATE_TIME_STEP()) ? output->Get(Pipeline::UPDATE_TIME_STEP()) : 0.0;
   return time > 0.0 ? static_cast<int>(std::min(time + rounding, std::max(this->GetNumberOfFileNames() - 1.0, 0.0)))
                     : 0;
@@ -578,8 +579,9 @@ int vtkVDBReader::RequestInformation(vtkInformation*, vtkInformationVector**, vt
   return 1;
 }
 
-/// The extent to read. Filters that were not informed of another file of the series have requested a part of the
-/// previous file's extent.
+/// The extent to read for a request. If filters downstream know only the extent of another file of the series, a
+/// request for all of that extent becomes one for the complete extent of this file, and a request for a part is clipped
+/// to this file's extent.
 std::array<int, 6> vtkVDBReader::ExtentToRead(vtkInformation* info)
 {
   tyndall::NoteExtentTold(info);
@@ -603,7 +605,7 @@ std::array<int, 6> vtkVDBReader::ExtentToRead(vtkInformation* info)
   return extent;
 }
 
-/// Reads the chosen grids into the cells of an extent.
+/// Reads the chosen grids, and adds them to an image as cell arrays of the cells in `extent`.
 void vtkVDBReader::ReadGrids(const std::array<int, 6>& extent, vtkImageData* image)
 {
   Internals& internal = *this->Internal;

@@ -15,7 +15,7 @@ class vtkDataArraySelection;
  * @class vtkVDBReader
  * @brief reads grids of an OpenVDB file (.vdb) as one image, one cell per voxel
  *
- * Output: vtkImageData with a cell array for each chosen grid, named after it.
+ * Output: vtkImageData with a cell array for each chosen grid, named after the grid.
  *
  * | grid                         | cell array                |
  * |------------------------------|---------------------------|
@@ -34,14 +34,14 @@ class vtkDataArraySelection;
  * that needs no Resample, or if all need it, of the first grid.
  *
  * Field data, from which vtkVDBWriter restores the metadata:
- * `vdb::<key>` the file's metadata; `vdb:<grid>:<key>` a grid's (`class`, `name`, `creator`, ...);
+ * `vdb::<key>` the file's metadata; `vdb:<grid>:<key>` a grid's metadata (`class`, `name`, `creator`, ...);
  * `vdb:<grid>:type` the grid's type as in the table; `vdb:<grid>:background` its background value.
  * `g`, `phase_function` and other parameters of a medium's scattering are stored as the file's metadata `medium_g`, ...
  * Metadata of types unknown to OpenVDB are skipped.
  *
- * `active_part`: the fraction of the image's voxels that are active, in the grid that has most; it tells
- * vtkPhotonMarcher that a medium is sparse. The image has no mask of active voxels: the mask would be wrong after a
- * filter that changes an array, and solvers find empty voxels from the values in one pass.
+ * `active_part`: the fraction of the image's voxels that are active, in the grid with the most active voxels;
+ * vtkPhotonMarcher reads from it that a medium is sparse. The image has no mask of active voxels: the mask would be
+ * wrong after a filter that changes an array, and solvers find empty voxels from the values in one pass.
  *
  * The files of a series may differ in extent, position and grids: the reader announces the extent of the requested time
  * step to filters downstream. A selected grid that is missing from one of the files is skipped for that file.
@@ -49,7 +49,7 @@ class vtkDataArraySelection;
  * The grids are listed without loading voxel values, and leaves are loaded only if the requested extent needs them.
  *
  * Errors, each with one message and an empty output: a file that does not exist, is truncated or corrupt (VDBFile.h
- * says what is detected), a grid that does not exist, a transform that an image cannot have, chosen grids with
+ * says what is detected), a grid that does not exist, a transform that an image cannot represent, chosen grids with
  * different transforms, more memory than MaximumMemory. All are detected before the memory is allocated. Versions 222
  * to 224 of the format are supported (OpenVDB 3 to 10).
  *
@@ -63,8 +63,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// The .vdb file, or the files of a series: the first at time 0, the next at time 1, and so on. Each time step is the
-  /// image of its file alone, with its own extent; a file without active voxels is an empty image.
+  /// Path of the .vdb file, or paths of the files of a series: the first at time 0, the next at time 1, and so on. Each
+  /// time step is the image of its file alone, with its own extent; a file without active voxels is an empty image.
   void SetFileName(VTK_FILEPATH const char* fileName); ///< replaces all files by this one; null: no file
   void AddFileName(VTK_FILEPATH const char* fileName);
   void RemoveAllFileNames();
@@ -75,7 +75,7 @@ public:
   /// Path of the file that was read or listed last.
   const char* GetCurrentFileName();
 
-  /// Whether the file starts like an OpenVDB file.
+  /// Whether a file starts like an OpenVDB file.
   virtual int CanReadFile(const char* fileName);
 
   ///@{

@@ -10,12 +10,12 @@ class vtkMultiProcessController;
 
 /**
  * @class vtkVDBWriter
- * @brief writes an image as an OpenVDB file (.vdb), a grid for each cell array, a voxel for each cell
+ * @brief writes an image as an OpenVDB file (.vdb), with one grid per cell array and one voxel per cell
  *
  * | cell array                             | grid                                                      |
  * |----------------------------------------|-----------------------------------------------------------|
  * | float, double                          | float, double                                             |
- * | integers of up to 32 bits, of more     | int32, int64 (uint32: int64)                              |
+ * | integers up to 32 bits, above 32 bits  | int32, int64 (uint32: int64)                              |
  * | the same with 3 components             | vec3s, vec3d, vec3i                                       |
  * | other numbers of components, 3 x int64 | a grid for each component, `<array>_0`, `<array>_1`, ...  |
  *
@@ -23,12 +23,12 @@ class vtkMultiProcessController;
  * arrays are averaged to cells, unless a cell array has the same name.
  *
  * Cells that equal the background become inactive voxels, which take no space; all other cells become active voxels.
- * The image's extent, spacing, origin and direction become the grid's index space and transform (the index of a voxel
- * is that of its cell, see vtkVDBReader). What a transform cannot express is stored as metadata image_extent_min,
- * image_extent_max, image_cells, image_origin and image_spacing, from which vtkVDBReader restores the image bit for
- * bit: values (including NaN, infinity and -0), extent, origin, spacing. A negative spacing is written as a positive
- * one with the opposite direction of its axis, so cells keep their positions. For a direction matrix that is not along
- * the axes the last bit may change; SaveAsHalf and Tolerance change values.
+ * The image's extent, spacing, origin and direction become the grid's index space and transform (a voxel has the index
+ * of its cell, see vtkVDBReader). Properties of the image that a transform cannot express are stored as metadata
+ * image_extent_min, image_extent_max, image_cells, image_origin and image_spacing, from which vtkVDBReader restores the
+ * image bit for bit: values (including NaN, infinity and -0), extent, origin, spacing. A negative spacing is written as
+ * a positive one with the opposite direction of its axis, so cells keep their positions. For a direction matrix that is
+ * not along the axes the last bit may change; SaveAsHalf and Tolerance change values.
  *
  * Field data `vdb::<key>`, `vdb:<array>:<key>`, `vdb:<array>:type` and `vdb:<array>:background`, as written by
  * vtkVDBReader, become metadata, type (bool and mask from uint8) and background. Field data of a medium, `g`,
@@ -40,11 +40,11 @@ class vtkMultiProcessController;
  * Cells hidden by vtkGhostType become inactive voxels. vtkGhostType itself is not written.
  *
  * The file is replaced completely or not at all: it is written without a name if the file system supports that,
- * otherwise beside its target, then read back, checked, and moved to its target. If the target is a symbolic link, the
- * file that it points to is replaced. An existing file keeps its mode and, if the system allows it, its owner.
- * Read-only files are not replaced. Other hard links keep the old content.
+ * otherwise under a temporary name in the target's folder, then read back, checked, and moved to its target. If the
+ * target is a symbolic link, the file that it points to is replaced. An existing file keeps its mode and, if the system
+ * allows it, its owner. Read-only files are not replaced. Other hard links keep the old content.
  *
- * In parallel the pieces of the image are gathered on the first rank, one array at a time; its memory must hold one
+ * In parallel, the pieces of the image are gathered on the first rank, one array at a time; its memory must hold one
  * array and all trees. A cell that several ranks have is taken from the first rank that does not flag it as a
  * duplicate. Field data are taken from the first rank that has cells.
  *

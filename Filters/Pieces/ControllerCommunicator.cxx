@@ -28,7 +28,7 @@ namespace tyndall
 {
 double SecondsToWait()
 {
-  // Default timeout, and upper limit because clocks overflow after centuries.
+  // Default and longest timeout, seconds; clocks overflow after centuries.
   constexpr double usual = 600.0, longest = 1e8;
   const char* const said = std::getenv("TYNDALL_RANKS_WAIT");
   const double seconds = NumberIn(said ? said : "").value_or(0.0);

@@ -14,7 +14,7 @@ class vtkAlgorithm;
 class vtkInformation;
 class vtkInformationVector;
 
-/// MPI ranks that run a filter together, each for its piece of the output.
+/// MPI ranks that run a filter together, each rank for its piece of the output.
 ///
 /// Ranks run filters together if ParaView distributes data (pvbatch --symmetric, pvserver), and in VTK programs in
 /// which the number of requested pieces equals the number of ranks. The ranks then agree by collective operations of
@@ -24,8 +24,8 @@ namespace tyndall
 {
 class Communicator;
 
-/// In RequestUpdateExtent: informs filters upstream of a port whether all ranks make this request together, even though
-/// each requests the complete input.
+/// Informs filters upstream of a port, in RequestUpdateExtent, whether all ranks make this request together, even
+/// though each requests the complete input.
 void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
 
 /// Determines in RequestData whether ranks run the filter together.

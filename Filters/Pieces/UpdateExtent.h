@@ -37,7 +37,7 @@ struct ValueBox
     return at[0] >= this->low[0] && at[0] <= this->high[0] && at[1] >= this->low[1] && at[1] <= this->high[1] &&
       at[2] >= this->low[2] && at[2] <= this->high[2];
   }
-  void Add(const ValueBox& other); ///< extends this box to contain `other`
+  void Add(const ValueBox& other); ///< extends this box so that it contains `other`
 
   /// Calls act(index, position) for each value of the box, x fastest. `index` counts from 0.
   template <typename Do>
@@ -63,8 +63,8 @@ ValueBox PointBoxOf(const std::array<int, 6>& extent);
 /// Box of an extent's cells; a flat extent has one layer of cells.
 ValueBox CellBoxOf(const std::array<int, 6>& extent);
 
-/// The smallest extent that contains all cells that vtkGhostType does not flag as duplicates, or all such points if the
-/// flags belong to points. Inverted if there are none.
+/// Smallest extent that contains all cells, or all points if `flags` belong to points, that vtkGhostType does not flag
+/// as duplicates. Inverted if there are none.
 std::array<int, 6> ExtentWithoutDuplicates(
   const std::array<int, 6>& extent, vtkUnsignedCharArray* flags, bool flagsPoints);
 
@@ -73,7 +73,7 @@ std::array<int, 6> ExtentWithoutDuplicates(
 void FlagDuplicates(vtkDataSetAttributes* attributes, const ValueBox& box, unsigned char flag,
   const std::function<bool(const std::array<int, 3>&)>& isDuplicate);
 
-/// In RequestUpdateExtent: requests the complete image, or all pieces of polydata, from the inputs of a port.
+/// Requests the complete image, or all pieces of polydata, from the inputs of a port. Called in RequestUpdateExtent.
 /// @param request, outputs  parameters of RequestUpdateExtent
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
 /// Requests from the inputs of a port the part that is requested from the output, as the pipeline does by default.
@@ -121,7 +121,7 @@ AskedPiece AskedPieceOf(vtkInformation* information, const std::array<int, 6>& w
 /// Computes a piece of an extent with VTK's extent translator; empty if there are more pieces than cells.
 std::array<int, 6> PartOfExtent(const std::array<int, 6>& whole, int piece, int pieces, int ghostLevels = 0);
 
-/// Crops an image to a piece and flags its ghost cells (vtkGhostType); makes it empty if the piece is empty.
+/// Crops an image to a piece and flags its ghost cells (vtkGhostType); an empty piece leaves an empty image.
 void KeepPiece(const AskedPiece& piece, vtkImageData* output);
 
 /// Whether an extent of VTK, six numbers, contains the extent `other`.
@@ -135,7 +135,7 @@ bool AsksForAll(vtkInformation* information);
 void NoteExtentTold(vtkInformation* information);
 
 /// Saves and restores an update request, which VTK resets if a source announces a new extent. A request for the
-/// complete old extent becomes a request for the complete new one.
+/// complete old extent becomes a request for the complete new extent.
 class UpdateRequest
 {
 public:
@@ -153,16 +153,16 @@ private:
 /// Extent to which KeepWhatIsAskedFor will crop an image in RequestData; inverted if the extent is empty.
 std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);
 
-/// In RequestData: crops the output to the requested extent or piece. Ghost cells are flagged (vtkGhostType), so that
-/// sums over pieces count each cell once.
+/// Crops an output to the requested extent or piece. Called in RequestData. Ghost cells are flagged (vtkGhostType), so
+/// that sums over pieces count each cell once.
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);
 /// Crops an output to the requested extent or piece, as the function above does, if this rank has only that part of it.
 /// @param image  extent of the complete output
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output, const std::array<int, 6>& image);
 
-/// In RequestData: announces the extent of an output that becomes known only when it is made. Otherwise the pipeline
-/// would run the filter again for that part of the extent it assumed which lies beyond this extent. Pieces of the
-/// output are those of VTK's extent translator.
+/// Announces the extent of an output if this becomes known only in RequestData, when the output is made. Otherwise the
+/// pipeline would run the filter again for that part of the extent it assumed which lies beyond this extent. Pieces of
+/// the output are those of VTK's extent translator.
 /// @param asking  information of the output port that the request came from: VTK assumes that all ports then have its
 ///   piece
 void TellExtent(vtkInformation* asking, vtkInformation* information, const int extent[6]);

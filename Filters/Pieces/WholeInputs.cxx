@@ -223,7 +223,7 @@ std::string Words(const Extent& extent)
 }
 
 /// Checks that the pieces of an image cover the announced whole extent, if all ranks announce the same one. If only one
-/// rank can read a file, that rank receives just its requested piece, and no rank receives the others.
+/// rank can read a file, that rank receives just its requested piece, and the other pieces are missing.
 void CheckExtent(const OnRanks& summaries, const std::string& named)
 {
   const auto isPiece = [](const InputSummary& summary) { return summary.isThere && summary.isImage; };

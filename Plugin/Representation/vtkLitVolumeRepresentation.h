@@ -10,12 +10,12 @@ class vtkMediumRayCaster;
  * @class vtkLitVolumeRepresentation
  * @brief ParaView representation of a medium with its light in a 3D view
  *
- * Shows vtkImageData by vtkLitVolumeMapper. Like the superclass it renders where the data are: on the server if there
- * is one, with one piece per rank on several ranks. Input 1: lights, input 2: environment, both optional, as in
- * vtkMediumRayCaster. The setters are those of vtkMediumRayCaster.
+ * Shows vtkImageData by vtkLitVolumeMapper. Like the superclass, the representation renders where the data are: on the
+ * server if there is one, with one piece per rank on several ranks. Input 1: lights, input 2: environment, both
+ * optional, as in vtkMediumRayCaster. The setters are those of vtkMediumRayCaster.
  *
- * Several ranks show the same picture as a single one (vtkLitVolumeMapper::SetPiece): before each frame they exchange
- * the pixels of their pieces. With Exposure 0 they choose a common exposure when their data change.
+ * Several ranks show the same picture as a single rank (vtkLitVolumeMapper::SetPiece): before each frame the ranks
+ * exchange the pixels of their pieces. With Exposure 0 the ranks choose a common exposure when their data change.
  *
  * The superclass's transfer functions and other properties for colouring a volume are not used.
  */

@@ -9,9 +9,10 @@
  * @class vtkVolumeUnitDistance
  * @brief sets the unit distance of opacity for a volume that is shown in its own colours
  *
- * ParaView's property Scalar Opacity Unit Distance sets that of a volume's first component. If a volume has its own
- * red, green, blue and alpha, VTK uses the fourth component's (vtkVolumeProperty::SetScalarOpacityUnitDistance(3, d)),
- * which ParaView cannot set. This class sets it, for the volume that a composite representation currently shows.
+ * ParaView's property Scalar Opacity Unit Distance sets the unit distance of a volume's first component. If a volume
+ * has its own red, green, blue and alpha, VTK uses the unit distance of the fourth component
+ * (vtkVolumeProperty::SetScalarOpacityUnitDistance(3, d)), which ParaView cannot set. This class sets it for the volume
+ * that a composite representation currently shows.
  */
 class TYNDALLREPRESENTATION_EXPORT vtkVolumeUnitDistance : public vtkObject
 {

@@ -44,7 +44,7 @@ struct VoxelOptions
   double Background = 0.0;
   /// Largest difference between numbers that count as equal: from the background, or from each other within a block.
   double Tolerance = 0.0;
-  bool Half = false; ///< store real numbers in 16 bits; numbers that do not fit are an error
+  bool Half = false; ///< whether real numbers are stored in 16 bits; numbers that do not fit are an error
   /// Flag of each cell, not 0 if the cell becomes background whatever its value; null: no such cells.
   const std::vector<unsigned char>* Hidden = nullptr;
 };

@@ -21,7 +21,7 @@ struct VDBPlace
   bool Half = false;                              ///< whether numbers are stored in 16 bits
 };
 
-/// One grid of a file: everything known without its voxel values.
+/// Description of one grid of a file: everything that is known without its voxel values.
 struct VDBGrid
 {
   std::string Name;     ///< name, unique in the file; grids of the same name are called name[0], name[1], ...
@@ -30,7 +30,7 @@ struct VDBGrid
   /// Whether the axes are not at right angles, so that the grid becomes an image only if it is resampled.
   bool Shears = false;
   std::array<std::array<double, 3>, 3> Axes = {};  ///< world vectors of a step by one voxel along i, j, k
-  std::array<double, 3> Translation = { 0, 0, 0 }; ///< world position of index (0, 0, 0), the centre of that voxel
+  std::array<double, 3> Translation = { 0, 0, 0 }; ///< world position of the centre of voxel (0, 0, 0)
   /// Metadata of the grid without the entries that describe the file (file_bbox_min, ...).
   openvdb::MetaMap Metadata;
   VDBTopology Tree;
