@@ -63,7 +63,7 @@ std::vector<vtkSMViewProxy*> Views(vtkSMSessionProxyManager* manager)
   return views;
 }
 
-/// Finds the view whose camera the source takes (ViewCameras.h); null: none.
+/// Finds the view whose camera is copied to the source (ViewCameras.h); null: none.
 vtkSMViewProxy* ViewFor(vtkSMProxy* source)
 {
   vtkSMSessionProxyManager* const manager = source->GetSessionProxyManager();

@@ -70,8 +70,8 @@ std::uint64_t ContentKey(vtkDataObject* data);
 /// different field data about the medium if one of them has no piece of it.
 std::uint64_t ContentKeyButFacts(vtkDataObject* data);
 
-/// Key of a result computed on a device from a filter's inputs: keys are equal as long as nothing has changed, since
-/// VTK never gives two objects the same modification time.
+/// Key of a result computed on a device from a filter's inputs: two keys are equal if nothing has changed in between,
+/// since VTK never gives two objects the same modification time.
 struct InputsKey
 {
   std::shared_ptr<Device> device;

@@ -164,8 +164,8 @@ struct Part
 
 /// Determines the requested part of an output. A request for a complete announced extent means the complete `image`,
 /// which may differ from it because its file belongs to another time step, or because it was not known that voxels are
-/// around points. The same holds for pieces of such an extent if `image` contains it (if not, perhaps only the piece
-/// was made).
+/// around points. Likewise, a piece of such an extent means a piece of `image`, if `image` contains the extent (if not,
+/// perhaps only the piece was made).
 /// @param image  the extent of the output as it was made
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {

@@ -12,9 +12,9 @@ class vtkImageData;
 /// Converts between the geometry of VTK images and the transforms of OpenVDB grids.
 ///
 /// A voxel has the index of its cell: voxel i is the cell that covers [i - 1/2, i + 1/2] in index space. A grid made
-/// from an image has notes in its metadata about what the grid itself does not express: the extent of points (border
-/// voxels may be background) with the number of cells, and origin and spacing to the last bit (OpenVDB computes the
-/// scale of a transform as the difference of two positions).
+/// from an image has notes in its metadata on properties that the grid itself does not express: the extent of points
+/// (border voxels may be background) with the number of cells, and origin and spacing to the last bit (OpenVDB computes
+/// the scale of a transform as the difference of two positions).
 namespace tyndall
 {
 /// Whether metadata of this name are a note on the geometry of an image.
