@@ -73,9 +73,9 @@ vtkSmartPointer<Array> NewArray(const char* name, int components, std::size_t tu
   return array;
 }
 
-constexpr std::size_t PhotonsOfThread = 8192; ///< smallest number of photons per thread
+constexpr std::size_t PhotonsOfThread = 8192; ///< smallest number of photons that one host thread converts
 constexpr const char* BoxName = "photon_box";
-constexpr double SameBox = 1e-6; ///< relative to the box's longest edge
+constexpr double SameBox = 1e-6; ///< tolerance for equal bounds of two boxes, relative to the box's longest edge
 
 using Box = std::array<double, 6>;
 
@@ -107,13 +107,13 @@ std::array<float, 3> Turned(const std::array<float, 3>& direction, const Turn& t
   return { static_cast<float>(way[0]), static_cast<float>(way[1]), static_cast<float>(way[2]) };
 }
 
-/// Points with precomputed bounds: VTK would compute them on one core, and ignore the arrays' cached ranges.
+/// vtkPoints whose bounds FindBounds sets from the array's cached ranges; VTK would compute them on one core.
 class BoundedPoints : public vtkPoints
 {
 public:
   static BoundedPoints* New() { VTK_STANDARD_NEW_BODY(BoundedPoints); }
 
-  /// To be called when all points have been written.
+  /// Sets the bounds. To be called when all points have been written.
   void FindBounds()
   {
     LeaveRanges(this->Data);
@@ -131,7 +131,7 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium)
   vtkDataArray* const found = photons ? photons->GetFieldData()->GetArray(BoxName) : nullptr;
   if (!found || found->GetNumberOfValues() != 6)
   {
-    return {}; // ReadPhotons refuses what is there and no box
+    return {}; // photons without `photon_box` are accepted; ReadPhotons throws for an invalid `photon_box`
   }
   Box made;
   const Box box = BoxOf(medium);
@@ -159,7 +159,7 @@ void WritePhotons(const EmittedPhotons& emitted, const Grid& box, const OwnAxes&
   const auto weight = NewArray<vtkFloatArray>("weight", 1, count);
   const auto light = NewArray<vtkIntArray>("light", 1, count);
   const auto batch = NewArray<vtkIntArray>("batch", 1, count);
-  vtkNew<vtkIdTypeArray> starts, numbers; // cells: one vertex per photon
+  vtkNew<vtkIdTypeArray> starts, numbers; // offsets and point numbers of the cells: one vertex per photon
   starts->SetNumberOfValues(static_cast<vtkIdType>(count) + 1);
   numbers->SetNumberOfValues(static_cast<vtkIdType>(count));
   starts->SetValue(static_cast<vtkIdType>(count), static_cast<vtkIdType>(count));
@@ -355,7 +355,8 @@ void SetGrid(vtkImageData* image, const Grid& grid)
   image->SetDirectionMatrix(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
 }
 
-/// Number of the light that each layer belongs to.
+/// Number of the light of each layer of an importance map, from field data `light`; without it, 0, 1, ...
+/// @throws InvalidInput if `light` has not one light number for each layer
 std::vector<int> LightsOf(vtkImageData* image, int layers)
 {
   std::vector<int> lights(static_cast<std::size_t>(layers));
@@ -387,6 +388,8 @@ bool Shines(const Illumination& illumination, int light)
   return light == -1 ? sky : light == -2 ? faces : light < static_cast<int>(illumination.lights.size());
 }
 
+/// Checks the lights of an importance map.
+/// @param lights  number of the light of each layer
 /// @throws InvalidInput if the map has a layer of a light that the scene does not have, or two layers of one light
 void CheckLights(const std::vector<int>& lights, const Illumination& illumination)
 {
@@ -419,7 +422,7 @@ void WriteImportanceMap(const Importance& importance, vtkImageData* output)
   AddFact(output, EvenName, std::vector<double>{ importance.even ? 1.0 : 0.0 });
   if (map.lights.empty())
   {
-    return; // no light reaches the volume
+    return; // an empty image, because no light reaches the volume
   }
   Grid grid;
   grid.size = { map.size, map.size, static_cast<int>(map.lights.size()) };
@@ -456,7 +459,7 @@ ImportanceMap ReadImportanceMap(vtkImageData* image, const Illumination& illumin
   if (image->GetNumberOfPoints() == 0)
   {
     StopIfUpstreamFailed(image);
-    return {}; // a map of lights that do not reach the volume
+    return {}; // the map is empty if no light reached the volume
   }
   const std::array<int, 3> size = GridOf(image).size;
   if (size[0] != size[1])

@@ -21,7 +21,8 @@ namespace
 {
 constexpr const char* LevelsName = "octree_level";
 
-/// Reads the octree's levels, from its own image or from the medium's.
+/// Reads the octree level of each voxel, from `octree` or, if that is null, from `medium`; empty if there is no octree.
+/// @throws InvalidInput if the voxels of the two images differ, or `octree` has no levels
 std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
 {
   if (!octree)
@@ -106,7 +107,7 @@ KeptMarcher::Found KeptMarcher::Find(vtkAlgorithm* filter, const std::shared_ptr
   found.kept = found.marcher && found.key == this->Key;
   if (!found.kept)
   {
-    found.marcher.reset(); // free its memory before the next one is prepared
+    found.marcher.reset(); // frees the device memory of the old marcher before the new one is prepared
     this->Made.Modified();
     const RefractiveInput read = ReadRefractiveMedium(filter, medium, octree);
     found.marcher = std::make_unique<PhotonMarcher>(

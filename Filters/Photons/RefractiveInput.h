@@ -10,57 +10,58 @@
 #include <memory>
 #include <vector>
 
-/// The medium that photons march through, as filters read it and cache it on the device.
+/// Reading of the medium that photons march through, and its cache on the device, for filters.
 namespace tyndall
 {
 /// A medium with its refractive index and octree, and the arrays that own their values.
 struct RefractiveInput
 {
   MediumInput input;
-  FloatField ior;                   ///< refractive index; if there is none, 1 everywhere
+  FloatField ior;                   ///< refractive index, one value per voxel; empty: 1 everywhere
   std::vector<std::uint8_t> levels; ///< octree level of each voxel; empty if there is no octree
 
   const std::uint8_t* Levels() const { return this->levels.empty() ? nullptr : this->levels.data(); }
 };
 
-/// Reads the medium of an image (see ReadMedium) with its cells `ior` (1 component, optional) or those chosen as number
-/// RefractiveIndex, and cells `octree_level`, if there are any, of `octree` or, if that is null, of the medium.
-/// @throws InvalidInput as ReadMedium, and if the octree's voxels differ from the medium's or it has no levels
+/// Reads the medium of an image (see ReadMedium), its refractive index from cell array `ior` (1 component, optional) or
+/// the array chosen as number RefractiveIndex, and the optional cell array `octree_level` of `octree` or, if that is
+/// null, of the medium.
+/// @throws InvalidInput as ReadMedium, and if the voxels of `octree` differ from the medium's or `octree` has no levels
 RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree = nullptr);
-/// The same for a rank's block of a domain. Collective.
+/// Reads the medium, refractive index and octree of this rank's block of a domain. Collective.
 /// @param medium, octree  images of the block; null if it has no voxels
 /// @throws InvalidInput, the same on all ranks
 RefractiveInput ReadRefractiveMedium(
   vtkAlgorithm* filter, const Domain& domain, vtkImageData* medium, vtkImageData* octree = nullptr);
 
-/// Cache of the PhotonMarcher of a filter's medium. It is prepared again only if something that it depends on has
-/// changed: what ReadRefractiveMedium reads, the settings or the device. It does not depend on lights and photons.
+/// Cache of a filter's PhotonMarcher, which holds the prepared medium on the device. The marcher is prepared again only
+/// if the medium, the octree, the settings or the device have changed; it does not depend on lights and photons.
 class KeptMarcher
 {
 public:
   struct Found
   {
-    InputsKey key; ///< holds the device
+    InputsKey key; ///< cache key: what `marcher` depends on; keeps the device alive
     std::unique_ptr<PhotonMarcher> marcher;
     bool kept = false; ///< whether the cached marcher was still valid
   };
 
-  /// Returns the marcher for these settings: cached if the domain is serial, or newly prepared. The cache is empty
-  /// until Keep, so that nothing invalid remains after an error. Collective.
+  /// Returns the marcher for these settings: the cached one if it is valid and the domain is serial, else a new one.
+  /// Empties the cache until Keep, so that no invalid marcher remains after an error. Collective.
   /// @param medium, octree  images of this rank's block; null if it has no voxels
   /// @throws InvalidInput as ReadRefractiveMedium and PhotonMarcher
   /// @throws DeviceError
   Found Find(vtkAlgorithm* filter, const std::shared_ptr<Device>& device, const Domain& domain, vtkImageData* medium,
     vtkImageData* octree, const MarchSettings& settings);
-  void Keep(Found&& found); ///< of a serial domain
+  void Keep(Found&& found); ///< caches the marcher; to be called only if the domain is serial
 
-  /// Frees the marcher if a filter upstream of these ports has run. To be called in RequestUpdateExtent, too, so that
-  /// device memory is free before upstream filters run, which may need it.
+  /// Frees the marcher if a filter upstream of these ports has run. To be called also in RequestUpdateExtent, so that
+  /// the device memory is free before upstream filters run.
   void ForgetIfRan(vtkAlgorithm* filter, std::initializer_list<int> ports);
   void Forget() { this->Marcher.reset(); }
 
 private:
-  InputsKey Key; ///< holds the device
+  InputsKey Key; ///< cache key: what Marcher depends on; keeps the device alive
   std::unique_ptr<PhotonMarcher> Marcher;
   vtkTimeStamp Made;
 };

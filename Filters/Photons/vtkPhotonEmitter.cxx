@@ -40,7 +40,7 @@ vtkPolyData* vtkPhotonEmitter::GetOutput()
   return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-/// No array of the medium is read, but they are declared so that the box is the same as in the filters that read them.
+/// Declares the arrays of the medium, although none is read, so that the box equals that of filters that read them.
 int vtkPhotonEmitter::FillInputPortInformation(int port, vtkInformation* information)
 {
   const int done = this->Superclass::FillInputPortInformation(port, information);
@@ -62,7 +62,8 @@ int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information
   return 1;
 }
 
-/// Each rank asks for its piece of the medium, if any: only the box is used, which follows from the pieces.
+/// Requests only this rank's piece of the medium if each rank is asked for its own piece: the domain's box follows from
+/// all pieces.
 int vtkPhotonEmitter::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -73,7 +74,9 @@ int vtkPhotonEmitter::RequestUpdateExtent(
 
 namespace
 {
-/// Grid of the whole medium. Collective.
+/// Grid of the complete medium, of all ranks. Collective.
+/// @param ranks  null on one rank
+/// @param inputs  gathered on this rank if the pieces do not tile one grid
 tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs)
 {
   const int port = vtkPhotonEmitter::MEDIUM;
@@ -90,9 +93,9 @@ tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, 
   return tyndall::GridOf(vtkImageData::GetData(inputs.Vectors()[port]));
 }
 
-/// Sets the part of the photons that the requested piece has. If one of the ranks that work together is asked for all
-/// photons, which a rank without voxels may not know, each rank makes all: parts beside a whole would be too much
-/// light.
+/// Sets which part of the photons to emit: that of the requested piece. If any rank is asked for all photons, every
+/// rank emits all photons, because parts in addition to a complete set would have too much power. Collective.
+/// @param others  the ranks that run the update together; null on one rank
 void TellPart(vtkInformation* asking, tyndall::Communicator* others, tyndall::EmissionSettings& settings)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;

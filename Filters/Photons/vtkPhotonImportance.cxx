@@ -48,7 +48,7 @@ void SetGrid(vtkInformation* information, const tyndall::Grid& grid)
   information->Set(vtkDataObject::SPACING(), grid.spacing.data(), 3);
 }
 
-/// Grid of the map as announced before the lights are known: for one light.
+/// Grid of the importance map that RequestInformation announces, before the number of lights is known: one layer.
 tyndall::Grid MapGrid(int pilotCount)
 {
   const int edge = static_cast<int>(std::sqrt(std::max(pilotCount, 1)));
@@ -58,7 +58,7 @@ tyndall::Grid MapGrid(int pilotCount)
   return grid;
 }
 
-/// Grid of the coarse cells, over the medium's box.
+/// Grid of the coarse cells of the pilot light, over the medium's box.
 tyndall::Grid PilotGrid(vtkInformation* medium, const int* dimensions)
 {
   int extent[6] = { 0, 1, 0, 1, 0, 1 };
@@ -124,17 +124,18 @@ int vtkPhotonImportance::RequestInformation(
 {
   SetGrid(outputs->GetInformationObject(0), MapGrid(this->PilotCount));
   SetGrid(outputs->GetInformationObject(1), PilotGrid(inputs[MEDIUM]->GetInformationObject(0), this->PilotDimensions));
-  outputs->GetInformationObject(0)->Remove(vtkDataObject::DIRECTION()); // the medium's
+  // The importance map has no direction matrix; the one that is removed was copied from the medium.
+  outputs->GetInformationObject(0)->Remove(vtkDataObject::DIRECTION());
   return 1;
 }
 
-/// Frees the device memory of an old medium before upstream filters run, which may need it.
+/// Frees the device memory of the cached medium, if a filter upstream has run, before other upstream filters run.
 int vtkPhotonImportance::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
   this->Kept->ForgetIfRan(this, { MEDIUM });
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  tyndall::AskForPiece(request, inputs[MEDIUM], outputs); // whichever piece of the map is requested
+  tyndall::AskForPiece(request, inputs[MEDIUM], outputs); // independent of the map's requested extent
   return done;
 }
 
@@ -153,7 +154,7 @@ std::optional<tyndall::Illumination> vtkPhotonImportance::ReadLight(vtkInformati
   return illumination;
 }
 
-/// Computes the map with pilot photons that march through the ranks' blocks of the medium. Collective.
+/// Computes the importance map with pilot photons that march through the ranks' blocks of the medium. Collective.
 tyndall::Importance vtkPhotonImportance::Find(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs)
 {
   const tyndall::Domain& domain = pieces.GetDomain();
@@ -165,7 +166,7 @@ tyndall::Importance vtkPhotonImportance::Find(const tyndall::PieceBlocks& pieces
     own = pieces.OwnImage(vtkImageData::GetData(inputs[MEDIUM]));
     if (own || domain.IsSerial())
     {
-      tyndall::GridOf(own); // before a warning that nothing shines
+      tyndall::GridOf(own); // throws for an invalid image, before the warning that there is no light
     }
     light = this->ReadLight(inputs);
     device = light ? tyndall::FindWithin(this->Within, this->Device, this->MemoryBudget) : nullptr;

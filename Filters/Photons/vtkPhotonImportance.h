@@ -23,11 +23,12 @@ struct Importance;
  * @brief importance map for photon emission, computed with a few pilot photons
  *
  * Pilot photons on a jittered grid of each light's photon plane are marched through the medium and accumulated in
- * coarse cells. Dark cells, and cells with a steep gradient of light, are chosen. Each chosen cell is splatted into the
- * map as a circle about the mean origin of its photons, with their standard deviation as radius; a 5x5 Gauss filter
- * smooths the map, and a background is added. vtkPhotonEmitter emits photons with this density.
+ * coarse cells. Dark cells, and cells with a steep gradient of fluence, are chosen. Each chosen cell is splatted into
+ * the map as a circle about the mean origin of its photons, with the origins' standard deviation as radius; a 5x5 Gauss
+ * filter smooths the map, and a constant background is added. vtkPhotonEmitter emits photons with this density.
  *
- * If the light is even a map gains nothing: `even` is then 1, and vtkPhotonEmitter spreads its photons evenly.
+ * If the light is even, a map does not reduce the noise: `even` is then 1, and vtkPhotonEmitter distributes its photons
+ * evenly.
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
  * `ior` (1 component; missing: constant), or those chosen by SetInputArrayToProcess 0, 1 and 3, and optionally
@@ -38,23 +39,25 @@ struct Importance;
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
- * | `importance` | 1 | 1 | probability density of the photons' starting places on the photon plane, mean 1 per light |
+ * | `importance` | 1 | 1 | probability density of the photons' start points on the photon plane, mean 1 per light |
  *
- * and field data `light` (number of the light of each layer; -1: the environment or SkyColor) and `even`.
+ * and field data `light` (number of the light of each layer; -1: the environment or SkyColor) and `even` (1: photons
+ * should be evenly distributed).
  * Output 1, the pilot light: vtkImageData of the coarse cells over the medium's box, cell arrays
  *
  * | array              | components | unit       | meaning                                                      |
  * |--------------------|------------|------------|--------------------------------------------------------------|
- * | `fluence`          | 1 or 3     | W/length^2 | mean over the cell                                           |
+ * | `fluence`          | 1 or 3     | W/length^2 | mean fluence of the pilot photons in the cell                |
  * | `photon_count`     | 1          | 1          | pilot photons that crossed the cell                          |
- * | `origin_mean` | 2 | map cells | mean column and row of these photons' origins |
- * | `origin_deviation` | 2 | map cells | standard deviation of the origins |
- * | `gradient`         | 1          | W/length^2 | steepness of the light, from a cell to the next              |
- * | `chosen` | 1 | 1 | 1 if photons are to be dense here |
+ * | `origin_mean` | 2 | map cells | mean column and row of the origins of the cell's photons |
+ * | `origin_deviation` | 2 | map cells | standard deviation of the origins of the cell's photons |
+ * | `gradient`         | 1          | W/length^2 | gradient of `fluence`, per cell                              |
+ * | `chosen` | 1 | 1 | 1 if the map is to send more photons to the cell, else 0 |
  *
- * Both have field data `left_out` (what the scene did not need) and `device`. Without lights, environment and SkyColor
- * both are empty, with a warning. In a parallel pipeline each rank has its piece of the medium, and pilot photons
- * continue from rank to rank; each rank computes the whole map and returns the requested piece.
+ * Both outputs have field data `left_out` (computations that the scene did not need) and `device`. Without lights,
+ * environment and SkyColor both outputs are empty, with a warning. In a parallel pipeline each rank has its piece of
+ * the medium, and pilot photons continue from rank to rank; each rank computes the complete map and returns the
+ * requested piece.
  *
  * @sa vtkPhotonEmitter vtkPhotonMarcher vtkPhotonReconstruction
  * @par Thanks
@@ -71,8 +74,8 @@ public:
 
   enum ThresholdKinds
   {
-    OWN = 0,      ///< GradientThreshold and LuminanceThreshold, as published
-    AUTOMATIC = 1 ///< from the pilot photons' own statistics, in proportion to the light
+    OWN = 0,      ///< the thresholds are GradientThreshold and LuminanceThreshold, as published
+    AUTOMATIC = 1 ///< the thresholds follow from statistics of the pilot light and scale with it
   };
 
   ///@{
@@ -82,7 +85,8 @@ public:
   ///@}
 
   ///@{
-  /// Coarse cells along each axis. Default 16 each, valid from 1 on; cut to the medium's number of voxels.
+  /// Number of coarse cells along x, y and z. Default (16, 16, 16), valid from 1 on; cut to the medium's numbers of
+  /// voxels.
   tyndallSetRange3Macro(PilotDimensions, int, 1, VTK_INT_MAX);
   vtkGetVector3Macro(PilotDimensions, int);
   ///@}
@@ -93,19 +97,20 @@ public:
   ///@}
 
   ///@{
-  /// With Thresholds OWN: cells are chosen if `gradient` is at least GradientThreshold, or if they are lit and
-  /// `fluence` is at most LuminanceThreshold. W/length^2, default 0, valid [0, infinity).
+  /// Thresholds of the choice of cells if Thresholds is OWN, W/length^2: a cell is chosen if `gradient` is at least
+  /// GradientThreshold, or if it is lit and `fluence` is at most LuminanceThreshold. Default 0 both, valid [0,
+  /// infinity).
   tyndallRangeMacro(GradientThreshold, double, 0.0, tyndall::AnyHigh);
   tyndallRangeMacro(LuminanceThreshold, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Fraction of the photons that is spread evenly in any case. Default 0.3, valid (0, 1].
+  /// Fraction of the photons that is evenly distributed, independent of the chosen cells. Default 0.3, valid (0, 1].
   tyndallRangeMacro(Background, double, tyndall::AboveZero, 1.0);
   ///@}
 
   ///@{
-  /// Another seed gives other pilot photons, the same seed the same ones. Default 0.
+  /// Seed of the random numbers: the same seed reproduces the same pilot photons. Default 0, valid [0, infinity).
   tyndallRangeMacro(Seed, int, 0, VTK_INT_MAX);
   ///@}
 
@@ -123,8 +128,8 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: whether the light is even, the thresholds used (W/length^2), seconds, the device's
-  /// name, and what the scene did not need, one per line.
+  /// Results of the last update: whether the light is even, the thresholds used (W/length^2), run time in seconds, the
+  /// device's name, and the computations that the scene did not need, one per line.
   vtkGetMacro(Even, bool);
   vtkGetMacro(UsedGradientThreshold, double);
   vtkGetMacro(UsedLuminanceThreshold, double);
@@ -134,7 +139,7 @@ public:
   ///@}
 
   using Superclass::SetInputConnection;
-  /// Also frees what was cached for the previous medium.
+  /// Connects an input. A new medium also frees the cached marcher of the previous medium.
   void SetInputConnection(int port, vtkAlgorithmOutput* input) override;
 
 protected:

@@ -40,8 +40,8 @@ enum InputPort
   InputPortCount
 };
 
-/// Whether light in empty space is to be stored by bricks. The light is correct even if a filter has changed the medium
-/// since it was read: the file's `active_part` only selects the storage of light.
+/// Whether light in empty space is to be stored by bricks, as EmptySpace selects. The medium's field data `active_part`
+/// may be out of date: it selects the storage of light, not its values.
 bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
 {
   constexpr double mostActive = 0.25;
@@ -50,8 +50,8 @@ bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
     (filter->GetEmptySpace() == vtkPhotonMarcher::AS_READ && sparse);
 }
 
-/// Memory per voxel of a rank that marches through the whole medium: the medium's arrays, spline of the index, sums and
-/// light.
+/// Memory, bytes per voxel, of a rank that marches photons through the whole medium: the medium's arrays, the spline of
+/// the refractive index, and the sums and arrays of fluence.
 constexpr double BytesOfVoxel = 96.0;
 
 bool IsOfLaterBatch(const tyndall::Photon& photon)
@@ -59,8 +59,10 @@ bool IsOfLaterBatch(const tyndall::Photon& photon)
   return photon.batch > 0;
 }
 
-/// @param medium  null if this rank has no piece of it
-/// @param batches  whether there are several batches of photons
+/// Settings of the march from the filter's properties.
+/// @param medium  image of this rank's block; null if it has no voxels
+/// @param batches  whether any rank has photons of several batches
+/// @throws InvalidInput if the published scheme is chosen with properties that it does not support
 tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, vtkImageData* medium, bool batches)
 {
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
@@ -115,7 +117,7 @@ void WriteLightOf(tyndall::PhotonLight&& photons, vtkImageData* output)
 {
   const int channels = photons.light.channels;
   const bool scattered = photons.scatterings > 0;
-  const bool direct = photons.light.fluenceDirect.empty(); // none of it was scattered
+  const bool direct = photons.light.fluenceDirect.empty(); // without scattered photons, fluence is the uncollided flux
   tyndall::WriteLight(std::move(photons.light), output);
   if (direct)
   {
@@ -150,7 +152,8 @@ struct vtkPhotonMarcher::MarchInput
   std::vector<tyndall::Photon> photons; ///< this rank's share of the photons
 };
 
-/// Result of a march: light, the published scheme's packing loss, and paths by the conservative scheme's integrator.
+/// Result of a march: fluence and related arrays, packing loss of the published scheme, and the photons' paths, which
+/// are computed by the conservative scheme's integrator.
 struct vtkPhotonMarcher::Marched
 {
   tyndall::PhotonLight light;
@@ -250,7 +253,8 @@ int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector**
   return 1;
 }
 
-/// Whether this rank can use a decomposition, as far as is known without reading the medium.
+/// Whether this rank can march photons through its piece of the medium (BLOCKS), as far as Decomposition, the request
+/// and the medium's size decide.
 bool vtkPhotonMarcher::WantsBlocks(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
@@ -259,7 +263,8 @@ bool vtkPhotonMarcher::WantsBlocks(
     : this->Decomposition == BLOCKS;
 }
 
-/// Frees the device memory of an old medium before upstream filters run, which may need it.
+/// Frees the device memory of the cached medium, if a filter upstream has run, before other upstream filters run.
+/// Requests this rank's piece of each input with BLOCKS, else the complete inputs.
 int vtkPhotonMarcher::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -275,7 +280,7 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 
 namespace
 {
-/// The part of an octree's image with exactly the voxels of a piece of the medium; null if there is none.
+/// Image of the octree cropped to this rank's block; null if its voxels are then not those of `medium`.
 vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkImageData* octree, vtkImageData* medium)
 {
   if (octree->GetNumberOfCells() == 0)
@@ -288,8 +293,8 @@ vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkIm
 }
 
 /// Finds this rank's block of the medium and share of the photons. Collective.
-/// @return false, on all ranks, if the photons cannot be marched through pieces, or a march through the whole is
-///   preferred
+/// @return false, on all ranks, if the first rank is to march through the whole medium: pieces of the octree differ
+///   from those of the medium, or light is stored by bricks
 bool vtkPhotonMarcher::FindInput(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, MarchInput& input)
 {
   const tyndall::Domain& domain = pieces.GetDomain();
@@ -298,7 +303,7 @@ bool vtkPhotonMarcher::FindInput(const tyndall::PieceBlocks& pieces, vtkInformat
   input.photons =
     tyndall::ShareOfPhotons(domain.Comm(), vtkPolyData::GetData(inputs[PhotonsPort]), tyndall::OwnAxesOf(this));
   const bool batches = domain.Any(std::any_of(input.photons.begin(), input.photons.end(), IsOfLaterBatch));
-  bool whole = false; // a march through the whole is preferred, or necessary
+  bool whole = false; // whether a march through the whole medium is preferred or necessary
   domain.Collective([&] {
     input.image = pieces.OwnImage(medium);
     input.settings = SettingsOf(this, input.image, batches);
@@ -328,7 +333,8 @@ void vtkPhotonMarcher::MarchAsPublished(tyndall::Device& device, const tyndall::
   marched.packingLoss = loss.Relative();
 }
 
-/// Marches photons by the conservative scheme, if it is chosen, and computes paths. Collective.
+/// Marches photons if Scheme is CONSERVATIVE, and computes the paths of PathCount photons with either scheme.
+/// Collective.
 void vtkPhotonMarcher::MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Communicator& communicator,
   const std::vector<tyndall::Photon>& photons, Marched& marched)
 {
@@ -343,7 +349,7 @@ void vtkPhotonMarcher::MarchThrough(tyndall::PhotonMarcher& marcher, tyndall::Co
   }
 }
 
-/// Marches this rank's photons, and writes the light of its block. Collective.
+/// Marches this rank's photons and writes the fluence of its block. Collective.
 /// @return false, on all ranks, if the first rank is to march through the whole medium
 bool vtkPhotonMarcher::March(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
@@ -403,7 +409,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   const int done = tyndall::Guarded(this, request, given, outputs, work);
   if (!tyndall::IsFirstPiece(request, outputs) && !tyndall::AreEmptied(outputs))
   {
-    vtkPolyData::GetData(outputs, 1)->Initialize(); // the first piece has the paths
+    vtkPolyData::GetData(outputs, 1)->Initialize(); // paths are returned with the first piece only
   }
   return done;
 }
@@ -417,7 +423,8 @@ void vtkPhotonMarcher::WarnOfBox(vtkInformationVector** inputs, const tyndall::G
   }
 }
 
-/// Reports the result, and writes the light of this rank's block and, on the first rank, the paths. Collective.
+/// Sets the read-only properties, warns, and writes the fluence of this rank's block and, on the first rank, the paths.
+/// Collective.
 void vtkPhotonMarcher::Write(const tyndall::PieceBlocks& pieces, const MarchInput& input, Marched&& marched,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -467,7 +474,8 @@ void vtkPhotonMarcher::Note(const Marched& marched)
   this->LeftOut = tyndall::Lines(light.light.leftOut);
 }
 
-/// Issues warnings, for the first rank: all ranks share the result.
+/// Issues the warnings of a march. To be called on the first rank only, because the result is that of all ranks.
+/// @param photons  number of photons of all ranks
 void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photons)
 {
   if (!this->Ignored.empty())
@@ -487,7 +495,7 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =
     tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
-  if (trapped > 0.01 && this->MaximumOrders < 2) // else left over is the power of omitted scattering orders
+  if (trapped > 0.01 && this->MaximumOrders < 2) // else omitted scattering orders leave power over
   {
     vtkWarningMacro(
       << std::lround(100.0 * trapped)

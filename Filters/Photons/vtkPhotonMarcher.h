@@ -31,45 +31,46 @@ class vtkImageData;
  * @class vtkPhotonMarcher
  * @brief marches photons along bent rays through a medium: uncollided flux, or Monte Carlo of multiple scattering
  *
- * Paths follow d/ds(n dx/ds) = grad n, so that refraction and total reflection need no surfaces. A photon's power falls
- * exactly exponentially along its path, by extinction; every voxel that a path crosses gains the photon's power times
- * the path length in the voxel, so that `fluence` is an unbiased estimate in W/length^2 for any number of photons. By
- * default scattered light is not followed: a viewer computes single scattering from `fluence` and `mean_direction`, and
- * vtkLightPropagationMaps takes the light as UncollidedLight. With MaximumOrders photons are followed through several
- * scatterings.
+ * Paths follow d/ds(n dx/ds) = grad n, so that refraction and total reflection need no surfaces. A photon's power
+ * decreases along its path as exp(-optical thickness); every voxel that a path crosses gains the integral of the
+ * photon's power over the path length in the voxel, so that `fluence` is an unbiased estimate in W/length^2 for any
+ * number of photons. By default scattered light is not followed: vtkMediumRayCaster computes single scattering from
+ * `fluence` and `mean_direction`, and vtkLightPropagationMaps accepts the light as UncollidedLight. With MaximumOrders
+ * photons are followed through several scatterings.
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
  * `ior` (1 component; missing: constant) or those chosen by SetInputArrayToProcess 0, 1 and 3.
  * Input 1: photons as vtkPhotonEmitter makes them. Input 2, optional: an image of the same voxels with cell array
- * `octree_level`, as vtkRefractionOctree makes it; without it, that array of the medium is used, if there is one.
+ * `octree_level`, as vtkRefractionOctree makes it; without this input, `octree_level` of the medium is used, if there
+ * is such an array.
  *
  * Output 0: the medium's image with cell arrays
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions, scattering orders up to MaximumOrders |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | uncollided part of `fluence` |
  * | `fluence_error` | 1 or 3 | W/length^2 | standard error of `fluence`; if MaximumOrders is not 1, with ErrorBatches |
  * | `mean_direction` | 3 | 1 | power-weighted mean direction; its length is the anisotropy |
  * | `photon_count` | 1 | 1 | photons that crossed the voxel, each once; with PhotonCounts |
- * | `photon_weight` | 1 | 1 | their mean `weight`, 0 if there are none; with PhotonCounts |
- * | `fluence_batches` | (1 or 3) x batches | W/length^2 | of each of several batches, as if it was all the light |
+ * | `photon_weight` | 1 | 1 | mean `weight` of these photons, 0 if there are none; with PhotonCounts |
+ * | `fluence_batches` | (1 or 3) x batches | W/length^2 | `fluence` estimated from each of several batches |
  *
- * the last three by the conservative scheme only, for vtkPhotonReconstruction, and field data `energy_balance` (W:
+ * (the last three by the conservative scheme only, for vtkPhotonReconstruction), and field data `energy_balance` (W:
  * entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered), `scattered` (W, scattered for
  * the first time), `face_power_out`, `left_out`, `device`; if MaximumOrders is not 1, `scatterings` and `exchanged` (W
  * added by Russian roulette minus W removed by it; `absorbed` is then the power that the medium absorbed); by the
  * published scheme also `packing_loss` (see PackingLoss).
  * Output 1: vtkPolyData, the paths of PathCount photons as polylines, point data `power_left` (fraction of the photon's
- * power), cell data `photon` (its number).
+ * initial power), cell data `photon` (number of the photon).
  *
  * The prepared medium stays on the device, so that new photons cost only their march. It is freed when the medium or
- * the octree changes, another one is connected, a changed setting requires it, another device is chosen, or the filter
- * is deleted. With BLOCKS the medium is prepared again for every march.
+ * the octree changes, another medium or octree is connected, a changed setting requires it, another device is chosen,
+ * or the filter is deleted. With BLOCKS the medium is prepared again for every march.
  *
  * In a parallel pipeline every rank marches photons through its piece of the medium, and photons continue from rank to
  * rank; or, depending on Decomposition, the first rank marches all photons through the whole medium and sends each rank
- * the requested piece. The paths are on the first rank, each in one piece.
+ * the requested piece. Output 1 of the first rank has the paths, each as one polyline.
  *
  * Cells that `vtkGhostType` marks as hidden are empty.
  *
@@ -89,9 +90,11 @@ public:
 
   enum Schemes
   {
-    /// Explicit Euler, power per rasterised voxel, 64 bits per voxel by compare-and-swap, smoothed at the end.
+    /// Explicit Euler steps; deposits power in rasterised voxels, packed into 64 bits per voxel by compare-and-swap;
+    /// smooths the result (Smoothing).
     PUBLISHED = 0,
-    /// Symplectic integrator, power times path length, fixed-point sums that lose nothing and are bitwise reproducible.
+    /// Symplectic integrator; deposits power times path length, in fixed-point sums that are exact and bitwise
+    /// reproducible.
     CONSERVATIVE = 1
   };
 
@@ -105,7 +108,7 @@ public:
   ///@}
 
   ///@{
-  /// Numerical scheme: PUBLISHED, or CONSERVATIVE (default).
+  /// Numerical scheme of the march: PUBLISHED, or CONSERVATIVE (default).
   tyndallRangeMacro(Scheme, int, PUBLISHED, CONSERVATIVE);
   ///@}
 
@@ -113,7 +116,7 @@ public:
   {
     AUTOMATIC_DECOMPOSITION = 0, ///< BLOCKS for more than 64^3 voxels, if possible
     WHOLE = 1,                   ///< the first rank marches all photons through the whole medium
-    BLOCKS = 2                   ///< each rank has its piece of the medium
+    BLOCKS = 2                   ///< each rank marches photons through its piece of the medium
   };
 
   ///@{
@@ -121,11 +124,11 @@ public:
   /// rank holds its piece, a halo of the refractive index, and its share of the photons. A photon that leaves the
   /// piece, scattered or not, continues on the neighbouring rank with its full state (numerics.md, section 12.6). The
   /// light is bitwise that of one rank; in the published scheme except for the packing loss, which is not reproducible
-  /// on one rank either. If all ranks have the same photons each takes a part of them, else the photons are those of
-  /// rank 0, then rank 1, and so on. An octree whose pieces differ from the medium's is an error with BLOCKS. Light
+  /// even on one rank. If all ranks have the same photons, they are divided among the ranks; else the photons are those
+  /// of rank 0, then rank 1, and so on. An octree whose pieces differ from the medium's is an error with BLOCKS. Light
   /// that EmptySpace would store by bricks is stored by voxels. AUTOMATIC_DECOMPOSITION (default): BLOCKS if each of
   /// several ranks is asked for its own piece and the scene allows it; else WHOLE. WHOLE also if EmptySpace asks for
-  /// bricks, unless the whole exceeds the machine's available memory.
+  /// bricks, unless the whole medium exceeds the machine's available memory.
   tyndallRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
   ///@}
 
@@ -155,8 +158,8 @@ public:
   ///@}
 
   ///@{
-  /// Whether to count photons: `photon_count` and `photon_weight`, which take one more number per voxel in the same
-  /// pass. Default off. An error with the published scheme.
+  /// Whether to write `photon_count` and `photon_weight`, at the cost of one more sum per voxel in the same pass.
+  /// Default off. An error with the published scheme.
   tyndallFlagMacro(PhotonCounts);
   ///@}
 
@@ -186,20 +189,20 @@ public:
   tyndallFlagMacro(LeaveOut);
   ///@}
 
-  /// When light in empty space is stored by bricks of 8^3 voxels.
+  /// Conditions under which light in empty space is stored by bricks of 8^3 voxels, for EmptySpace.
   enum EmptySpaces
   {
-    BY_VOXEL = 0, ///< never
+    BY_VOXEL = 0, ///< never: all light is stored voxel by voxel
     AS_READ = 1,  ///< if the medium's field data `active_part` (vtkVDBReader) is at most 0.25
     BY_BRICK = 2  ///< whenever the medium is mostly empty
   };
 
   ///@{
-  /// Storage of light in empty bricks, of 8^3 voxels without medium: voxel by voxel, or as the mean over the brick,
-  /// which photons then cross in one segment. Storage by bricks takes a fraction of the time and memory if the medium
-  /// is mostly empty; in the other bricks `fluence` is the same, to rounding. Bricks are used if the index is constant,
-  /// at least three quarters of the bricks are empty, MaximumOrders is 1 and the scheme conservative, without
-  /// PhotonCounts and several batches. Default AS_READ.
+  /// Storage of light in empty bricks, of 8^3 voxels without medium: voxel by voxel (BY_VOXEL), or as the mean over the
+  /// brick (BY_BRICK), which photons then cross in one segment; AS_READ chooses by the input file. Storage by bricks
+  /// needs a fraction of the time and memory if the medium is mostly empty; `fluence` in bricks with medium is the
+  /// same, to rounding. Bricks are used if the index is constant, at least three quarters of the bricks are empty,
+  /// MaximumOrders is 1 and the scheme conservative, without PhotonCounts and several batches. Default AS_READ.
   tyndallRangeMacro(EmptySpace, int, BY_VOXEL, BY_BRICK);
   ///@}
 
@@ -209,7 +212,7 @@ public:
   ///@}
 
   ///@{
-  /// Whether the published scheme applies its 3x3x3 Gauss filter at the end. Default on.
+  /// Whether the published scheme smooths the result by a 3x3x3 Gauss filter. Default on.
   tyndallFlagMacro(Smoothing);
   ///@}
 
@@ -224,17 +227,17 @@ public:
   ///@{
   /// Results of the last update: path segments deposited in voxels, steps of the integrator, photons that miss the
   /// volume, scatterings, relative error of the energy balance, packing loss, whether the prepared medium was reused,
-  /// seconds, the device's name, and what the scene did not need, one per line.
+  /// run time in seconds, the device's name, and the computations that the scene did not need, one per line.
   ///
-  /// The conservative scheme's balance closes to rounding. That of the published scheme does not, even without packing
-  /// loss: it deposits a photon's power in a voxel regardless of the path length, so the extinction computed from its
-  /// light differs from the power that photons lost. PackingLoss is a separate error: the fraction of the deposited
-  /// power that the voxels' 64 bits did not keep (rounding, saturation, failed compare-and-swap), before smoothing; 0
-  /// for the conservative scheme.
+  /// The energy balance of the conservative scheme closes to rounding. That of the published scheme does not, even
+  /// without packing loss: it deposits a photon's power in a voxel regardless of the path length, so that extinction
+  /// times fluence differs from the power that photons lost. PackingLoss is a separate error: the fraction of the
+  /// deposited power that the voxels' 64 bits did not keep (rounding, saturation, failed compare-and-swap), before
+  /// smoothing; 0 for the conservative scheme.
   vtkGetMacro(Deposits, vtkIdType);
   vtkGetMacro(Steps, vtkIdType);
   vtkGetMacro(Missed, vtkIdType);
-  vtkGetMacro(Scatterings, vtkIdType); ///< of all photons, if MaximumOrders is not 1
+  vtkGetMacro(Scatterings, vtkIdType); ///< number of scatterings of all photons; 0 if MaximumOrders is 1
   vtkGetMacro(BalanceError, double);
   vtkGetMacro(PackingLoss, double);
   vtkGetMacro(MediumKept, bool);
@@ -244,7 +247,7 @@ public:
   ///@}
 
   using Superclass::SetInputConnection;
-  /// Also frees what was cached for the previous medium or octree.
+  /// Connects an input. A new medium or octree also frees the cached marcher of the previous one.
   void SetInputConnection(int port, vtkAlgorithmOutput* input) override;
 
 protected:
@@ -294,7 +297,7 @@ private:
   int MemoryBudget = 0;
   std::string Device;
 
-  std::shared_ptr<tyndall::Device> Within; ///< the device limited by MemoryBudget, if there is one
+  std::shared_ptr<tyndall::Device> Within; ///< device limited by MemoryBudget, or null; outlives Kept
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   vtkIdType Deposits = 0;

@@ -36,7 +36,7 @@ namespace
 using tyndall::FloatField;
 using tyndall::Need;
 
-/// Numbers of SetInputArrayToProcess.
+/// Indices of the input arrays, for SetInputArrayToProcess.
 enum PhotonLightArray
 {
   Fluence = 0,
@@ -60,8 +60,8 @@ tyndall::ReconstructionSettings SettingsOf(vtkPhotonReconstruction* filter)
   return settings;
 }
 
-/// Batches of zeros for light that is zero everywhere, because no photons means no batches. Empty if the light is not
-/// zero.
+/// Array `fluence_batches` of zeros for light that is zero everywhere, for which the marcher writes no batches; empty
+/// if `light` is above 0 in any voxel.
 std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int batches)
 {
   const std::size_t count = voxels * static_cast<std::size_t>(light.Components());
@@ -69,7 +69,7 @@ std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int 
   return std::vector<float>(dark ? count * static_cast<std::size_t>(batches) : 0, 0.0f);
 }
 
-/// Number of batches in an array.
+/// Number of batches in an array `fluence_batches`: number of components over number of channels.
 int BatchesOf(const FloatField& light, int channels)
 {
   const int components = light.Components();
@@ -81,7 +81,7 @@ int BatchesOf(const FloatField& light, int channels)
   return components / channels;
 }
 
-/// The noisy light, with the arrays that own its values.
+/// Input of a reconstruction: the noisy light of an image, and the arrays that own its values.
 struct LightOfImage
 {
   FloatField fluence, direction, count, weight, batches;
@@ -123,7 +123,7 @@ LightOfImage Read(vtkPhotonReconstruction* filter, vtkImageData* image)
   return of;
 }
 
-/// The image's `left_out` with further entries appended.
+/// Entries of the image's field data `left_out`, followed by the entries of `more`.
 std::vector<std::string> Joined(vtkImageData* image, const std::vector<std::string>& more)
 {
   std::vector<std::string> all;
@@ -156,7 +156,7 @@ void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)
     cells->RemoveArray(earlier);
   }
   tyndall::AddLight(output, "fluence", std::move(light.fluence), channels);
-  if (tyndall::ReadFact(output, tyndall::ScatteringsFact, 0.0) == 0.0) // else the marcher wrote fluence_direct
+  if (tyndall::ReadFact(output, tyndall::ScatteringsFact, 0.0) == 0.0) // no scattered photons
   {
     tyndall::AddSameLight(output, "fluence_direct", "fluence");
   }
@@ -185,7 +185,7 @@ vtkPhotonReconstruction::vtkPhotonReconstruction()
   this->WeightStep = defaults.weightStep;
   this->Level = defaults.level;
   this->NearestPhotons = defaults.nearest;
-  // vtkImageAlgorithm's default would be the active scalars.
+  // Replaces the default array of vtkImageAlgorithm, the active scalars, by `fluence`.
   this->SetInputArrayToProcess(Fluence, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "fluence");
 }
 
@@ -262,7 +262,8 @@ int vtkPhotonReconstruction::RequestData(
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 
-/// @param squares, ofErrors sums of squares of fluence and of its error over the voxels of all ranks
+/// Sets the read-only properties.
+/// @param squares, ofErrors  sums of squares of fluence and of its error over the voxels of all ranks
 void vtkPhotonReconstruction::Note(const tyndall::ReconstructedLight& light, double squares, double ofErrors)
 {
   this->Bias = light.bias;

@@ -17,21 +17,21 @@ class vtkImageData;
 
 /**
  * @class vtkPhotonReconstruction
- * @brief smooths the noisy light of photons, with a resolution adapted to the noise in each voxel
+ * @brief smooths the noisy fluence of marched photons, with a resolution adapted to the noise in each voxel
  *
- * Builds a resolution pyramid of the light: each level has half the resolution of the one below. Every voxel takes its
- * light from the level that Scheme chooses; a level without photons is never chosen if a coarser one has some.
+ * Builds a resolution pyramid of the fluence: each level has half the resolution of the level below. The fluence of
+ * every voxel is interpolated from the level that Scheme chooses; a level without photons is never chosen if a coarser
+ * level has photons.
  *
  * Input: vtkImageData as vtkPhotonMarcher makes it, with cell arrays (point arrays: see SetPointData)
  *
  * | array | components | unit | meaning | needed by Scheme |
  * |---|---|---|---|---|
- * | `fluence` | 1 or 3 | W/length^2 | noisy uncollided light | all |
+ * | `fluence` | 1 or 3 | W/length^2 | noisy fluence | all |
  * | `mean_direction` | 3 | 1 | power-weighted mean direction; optional |  |
  * | `photon_count` | 1 | 1 | photons in the voxel (PhotonCounts of the marcher) | 0, 3 |
- * | `photon_weight` | 1 | 1 | their mean weight (PhotonCounts) | 0 |
- * | `fluence_batches` | (1 or 3) x batches | W/length^2 | light of each batch (Batches of vtkPhotonEmitter: at least 2)
- * | 1 |
+ * | `photon_weight` | 1 | 1 | mean weight of these photons (PhotonCounts) | 0 |
+ * | `fluence_batches` | (1 or 3) x batches | W/length^2 | fluence of each of 2 or more Batches (vtkPhotonEmitter) | 1 |
  *
  * or those chosen by SetInputArrayToProcess 0 to 4.
  *
@@ -40,13 +40,13 @@ class vtkImageData;
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
- * | `mip_level` | 1 | 1 | pyramid level of the light, 0 for the voxels themselves; fractional if two levels are blended
- * |
+ * | `mip_level` | 1 | 1 | pyramid level used, 0 for single voxels; fractional if two levels are blended |
  * | `fluence_error` | 1 or 3 | W/length^2 | standard error of fluence, by the conservative scheme |
  *
- * and field data `fluence_bias` (relative change of the sum of fluence over all voxels, before conservation restores
- * it); the filter appends to `left_out` what it did not need, and sets `device` to its own. In a parallel pipeline
- * every rank smooths its piece, and the result is that of a serial run, to rounding.
+ * and field data `fluence_bias` (relative change of the sum of fluence over all voxels by smoothing, before
+ * ConserveFluence restores the sum); the filter appends to `left_out` the computations that it skipped, and replaces
+ * `device` by the device that it ran on. In a parallel pipeline every rank smooths its piece, and the result is that of
+ * a serial run, to rounding.
  *
  * Cells that `vtkGhostType` marks as hidden are empty.
  *
@@ -63,21 +63,22 @@ public:
 
   enum Schemes
   {
-    PUBLISHED = 0,       ///< the lower of the levels by centre-surround differences and by photon weight
-    CONSERVATIVE = 1,    ///< keeps each level's detail as far as independent batches agree on it; estimates the error
-    CONSTANT_RADIUS = 2, ///< Level everywhere
-    NEAREST_PHOTONS = 3  ///< the lowest level that holds NearestPhotons
+    PUBLISHED = 0,       ///< the lower of two levels: by centre-surround differences, and by photon weight
+    CONSERVATIVE = 1,    ///< weights each level's detail by how well batches agree on it; estimates the error
+    CONSTANT_RADIUS = 2, ///< the level Level in all voxels
+    NEAREST_PHOTONS = 3  ///< the lowest level whose cell contains at least NearestPhotons photons
   };
 
   enum Conservation
   {
     NEVER = 0,
     ALWAYS = 1,
-    BY_SCHEME = 2 ///< by the conservative scheme only; the others are for comparison with publications
+    BY_SCHEME = 2 ///< with Scheme CONSERVATIVE only; the other schemes are for comparison with publications
   };
 
   ///@{
-  /// Choice of the level: PUBLISHED, CONSERVATIVE (default), CONSTANT_RADIUS or NEAREST_PHOTONS.
+  /// Method of choosing the pyramid level in each voxel: PUBLISHED, CONSERVATIVE (default), CONSTANT_RADIUS or
+  /// NEAREST_PHOTONS.
   tyndallRangeMacro(Scheme, int, PUBLISHED, NEAREST_PHOTONS);
   ///@}
 
@@ -87,23 +88,24 @@ public:
   ///@}
 
   ///@{
-  /// Published scheme: step of the photon weight from one level to the next. Default 0: the mean weight of lit voxels;
-  /// valid [0, infinity).
+  /// With Scheme PUBLISHED: step of the photon weight from one level to the next, dimensionless. Default 0: 0.999 times
+  /// the mean weight of lit voxels; valid [0, infinity).
   tyndallRangeMacro(WeightStep, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Constant radius: the level. Default 1, valid [0, 8].
+  /// With Scheme CONSTANT_RADIUS: the pyramid level of all voxels. Default 1, valid [0, 8].
   tyndallRangeMacro(Level, int, 0, 8);
   ///@}
 
   ///@{
-  /// Nearest photons: how many. Default 20, valid [1, infinity).
+  /// With Scheme NEAREST_PHOTONS: number of photons that the cell of the chosen level must contain. Default 20, valid
+  /// [1, infinity).
   tyndallRangeMacro(NearestPhotons, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Whether the light is scaled such that the sum over all voxels is conserved: NEVER, ALWAYS, or BY_SCHEME (default).
+  /// Whether fluence is scaled such that its sum over all voxels is conserved: NEVER, ALWAYS, or BY_SCHEME (default).
   tyndallRangeMacro(ConserveFluence, int, NEVER, BY_SCHEME);
   ///@}
 
@@ -124,7 +126,8 @@ public:
 
   ///@{
   /// Results of the last update: `fluence_bias`; for the conservative scheme the root mean square of `fluence_error`
-  /// over that of `fluence` (0 for the others); seconds, the device's name, and what was not needed, one per line.
+  /// over that of `fluence` (0 for the others); run time in seconds, the device's name, and the computations that were
+  /// not needed, one per line.
   vtkGetMacro(Bias, double);
   vtkGetMacro(MeanError, double);
   vtkGetMacro(Seconds, double);

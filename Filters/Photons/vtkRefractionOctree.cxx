@@ -42,16 +42,18 @@ namespace tyndall
 {
 namespace
 {
-/// Root cells of the vtkHyperTreeGrid that shows an octree: cubes of the octree's largest level, or of the third level
-/// below the top, so that they extend little beyond the grid. Each rank builds the trees of those roots whose first
-/// voxel is in its block.
+/// Root cells of the vtkHyperTreeGrid of an octree: cubes of 2^level voxels per edge, where `level` is the larger of
+/// the octree's largest level and the third level below its top, so that roots extend little beyond the grid. Each rank
+/// builds the trees of the roots whose first voxel is in its block.
 struct OctreeRoots
 {
+  /// @param whole  the grid of the domain
+  /// @param topLevel  level of the cube that contains the grid
   /// @param largest  largest level of all nodes
   OctreeRoots(const Grid& whole, int topLevel, int largest);
 
-  VoxelBox Of(const VoxelBox& block) const;       ///< roots that begin in the block, counted in roots
-  VoxelBox VoxelsOf(const VoxelBox& roots) const; ///< voxels of these roots that lie within the grid
+  VoxelBox Of(const VoxelBox& block) const;       ///< roots whose first voxel is in the block, in units of roots
+  VoxelBox VoxelsOf(const VoxelBox& roots) const; ///< voxels of a box of roots that lie within the grid
 
   Grid grid;
   int level;
@@ -89,7 +91,7 @@ VoxelBox OctreeRoots::VoxelsOf(const VoxelBox& roots) const
 
 using Voxel = std::array<int, 3>;
 
-/// Coordinates of the borders between roots along an axis.
+/// Coordinates of the boundaries between root cells along an axis, first and last boundary included.
 vtkSmartPointer<vtkDoubleArray> Borders(const Grid& grid, int axis, int rootLevel)
 {
   auto borders = vtkSmartPointer<vtkDoubleArray>::New();
@@ -102,12 +104,12 @@ vtkSmartPointer<vtkDoubleArray> Borders(const Grid& grid, int axis, int rootLeve
   return borders;
 }
 
-/// A tree in breadth-first order, as vtkHyperTree needs it.
+/// Description of a tree in breadth-first order, as vtkHyperTree needs it.
 struct Tree
 {
-  std::vector<unsigned char> levels;  ///< of vertices
+  std::vector<unsigned char> levels;  ///< octree level of each vertex
   std::vector<unsigned char> outside; ///< whether each vertex is outside the grid
-  std::vector<unsigned char> refined; ///< whether each vertex is refined, without the deepest level, where none is
+  std::vector<unsigned char> refined; ///< whether each vertex is refined; omits the deepest level, where none is
   vtkIdType nodes = 0;
 };
 
@@ -120,7 +122,8 @@ public:
   {
   }
 
-  /// @param root  the root's lowest voxel
+  /// Describes the tree of a root cell.
+  /// @param root  the lowest voxel of the root cell
   Tree Describe(const Voxel& root, int rootLevel) const
   {
     Tree tree;
@@ -134,7 +137,8 @@ public:
 
 private:
   /// Appends the vertices of one depth to the tree.
-  /// @return their children
+  /// @param vertices  the lowest voxel of each vertex
+  /// @return the lowest voxels of the children of all vertices
   std::vector<Voxel> DescribeDepth(const std::vector<Voxel>& vertices, int level, Tree& tree) const
   {
     std::vector<Voxel> children;
@@ -147,7 +151,7 @@ private:
       tree.nodes += tree.outside.back() ? 0 : 1;
     }
     const int half = level > 0 ? 1 << (level - 1) : 0;
-    for (std::size_t i = 0; i < vertices.size() && level > 0; ++i) // most vertices are single voxels
+    for (std::size_t i = 0; i < vertices.size() && level > 0; ++i) // level 0 is skipped: single voxels have no children
     {
       const Voxel& vertex = vertices[i];
       const bool divided = !tree.outside[firstOutside + i] && this->TheLevels.At(vertex) < level;
@@ -173,7 +177,7 @@ private:
   const BrickedBytes& TheLevels;
 };
 
-/// Builds the trees of some roots. They are independent of each other and are built in parallel.
+/// Builds the trees of a box of roots, in parallel.
 std::vector<Tree> Build(
   const Grid& grid, const BrickedBytes& all, int rootLevel, const VoxelBox& roots, vtkHyperTreeGrid* nodes)
 {
@@ -218,12 +222,13 @@ std::vector<Tree> Build(
   return trees;
 }
 
-/// Fills a vtkHyperTreeGrid, whose coordinates are the borders of all roots, with the trees of some roots. Leaves are
-/// the octree's nodes, with their level as cell array `octree_level`; leaves wholly outside the grid are masked.
+/// Fills a vtkHyperTreeGrid with the trees of a box of roots; its coordinates are the boundaries of all roots. Leaves
+/// are the octree's nodes, with their level as cell array `octree_level`; leaves entirely outside the grid are masked.
 /// Without roots the vtkHyperTreeGrid is empty.
+/// @param all  the root cells of the domain
 /// @param roots  the roots whose trees to build
-/// @param levels  octree levels of all voxels of these roots
-/// @return the number of leaves that are not masked: the octree's nodes
+/// @param ofRoots  octree levels of all voxels of these roots
+/// @return the number of octree nodes: leaves that are not masked
 vtkIdType FillWithNodes(
   const OctreeRoots& all, const VoxelBox& roots, const BrickedBytes& ofRoots, vtkHyperTreeGrid* nodes)
 {
@@ -273,7 +278,7 @@ namespace
 using tyndall::FloatField;
 using tyndall::Need;
 
-/// Numbers of SetInputArrayToProcess.
+/// Indices of the input arrays, for SetInputArrayToProcess.
 enum OctreeArray
 {
   RefractiveIndex = 0,
@@ -290,7 +295,7 @@ tyndall::OctreeSettings SettingsOf(vtkRefractionOctree* filter)
   return settings;
 }
 
-/// Fields that determine the octree.
+/// Arrays that determine the octree: refractive index and, with IncludeExtinction, the medium's coefficients.
 struct Quantities
 {
   FloatField index, sigma_a, sigma_s;
@@ -312,7 +317,8 @@ Quantities Read(vtkRefractionOctree* filter, vtkImageData* image)
   return read;
 }
 
-/// Makes the trees whose roots begin in this rank's block. Collective. @return the number of nodes of all ranks
+/// Builds the trees of the root cells whose first voxel is in this rank's block. Collective.
+/// @return the number of nodes of all ranks
 vtkIdType FillWithTrees(const tyndall::Domain& domain, const tyndall::Octree& octree, vtkHyperTreeGrid* nodes)
 {
   const auto largest = std::max_element(octree.levels.begin(), octree.levels.end());
@@ -334,7 +340,7 @@ void AddLevels(vtkImageData* output, std::vector<std::uint8_t>&& levels)
 {
   const auto array = tyndall::ArrayOf<vtkUnsignedCharArray>("octree_level", std::move(levels), 1);
   tyndall::LeaveRanges(array);
-  output->GetCellData()->AddArray(array); // not SetScalars, which removes the previously active array
+  output->GetCellData()->AddArray(array); // AddArray, because SetScalars would remove the previously active scalars
   output->GetCellData()->SetActiveScalars("octree_level");
 }
 }
@@ -395,7 +401,7 @@ void vtkRefractionOctree::Write(vtkImageData* input, vtkImageData* output, tynda
   this->LeftOut = tyndall::Lines(octree.leftOut);
 }
 
-/// Computes the levels and trees of this rank's block. Collective.
+/// Computes the octree levels of this rank's block, and writes both outputs. Collective.
 void vtkRefractionOctree::Build(const tyndall::PieceBlocks& pieces, vtkImageData* image, vtkInformationVector* outputs)
 {
   const tyndall::Domain& domain = pieces.GetDomain();
@@ -436,7 +442,7 @@ int vtkRefractionOctree::RequestData(
   work.wantsPieces = [&](vtkInformationVector**) { return tyndall::EachAsksForItsPiece(request, outputs); };
   work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
     this->Build(pieces, vtkImageData::GetData(inputs[0]), outputs);
-    if (isAlone && !tyndall::IsFirstPiece(request, outputs)) // that has all trees
+    if (isAlone && !tyndall::IsFirstPiece(request, outputs)) // the first piece has all trees
     {
       nodes->Initialize();
       this->NodeCount = 0;

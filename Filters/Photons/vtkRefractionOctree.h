@@ -24,7 +24,7 @@ class vtkImageData;
  * chosen as 1 and 2. For point arrays see SetPointData.
  *
  * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels per edge) and
- * field data `left_out` (what the scene did not need) and `device`.
+ * field data `left_out` (computations that the scene did not need) and `device`.
  * Output 1: the same octree as vtkHyperTreeGrid, for viewing. Its leaves are the nodes, with cell array `octree_level`.
  *
  * A node of level k > 0 is the cube of 2^k voxels per edge whose lowest voxel has indices, counted from the image's
@@ -33,16 +33,17 @@ class vtkImageData;
  *     max(ior) - min(ior) <= Tolerance
  *     (max(sigma_t) - min(sigma_t)) diagonal of the node <= ExtinctionTolerance       with IncludeExtinction
  *
- * over its voxels (the latter in each channel of sigma_t = sigma_a + sigma_s), and no larger node contains it. A
- * constant quantity imposes no restriction: if ior is constant the octree is one node and nothing runs on the device.
+ * over the cube's voxels (the second condition in each channel of sigma_t = sigma_a + sigma_s), and no larger node
+ * contains it. A constant quantity imposes no restriction: if ior is constant the octree is one node and nothing runs
+ * on the device.
  *
- * A grid whose size is not a power of two is treated as if its last voxel were repeated: nodes at its upper faces may
- * extend beyond it. In output 1 nodes wholly outside are masked.
+ * A grid whose size is not a power of two is extended by repeating its last voxels, so that nodes at its upper faces
+ * may extend beyond the grid. In output 1 nodes entirely outside the grid are masked.
  *
  * In a parallel pipeline every rank works on its piece, and ranks exchange data on nodes that span several pieces: the
- * levels are those of a serial run. Each rank's output 1 has the trees that begin in its piece. If the pieces do not
- * tile one grid, the first rank works on the whole image and sends each rank the requested piece of output 0; output 1
- * is then on the first rank.
+ * levels are those of a serial run. Output 1 of each rank has the trees whose first voxel is in the rank's piece. If
+ * the pieces do not tile one grid, the first rank works on the whole image and sends each rank the requested piece of
+ * output 0; output 1 is then on the first rank.
  *
  * Cells that `vtkGhostType` marks as hidden are empty.
  *
@@ -58,13 +59,13 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Largest difference of refractive index within a node. Default 0.01, valid [0, 1]; with 0 only voxels of the
-  /// very same index are one node.
+  /// Largest difference of refractive index within a node. Default 0.01, valid [0, 1]; with 0 only voxels of equal
+  /// index form a node.
   tyndallRangeMacro(Tolerance, double, 0.0, 1.0);
   ///@}
 
   ///@{
-  /// Whether extinction must also be nearly equal within a node. Default off.
+  /// Whether extinction must also be nearly equal within a node (see ExtinctionTolerance). Default off.
   tyndallFlagMacro(IncludeExtinction);
   ///@}
 
@@ -90,8 +91,8 @@ public:
   tyndallDeviceMacro();
 
   ///@{
-  /// Results of the last update: number of nodes, seconds for computing their levels, the device's name (empty if none
-  /// was needed), and what the scene did not need, one per line.
+  /// Results of the last update: number of nodes, run time of the computation of levels in seconds, the device's name
+  /// (empty if no device was needed), and the computations that the scene did not need, one per line.
   vtkGetMacro(NodeCount, vtkIdType);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);
