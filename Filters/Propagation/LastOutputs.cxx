@@ -19,7 +19,7 @@ namespace tyndall
 {
 namespace
 {
-/// Copies all but the time step: that stays the one of the current request.
+/// Copies a data object except its time step: `to` keeps the time step of the current request.
 void CopyButTime(vtkDataObject* from, vtkDataObject* to)
 {
   vtkInformation* const facts = to->GetInformation();

@@ -24,7 +24,7 @@
 
 namespace
 {
-/// The settings as the filter's properties say, before Quality.
+/// Settings from the filter's properties, before Quality modifies them.
 tyndall::OrdinatesSettings GivenSettings(vtkDiscreteOrdinates* filter)
 {
   tyndall::OrdinatesSettings settings;

@@ -15,14 +15,14 @@ class LastLight;
 
 /**
  * @class vtkDiscreteOrdinates
- * @brief multiply and anisotropically scattered light, by discrete ordinates: radiance in many directions in every
- * voxel
+ * @brief multiply and anisotropically scattered light, by discrete ordinates: radiance along the directions of a
+ * quadrature in every voxel
  *
- * Solves for the radiance along DirectionsPerFace directions for each face of a cube, by source iteration: scattering
- * order after scattering order. The incident radiance in a voxel is scattered by a separable phase function of Terms
- * terms (vtkSeparablePhaseFunction), so that the cost per direction is proportional to Terms, not to the number of
- * directions. By default the scheme conserves energy and works for voxels of any optical thickness; the published
- * scheme takes explicit steps, and a warning says where they are unstable.
+ * Solves for the radiance along DirectionsPerFace directions per face of a cube, by source iteration. Radiance in a
+ * voxel is scattered by a separable phase function of Terms terms (vtkSeparablePhaseFunction), so that the cost per
+ * direction is proportional to Terms, not to the number of directions. By default the scheme conserves energy and is
+ * stable for voxels of any optical thickness; the published scheme takes explicit steps, and a warning reports where
+ * they are unstable.
  *
  * Input 0, the medium: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
@@ -35,30 +35,32 @@ class LastLight;
  * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `g` (default 0).
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
- * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver).
+ * Input 3, optional: uncollided light of another filter; replaces lights and environment (vtkScatteringSolver).
  *
  * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part; in the published scheme that of lamps only |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | uncollided part of `fluence`; in the published scheme of lamps only |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
  * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | scattered radiance, averaged over directions |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
- * +x, -y, +y, -z, +z), `half_range_flux`, `left_out` (what the scene did not need), `device`, `stored_directions`.
- * Output 1: vtkTable, one row per scattering order (as published: a step): `iteration`, `seconds`, `residual`,
- * `change`, `absorbed`, `escaped`, `left_over`, and with WarmStart `sweeps_saved`: how many rows later the last cold
- * solve (with zero initial guess) reached the same residual.
+ * +x, -y, +y, -z, +z), `half_range_flux`, `left_out` (computations that the scene did not need), `device`,
+ * `stored_directions`.
+ * Output 1: vtkTable, one row per scattering order (in the published scheme, per step): `iteration`, `seconds`,
+ * `residual`, `change`, `absorbed`, `escaped`, `left_over`, and with WarmStart `sweeps_saved`: number of additional
+ * rows after which the last cold solve (with zero initial guess) reached the same residual.
  *
  * Source iteration is not accelerated: in optically thick media that absorb little, vtkLightPropagationMaps is faster.
  * The radiance in all directions has to fit in device memory: if it does not, an error states the required memory
  * before any is allocated. EstimateError is not used.
  *
  * With Decomposition BLOCKS ranks exchange radiance at the boundaries of their pieces (numerics.md, section 10 b);
- * every scattering order is the same as in a serial solve. Quality chooses no more directions than half the memory of
- * the smallest rank would hold for the whole domain. Scheme PUBLISHED cannot be used with BLOCKS.
+ * every scattering order is the same as in a serial solve. Quality limits the number of directions such that the
+ * radiance of the whole domain would fit in half the memory of the rank with the least memory. Scheme PUBLISHED cannot
+ * be used with BLOCKS.
  *
  * @sa vtkSeparablePhaseFunction vtkLightPropagationMaps vtkParticipatingMedium vtkLightRig
  * @par Thanks
@@ -75,14 +77,14 @@ public:
   enum Schemes
   {
     PUBLISHED = 0,   ///< explicit steps, as Gong et al. describe them
-    CONSERVATIVE = 1 ///< exponential steps that conserve energy; lights are followed exactly
+    CONSERVATIVE = 1 ///< exponential steps that conserve energy; light of lamps along exact rays
   };
 
   enum Scatterings
   {
-    MATRIX = 0,             ///< full matrix of all pairs of directions
-    SINGULAR_VALUES = 1,    ///< Terms singular values, as published
-    SPHERICAL_HARMONICS = 2 ///< Terms spherical harmonics
+    MATRIX = 0,             ///< phase function as full matrix of all pairs of directions
+    SINGULAR_VALUES = 1,    ///< the largest Terms singular values of that matrix, as published
+    SPHERICAL_HARMONICS = 2 ///< expansion in Terms spherical harmonics
   };
 
   ///@{
@@ -101,13 +103,13 @@ public:
   ///@}
 
   ///@{
-  /// Number of directions on a spiral, from 16 on, instead of the cube's directions. Default 0: the cube's, whose
-  /// symmetry makes the light of a scene that is turned by 90 degrees the turned light.
+  /// Number of directions of a spiral quadrature, at least 16, which replaces the cube's directions. Default 0: the
+  /// cube's directions, which are symmetric under rotations by 90 degrees, so that the solution rotates with the scene.
   tyndallRangeMacro(SpiralDirections, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Terms of the separable phase function. Default 25, at most as many as there are directions; for spherical
+  /// Number of terms of the separable phase function. Default 25, at most the number of directions; for spherical
   /// harmonics a square number: 1, 4, 9, 16, ...
   tyndallRangeMacro(Terms, int, 1, VTK_INT_MAX);
   ///@}
@@ -118,16 +120,16 @@ public:
   ///@}
 
   ///@{
-  /// Whether the solution of the last update is the initial guess of the next one: fewer sweeps if medium or lights
-  /// changed a little, and the same light within the tolerance. The solution stays in memory until an update with
-  /// WarmStart off: one float per voxel and channel. Used if scattering is isotropic, not by the published scheme. With
-  /// Decomposition BLOCKS each rank keeps its own piece; if pieces have changed, all ranks start from zero. Default
-  /// off.
+  /// Whether the solution of the last update is the initial guess of the next one: it saves sweeps if medium or lights
+  /// changed a little; the result is the same within Tolerance. The solution stays in memory until an update with
+  /// WarmStart off: one float per voxel and channel. Used only if scattering is isotropic and Scheme is CONSERVATIVE.
+  /// With Decomposition BLOCKS each rank keeps the solution of its piece; if the pieces have changed, the initial guess
+  /// is zero on all ranks. Default off.
   tyndallFlagMacro(WarmStart);
   ///@}
 
   ///@{
-  /// Whether to compute `net_flux` as well. Default off.
+  /// Whether to compute the array `net_flux`. Default off.
   tyndallFlagMacro(NetFlux);
   ///@}
 
@@ -137,10 +139,10 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update, besides those of vtkScatteringSolver, whose Residual is the error due to the omitted
-  /// orders: number of scattering orders; how many more orders the last cold update took to the same residual (0 if
-  /// this update was cold); half-range flux of the quadrature for isotropic radiance through a face, over the exact
-  /// value.
+  /// Results of the last update: number of scattering orders; number of additional orders that the last cold update
+  /// needed to reach the same residual (0 if this update was cold); half-range flux of the quadrature for isotropic
+  /// radiance through a face, over the exact value. Residual of vtkScatteringSolver is the error due to the omitted
+  /// orders.
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);
   vtkGetMacro(HalfRangeFlux, double);

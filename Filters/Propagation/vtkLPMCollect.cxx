@@ -54,7 +54,8 @@ int ReadCount(vtkImageData* image, const char* name)
   return static_cast<int>(value);
 }
 
-/// The settings of vtkLPMPropagate, read from its output, and the number of channels.
+/// Settings of the vtkLPMPropagate that wrote an image, from its field data, and the number of channels of the arrays
+/// T.
 struct Told
 {
   tyndall::PropagationSettings settings;
@@ -105,7 +106,7 @@ void CollectAll(tyndall::ParallelPropagation& propagation, const Buffers& buffer
   propagation.FinishOrder();
 }
 
-/// Adds the previous orders' values from an array of the image.
+/// Adds to `values` the sum of the previous orders, a cell array of the image; does nothing without that array.
 void AddBefore(std::vector<float>& values, vtkImageData* image, const char* name, std::size_t voxels)
 {
   const int components = static_cast<int>(values.size() / voxels);

@@ -9,25 +9,24 @@
 
 /**
  * @class vtkLPMCollect
- * @brief the second half of one scattering order of light propagation maps, as published: collection of the rays'
- * deposits
+ * @brief collects the rays' deposits in the voxels: the second half of one scattering order of the published light
+ * propagation maps
  *
- * Each voxel reads the temporary buffers T of all directions and updates its light and the source of the next order
+ * Each voxel reads the temporary buffers T of all directions and updates its fluence and the source of the next order
  * (Gruson et al. 2012, Algorithm 2, Eq. 4).
  *
- * Input: the output of vtkLPMPropagate, that is the medium's image with cell arrays `T_xmin`, `T_xmax`, ..., `T_zmax`
- * and field data `map_resolution`, `stored_directions_count`, `scattering_order`. If the input also has `fluence`,
+ * Input: the output of vtkLPMPropagate: the medium's image with cell arrays `T_xmin`, `T_xmax`, ..., `T_zmax` and field
+ * data `map_resolution`, `stored_directions_count`, `scattering_order`. If the input also has `fluence`,
  * `fluence_direct` and `scattered_radiance` of the previous orders, this order is added to them.
  *
  * Output: the input without the arrays T, with the cell arrays
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
- * | `unscattered` | 6, or stored directions, x 1 or 3 | W/(length^3 sr) | U: scattered, to be propagated by the next
- * order |
- * | `scattered_radiance` | stored directions x 1 or 3 | W/(length^2 sr) | I of all orders so far, over sigma_s |
- * | `fluence` | 1 or 3 | W/length^2 | sum of all orders so far |
- * | `fluence_direct` | 1 or 3 | W/length^2 | order 0 only |
+ * | `unscattered` | 6, or stored directions, x 1 or 3 | W/(length^3 sr) | U: source of the next order |
+ * | `scattered_radiance` | stored directions x 1 or 3 | W/(length^2 sr) | I, sum of all orders so far, over sigma_s |
+ * | `fluence` | 1 or 3 | W/length^2 | fluence, sum of all orders so far |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | fluence of order 0 |
  *
  * with channels varying fastest, then directions; and field data `left_over` (W per channel: the power in U). The
  * output is vtkLPMPropagate's input for the next order.

@@ -32,7 +32,8 @@ tyndall::PropagationSettings SettingsOf(vtkLPMPropagate* filter)
   return settings;
 }
 
-/// Number of channels of U: its components divided by the number of stored directions.
+/// Number of channels of the array `unscattered`: its components over 6, or over `storedDirections` if that is not 1.
+/// @throws InvalidInput if that is not 1 or 3
 int ChannelsOf(const tyndall::FloatField& unscattered, int storedDirections)
 {
   const int sources = storedDirections == 1 ? 6 : storedDirections;
@@ -46,7 +47,9 @@ int ChannelsOf(const tyndall::FloatField& unscattered, int storedDirections)
   return components / sources;
 }
 
-/// Propagates one order. The deposits are sorted by face; within a voxel, channels vary fastest, then directions.
+/// Propagates one scattering order.
+/// @return the arrays T of the six cube faces, -x to +z: channels vary fastest, then directions of the face, then
+///   voxels
 std::array<std::vector<float>, 6> PropagateAll(
   tyndall::ParallelPropagation& propagation, std::size_t voxels, const tyndall::Monitor& monitor)
 {
@@ -112,7 +115,7 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 
-/// Propagates one order through the complete medium.
+/// Propagates one scattering order through the complete medium, and writes the arrays T to the output.
 void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* output)
 {
   vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);

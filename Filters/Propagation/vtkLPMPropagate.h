@@ -7,7 +7,8 @@
 
 /**
  * @class vtkLPMPropagate
- * @brief the first half of one scattering order of light propagation maps, as published: all rays through the medium
+ * @brief propagates all rays through the medium: the first half of one scattering order of the published light
+ * propagation maps
  *
  * Rays carry light through the medium along all directions; their deposits in the voxels are stored separately for each
  * direction, in the temporary buffers T of Gruson et al. 2012 (Algorithm 2, Eq. 6). vtkLPMCollect computes the next
@@ -15,29 +16,29 @@
  * PUBLISHED; they serve to inspect the method and are not fast.
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` and optionally `emission`, as for
- * vtkLightPropagationMaps. If it also has
+ * vtkLightPropagationMaps. For a later order it also has
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
- * | `unscattered` | 6 x 1 or 3, or StoredDirections x 1 or 3 | W/(length^3 sr) | U: scattered but not propagated yet |
+ * | `unscattered` | 6 x 1 or 3, or StoredDirections x 1 or 3 | W/(length^3 sr) | U: source of this order |
  *
- * as vtkLPMCollect writes it, this is a later order: U is the rays' source, and there is no incident light. Without it
- * this is order 0: `emission` is the source, and the boundary source is incident.
- * Input 1, optional: lights as vtkLightRig makes them; only directional lights are used, along the nearest of the
- * directions.
+ * as vtkLPMCollect writes it: U is the source along the rays, and there is no incident light. Without `unscattered` the
+ * filter propagates order 0: `emission` is the source, and the boundary source is incident.
+ * Input 1, optional: lights as vtkLightRig makes them; only directional lights are used, along the nearest direction of
+ * the quadrature.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
  *
- * Output: the input with six more cell arrays, one for each cube face that light travels towards,
+ * Output: the input with six more cell arrays, one per cube face, for the directions that point towards that face,
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `T_xmin`, `T_xmax`, ..., `T_zmax` | DirectionsPerFace x 1 or 3 | W/(length sr) | T over sigma_s |
  *
  * with channels varying fastest: component k of grey light belongs to direction k of the face; of coloured light,
- * components 3 k to 3 k + 2 are its red, green and blue. T of Eq. (6) is sigma_s times this; without that factor the
- * arrays are defined in voxels that do not scatter, too. Memory: 6 DirectionsPerFace x 4 bytes per voxel and channel;
- * 64^3 voxels in RGB with 25 directions take 472 MB (GetBytes). Field data: `directions` (6 DirectionsPerFace x 3:
- * where light travels), `map_resolution`, `stored_directions_count`, `scattering_order`.
+ * components 3 k to 3 k + 2 are its red, green and blue. T of Eq. (6) is sigma_s times these arrays; without that
+ * factor they are defined also in voxels that do not scatter. Memory: 6 DirectionsPerFace x 4 bytes per voxel and
+ * channel; 64^3 voxels in RGB with 25 directions take 472 MB (GetBytes). Field data: `directions` (6 DirectionsPerFace
+ * unit vectors along which light travels), `map_resolution`, `stored_directions_count`, `scattering_order`.
  *
  * Periodic axes are not supported: T and U do not hold the maps of rays that wrap around.
  *
@@ -61,13 +62,13 @@ public:
   ///@}
 
   ///@{
-  /// Rays of each direction per voxel edge. Default 1, valid from 1 on.
+  /// Number of rays of each direction per voxel edge. Default 1, valid [1, 16].
   tyndallRangeMacro(MapResolution, int, 1, 16);
   ///@}
 
   ///@{
-  /// Directions of `scattered_radiance`, and, if not 1, of `unscattered`. Default 1 (enough for isotropic scattering),
-  /// valid from 1 on.
+  /// Number of directions for which vtkLPMCollect writes `scattered_radiance` and, if not 1, `unscattered`. Default 1
+  /// (enough for isotropic scattering), valid from 1 on.
   tyndallRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
   ///@}
 
@@ -86,7 +87,7 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: number of the scattering order, memory of the arrays T in bytes.
+  /// Results of the last update: number of the scattering order, from 0; memory of the arrays T in bytes.
   vtkGetMacro(Order, int);
   vtkGetMacro(Bytes, double);
   ///@}

@@ -28,7 +28,7 @@
 
 namespace
 {
-/// Solves a preview, on a coarser grid if voxels can be merged to cubes. Collective.
+/// Solves a preview on a coarser grid, or on the grid itself if its voxels cannot be merged to cubes. Collective.
 tyndall::LightField SolvePreviewOf(
   const tyndall::SceneBlock& scene, const tyndall::LatticeSettings& settings, const tyndall::PreviewSolver& solve)
 {
@@ -37,7 +37,8 @@ tyndall::LightField SolvePreviewOf(
                                    : tyndall::SolvePreview(scene, tyndall::AsPropagation(settings), coarse, solve);
 }
 
-/// Fraction of the power that was neither absorbed nor escaped, in the worst channel.
+/// Relative error of the energy balance if the left-over power counts as an error: the fraction of the power that was
+/// neither absorbed nor escaped, in the channel where it is largest.
 double UnaccountedPart(const tyndall::LightField& light)
 {
   tyndall::EnergyBalance balance = light.balance;
@@ -100,7 +101,8 @@ tyndall::LatticeSettings vtkLatticeBoltzmannLighting::Settings() const
   return tyndall::AtQuality(static_cast<tyndall::Quality>(this->Quality), settings);
 }
 
-/// Solves for the light. Collective. @param photons null if none are connected
+/// Solves for the light by the filter's settings, as a preview if Preview is on. Collective.
+/// @param photons  this rank's photons; null if none are connected
 tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
   const tyndall::SceneBlock& scene, const std::vector<tyndall::Photon>* photons)
 {
@@ -132,7 +134,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
 std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
   const bool both = inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 &&
-    inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0; // an error on one rank, too
+    inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0; // both together are an error also on one rank
   return both ? "Photons beside UncollidedLight" : tyndall::NotInBlocks(this->Settings());
 }
 

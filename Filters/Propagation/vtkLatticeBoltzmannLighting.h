@@ -23,11 +23,11 @@ struct SceneBlock;
  * @class vtkLatticeBoltzmannLighting
  * @brief diffusion of multiply scattered light, by the lattice Boltzmann method with 18 or 6 directions
  *
- * Every voxel holds a photon density for each link to a neighbour. Densities collide in the voxel and stream to the
- * neighbours, until they are steady. The limit is a diffusion equation: it suits media in which light is scattered many
- * times, also with a varying refractive index, which refracts the diffuse light. By default the scheme conserves power,
- * keeps light positive for voxels of any optical thickness, and solves for the steady state directly; the published
- * scheme takes explicit steps, and a warning says where they are too long.
+ * Every voxel holds a photon density for each link to a neighbouring voxel. Densities collide in the voxel and stream
+ * to the neighbours, until they are steady. The limit is a diffusion equation, which is accurate in media in which
+ * light is scattered many times; a varying refractive index refracts the diffuse light. By default the scheme conserves
+ * power, keeps densities positive for voxels of any optical thickness, and solves for the steady state directly; the
+ * published scheme takes explicit steps, and a warning reports where they are too long.
  *
  * Input 0, the medium: vtkImageData of cubic voxels (to 0.1%) with cell arrays (point arrays: see SetPointData)
  *
@@ -38,34 +38,34 @@ struct SceneBlock;
  * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
  * | `ior`      | 1          | 1                | refractive index; optional, default 1            |
  *
- * or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g` (default 0), which enters by the
- * similarity relation.
+ * or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g` (default 0), which reduces scattering by
+ * the similarity relation, sigma_s (1 - g).
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
- * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver). The filter's own
- * uncollided light of lights and environment travels in straight lines, whatever the index. In optically thick voxels
- * (thicker than a mean free path) `mean_direction` of this input determines where within the voxel light is first
+ * Input 3, optional: uncollided light of another filter; replaces lights and environment (vtkScatteringSolver). Without
+ * this input, uncollided light of lights and environment travels in straight lines, even if the index varies. In voxels
+ * thicker than a mean free path `mean_direction` of this input determines where within the voxel light is first
  * scattered.
- * Input 4, optional: photons as vtkPhotonEmitter makes them, instead of all these: photons march along bent rays to
- * their first scattering, either all the way before diffusion starts, or (Interleaved) alternating with diffusion
- * steps. Not together with input 3, nor with periodic axes.
+ * Input 4, optional: photons as vtkPhotonEmitter makes them; replace inputs 1 to 3. Photons march along bent rays to
+ * their first scattering, either before diffusion starts, or (Interleaved) in alternation with diffusion steps. An
+ * error together with input 3 or periodic axes.
  *
  * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part, without that of sky and faces |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | uncollided part of `fluence`, without light of sky and faces |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
  * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | scattered radiance, averaged over directions |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
- * +x, -y, +y, -z, +z), `left_out` (what the scene did not need), `device`, `stored_directions`.
- * Output 1: vtkTable, one row per iteration (if the scheme takes steps: every 16 or so): `iteration`, `seconds`,
+ * +x, -y, +y, -z, +z), `left_out` (computations that the scene did not need), `device`, `stored_directions`.
+ * Output 1: vtkTable, one row per iteration (if the scheme takes steps, per about 16 steps): `iteration`, `seconds`,
  * `residual`, `change`.
  *
- * With Decomposition BLOCKS lines of links continue from rank to rank (numerics.md, section 10 c). Only the steady
- * state can be solved with BLOCKS: PUBLISHED, BlockSize, Interleaved and MaximumOrders, which take steps, are errors.
+ * With Decomposition BLOCKS lines of links continue from rank to rank (numerics.md, section 10 c). BLOCKS supports only
+ * the steady-state solve: PUBLISHED, BlockSize, Interleaved and MaximumOrders, which take steps, are errors.
  *
  * EstimateError is not used.
  *
@@ -88,7 +88,7 @@ public:
     CONSERVATIVE = 1 ///< collisions that conserve power and stay positive for voxels of any optical thickness
   };
 
-  static constexpr int PHOTONS = UNCOLLIDED + 1; ///< number of the input port
+  static constexpr int PHOTONS = UNCOLLIDED + 1; ///< input port of the photons
 
   ///@{
   /// Photons (vtkPolyData) by connection or as data; null: none.
@@ -96,7 +96,7 @@ public:
   ///@}
 
   ///@{
-  /// Directions of the lattice: 18 (default), along axes and diagonals, or 6 along axes alone.
+  /// Number of directions of the lattice: 18 (default), along axes and face diagonals, or 6, along axes only.
   tyndallRangeMacro(Lattice, int, 6, 18);
   ///@}
 
@@ -106,33 +106,33 @@ public:
   ///@}
 
   ///@{
-  /// Edge, in voxels, of blocks that take steps independently between exchanges, 2 to 8; 4 in the publication. Default
-  /// 0: no blocks, all voxels step together.
+  /// Edge, in voxels, of blocks that take StepsPerExchange steps between exchanges with their neighbours. Default 0: no
+  /// blocks, all voxels step together; valid 0 and [2, 8]; 4 in the publication.
   tyndallRangeMacro(BlockSize, int, 0, 8);
   ///@}
 
   ///@{
-  /// Whether photons, if there are any, march while the light that they have deposited diffuses, as published (Bernabei
-  /// et al.): StepsPerExchange diffusion steps alternate with VoxelsPerTurn voxels of each photon's path; steps
-  /// continue until Tolerance is met. Default off: photons march to their ends first.
+  /// Whether the march of photons (input 4) alternates with diffusion, as published (Bernabei et al.): VoxelsPerTurn
+  /// voxels of each photon's path, then StepsPerExchange diffusion steps, and so on; steps continue until Tolerance is
+  /// met. Default off: diffusion starts when all photons have ended.
   tyndallFlagMacro(Interleaved);
   ///@}
 
   ///@{
-  /// With Interleaved: voxels that each photon crosses in a turn. Default 16, valid [0, 1000000]; 0: all voxels of its
-  /// path.
+  /// With Interleaved: number of voxels that each photon crosses between diffusion steps. Default 16, valid [0,
+  /// 1000000]; 0: all voxels of its path.
   tyndallRangeMacro(VoxelsPerTurn, int, 0, 1000000);
   ///@}
 
   ///@{
-  /// Number of evenly spread voxels at which the change of light between steps is measured. Default 4096, valid [0,
-  /// infinity); 0: all voxels.
+  /// Number of evenly distributed voxels at which the change of fluence between steps is measured. Default 4096, valid
+  /// [0, infinity); 0: all voxels.
   tyndallRangeMacro(Probes, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Steps that a block takes before it exchanges light with its neighbours, and lattice steps per turn of the photons.
-  /// Default 8, valid [1, 1000].
+  /// Number of steps of a block (BlockSize) between exchanges with its neighbours; with Interleaved, number of
+  /// diffusion steps between marches of the photons. Default 8, valid [1, 1000].
   tyndallRangeMacro(StepsPerExchange, int, 1, 1000);
   ///@}
 
@@ -143,13 +143,13 @@ public:
   ///@}
 
   ///@{
-  /// Whether to compute `net_flux` as well. Default off.
+  /// Whether to compute the array `net_flux`. Default off.
   tyndallFlagMacro(NetFlux);
   ///@}
 
   ///@{
-  /// Result of the last update, besides those of vtkScatteringSolver, whose BalanceError includes the left-over power:
-  /// number of steps, or of iterations of the steady-state solve.
+  /// Result of the last update: number of steps, or of iterations of the steady-state solve. BalanceError of
+  /// vtkScatteringSolver includes the left-over power here.
   vtkGetMacro(Steps, int);
   ///@}
 

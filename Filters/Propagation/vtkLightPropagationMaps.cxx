@@ -98,7 +98,8 @@ tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
   return settings;
 }
 
-/// A medium that does not fit in the memory budget is an error: this scheme stores one volume per direction.
+/// Solves by the published scheme on the device.
+/// @throws DeviceError if the arrays of the scheme, which stores one volume per direction, exceed the memory budget
 tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Device& device,
   const tyndall::Medium& medium, const tyndall::Illumination& illumination,
   const tyndall::PropagationSettings& settings, const tyndall::Monitor& monitor)
@@ -107,9 +108,10 @@ tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Dev
   return tyndall::SolveParallel(within, medium, illumination, settings, monitor);
 }
 
-/// A solver of the filter's Scheme.
+/// Solver function for the filter's Scheme and Algorithm.
 /// @param device  null for the sequential algorithm
-/// @param ofGrid  the medium whose solution `last` keeps; solutions on coarser or divided grids are not kept
+/// @param ofGrid  the medium on its original grid: only its solution is kept, not those on coarser or divided grids
+/// @param last  storage of the solution that is kept for WarmStart; null if it is off
 tyndall::PropagationSolver SolverOf(vtkLightPropagationMaps* filter, const std::shared_ptr<tyndall::Device>& device,
   const tyndall::Medium* ofGrid, tyndall::KeptLight* last)
 {
@@ -131,7 +133,9 @@ std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, co
   return device;
 }
 
-/// Settings as Preview or Quality chooses them for the medium of all ranks; with TargetError, as the properties say.
+/// Settings of a solve from the filter's properties, modified by Preview or, without TargetError, by Quality, for the
+/// medium of all ranks. Collective.
+/// @throws InvalidInput if TargetError is set with the published scheme
 tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, const tyndall::SolverScene& scene)
 {
   tyndall::RequireSame(scene.domain.Comm(), "TargetError or EstimateError", true,

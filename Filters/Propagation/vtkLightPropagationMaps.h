@@ -17,10 +17,10 @@ class LastLight;
  * @class vtkLightPropagationMaps
  * @brief multiply scattered light in a medium, by light propagation maps
  *
- * Rays sweep the grid along DirectionsPerFace directions for each face of a cube, with MapResolution rays per voxel
- * edge. The power that rays lose to scattering in a voxel becomes the voxel's source for the next scattering order.
- * Source iteration ends when the power left is below Tolerance; it can be accelerated by diffusion synthetic
- * acceleration (DSA).
+ * Rays sweep the grid along DirectionsPerFace directions per face of a cube, with MapResolution rays per voxel edge.
+ * The power that rays lose to scattering in a voxel becomes the voxel's source for the next scattering order. Source
+ * iteration ends when the estimated relative error of fluence is below Tolerance; it can be accelerated by diffusion
+ * synthetic acceleration (DSA).
  *
  * Input 0, the medium: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
@@ -35,38 +35,39 @@ class LastLight;
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3
  * components, W/(length^2 sr)), as vtkEnvironmentReader makes it.
- * Input 3, optional: uncollided light of another filter instead of all these (vtkScatteringSolver).
+ * Input 3, optional: uncollided light of another filter; replaces lights and environment (vtkScatteringSolver).
  *
  * Output 0: the medium's image with cell arrays of 1 component, or 3 where medium or light has colour
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part |
- * | `fluence_error` | 1 or 3 | W/length^2 | its standard error (if EstimateError or TargetError) |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | uncollided part of `fluence` |
+ * | `fluence_error` | 1 or 3 | W/length^2 | standard error of `fluence` (if EstimateError or TargetError) |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
- * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | radiance scattered into each stored direction
- * |
+ * | `scattered_radiance` | StoredDirections x 1 or 3 | W/(length^2 sr) | scattered radiance per stored direction |
  *
  * and field data `energy_balance` (W: entered, emitted, absorbed, escaped, left over), `face_power_out` (W through -x,
- * +x, -y, +y, -z, +z), `half_range_flux` (see HalfRangeFlux), `left_out` (what the scene did not need), `device`,
- * `stored_directions`; if source iteration is accelerated and a voxel at a face of the box is thicker than half a mean
- * free path, `surface_radiance`, W/(length^2 sr): the radiance that leaves each voxel face on the boundary, tuples face
- * by face (-x to +z), row by row, components at the cosines 0.05, 0.25, 0.6, 1 to the normal (times red, green, blue).
+ * +x, -y, +y, -z, +z), `half_range_flux` (see HalfRangeFlux), `left_out` (computations that the scene did not need),
+ * `device`, `stored_directions`; if source iteration is accelerated and a voxel at a face of the box is thicker than
+ * half a mean free path, `surface_radiance`, W/(length^2 sr): the outgoing radiance of each voxel face on the boundary,
+ * tuples by face (-x to +z) and row of voxels, components for the cosines 0.05, 0.25, 0.6, 1 to the normal (times red,
+ * green, blue).
  * Output 1: vtkTable, one row per scattering order: `iteration`, `seconds`, `residual`, `change`, `absorbed`,
- * `escaped`, `left_over`, and with WarmStart `sweeps_saved`: how many rows later the last cold solve (with zero initial
- * guess) reached the same residual.
+ * `escaped`, `left_over`, and with WarmStart `sweeps_saved`: number of additional rows after which the last cold solve
+ * (with zero initial guess) reached the same residual.
  *
  * Without lights, environment, SkyColor, FaceRadiance and emission the result is dark, with a warning.
  *
  * With Decomposition BLOCKS rays continue from rank to rank (numerics.md, section 4.9). Source iteration is accelerated
  * as in a serial solve, with two exceptions: thin voxels with isotropic scattering and periodic axes, and optically
- * thick voxels with UncollidedDirections. In these cases, and where a serial solve does so, scattering orders are
- * summed one by one, with the source by octant if the serial solve has it. BLOCKS cannot be used with Scheme PUBLISHED,
- * nor with Source LINEAR and UncollidedDirections. Errors are estimated and targets met as in a serial solve
- * (numerics.md, section 9.2). AUTOMATIC_DECOMPOSITION chooses a serial solve also for these scenes: the two exceptions
- * above if they need many orders, which the serial solver accelerates; localised emission, which it follows along exact
- * rays; finer UncollidedDirections together with accelerated sweeps; and plane-parallel layers.
+ * thick voxels with UncollidedDirections. In these cases, and where a serial solve is not accelerated, scattering
+ * orders are summed by plain source iteration, with the source by octant if the serial solve uses it. BLOCKS cannot be
+ * used with Scheme PUBLISHED, nor with Source LINEAR and UncollidedDirections. Errors are estimated and targets met as
+ * in a serial solve (numerics.md, section 9.2). AUTOMATIC_DECOMPOSITION chooses a serial solve also for these scenes:
+ * the two exceptions above if they need many orders, which the serial solver accelerates; localised emission, whose
+ * uncollided flux the serial solver computes along exact rays; finer UncollidedDirections together with accelerated
+ * sweeps; and plane-parallel layers.
  *
  * @sa vtkParticipatingMedium vtkLightRig vtkEnvironmentReader vtkMediumRayCaster
  * @par Thanks
@@ -83,27 +84,27 @@ public:
 
   enum Schemes
   {
-    PUBLISHED = 0,   ///< as Gruson et al. describe it
-    CONSERVATIVE = 1 ///< conservative deposit, directions by solid angle, lights followed exactly
+    PUBLISHED = 0,   ///< scheme of Gruson et al. 2012
+    CONSERVATIVE = 1 ///< energy-conserving deposit, directions weighted by solid angle, exact rays from lamps
   };
 
   enum Sources
   {
-    CONSTANT = 0,         ///< in each voxel, as published
+    CONSTANT = 0,         ///< constant in each voxel, as published
     LINEAR = 1,           ///< linear between voxel centres: accurate for voxels of any optical thickness
     AUTOMATIC_SOURCE = 2, ///< LINEAR if iteration is accelerated, OCTANTS if many voxels are thick, else CONSTANT
-    OCTANTS = 3           ///< thick voxels: by octant, accurate if they absorb much; LINEAR if accelerated
+    OCTANTS = 3           ///< by octant in thick voxels, accurate if they absorb much; LINEAR if accelerated
   };
 
   enum Accelerations
   {
-    NONE = 0,                  ///< source iteration, as published
+    NONE = 0,                  ///< plain source iteration, as published
     AUTOMATIC_ACCELERATION = 1 ///< DSA: a diffusion solve between sweeps, if many orders would be needed
   };
 
   enum Algorithms
   {
-    SEQUENTIAL = 0, ///< Algorithm 1: one ray after the other, on one core of the host
+    SEQUENTIAL = 0, ///< Algorithm 1: rays in sequence, on one core of the host
     PARALLEL = 1    ///< Algorithm 2: propagation and collection on the device
   };
 
@@ -138,44 +139,45 @@ public:
 
   ///@{
   /// Directions per face of a cube for the uncollided flux of boundary sources: faces, sky and environment
-  /// (conservative scheme). This flux has shadows with sharp edges and is swept only once, so it can have many
-  /// directions while few suffice for scattered light. Default -1: as many as cost a quarter more time, for boundary
-  /// sources on faces only (LightSources.h); 0: as DirectionsPerFace; else square numbers up to 4096.
+  /// (conservative scheme). Uncollided flux has sharp shadows but is swept only once, so that more directions than for
+  /// scattered light are affordable. Default -1: a number that adds a quarter to the run time, for boundary sources on
+  /// faces only (LightSources.h); 0: as DirectionsPerFace; else square numbers up to 4096.
   tyndallRangeMacro(UncollidedDirections, int, -1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Relative error, in each voxel, of the uncollided flux of localised emission, which is followed along exact rays
-  /// (conservative scheme, no periodic axis). Default 0.02; 0.005 costs five to ten times as much, smaller values gain
-  /// nothing. With 0, and whenever other light has more power, localised emission is swept like other sources.
+  /// Relative error, in each voxel, of the uncollided flux of localised emission, which is computed along exact rays
+  /// (conservative scheme, no periodic axis). Default 0.02, valid [0, infinity); 0.005 takes five to ten times as long,
+  /// smaller values do not reduce the error. With 0, and whenever other light has more power, localised emission is
+  /// swept like other sources.
   tyndallRangeMacro(EmissionError, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
   /// Degree of the angular moments (spherical harmonics) of the scattering source (conservative scheme): higher degrees
-  /// resolve a forward peak better, and take longer. -1 (default): 3, in thin media 6, in slabs 9, or fewer if phase
-  /// function, Tolerance and memory require no more or allow no more; 0: scattering is isotropic with sigma_s (1 - g),
-  /// the similarity relation. Valid [-1, 15]; a quadrature of n x n DirectionsPerFace resolves degrees up to 2 n - 1,
-  /// higher ones are not used.
+  /// resolve a forward peak better, and take longer. -1 (default): 3, in thin media 6, in slabs 9, or less if phase
+  /// function and Tolerance do not require that degree or memory does not allow it; 0: scattering is isotropic with
+  /// sigma_s (1 - g), the similarity relation. Valid [-1, 15]; a quadrature of n x n DirectionsPerFace resolves degrees
+  /// up to 2 n - 1, higher ones are not used.
   tyndallRangeMacro(AngularDegree, int, -1, 15);
   ///@}
 
   ///@{
   /// Whether to write the angular moments of the scattering source (cells `scattered_moments`, `straight_on`, field
-  /// data `lamps_apart`), if the solve uses moments: vtkMediumRayCaster renders from them. They take four bytes times
-  /// (degree + 1)^2 per voxel and channel, a gigabyte at most. Default on.
+  /// data `lamps_apart`), if the solve uses moments: vtkMediumRayCaster renders from these moments. Memory: 4 (degree +
+  /// 1)^2 bytes per voxel and channel, a gigabyte at most. Default on.
   tyndallFlagMacro(StoreMoments);
   ///@}
 
   ///@{
-  /// Whether the rays of each direction have an offset of their own within the voxels (conservative scheme); more than
-  /// 100 UncollidedDirections always have. From 144 directions per face on this can halve the error; with fewer it can
-  /// double it. Default off.
+  /// Whether the rays of each direction have a different offset within the voxels (conservative scheme); offsets are
+  /// always used with more than 100 UncollidedDirections. With 144 directions per face or more, offsets can halve the
+  /// error; with fewer they can double it. Default off.
   tyndallFlagMacro(StaggeredRays);
   ///@}
 
   ///@{
-  /// Rays of each direction per voxel edge. Default 1, valid [1, 16].
+  /// Number of rays of each direction per voxel edge. Default 1, valid [1, 16].
   tyndallRangeMacro(MapResolution, int, 1, 16);
   ///@}
 
@@ -185,46 +187,46 @@ public:
   ///@}
 
   ///@{
-  /// Target for the relative error of fluence (root mean square of the error over that of the fluence), by the solver's
-  /// own estimate (conservative scheme). To meet it the solver chooses directions and tolerance if they have their
-  /// default values, and divides voxels if these are too coarse; it warns if the estimate stays above the target.
-  /// Quality is then not read. Default 0: no target; valid [0, 0.5].
+  /// Target for the relative error of fluence (root mean square of the error over that of the fluence), as the solver
+  /// estimates it (conservative scheme). To meet the target the solver chooses directions and tolerance if they have
+  /// their default values, and divides voxels that are too coarse; it warns if the estimate stays above the target.
+  /// With a target, Quality is not read. Default 0: no target; valid [0, 0.5].
   tyndallRangeMacro(TargetError, double, 0.0, 0.5);
   ///@}
 
   ///@{
-  /// Whether the solution of the last update is the initial guess of the next one: fewer sweeps if medium or lights
-  /// changed a little, and the same light within the tolerance. The solution stays in memory until an update with
+  /// Whether the solution of the last update is the initial guess of the next one: it saves sweeps if medium or lights
+  /// changed a little; the result is the same within Tolerance. The solution stays in memory until an update with
   /// WarmStart off: one float per voxel and channel, times (degree + 1)^2 with AngularDegree. Not used by the published
-  /// scheme. With Decomposition BLOCKS each rank keeps its own piece; if pieces have changed, all ranks start from
-  /// zero. Default off.
+  /// scheme. With Decomposition BLOCKS each rank keeps the solution of its piece; if the pieces have changed, the
+  /// initial guess is zero on all ranks. Default off.
   tyndallFlagMacro(WarmStart);
   ///@}
 
   ///@{
-  /// Whether to compute `net_flux` as well, which costs time and memory. Default off.
+  /// Whether to compute the array `net_flux`, which costs time and memory. Default off.
   tyndallFlagMacro(NetFlux);
   ///@}
 
   ///@{
   /// Whether to skip computations that the scene does not need. Default on; off computes everything, for comparison:
-  /// the same light in more time.
+  /// the result is the same in more time.
   tyndallFlagMacro(LeaveOut);
   ///@}
 
   ///@{
-  /// Directions for which `scattered_radiance` is written. Default 1 (enough for isotropic scattering), valid from 1
-  /// on.
+  /// Number of directions for which `scattered_radiance` is written. Default 1 (enough for isotropic scattering), valid
+  /// from 1 on.
   tyndallRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Results of the last update, besides those of vtkScatteringSolver, whose Residual is the error due to the omitted
-  /// orders: number of solves (more than one with TargetError); number of scattering orders; how many more orders the
-  /// last cold update took to the same residual (0 if this update was cold); estimated total relative error of fluence
-  /// (0 without EstimateError or TargetError; NaN, not known, after one order); half-range flux of the quadrature for
-  /// isotropic radiance through a face, over the exact value (0.99992 with 25 directions per face: the power that
-  /// enters from faces and sky has the same relative error).
+  /// Results of the last update: number of solves (more than one with TargetError); number of scattering orders; number
+  /// of additional orders that the last cold update needed to reach the same residual (0 if this update was cold);
+  /// estimated total relative error of fluence (0 without EstimateError or TargetError; NaN, unknown, after one order);
+  /// half-range flux of the quadrature for isotropic radiance through a face, over the exact value (0.99992 with 25
+  /// directions per face: the incident power from faces and sky has the same relative error). Residual of
+  /// vtkScatteringSolver is the error due to the omitted orders.
   vtkGetMacro(Solves, int);
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);

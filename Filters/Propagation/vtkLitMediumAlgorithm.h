@@ -14,10 +14,10 @@ struct Illumination;
 
 /**
  * @class vtkLitMediumAlgorithm
- * @brief superclass of the filters that take a medium and its illumination
+ * @brief superclass of filters whose inputs are a medium and its illumination
  *
- * It defines their input ports and the orientation of the environment. Outputs are vtkImageData unless a subclass says
- * otherwise.
+ * Defines the input ports and the orientation of the environment. Outputs are vtkImageData unless a subclass overrides
+ * FillOutputPortInformation.
  *
  * Input 0, the medium: vtkImageData; see the subclass for its arrays.
  * Input 1, optional: lights as vtkLightRig makes them, vtkPolyData.
@@ -26,12 +26,12 @@ struct Illumination;
  *
  * Cells of the medium that `vtkGhostType` marks as hidden are empty; hidden pixels of the environment are black.
  *
- * Light crosses the boundaries between pieces. In a parallel pipeline every rank therefore asks for all of each input,
- * and RequestData of a subclass returns the requested piece. Exceptions are subclasses whose ranks exchange light
- * (vtkScatteringSolver, vtkMediumRayCaster, vtkPhotonImportance), or that need only the medium's box
- * (vtkPhotonEmitter): each of their ranks asks for its own piece of the medium.
+ * Light crosses the boundaries between pieces. In a parallel pipeline every rank therefore requests the complete
+ * inputs, and RequestData of a subclass returns the requested piece. Exceptions are subclasses whose ranks exchange
+ * light (vtkScatteringSolver, vtkMediumRayCaster, vtkPhotonImportance), or that need only the medium's box
+ * (vtkPhotonEmitter): their ranks request one piece of the medium each.
  *
- * A subclass implements RequestData, and reads there the lights and the environment by ReadIllumination.
+ * A subclass implements RequestData, which reads the lights and the environment by ReadIllumination.
  *
  * @sa vtkPropagationAlgorithm vtkPhotonEmitter vtkMediumRayCaster
  */
@@ -94,7 +94,8 @@ protected:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override = 0;
 
-  /// Reads and checks the lights, and the environment oriented in the scene.
+  /// Reads and checks the lights and the environment, which is oriented by EnvironmentUp and EnvironmentAzimuth.
+  /// @throws InvalidInput if either is invalid
   tyndall::Illumination ReadIllumination(vtkInformationVector** inputs);
 
   int EnvironmentUp = 2;

@@ -18,17 +18,18 @@
 
 namespace
 {
-/// Whether all light enters through the faces of the box.
+/// Whether all light enters through the faces of the box: all lights are directional.
 bool OnlyFromFarAway(const tyndall::Illumination& illumination)
 {
   return std::all_of(illumination.lights.begin(), illumination.lights.end(),
     [](const tyndall::Light& light) { return light.type == tyndall::LightType::Directional; });
 }
 
-/// A sun gives white media, which look uniform under an isotropic sky, a bright and a dark side.
+/// Adds the default sky: an isotropic sky, and the default sun of vtkLightRig, because a white medium under an
+/// isotropic sky alone looks uniform.
 void AddDefaultSky(tyndall::Illumination& illumination, const tyndall::OwnAxes& axes)
 {
-  constexpr double radiance = 0.1; // a third of the sun's irradiance, as a clear sky has
+  constexpr double radiance = 0.1; // W/(length^2 sr): irradiance pi 0.1, a third of the sun's, as of a clear sky
   vtkNew<vtkLightRig> untouched;
   untouched->Update();
   illumination.lights = tyndall::InOwnAxes(tyndall::ReadLights(untouched->GetOutput()), axes);

@@ -44,7 +44,7 @@ SolverScene::SolverScene(const PieceBlocks& ofRanks, vtkAlgorithm* filter, vtkIm
 
 namespace
 {
-/// Extends a subdomain's solution to all voxels of the output, ghost cells included. Collective.
+/// Extends the arrays of a subdomain's solution to all voxels of the output, ghost cells included. Collective.
 void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light)
 {
   const auto spread = [&](std::vector<float>& values, int components) { pieces.SpreadToHeld(values, components); };
@@ -57,7 +57,7 @@ void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light
   spread(light.scatteredRadiance, light.channels * stored);
   const std::vector<double> ofMoments =
     pieces.GetDomain().Max({ static_cast<double>(light.scatteredMoments.size() / voxels),
-      static_cast<double>(light.straightOn.size() / voxels) }); // a rank without voxels does not know these numbers
+      static_cast<double>(light.straightOn.size() / voxels) }); // unknown on ranks without voxels
   spread(light.scatteredMoments, static_cast<int>(ofMoments[0]));
   spread(light.straightOn, static_cast<int>(ofMoments[1]));
 }
@@ -165,14 +165,14 @@ int vtkScatteringSolver::RequestData(
   }
   else if (!this->HasSolved && vtkImageData::GetData(outputs, 0)->GetNumberOfCells() > 0)
   {
-    this->Solved->Keep({}, {}, outputs); // the first rank's light, which RestoreLightBefore may need
+    this->Solved->Keep({}, {}, outputs); // piece of a serial solve, for RestoreLightBefore
     this->SolvedInPieces = true;
   }
   return done;
 }
 
-/// After a solve that failed or was aborted: restores the previous solution, if there is one, so that views keep
-/// showing it.
+/// Sets the outputs of an aborted solve to those of the last complete solve, if there are any, so that views keep
+/// showing them, and resets the read-only properties. Outputs of a failed solve stay empty.
 void vtkScatteringSolver::RestoreLightBefore(vtkInformationVector* outputs)
 {
   tyndall::LightField nothing;
@@ -190,7 +190,8 @@ void vtkScatteringSolver::RestoreLightBefore(vtkInformationVector* outputs)
   this->Note(nothing);
 }
 
-/// Whether this rank can solve on its piece; the answer may differ between ranks.
+/// Whether this rank prefers, or with BLOCKS requires, a solve on its piece of the medium; the result may differ
+/// between ranks.
 bool vtkScatteringSolver::WantsPieces(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
@@ -199,7 +200,8 @@ bool vtkScatteringSolver::WantsPieces(
                                                         : this->Decomposition == BLOCKS;
 }
 
-/// Why ranks with automatic decomposition did not agree on one.
+/// Reason, for field data `left_out`, why automatic decomposition chose a serial solve although each rank requests its
+/// own piece.
 std::string vtkScatteringSolver::ReasonNotToAgree(vtkInformationVector** inputs) const
 {
   const std::string refused = this->NotByBlocks(inputs);
@@ -227,6 +229,7 @@ std::string vtkScatteringSolver::ReasonNotToDecompose(const tyndall::SolverScene
   return {};
 }
 
+/// Whether the medium's refractive index is not 1 everywhere and the solver ignores it.
 /// @param medium  may be null or without voxels
 bool vtkScatteringSolver::IgnoresIndexOf(vtkImageData* medium)
 {
@@ -234,8 +237,9 @@ bool vtkScatteringSolver::IgnoresIndexOf(vtkImageData* medium)
     tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f);
 }
 
-/// Reads the light sources of the subdomain, or returns what rules out a decomposition.
-/// @throws InvalidInput if Decomposition is BLOCKS and there is such a reason
+/// Reads the light sources of the subdomain into `scene`, unless something rules out the decomposition.
+/// @return what rules out the decomposition; empty if nothing does
+/// @throws InvalidInput if Decomposition is BLOCKS and something rules it out
 std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
   const bool split = scene.pieces.IsDecomposed(), mustSplit = this->Decomposition == BLOCKS;
@@ -255,8 +259,8 @@ std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene
   return refused;
 }
 
-/// Reads the light sources of the subdomain. Collective.
-/// @return false, on all ranks, if the first rank is to solve the whole
+/// Reads the light sources of the subdomain into `scene`, and sets WholeFor. Collective.
+/// @return false, on all ranks, if the first rank is to solve the whole domain
 bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
   scene.share = this->PortOfShares() < 0 ? nullptr : vtkPolyData::GetData(inputs[this->PortOfShares()]);
@@ -281,8 +285,8 @@ bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformati
   return this->WholeFor.empty();
 }
 
-/// Returns this subdomain's cached solution if nothing has changed on any rank, or solves. Collective.
-/// @return false, on all ranks, if the first rank is to solve the whole
+/// Writes this subdomain's cached solution to the outputs if it is valid on all ranks, else solves. Collective.
+/// @return false, on all ranks, if the first rank is to solve the whole domain
 bool vtkScatteringSolver::UpdateCachedOrSolve(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -323,8 +327,8 @@ bool vtkScatteringSolver::UpdateCachedOrSolve(
   return true;
 }
 
-/// Writes the solution to output 0 beside the medium's arrays, its convergence history to output 1; reports it, and
-/// issues the solve's warnings on the first rank. Collective.
+/// Writes the solution and the medium's arrays to output 0 and the convergence history to output 1, sets the read-only
+/// properties, and issues the solve's warnings on the first rank. Collective.
 void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::LightField&& light,
   vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -353,7 +357,7 @@ void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::Lig
     pieces.KeepHeld(output);
     if (pieces.Held().VoxelCount() > 0)
     {
-      tyndall::WriteLight(std::move(light), output); // throws if the light is not finite, before any warning is issued
+      tyndall::WriteLight(std::move(light), output); // throws if a value is not finite, before any warning
       tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), medium, output);
       if (!this->Ignored.empty())
       {
@@ -367,7 +371,7 @@ void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::Lig
   }
 }
 
-/// Adds `lit_color` to the output of a subdomain, if LitColor is on. Collective.
+/// Adds the cell array `lit_color` to output 0 of this rank if LitColor is on. Collective.
 void vtkScatteringSolver::Color(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -380,7 +384,7 @@ void vtkScatteringSolver::Color(
   }
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   const tyndall::SolverScene scene(pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
-  vtkSmartPointer<vtkImageData> own; // may own the array of the fluence
+  vtkSmartPointer<vtkImageData> own; // owns the array of `fluence` if it was cropped
   tyndall::FloatField fluence;
   domain.Collective([&] {
     own = pieces.OwnImage(output);

@@ -29,31 +29,31 @@ struct SolverScene;
  * Input 3, optional: uncollided flux computed by another filter, vtkImageData of the medium's voxels, as
  * vtkPhotonMarcher and vtkPhotonReconstruction write it: cell arrays `fluence_direct` (1 or 3 components, W/length^2)
  * and `mean_direction` (3 components, power-weighted mean direction; missing: isotropic), field data `face_power_out`
- * (W that left unscattered through -x, +x, -y, +y, -z, +z; missing: 0). It replaces the uncollided flux due to lights,
- * environment, SkyColor and FaceRadiance, which are then not read; the medium's emission is added as always. The
- * incident power of the energy balance is the power that this flux lost in the medium plus the power that left, to
- * 1e-5.
+ * (W that left unscattered through -x, +x, -y, +y, -z, +z; missing: 0). This input replaces the uncollided flux due to
+ * lights, environment, SkyColor and FaceRadiance, which are then not read; the medium's emission is added in any case.
+ * The incident power of the energy balance is then the power that the uncollided flux lost in the medium plus its
+ * escaped power, to 1e-5.
  *
  * Output 1 is the convergence history, vtkTable.
  *
- * The last solution is cached and returned again for inputs with the same content, even if filters upstream have
- * recomputed them, if another piece is requested, and if only LitColor, Exposure or ToneCurve has changed. Each rank
- * caches the solution of its piece if the domain is decomposed, else the first rank that of the whole image.
+ * The last solution is cached. It is returned again for inputs with the same content, even if filters upstream have run
+ * again, another piece is requested, or LitColor, Exposure or ToneCurve has changed. If the domain is decomposed, each
+ * rank caches the solution of its piece, else the first rank caches the solution of the whole domain.
  *
  * In a parallel pipeline light crosses the boundaries between pieces: each rank solves on its piece, and ranks exchange
  * light; or, depending on Decomposition, the first rank solves on the whole domain and sends each rank the requested
  * piece.
  *
  * With LitColor output 0 also has the cell array `lit_color`, unsigned char, 4 components: the display colour of each
- * voxel, red, green, blue, not multiplied by alpha, and its opacity. A volume mapper that uses these components
+ * voxel, red, green, blue, not multiplied by alpha, and its opacity. A VTK volume mapper that uses these components
  * directly (vtkVolumeProperty with IndependentComponents off, an opacity function from 0 to 1 over 0 to 255, and
  * SetScalarOpacityUnitDistance(3, d)) shows the lit medium without OpenCL, approximately as vtkMediumRayCaster does
  * over black (numerics.md, section 14.8). d is field data `lit_color_distance`, a length; field data
  * `lit_color_exposure` is the factor by which radiance was multiplied.
  *
- * Field data `settings_used` of output 0 lists "Name = value" for each property that Quality chooses, and on several
- * ranks for Decomposition, with the value used. If Decomposition was automatic and the first rank solved the whole
- * domain, `left_out` says why.
+ * Field data `settings_used` of output 0 lists "Name = value" for each property that Quality chooses and, on several
+ * ranks, for Decomposition; value is the value used. If Decomposition was automatic and the first rank solved the whole
+ * domain, `left_out` reports the reason.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher
  */
@@ -63,15 +63,15 @@ public:
   vtkTypeMacro(vtkScatteringSolver, vtkPropagationAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Input port of the uncollided light, after those of vtkLitMediumAlgorithm.
+  /// Input port of the uncollided light; lower numbers are the ports of vtkLitMediumAlgorithm.
   static constexpr int UNCOLLIDED = 3;
 
   enum Qualities
   {
-    DRAFT = 0, ///< fast, to choose settings
-    USUAL = 1, ///< every property as set
+    DRAFT = 0, ///< fast and inaccurate, for adjusting a scene
+    USUAL = 1, ///< uses all properties as they are set
     FINE = 2,
-    REFERENCE = 3 ///< for comparisons
+    REFERENCE = 3 ///< most accurate and slowest, for comparison with other settings
   };
 
   enum Decompositions
@@ -84,7 +84,7 @@ public:
   ///@{
   /// Domain decomposition over MPI ranks. WHOLE: the first rank solves on the whole domain, for all ranks. BLOCKS: each
   /// rank solves on its piece; ranks exchange light, and hold a halo of one or two voxels. On one rank the solve is the
-  /// serial one. An error names the settings that cannot be used with BLOCKS; see the subclass. AUTOMATIC_DECOMPOSITION
+  /// serial one. Settings that cannot be used with BLOCKS (see the subclass) are an error. AUTOMATIC_DECOMPOSITION
   /// (default): BLOCKS if each of several ranks is asked for its own piece, the image has more than 64^3 voxels, the
   /// scene can be decomposed, and WHOLE would not be more accurate or much faster; else WHOLE.
   tyndallRangeMacro(Decomposition, int, AUTOMATIC_DECOMPOSITION, BLOCKS);
@@ -92,42 +92,43 @@ public:
 
   ///@{
   /// Accuracy: DRAFT, USUAL (default), FINE or REFERENCE. Chooses values for those properties below that have their
-  /// default value, depending on the scene; the other properties are left alone. USUAL changes none. FINE and REFERENCE
-  /// also divide rectangle lights more finely.
+  /// default value, depending on the scene; the other properties keep their values. USUAL changes no property. FINE and
+  /// REFERENCE also divide rectangle lights more finely.
   tyndallRangeMacro(Quality, int, DRAFT, REFERENCE);
   ///@}
 
   ///@{
   /// Whether to solve for a preview, while lights are moved: on a grid with half as many voxels along each axis (halved
-  /// again if it is still large; LeftOut reports its size), with few directions and to a few percent. Outputs are
-  /// `fluence` and `fluence_direct` only, interpolated linearly between the centres of the coarse voxels. Quality,
-  /// TargetError and WarmStart are then not read. With Decomposition BLOCKS each rank averages its piece, and the first
-  /// rank with voxels solves on the coarse grid for all ranks. Default off.
+  /// again if that grid is large; LeftOut reports its size), with few directions and a tolerance of a few percent. The
+  /// output has only `fluence` and `fluence_direct`, interpolated linearly between the centres of the coarse voxels.
+  /// Quality, TargetError and WarmStart are not read for a preview. With Decomposition BLOCKS each rank averages its
+  /// piece, and the first rank with voxels solves on the coarse grid for all ranks. Default off.
   tyndallFlagMacro(Preview);
   ///@}
 
   ///@{
-  /// Device memory that a solve may use, MiB. Default 0: all that the device has. vtkLightPropagationMaps keeps voxel
-  /// arrays that do not fit in host memory and streams them through the device slice by slice: this takes longer, with
-  /// bitwise the same result; with 0 it does so beyond nine tenths of the device's memory. vtkLatticeBoltzmannLighting
-  /// leaves arrays that do not fit in host memory; in vtkDiscreteOrdinates they are an error. If the device is a CPU,
-  /// which works on host memory in place, the budget bounds the memory used beside these arrays. With Decomposition
-  /// BLOCKS the budget applies to each rank, and vtkLightPropagationMaps reads arrays that do not fit from host memory.
-  /// DeviceName and field data `device` report how much memory was used on device and host. Valid [0, 2^31).
+  /// Device memory that a solve may use, MiB. Default 0: the device's memory. vtkLightPropagationMaps keeps voxel
+  /// arrays that exceed this budget (with 0, nine tenths of the device's memory) in host memory and streams them
+  /// through the device slice by slice: this takes longer, with bitwise the same result. vtkLatticeBoltzmannLighting
+  /// keeps arrays that exceed the budget in host memory; in vtkDiscreteOrdinates they are an error. If the device is a
+  /// CPU, which works on host memory in place, the budget bounds the memory used in addition to these arrays. With
+  /// Decomposition BLOCKS the budget applies to each rank, and vtkLightPropagationMaps reads arrays that exceed it from
+  /// host memory. DeviceName and field data `device` report how much memory was used on device and host. Valid [0,
+  /// 2^31).
   tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Whether to compute `lit_color`. Default off. The colour is the same from every direction: scattering towards the
-  /// viewer is taken as isotropic, whatever the phase function.
+  /// Whether to compute the cell array `lit_color`. Default off. The colour does not depend on the view direction:
+  /// scattering towards the viewer is taken as isotropic for any phase function.
   void SetLitColor(bool make);
   vtkGetMacro(LitColor, bool);
   vtkBooleanMacro(LitColor, bool);
   ///@}
 
   ///@{
-  /// Factor by which radiance is multiplied for `lit_color`. Default 0: chosen such that the mean of the lit part, seen
-  /// along the axes, becomes a medium grey. Valid [0, 1e30].
+  /// Factor by which radiance is multiplied for `lit_color`. Default 0: chosen such that the mean over the lit pixels
+  /// of views along the axes becomes a medium grey. Valid [0, 1e30].
   void SetExposure(double exposure);
   vtkGetMacro(Exposure, double);
   ///@}
@@ -138,13 +139,13 @@ public:
   vtkGetMacro(ToneCurve, int);
   ///@}
 
-  /// Latest modification, the properties of `lit_color` included.
+  /// Time of the latest modification, including LitColor, Exposure and ToneCurve.
   vtkMTimeType GetMTime() override;
 
   ///@{
-  /// Results of the last update: estimated relative error of fluence; relative error of the energy balance; seconds;
-  /// the device's name; what the scene did not need, one per line; "Name = value" of each property that Quality
-  /// chooses, as it was used, one per line.
+  /// Results of the last update: estimated relative error of fluence; relative error of the energy balance; run time in
+  /// seconds; the device's name; computations that the scene did not need, one per line; "Name = value" used for each
+  /// property that Quality chooses, one per line.
   vtkGetMacro(Residual, double);
   vtkGetMacro(BalanceError, double);
   vtkGetMacro(Seconds, double);
@@ -154,7 +155,7 @@ public:
   ///@}
 
   ///@{
-  /// Uncollided light (vtkImageData) by connection or as data; null: the solver computes its own.
+  /// Uncollided light (vtkImageData) by connection or as data; null: the solver computes the uncollided light.
   tyndallInputMacro(UncollidedLight, UNCOLLIDED);
   ///@}
 
@@ -166,38 +167,40 @@ protected:
   int RequestUpdateExtent(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
-  /// Returns the cached solution if it is still valid, or solves: on one subdomain per rank (Decomposition) or
-  /// serially. An error is reported once (Pieces/GuardedWork.h).
+  /// Returns the cached solution if it is valid, else solves: on one subdomain per rank (Decomposition) or serially. An
+  /// error is reported once (Pieces/GuardedWork.h).
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
   /// Solves on this rank's subdomain. Collective.
-  /// @return the light in this subdomain's voxels, with settingsUsed set
+  /// @param scene  medium and light sources of the subdomain
+  /// @return the light in the subdomain's voxels, with settingsUsed set
   virtual tyndall::LightField Solve(const tyndall::SolverScene& scene) = 0;
 
-  /// Sets the read-only properties to those of the first rank, which has solved for all. Collective.
+  /// Sets the read-only properties to those of the first rank, which has solved for all ranks. Collective.
   virtual void ShareResults(tyndall::Communicator& ranks);
 
-  /// Sets the read-only properties that report on a solve. Called with an empty `light` before a solve, so these stay
-  /// empty if it fails.
+  /// Sets the read-only properties that report on a solve. Called with an empty `light` before a solve, so that the
+  /// properties stay empty if the solve fails.
   virtual void Note(const tyndall::LightField& light);
 
   /// Whether the solver takes the medium's cell array `ior` into account. Default: no, with a warning if `ior` is not
   /// 1.
   virtual bool KnowsIndex() const { return false; }
 
-  /// The properties and inputs that rule out a decomposition, as text for an error message; empty if there are none.
+  /// Properties and inputs that rule out a decomposition, as text for an error message; empty if there are none.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const;
-  /// Why the serial solver would be more accurate or much faster for a scene that can be decomposed, in words that
-  /// follow "better for"; empty if it would not. Not for previews. Collective, the same on all ranks.
+  /// Why the serial solver would be more accurate or much faster for a scene that can be decomposed, as text that
+  /// follows "the first rank solved the whole, for"; empty if it would not. Not called for previews. Collective, the
+  /// same on all ranks.
   virtual std::string ReasonNotToDecompose(const tyndall::SolverScene& scene);
 
-  /// Input port of points (photons) that are distributed among ranks, see SolverScene::share; -1 if there is none.
+  /// Input port of photons that are distributed over ranks (SolverScene::share); -1 if there is none.
   virtual int PortOfShares() const { return -1; }
   /// Reads and checks the light sources of a subdomain: by default UncollidedLight, or else lights, environment, sky
   /// and boundary radiance, or the default sky.
   virtual tyndall::IlluminationInput ReadShining(tyndall::SolverScene& scene, vtkInformationVector** inputs);
 
-  /// Whether Quality is read.
+  /// Whether the solver reads the property Quality: not for previews.
   virtual bool ReadsQuality() const { return !this->Preview; }
 
   int Decomposition = AUTOMATIC_DECOMPOSITION;
@@ -232,14 +235,14 @@ private:
   void RestoreLightBefore(vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
-  bool SolvedInPieces = false; ///< whether Solved holds the outputs of this rank's piece only
-  bool HasSolved = false;      ///< whether this rank did the last update: its piece, or as first rank the whole
-  // Of the current update:
-  bool OverRanks = false;           ///< several ranks take part in it
-  bool IsFirstRank = true;          ///< the rank that warns for all of them
+  bool SolvedInPieces = false; ///< whether Solved holds only this rank's piece of the outputs
+  bool HasSolved = false;      ///< whether this rank solved in the last update, or had a valid cached solution
+  // State of the current update:
+  bool OverRanks = false;           ///< whether several ranks take part in the update
+  bool IsFirstRank = true;          ///< whether this is the first rank, which issues the warnings
   std::vector<std::string> Ignored; ///< arrays of the medium that the solver does not use
-  std::string WholeFor;             ///< why the first rank solves the whole although Decomposition was automatic
-  vtkTimeStamp ColorsTime;          ///< last change of LitColor, Exposure, ToneCurve, which need no new solve
+  std::string WholeFor;             ///< why the first rank solves the whole domain with automatic Decomposition
+  vtkTimeStamp ColorsTime;          ///< last change of LitColor, Exposure or ToneCurve, which need no new solve
 };
 
 #endif

@@ -45,7 +45,7 @@ std::vector<tyndall::Direction> DirectionsOf(vtkSeparablePhaseFunction* filter)
   }
 }
 
-/// Adds a column with `rows` values.
+/// Adds a column of doubles to a table: value(row) in each of `rows` rows.
 void AddColumn(vtkTable* table, const std::string& name, int rows, const std::function<double(int row)>& value)
 {
   vtkNew<vtkDoubleArray> column;
@@ -76,7 +76,11 @@ void WriteFactors(const tyndall::SeparablePhaseFunction& phase, vtkTable* table)
   }
 }
 
-/// @param other  the same phase function, factorised into the other kind of terms
+/// Writes output 1: eigenvalues and errors by the number of terms, 1 to `terms`.
+/// @param phase  the phase function, factorised as Factorisation selects
+/// @param other  the same phase function with the other factorisation
+/// @param bySingularValues  whether `phase` is factorised by singular values
+/// @param moments  Legendre moments of the phase function
 void WriteErrors(const tyndall::SeparablePhaseFunction& phase, const tyndall::SeparablePhaseFunction& other,
   bool bySingularValues, const std::vector<double>& moments, int terms, vtkTable* table)
 {

@@ -7,7 +7,7 @@
 
 /**
  * @class vtkSeparablePhaseFunction
- * @brief a phase function on a quadrature as a sum of products of factors, and the error of such sums
+ * @brief factorises a phase function on a quadrature into a sum of separable terms, and tabulates the error of the sum
  *
  * The matrix of the phase function between all pairs of directions becomes p(i, j) = sum_k lambda_k u_k(i) u_k(j), by
  * singular value decomposition or by spherical harmonics. vtkDiscreteOrdinates scatters by such terms; this filter
@@ -21,22 +21,22 @@
  * | `weight` | double | sr | solid angle of the quadrature point |
  * | `u_1`, `u_2`, ... | double | 1/sqrt(sr) | factors, orthonormal by the weights |
  *
- * Output 1: vtkTable, one row for each number of terms
+ * Output 1: vtkTable, one row for each number N of terms
  *
  * | column | type | unit | meaning |
  * |---|---|---|---|
- * | `terms` | int | 1 | N |
- * | `eigenvalue` | double | 1 | lambda of the Nth term |
- * | `singular_value` | double | 1 | Nth largest of the matrix |
+ * | `terms` | int | 1 | number of terms, N |
+ * | `eigenvalue` | double | 1 | lambda_N, factor of the Nth term |
+ * | `singular_value` | double | 1 | Nth largest singular value of the matrix |
  * | `error` | double | 1 | relative error of the sum of N terms: root of the sum of squares, weighted by solid angle |
- * | `error_singular_values`, `error_spherical_harmonics` | double | 1 | the same, for N terms of either kind |
- * | `error_theory` | double | 1 | the error predicted from the phase function's Legendre moments |
- * | `error_max` | double | 1 | largest difference, over the matrix's largest value |
+ * | `error_singular_values`, `error_spherical_harmonics` | double | 1 | `error` of N terms of either Factorisation |
+ * | `error_theory` | double | 1 | `error` predicted from the phase function's Legendre moments |
+ * | `error_max` | double | 1 | largest error of an entry of the matrix, over the largest entry |
  * | `row_sum_error` | double | 1 | largest difference from 1 of the total scattered power |
- * | `mean_cosine_error` | double | 1 | largest error of the mean cosine |
- * | `least_value` | double | 1 | smallest value over the largest; negative if there are too few terms |
+ * | `mean_cosine_error` | double | 1 | largest error of the mean cosine over all directions |
+ * | `least_value` | double | 1 | smallest over largest entry of the sum; negative if there are too few terms |
  *
- * A number is NaN if fewer than N terms are nonzero.
+ * A value is NaN if fewer than N terms are nonzero.
  *
  * @sa vtkDiscreteOrdinates
  * @par Thanks
@@ -60,9 +60,9 @@ public:
 
   enum DirectionSets
   {
-    CUBE = 0,            ///< through the cells of a cube's faces, weighted by solid angle: DirectionsPerFace
-    SPIRAL = 1,          ///< SpiralDirections on a spiral, weights such that moments are exact
-    PUBLISHED_SPIRAL = 2 ///< the same directions, all with the same weight
+    CUBE = 0,            ///< DirectionsPerFace per face of a cube, weighted by the solid angle of their cells
+    SPIRAL = 1,          ///< SpiralDirections on a spiral, with weights for which angular moments are exact
+    PUBLISHED_SPIRAL = 2 ///< SpiralDirections on the same spiral, all with the same weight
   };
 
   enum Factorisations
@@ -73,64 +73,64 @@ public:
 
   enum Samplings
   {
-    POINT_VALUES = 0, ///< as published
-    CELL_MEANS = 1    ///< averaged over the cells of both directions
+    POINT_VALUES = 0, ///< values for pairs of directions, as published
+    CELL_MEANS = 1    ///< means over the solid-angle cells of both directions
   };
 
   ///@{
-  /// Which phase function: HENYEY_GREENSTEIN (default), DOUBLE_HENYEY_GREENSTEIN, SCHLICK or RAYLEIGH.
+  /// Phase function that is factorised: HENYEY_GREENSTEIN (default), DOUBLE_HENYEY_GREENSTEIN, SCHLICK or RAYLEIGH.
   tyndallRangeMacro(PhaseFunction, int, HENYEY_GREENSTEIN, RAYLEIGH);
   ///@}
 
   ///@{
-  /// Mean cosine; of a double Henyey-Greenstein function, that of its first part. Default 0.5, as the paper's clouds,
-  /// valid (-1, 1).
+  /// Mean cosine of the phase function; for DOUBLE_HENYEY_GREENSTEIN, of its first lobe. Default 0.5, as for the clouds
+  /// of Gong et al.; valid [-0.999, 0.999].
   tyndallRangeMacro(G, double, -0.999, 0.999);
   ///@}
 
   ///@{
-  /// Mean cosine of the second part of a double Henyey-Greenstein function. Default -0.3.
+  /// Mean cosine of the second lobe of DOUBLE_HENYEY_GREENSTEIN. Default -0.3, valid [-0.999, 0.999].
   tyndallRangeMacro(SecondG, double, -0.999, 0.999);
   ///@}
 
   ///@{
-  /// Weight of the first part of a double Henyey-Greenstein function. Default 0.9, valid [0, 1].
+  /// Weight of the first lobe of DOUBLE_HENYEY_GREENSTEIN. Default 0.9, valid [0, 1].
   tyndallRangeMacro(FirstPart, double, 0.0, 1.0);
   ///@}
 
   ///@{
-  /// Quadrature: CUBE, SPIRAL (default) or PUBLISHED_SPIRAL.
+  /// Quadrature of directions: CUBE, SPIRAL (default) or PUBLISHED_SPIRAL.
   tyndallRangeMacro(DirectionSet, int, CUBE, PUBLISHED_SPIRAL);
   ///@}
 
   ///@{
-  /// Directions per face of the cube. Default 25, valid square numbers.
+  /// Number of directions per face of the cube (CUBE). Default 25, valid square numbers up to 144.
   tyndallRangeMacro(DirectionsPerFace, int, 1, 144);
   ///@}
 
   ///@{
-  /// Directions on the spiral. Default 128, valid [16, 1024].
+  /// Number of directions on the spiral (SPIRAL, PUBLISHED_SPIRAL). Default 128, valid [16, 1024].
   tyndallRangeMacro(SpiralDirections, int, 16, 1024);
   ///@}
 
   ///@{
-  /// Number of terms. Default 24, as published; at most as many as there are directions.
+  /// Number of terms of the sum. Default 24, as published; valid from 1 to the number of directions.
   tyndallRangeMacro(Terms, int, 1, 1024);
   ///@}
 
   ///@{
-  /// Factorisation that the terms come from: SINGULAR_VALUES (default) or SPHERICAL_HARMONICS.
+  /// Factorisation of the matrix into terms: SINGULAR_VALUES (default) or SPHERICAL_HARMONICS.
   tyndallRangeMacro(Factorisation, int, SINGULAR_VALUES, SPHERICAL_HARMONICS);
   ///@}
 
   ///@{
-  /// Matrix entries: the phase function's POINT_VALUES (default) or CELL_MEANS.
+  /// Matrix entries: POINT_VALUES (default) or CELL_MEANS of the phase function.
   tyndallRangeMacro(Sampling, int, POINT_VALUES, CELL_MEANS);
   ///@}
 
   ///@{
-  /// Whether terms are corrected such that they conserve power and have the exact mean cosine. Default on; off: as
-  /// published.
+  /// Whether the terms are corrected such that the sum conserves power and has the exact mean cosine. Default on; off:
+  /// as published.
   tyndallFlagMacro(Repaired);
   ///@}
 

@@ -61,7 +61,7 @@ void AddNumbers(
   table->AddColumn(column);
 }
 
-/// Adds a column of errors for each method that has rows, NaN in other methods' rows, for charts.
+/// Adds a column `error of METHOD` per method that has rows, for charts: `error_l2`, NaN in rows of other methods.
 void AddErrorsByMethod(vtkTable* table, const std::vector<Row>& rows)
 {
   std::set<tyndall::ComparedMethod> methods;
@@ -124,7 +124,8 @@ void Write(const tyndall::Comparison& comparison, vtkTable* table)
   tyndall::AddFact(table, "device", std::vector<std::string>{ comparison.device });
 }
 
-/// @param given  whether the user gave the reference, which may then have NaN where it is not known
+/// Writes the reference to an image (output 1).
+/// @param given  whether the reference is from input 3, and so may have NaN in voxels where it is not known
 void Write(tyndall::ReferenceLight&& reference, bool given, vtkImageData* image)
 {
   const std::array<int, 3>& size = reference.grid.size;
@@ -145,7 +146,7 @@ void Write(tyndall::ReferenceLight&& reference, bool given, vtkImageData* image)
   tyndall::AddFact(image, "reference", std::vector<std::string>{ reference.text });
 }
 
-/// Copies a field, with NaN, which is not compared, in hidden cells.
+/// Copies a cell array of the reference, with NaN in hidden cells, so that these are not compared.
 std::vector<float> Copied(const tyndall::FloatField& field, vtkImageData* image)
 {
   if (!field.IsThere())
@@ -163,7 +164,8 @@ std::vector<float> Copied(const tyndall::FloatField& field, vtkImageData* image)
   return values;
 }
 
-/// Reads the reference from an image; empty if there is no image.
+/// Reads the reference from the image of input 3.
+/// @return the reference; none if `image` is null
 std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
 {
   if (!image)
@@ -219,7 +221,7 @@ vtkTable* vtkSolverComparison::GetOutput()
   return vtkTable::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-// VTK's own macros have none for lists.
+// Defines the methods that add a value to a list property and that clear the list; VTK has no macro for these.
 #define LIST_OF_NUMBERS(add, removeAll, list) \
   void vtkSolverComparison::add(int value)    \
   {                                           \
@@ -291,7 +293,7 @@ int vtkSolverComparison::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({}, 0.0);
-  tyndall::WorkOnSubdomains work; // on the first rank alone: others would distort the timings
+  tyndall::WorkOnSubdomains work; // on the first rank only: others would distort timings
   work.port = MEDIUM;
   work.others = { REFERENCE };
   work.work = [&](const tyndall::PieceBlocks&, vtkInformationVector** inputs) {
@@ -329,11 +331,11 @@ void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationV
   }
 }
 
-/// Warns if the medium's refractive index varies, because some of the compared methods ignore it.
+/// Warns, also in field data, if the medium's refractive index is not 1 everywhere and a compared method ignores it.
 void vtkSolverComparison::TellOfIgnored(const tyndall::Comparison& comparison, vtkImageData* medium)
 {
   const bool ofMaps = std::any_of(comparison.rows.begin(), comparison.rows.end(),
-    [](const auto& row) { return row.method <= tyndall::ComparedMethod::DiscreteOrdinates; }); // maps included
+    [](const auto& row) { return row.method <= tyndall::ComparedMethod::DiscreteOrdinates; }); // or maps
   const std::vector<std::string> ignored =
     tyndall::IgnoredIndex(ofMaps && tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f));
   if (!ignored.empty())

@@ -19,7 +19,7 @@ struct ComparisonSettings;
 
 /**
  * @class vtkSolverComparison
- * @brief error against run time: shows which solver with which settings is best for a scene
+ * @brief compares error and run time of solvers and their settings for a scene
  *
  * Runs the chosen methods, each with several settings, on one scene, and compares their light with a reference: input
  * 3, or a Monte Carlo run, or a converged run of the best method (MonteCarloReference).
@@ -39,9 +39,9 @@ struct ComparisonSettings;
  *
  * | column | unit | meaning |
  * |---|---|---|
- * | `method` |  | its name |
- * | `setting` |  | in words |
- * | `quantity` |  | what is compared: `fluence`, or `fluence_direct` for photons, which do not follow scattered light |
+ * | `method` |  | name of the method |
+ * | `setting` |  | settings of the method, as text |
+ * | `quantity` |  | compared array: `fluence`, or `fluence_direct` for photons, which do not follow scattered light |
  * | `grid` | | size in voxels, for example 64x64x64 |
  * | `seconds` | s | median of Repeats runs, from input arrays to output arrays, without compilation of kernels |
  * | `peak_bytes` | byte | peak device memory; NaN for a method on the host |
@@ -50,21 +50,22 @@ struct ComparisonSettings;
  * | `error_relative` | 1 | root mean square of the voxels' relative errors, where the reference is above 0 |
  * | `balance` | 1 | relative error of the energy balance |
  * | `iterations` | 1 | scattering orders or sweeps; 1 for photons |
- * | `estimated_error` | 1 | the solver's own estimate of `error_l2` (if EstimateError); NaN if it is not known |
- * | `face_power_out` | W | 6 components: through -x, +x, -y, +y, -z, +z, channels summed |
+ * | `estimated_error` | 1 | estimate of `error_l2` by the solver (if EstimateError); NaN if unknown |
+ * | `face_power_out` | W | escaped power, 6 components: through -x, +x, -y, +y, -z, +z, channels summed |
  * | `power_in` | W | incident and emitted power, channels summed |
- * | `pareto` | 1 | 1 where no other row of the same quantity is both faster and better |
+ * | `pareto` | 1 | 1 if no other row of the same quantity is both faster and more accurate, else 0 |
  * | `error of METHOD` | 1 | `error_l2` of METHOD, NaN in other methods' rows: for charts |
  *
- * and field data `reference` (a description), `left_out` (what was not compared, and why) and `device`.
+ * and field data `reference` (a description), `left_out` (methods and settings that were not compared, with reasons)
+ * and `device`.
  *
- * Output 1: the reference, vtkImageData with those of the cell arrays `fluence` and `fluence_direct` that are known:
- * for viewing, or as input 3 of the next comparison of the same scene.
+ * Output 1: the reference, vtkImageData with the cell arrays `fluence` and `fluence_direct`, as far as they are known,
+ * for viewing or as input 3 of another comparison of the same scene.
  *
  * The settings that are tried are, for propagation: all Directions on all Coarsenings of the grid (those that do not
  * divide its size are skipped); MapResolutions above 1 with 25 or more directions; limited Orders with the number of
  * Directions nearest to 25. For photons: all PhotonCounts with the Hammersley sampler, and with AllSamplers the second
- * largest count with the other samplers. Both lattices are tried on all Coarsenings.
+ * largest count with the other samplers. The lattices of 18 and of 6 directions are tried on all Coarsenings.
  *
  * With EstimateError (default on here) solvers estimate their own errors, by an extra run that is not timed. Photons do
  * not support periodic axes and are skipped if there are any.
@@ -80,7 +81,7 @@ public:
   vtkTypeMacro(vtkSolverComparison, vtkPropagationAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Input port of the reference, after those of vtkPropagationAlgorithm.
+  /// Input port of the reference; lower numbers are the ports of vtkLitMediumAlgorithm.
   static constexpr int REFERENCE = 3;
   /// Output port of the reference.
   static constexpr int REFERENCE_OUTPUT = 1;
@@ -88,13 +89,13 @@ public:
   vtkTable* GetOutput();
 
   ///@{
-  /// The reference (vtkImageData) by connection or as data; null: a converged run.
+  /// Reference (vtkImageData) by connection or as data; null: a converged or Monte Carlo run (MonteCarloReference).
   tyndallInputMacro(Reference, REFERENCE);
   ///@}
 
   ///@{
   /// Methods that are compared: light propagation maps with their default settings (default on); with a constant source
-  /// and no acceleration (on); as published, on the device (on), and one ray after the other (off: slow); discrete
+  /// and no acceleration (on); as published, on the device (on) and sequentially on the host (off: slow); discrete
   /// ordinates (off); photons with reconstruction (on), with an importance map (off), and as published (off).
   tyndallFlagMacro(LightPropagationMaps);
   tyndallFlagMacro(ConstantSource);
@@ -107,17 +108,17 @@ public:
   ///@}
 
   ///@{
-  /// Whether Monte Carlo is compared: photons that are scattered until they are absorbed or leave, by the medium's own
-  /// phase function and along bent rays, an unbiased and unfiltered estimate of the whole fluence. Default off. If
-  /// light is refracted and there is no input 3, such photons are then also the reference. Skipped if the medium emits,
-  /// axes are periodic or faces reflect light.
+  /// Whether Monte Carlo is compared: photons that are scattered until they are absorbed or leave, by the medium's
+  /// phase function and along bent rays, an unbiased and unfiltered estimate of fluence. Default off. If light is
+  /// refracted and there is no input 3, the reference is then also computed by Monte Carlo. Skipped if the medium
+  /// emits, axes are periodic or faces reflect light.
   tyndallFlagMacro(MonteCarlo);
   ///@}
 
   ///@{
   /// Whether lattices of 18 and of 6 directions are compared, as vtkLatticeBoltzmannLighting solves them by default:
-  /// diffusion. Default off. Skipped if voxels are not cubes. If light is refracted the lattice takes its uncollided
-  /// light from photons, for each PhotonCount, and is skipped if Monte Carlo is.
+  /// diffusion. Default off. Skipped if voxels are not cubes. If light is refracted, the uncollided light of the
+  /// lattice is computed by photons, for each PhotonCount, and the lattice is skipped if Monte Carlo is.
   tyndallFlagMacro(LatticeBoltzmann);
   ///@}
 
@@ -125,10 +126,10 @@ public:
   /// Whether, without input 3, the reference is a Monte Carlo run (sixteen or more sets of photons) also if light
   /// travels in straight lines. Such a reference shares no solver with the compared methods, but has noise; field data
   /// `reference` reports its standard error. 0: never, the reference is light propagation maps. 1: always; it is an
-  /// error if the medium emits, axes are periodic or faces reflect light. 2 (default): if Monte Carlo can be more
-  /// accurate than the compared methods, that is if its forecast standard error within half of TimeBudget is at most a
-  /// third of the error of the finest maps that are tried, or if maps take too long or do not fit in memory; never if
-  /// only photons are compared. `reference` says what was chosen, and why.
+  /// error if the medium emits, axes are periodic or faces reflect light. 2 (default): if its predicted standard error
+  /// after half of TimeBudget is at most a third of the error of the finest light propagation maps that are tried, or
+  /// if those take too long or do not fit in memory; never if only photons are compared. field data `reference` reports
+  /// the choice and its reason.
   enum MonteCarloReferences
   {
     NEVER = 0,
@@ -141,27 +142,31 @@ public:
   ///@}
 
   ///@{
-  /// Directions per face that are tried. Default 4, 9, 25, 64, 100; valid square numbers.
+  /// Adds to the list of numbers of directions per face that are tried. Default 4, 9, 25, 64, 100; valid square
+  /// numbers.
   void AddDirections(int perFace);
   void RemoveAllDirections();
   ///@}
   ///@{
-  /// Map resolutions that are tried. Default 1, 2; valid [1, 16].
+  /// Adds to the list of map resolutions that are tried: rays of each direction per voxel edge. Default 1, 2; valid [1,
+  /// 16].
   void AddMapResolution(int raysPerEdge);
   void RemoveAllMapResolutions();
   ///@}
   ///@{
-  /// Voxel edges that are tried, as multiples of the medium's. Default 1, 2, 4; valid from 1 on.
+  /// Adds to the list of voxel edges that are tried, as multiples of the edges of the medium's voxels. Default 1, 2, 4;
+  /// valid from 1 on.
   void AddCoarsening(int factor);
   void RemoveAllCoarsenings();
   ///@}
   ///@{
-  /// Limits on the number of scattering orders that are tried, besides no limit. Default 1, 3, 10; valid from 1 on.
+  /// Adds to the list of limits on the number of scattering orders that are tried, in addition to no limit. Default 1,
+  /// 3, 10; valid from 1 on.
   void AddOrders(int orders);
   void RemoveAllOrders();
   ///@}
   ///@{
-  /// Numbers of photons that are tried. Default 10000, 100000, 1000000; valid from 1 on.
+  /// Adds to the list of numbers of photons that are tried. Default 10000, 100000, 1000000; valid from 1 on.
   void AddPhotonCount(int photons);
   void RemoveAllPhotonCounts();
   ///@}
@@ -178,15 +183,15 @@ public:
   ///@}
 
   ///@{
-  /// Time limit of an update in seconds, without compilation of kernels: half of it is for a converged run, the methods
-  /// share the rest. Runs that do not fit are not started, or are stopped; field data `left_out` names them. Default
-  /// 300, valid above 0.
+  /// Time limit of an update in seconds, without compilation of kernels: half of it for the reference, the rest for the
+  /// methods. Runs that do not fit are not started, or are stopped; field data `left_out` names them. Default 300,
+  /// valid above 0.
   tyndallRangeMacro(TimeBudget, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Results of the last update: description of the reference, seconds, the device's name, and what was not compared,
-  /// one per line.
+  /// Results of the last update: description of the reference, run time in seconds, the device's name, and the methods
+  /// and settings that were not compared, one per line.
   vtkGetCharFromStdStringMacro(ReferenceText);
   vtkGetMacro(Seconds, double);
   vtkGetCharFromStdStringMacro(DeviceName);
