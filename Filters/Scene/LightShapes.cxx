@@ -19,13 +19,13 @@ namespace
 {
 using Vector = std::array<double, 3>;
 
-constexpr int Sides = 16;       ///< of round shapes
-constexpr int Bands = 8;        ///< of a ball, from pole to pole
-constexpr double Shaft = 0.02;  ///< radius of an arrow's shaft, relative to its length
-constexpr double Head = 0.06;   ///< radius of its head, relative to its length
-constexpr double Neck = 0.75;   ///< start of its head, relative to its length
-constexpr double Gamma = 2.2;   ///< of a screen
-constexpr double Facing = 0.35; ///< length of a rectangle's arrow, relative to its longer edge
+constexpr int Sides = 16;       ///< number of sides of round shapes
+constexpr int Bands = 8;        ///< number of bands of a ball, from pole to pole
+constexpr double Shaft = 0.02;  ///< radius of an arrow's shaft, relative to the arrow's length
+constexpr double Head = 0.06;   ///< radius of an arrow's head, relative to the arrow's length
+constexpr double Neck = 0.75;   ///< distance of an arrow's head from the arrow's start, relative to the arrow's length
+constexpr double Gamma = 2.2;   ///< gamma of a display
+constexpr double Facing = 0.35; ///< length of a rectangle's arrow, relative to the rectangle's longer edge
 
 Vector Along(const Vector& from, double factor, const Vector& direction)
 {
@@ -35,7 +35,7 @@ Vector Along(const Vector& from, double factor, const Vector& direction)
 std::array<unsigned char, 3> ColorOf(const Light& light)
 {
   const double most = std::max({ light.power[0], light.power[1], light.power[2] });
-  std::array<unsigned char, 3> color = { 60, 60, 60 }; // a lamp without power
+  std::array<unsigned char, 3> color = { 60, 60, 60 }; // colour of a light without power
   for (int c = 0; c < 3 && most > 0.0; ++c)
   {
     color[c] = static_cast<unsigned char>(std::lround(255.0 * std::pow(light.power[c] / most, 1.0 / Gamma)));
@@ -43,7 +43,7 @@ std::array<unsigned char, 3> ColorOf(const Light& light)
   return color;
 }
 
-/// Collects lines and polygons in the current colour.
+/// Collects the lines and polygons of shapes, with the current colour (SetColor) as colour of their points.
 class Drawing
 {
 public:
@@ -89,7 +89,7 @@ private:
   vtkNew<vtkUnsignedCharArray> Colors;
 };
 
-/// Points on circles about an axis.
+/// Computes points on circles about an axis, Sides points per circle.
 class Rings
 {
 public:
@@ -106,7 +106,7 @@ private:
   Vector Y;
 };
 
-/// Adds the surface between two circles about one axis.
+/// Draws the surface between two circles about a common axis.
 void Skin(
   Drawing& drawing, const Rings& rings, const Vector& from, double fromRadius, const Vector& to, double toRadius)
 {
@@ -139,8 +139,8 @@ void Ball(Drawing& drawing, const Vector& centre, double radius)
   }
 }
 
-/// Draws the outline of a cone. `length` is the length of its edge lines, so that a half space is a disc of that
-/// radius.
+/// Draws the outline of a spot light's cone.
+/// @param length  length of the cone's edge lines, so that an angle of 180 degrees is drawn as a disc of that radius
 void Cone(Drawing& drawing, const Light& light, double length)
 {
   const double half = vtkMath::RadiansFromDegrees(0.5 * light.angle);

@@ -6,7 +6,7 @@
 
 /**
  * @class vtkAimedLight
- * @brief superclass of lights that emit from their position towards a focal point
+ * @brief superclass of lights that emit from their position in the direction of a focal point
  *
  * @sa vtkSun vtkSpotLight
  */
@@ -17,7 +17,7 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Point at which the light is aimed; must differ from its position. Default (0, 0, 0).
+  /// Point at which the light is aimed; must differ from the light's position. Default (0, 0, 0).
   tyndallSetRange3Macro(FocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(FocalPoint, double);
   ///@}
@@ -26,8 +26,9 @@ protected:
   using vtkLightSource::vtkLightSource;
   ~vtkAimedLight() override;
 
-  /// Sets the direction from the position to the focal point, and the distance between them as length; leaves the type.
-  /// @throws InvalidInput if both are the same point
+  /// Returns a light whose direction is from the position to the focal point, drawn with their distance as length;
+  /// subclasses set its type.
+  /// @throws InvalidInput if position and focal point coincide
   tyndall::DrawnLight MakeLight() const override;
 
   double FocalPoint[3] = { 0.0, 0.0, 0.0 };

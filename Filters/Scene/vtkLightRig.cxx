@@ -25,7 +25,7 @@ using tyndall::LightType;
 
 constexpr double BallSize = 0.02; ///< radius of a point light's ball, relative to ShapeSize
 
-/// Normalises a vector, so that values of `direction` can be compared; a vector of length 0 is left as it is.
+/// Normalises a direction, so that values of the array `direction` can be compared; (0, 0, 0) stays (0, 0, 0).
 std::array<double, 3> Normalized(const std::array<double, 3>& direction)
 {
   Light along;
@@ -44,7 +44,8 @@ Light SunLight(double elevation, double azimuth, const double power[3])
   return sun;
 }
 
-/// The numbers that define a light, in the order of the arguments of AddDirectionalLight, AddPointLight, ...
+/// Name, number of arguments and names of the arguments of a type of light, in the order of AddDirectionalLight,
+/// AddPointLight, ...; used by the one-number-at-a-time methods and their messages.
 struct NumbersOfLight
 {
   const char* Kind;
@@ -59,7 +60,9 @@ constexpr NumbersOfLight NumbersOfLights[] = {
   { "rectangle", 11, "x, y, z, dx, dy, dz, red, green, blue, width, height" },
 };
 
-/// @param numbers  in the order of NumbersOfLights
+/// Light of a type, from its numbers.
+/// @param type  one of LightTypes
+/// @param numbers  arguments in the order of NumbersOfLights
 Light LightOf(int type, const double* numbers)
 {
   const auto next = [&numbers] {
@@ -88,10 +91,10 @@ Light LightOf(int type, const double* numbers)
 
 struct vtkLightRig::AddedLights
 {
-  std::array<std::vector<Light>, 4> Lights;   ///< by type
+  std::array<std::vector<Light>, 4> Lights;   ///< complete lights by type
   std::array<std::vector<double>, 4> Numbers; ///< numbers of an incomplete light, by type
 
-  /// Adds a number, and the light once all of its numbers are present.
+  /// Adds a number of a light of this type; with the last number, adds the light.
   void Add(int type, double number)
   {
     std::vector<double>& numbers = this->Numbers[type];
@@ -200,7 +203,7 @@ int vtkLightRig::FillInputPortInformation(int, vtkInformation* information)
 int vtkLightRig::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tyndall::AskForAll(request, inputs[0], outputs); // every rank has every light
+  tyndall::AskForAll(request, inputs[0], outputs); // every rank reads all lights
   return 1;
 }
 

@@ -29,17 +29,17 @@ struct Light;
  * | `angle`      | double     | full opening angle of a spot, degrees; else 0                                      |
  *
  * Order of the lights: the sun, then directional, point, spot and rectangle lights, each type in the order of addition;
- * then the lights of the inputs, input after input. By default the rig has one white sun of 1 W/length^2 at an
+ * then the lights of the inputs, in the order of the inputs. By default the rig has one white sun of 1 W/length^2 at an
  * elevation of 45 degrees.
  *
- * A rectangle emits from one side, that of `direction`. Its first edge is horizontal (normal to z and `direction`;
- * along x if `direction` is vertical), its second edge is normal to the first and to `direction`.
+ * A rectangle emits only to the side of `direction`. Its first edge is horizontal (normal to z and `direction`; along x
+ * if `direction` is vertical), its second edge is normal to the first and to `direction`.
  *
  * Output 1: shapes of the rig's own lights for a view (lights of inputs are drawn by their sources): vtkPolyData of
  * lines and polygons with point array `color` (red, green, blue as bytes).
  *
  * A direction of length 0, an angle outside [1e-12, 180], a negative size or power, or a value that is not finite is an
- * error that names the light; the outputs are empty then.
+ * error that names the light; the outputs are then empty.
  *
  * @sa vtkSun vtkPointLight vtkSpotLight vtkRectangleLight
  */
@@ -50,7 +50,7 @@ public:
   vtkTypeMacro(vtkLightRig, vtkPolyDataAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Values of the array `light_type`.
+  /// Types of lights: values of the array `light_type`.
   enum LightTypes
   {
     DIRECTIONAL = 0,
@@ -81,8 +81,8 @@ public:
   ///@}
 
   ///@{
-  /// Adds a parallel beam that travels in direction (dx, dy, dz), of any length, with irradiance (r, g, b), W/length^2,
-  /// on a plane normal to it.
+  /// Adds a parallel beam that travels in direction (dx, dy, dz), of any length above 0, with irradiance (r, g, b),
+  /// W/length^2, on a plane normal to that direction.
   void AddDirectionalLight(double dx, double dy, double dz, double r, double g, double b);
   void RemoveAllDirectionalLights();
   int GetNumberOfDirectionalLights() const;
@@ -96,8 +96,8 @@ public:
   ///@}
 
   ///@{
-  /// Adds a point source at (x, y, z) that emits uniformly into a cone about (dx, dy, dz), of any length, with power
-  /// (r, g, b), W. `angle` is the full opening angle of the cone, degrees, valid [1e-12, 180].
+  /// Adds a point source at (x, y, z) that emits uniformly into a cone about (dx, dy, dz), of any length above 0, with
+  /// power (r, g, b), W. `angle` is the full opening angle of the cone, degrees, valid [1e-12, 180].
   void AddSpotLight(
     double x, double y, double z, double dx, double dy, double dz, double r, double g, double b, double angle);
   void RemoveAllSpotLights();
@@ -105,8 +105,8 @@ public:
   ///@}
 
   ///@{
-  /// Adds a rectangle centred at (x, y, z) that emits to the side of (dx, dy, dz), of any length, as a Lambertian
-  /// emitter with power (r, g, b), W. `width` and `height` are the lengths of its first and second edge.
+  /// Adds a rectangle centred at (x, y, z) that emits to the side of (dx, dy, dz), of any length above 0, as a
+  /// Lambertian emitter with power (r, g, b), W. `width` and `height` are the lengths of its first and second edge.
   void AddRectangleLight(double x, double y, double z, double dx, double dy, double dz, double r, double g, double b,
     double width, double height);
   void RemoveAllRectangleLights();
@@ -117,9 +117,9 @@ public:
   void RemoveAllLights();
 
   ///@{
-  /// Adds the same lights one number at a time, in the order of the arguments above; the last number of a light adds
-  /// the light. An incomplete light is an error that says how many numbers it needs. Removing the lights of a type also
-  /// removes its pending numbers.
+  /// Adds a light one number at a time, in the order of the arguments of AddDirectionalLight, AddPointLight, ...; the
+  /// last number adds the light. An incomplete light is an error that says how many numbers it needs. Removing the
+  /// lights of a type also removes its pending numbers.
   void AddDirectionalLightNumber(double number);
   void AddPointLightNumber(double number);
   void AddSpotLightNumber(double number);
@@ -127,9 +127,9 @@ public:
   ///@}
 
   ///@{
-  /// Appearance of output 1: ShapeSize is the length of the arrows of directional lights and of the cones of spot
-  /// lights (default 1, valid above 0); arrows point at ShapeCenter (default (0, 0, 0)). The emitted light does not
-  /// depend on them.
+  /// Size of the shapes of output 1: ShapeSize is the length of the arrows of directional lights and of the cones of
+  /// spot lights (default 1, valid above 0); arrows point at ShapeCenter (default (0, 0, 0)). The emitted light does
+  /// not depend on these properties.
   tyndallRangeMacro(ShapeSize, double, tyndall::AboveZero, tyndall::AnyHigh);
   tyndallSetRange3Macro(ShapeCenter, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(ShapeCenter, double);

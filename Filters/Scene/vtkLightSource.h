@@ -12,14 +12,14 @@ struct DrawnLight;
 
 /**
  * @class vtkLightSource
- * @brief superclass of sources of a single light that users place in a view
+ * @brief superclass of filters that create a single light, which users place in a view
  *
  * Output 0: the light in the format of vtkLightRig's output, vtkPolyData of one vertex with the same point arrays.
  * Every solver accepts it as input of lights, and vtkLightRig combines any number of them.
- * Output 1: its shape for a view, vtkPolyData of lines and polygons with point array `color` (red, green, blue as
- * bytes: the light's colour at full brightness). It is a separate port because every point of output 0 is a light.
+ * Output 1: shape of the light for a view, vtkPolyData of lines and polygons with point array `color` (red, green, blue
+ * as bytes: the light's colour at full brightness). The shape is not part of output 0, where every point is a light.
  *
- * A light without direction or size, or with a value that is not finite, is an error; the outputs are empty then.
+ * A light without direction or size, or with a value that is not finite, is an error; the outputs are then empty.
  *
  * @sa vtkSun vtkPointLight vtkSpotLight vtkRectangleLight vtkLightRig
  */
@@ -37,18 +37,20 @@ public:
   ///@}
 
   ///@{
-  /// Position of the light. For a sun: where its arrow is drawn; its light travels from there towards the focal point.
+  /// Position of the light. For a sun: start of its arrow, from which light travels in the direction of the focal
+  /// point.
   tyndallSetRange3Macro(Position, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(Position, double);
   ///@}
 
 protected:
-  vtkLightSource(double x, double y, double z); ///< default position
+  vtkLightSource(double x, double y, double z); ///< sets the default position
   ~vtkLightSource() override;
 
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
-  /// Returns the light without power and position, and the size at which it is drawn.
+  /// Returns type, direction, size and angle of the light, and the size of its shape; the caller sets power and
+  /// position.
   virtual tyndall::DrawnLight MakeLight() const = 0;
 
   double Power[3] = { 1.0, 1.0, 1.0 };

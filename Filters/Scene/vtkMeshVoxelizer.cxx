@@ -50,8 +50,8 @@ bool IsMaterialNumber(double value)
 }
 
 /// Converts a material's number to an int.
-/// @param what  name of the value, for messages
-/// @throws InvalidInput if it is not a whole number within the range of int
+/// @param what  description of the value, for messages
+/// @throws InvalidInput if the value is not a whole number within the range of int
 int MaterialNumber(double value, const std::string& what)
 {
   if (!IsMaterialNumber(value))
@@ -74,7 +74,7 @@ vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* mesh)
   {
     return mesh;
   }
-  // A shallow copy, since a filter must not be connected to a mesh that has a pipeline of its own.
+  // The filter reads a shallow copy, because `mesh` belongs to the pipeline that produced it.
   vtkNew<vtkPolyData> input;
   input->ShallowCopy(mesh);
   vtkNew<vtkTriangleFilter> filter;
@@ -85,7 +85,7 @@ vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* mesh)
   return filter->GetOutput();
 }
 
-/// Collects the triangles of a solid, and the points that they use.
+/// Collects triangles of a mesh as a solid, with only the points that these triangles use, renumbered from 0.
 class SolidBuilder
 {
 public:
@@ -120,7 +120,9 @@ private:
   std::vector<int> NewNumbers;
 };
 
-/// Checks an array of material numbers with the cell numbers of the mesh, for messages. Vertices and lines are ignored.
+/// Checks the cell array of material numbers, if the mesh has it, before triangulation changes cell numbers, which
+/// messages name. Vertices and lines are ignored.
+/// @param name  name of the mesh, for messages
 /// @throws InvalidInput that names the array and the error
 void CheckNumbers(vtkPolyData* mesh, const std::string& name, const std::string& array)
 {
@@ -155,9 +157,9 @@ void CheckNumbers(vtkPolyData* mesh, const std::string& name, const std::string&
   }
 }
 
-/// Converts a mesh to solids: one for each number in a cell array, in ascending order, or one for the complete mesh.
-/// Polygons and strips become triangles; vertices, lines, and points without triangles are dropped.
-/// @param name        of the mesh, for messages, e.g. "Mesh 2"
+/// Converts a mesh to solids: one for each material number in a cell array, in ascending order, or one for the complete
+/// mesh. Polygons and strips become triangles; vertices, lines, and points without triangles are dropped.
+/// @param name        name of the mesh, for messages, e.g. "Mesh 2"
 /// @param array       name of the cell array of material numbers; without it all cells have the number `otherwise`
 /// @param materialOf  returns the material for a number
 /// @throws InvalidInput unless the array has one whole number for each cell
@@ -189,7 +191,7 @@ std::vector<Solid> SolidsOf(vtkPolyData* given, const std::string& name, const s
   }
   if (solids.empty())
   {
-    solids.push_back({ name, {}, materialOf(otherwise) }); // the kernels report that it is empty
+    solids.push_back({ name, {}, materialOf(otherwise) }); // an empty solid, for which the voxelizer throws
   }
   return solids;
 }
@@ -207,8 +209,9 @@ using tyndall::Triple;
 const char* const DefaultNumbers = "material_id";
 constexpr std::size_t NumbersOfMaterial = 9;
 
-/// Name of the cell array of material numbers. ParaView's panel sends "(by name)" for the default array.
-/// @throws InvalidInput if another array was selected that no mesh has
+/// Name of the cell array of material numbers. The default array is selected by an empty name or, in ParaView's panel,
+/// "(by name)".
+/// @throws InvalidInput if the selected array is a point array, or another array than the default that no mesh has
 std::string NumbersArray(vtkMeshVoxelizer* filter, const std::vector<vtkPolyData*>& meshes)
 {
   vtkInformation* chosen = filter->GetInputArrayInformation(0);
@@ -276,12 +279,12 @@ double LongestEdge(const tyndall::Grid& grid)
   return std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
 }
 
-/// The outside scattering that is set; or, by default, one that makes light visible on its way through the box at small
-/// loss.
+/// Scattering coefficients outside the meshes, 1/length: OutsideScattering or, if that is below 0, a scattering optical
+/// thickness of 0.5 along the longest edge of the box, so that rays of light are visible but little attenuated.
 Rgb OutsideScattering(const double asked[3], const tyndall::Grid& grid)
 {
   const bool automatic = std::all_of(asked, asked + 3, [](double value) { return value < 0.0; });
-  const double edge = LongestEdge(grid); // 0 without voxels, which the kernels refuse
+  const double edge = LongestEdge(grid); // 0 without voxels, an error of the voxelizer
   const double suiting = edge > 0.0 ? 0.5 / edge : 0.0;
   return automatic ? Rgb{ suiting, suiting, suiting } : Triple(asked);
 }
@@ -303,15 +306,15 @@ tyndall::RefractiveMediumSettings SettingsOf(vtkMeshVoxelizer* filter, const std
   return settings;
 }
 
-/// The requested voxels.
+/// Voxels that the pipeline requests from this rank.
 struct AskedVoxels
 {
-  tyndall::VoxelBox made; ///< with ghost cells; empty if there are more ranks than voxels
+  tyndall::VoxelBox made; ///< requested voxels with ghost cells; empty if there are more ranks than voxels
   tyndall::VoxelBox own;
-  bool ofWhole = false; ///< all ranks together request the complete grid
+  bool ofWhole = false; ///< whether all ranks together request the complete grid
 };
 
-/// The voxels of an extent of points; a flat extent has one layer of voxels.
+/// Voxels of an extent of points, clamped to the grid; an extent of one point along an axis has one layer of voxels.
 tyndall::VoxelBox VoxelsOf(const std::array<int, 6>& extent, const tyndall::Grid& grid)
 {
   tyndall::VoxelBox box;
@@ -324,6 +327,8 @@ tyndall::VoxelBox VoxelsOf(const std::array<int, 6>& extent, const tyndall::Grid
   return box;
 }
 
+/// Voxels that the pipeline requests.
+/// @param output  information of the output, with the update extent and piece
 /// @param divided  whether each rank requests its own piece
 AskedVoxels VoxelsAskedFor(vtkInformation* output, const tyndall::Grid& grid, bool divided)
 {
@@ -354,7 +359,7 @@ void Pack(const tyndall::RefractiveMediumSettings& settings, const tyndall::Voxe
   const bool constant = medium.ior.empty();
   if (constant)
   {
-    medium.ior.assign(box.VoxelCount(), static_cast<float>(settings.outside.n)); // for filters that read n
+    medium.ior.assign(box.VoxelCount(), static_cast<float>(settings.outside.n)); // for filters that require `ior`
   }
   tyndall::AddCells(output, "ior", std::move(medium.ior), 1);
   if (!constant)
@@ -379,8 +384,8 @@ void Pack(const tyndall::RefractiveMediumSettings& settings, const tyndall::Voxe
 
 struct vtkMeshVoxelizer::AddedMaterials
 {
-  std::vector<std::pair<double, Material>> InOrder; ///< with their numbers
-  std::vector<double> Numbers;                      ///< numbers of an incomplete material
+  std::vector<std::pair<double, Material>> InOrder; ///< materials with their numbers, in the order of addition
+  std::vector<double> Numbers;                      ///< pending numbers of an incomplete material
 
   /// @throws InvalidInput if a material is incomplete or invalid
   void Check() const
@@ -408,7 +413,7 @@ vtkMeshVoxelizer::vtkMeshVoxelizer()
   const tyndall::RefractiveMediumSettings defaults;
   this->SupersamplingFactor = defaults.voxelization.samples;
   this->FilterSize = defaults.filterSize;
-  // Overrides the default selection of vtkImageAlgorithm, the active scalars.
+  // Replaces the default array of vtkImageAlgorithm, the active scalars, by `material_id`.
   this->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, DefaultNumbers);
 }
 
@@ -455,7 +460,7 @@ int vtkMeshVoxelizer::FillInputPortInformation(int, vtkInformation* information)
 
 int vtkMeshVoxelizer::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  tyndall::Grid grid; // without ModelBounds the box depends on the meshes
+  tyndall::Grid grid; // default without ModelBounds, when the box depends on the meshes
   tyndall::GuardedInformation(this, [&] {
     if (IsOn(this->ModelBounds))
     {
@@ -482,7 +487,8 @@ int vtkMeshVoxelizer::RequestUpdateExtent(
   return 1;
 }
 
-/// Reads the solids of all meshes.
+/// Reads the solids of all meshes, in the order of the inputs.
+/// @throws InvalidInput if a mesh, its material numbers or a material is invalid
 std::vector<Solid> vtkMeshVoxelizer::ReadSolids(vtkInformationVector** inputs)
 {
   this->Added->Check();

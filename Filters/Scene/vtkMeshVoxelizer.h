@@ -18,15 +18,16 @@ struct Solid;
 
 /**
  * @class vtkMeshVoxelizer
- * @brief converts closed meshes to a medium of voxels, for light that is bent by its refractive index
+ * @brief converts closed meshes to a medium of voxels with refractive index, coefficients and mean cosine
  *
  * Input, repeatable: vtkPolyData, each a closed mesh; polygons and strips are triangulated, points at the same position
  * are merged. Where meshes overlap, the later input takes precedence.
  *
  * Optional cell array `material_id` (whole numbers), or the array selected by SetInputArrayToProcess(0, ...): the
- * material of each cell. The cells of each number must form a closed mesh; where these overlap, the higher number takes
- * precedence. Without the array, an input's material is its index, from 0 on; a selected array must exist in at least
- * one input. AddMaterial defines materials; those that are not defined have the Inside properties.
+ * material of each cell. The cells of each number must form a closed mesh; where closed meshes of one input overlap,
+ * the higher number takes precedence. Without the array, an input's material is its index, from 0 on; a selected array
+ * must exist in at least one input. AddMaterial defines materials; a number without definition has the Inside
+ * properties.
  *
  * Output: vtkImageData with the cell arrays
  *
@@ -39,27 +40,27 @@ struct Solid;
  * | `sigma_s` | 1, or 3 if coloured | 1/length | scattering coefficient |
  * | `g` | 1, or 3 if `sigma_s` or `sigma_a` is coloured | 1 | mean cosine, only if scattering materials differ in it |
  *
- * and the field data `phase_function`, `g` (mean cosine, if all voxels have the same), `left_out` (steps that this
- * scene did not need) and `device`. Lengths are in the dataset's own unit.
+ * and the field data `phase_function`, `g` (mean cosine, if all voxels have the same), `left_out` (computations that
+ * the scene did not need) and `device`. Lengths are in the dataset's own unit.
  *
  * A voxel is divided into SupersamplingFactor^3 fine voxels, whose centres are classified as inside or outside in
- * integer arithmetic: edges and corners count once, a closed mesh never leaks, and the result is the same to the last
- * bit on every run. The exact position of the surface between the centres is then added in fractions of fine voxels.
- * Coefficients and index of a voxel are the means over its materials. The fine grid is processed in slabs of a fixed
- * size.
+ * integer arithmetic: a centre on an edge or corner of a triangle is counted once, a closed mesh never leaks, and the
+ * result is bitwise reproducible. The exact position of the surface between the centres is then added in fractions of
+ * fine voxels. Coefficients and index of a voxel are the means over its materials. The fine grid is processed in slabs
+ * of fixed size, which limits the memory.
  *
- * A voxel has one g: if its scattering materials differ in g, it is their mean weighted by sigma_s, and each sigma_s is
- * scaled such that sigma_s (1 - g) is conserved; `left_out` says so.
+ * Each voxel has one g: if its scattering materials differ in g, their mean weighted by sigma_s, and each sigma_s is
+ * scaled such that sigma_s (1 - g) is conserved; `left_out` reports it.
  *
  * An open or empty mesh is an error that names the number of boundary edges (edges with an odd number of triangles) and
  * the first of them; a mesh without area is an error as well. Meshes that intersect themselves, are inverted, have
- * triangles of inconsistent orientation, or degenerate triangles cause a warning that says how many and where; points
- * that are enclosed an odd number of times are inside.
+ * triangles of inconsistent orientation, or degenerate triangles cause a warning that reports their number and
+ * position; points that are enclosed an odd number of times count as inside.
  *
- * Only the requested extent or piece is voxelised, together with the neighbouring voxels that the smoothing filter
- * needs: values equal those of the complete grid bit for bit. In a parallel pipeline every rank has the complete meshes
- * and makes its piece; OccupiedVolume, warnings and whether n is constant refer to the complete grid. If a single
- * process requests a part, OccupiedVolume and warnings refer to that part.
+ * Only the requested extent or piece is voxelised, with a halo for the smoothing filter: values equal those of the
+ * complete grid bit for bit. In a parallel pipeline every rank has the complete meshes and makes its piece;
+ * OccupiedVolume, warnings and whether n is constant refer to the complete grid. If a single process requests part of
+ * the grid, OccupiedVolume and warnings refer to that part.
  *
  * @sa vtkRefractionOctree vtkPhotonMarcher vtkMediumRayCaster
  * @par Thanks
@@ -80,15 +81,16 @@ public:
   ///@}
 
   ///@{
-  /// The box, (xmin, xmax, ymin, ymax, zmin, zmax), length. Default all 0: a box of cubic voxels centred on the meshes,
-  /// as tight as Margin allows.
+  /// Bounds of the voxel grid, (xmin, xmax, ymin, ymax, zmin, zmax), length. Default all 0: a box of cubic voxels
+  /// centred on the meshes, as tight as Margin allows.
   tyndallSetRange6Macro(ModelBounds, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector6Macro(ModelBounds, double);
   ///@}
 
   ///@{
-  /// Margin on each side of the meshes if ModelBounds are 0, as a fraction of the longest edge of their bounds; at
-  /// least the reach of the smoothing filter. Default 0.125, valid [0, infinity).
+  /// Margin between the meshes and each face of the box if ModelBounds are 0, as a fraction of the longest edge of the
+  /// meshes' bounds; at least half the width of the smoothing filter plus one voxel. Default 0.125, valid [0,
+  /// infinity).
   tyndallRangeMacro(Margin, double, 0.0, tyndall::AnyHigh);
   ///@}
 
@@ -99,9 +101,9 @@ public:
   ///@}
 
   ///@{
-  /// Scattering coefficients sigma_s, red, green, blue, 1/length, valid [0, infinity). Default inside (0, 0, 0).
-  /// Default outside (-1, -1, -1): if all three are below 0, sigma_s is chosen such that the longest edge of the box
-  /// has a scattering optical thickness of 0.5; see UsedOutsideScattering.
+  /// Scattering coefficients sigma_s inside the meshes and outside, red, green, blue, 1/length, valid [0, infinity).
+  /// Default inside (0, 0, 0). Default outside (-1, -1, -1): if all three are below 0, sigma_s is chosen such that the
+  /// longest edge of the box has a scattering optical thickness of 0.5; see UsedOutsideScattering.
   tyndallSetRange3Macro(InsideScattering, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(InsideScattering, double);
   tyndallSetRange3Macro(OutsideScattering, double, tyndall::AnyLow, tyndall::LargestFloat);
@@ -109,7 +111,8 @@ public:
   ///@}
 
   ///@{
-  /// Absorption coefficients sigma_a, red, green, blue, 1/length. Default (0, 0, 0), valid [0, infinity).
+  /// Absorption coefficients sigma_a inside the meshes and outside, red, green, blue, 1/length. Default (0, 0, 0),
+  /// valid [0, infinity).
   tyndallSetRange3Macro(InsideAbsorption, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(InsideAbsorption, double);
   tyndallSetRange3Macro(OutsideAbsorption, double, 0.0, tyndall::LargestFloat);
@@ -117,7 +120,7 @@ public:
   ///@}
 
   ///@{
-  /// Mean cosine g of the scattering angle. Default 0, valid (-1, 1).
+  /// Mean cosine g of the scattering angle inside the meshes and outside. Default 0, valid (-1, 1).
   tyndallRangeMacro(InsideMeanCosine, double, -1.0, 1.0);
   tyndallRangeMacro(OutsideMeanCosine, double, -1.0, 1.0);
   ///@}
@@ -126,7 +129,7 @@ public:
   /// Defines the material of cells with this number, instead of the Inside properties: index n, sigma_s and sigma_a
   /// (red, green, blue, 1/length), and mean cosine g. If a number is defined several times, the last definition
   /// applies. AddMaterialNumber takes the same nine numbers one at a time. Incomplete or invalid materials cause an
-  /// error on update, whether used or not.
+  /// error on update, even if no cell has their number.
   void AddMaterial(double number, double n, double scatteringR, double scatteringG, double scatteringB,
     double absorptionR, double absorptionG, double absorptionB, double g);
   void AddMaterialNumber(double number);
@@ -135,19 +138,20 @@ public:
   ///@}
 
   ///@{
-  /// Amplitude of gradient noise on the index inside: n becomes n + IndexNoise times a smooth random number in [-1, 1].
-  /// Default 0, valid from 0 to less than the index.
+  /// Amplitude of gradient noise on the refractive index n inside the meshes: n becomes n + IndexNoise noise, with a
+  /// smooth random field noise in [-1, 1]. Default 0, valid from 0 to less than the index.
   tyndallRangeMacro(IndexNoise, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Amplitude of the same noise on scattering inside: sigma_s becomes sigma_s (1 + ScatteringNoise noise). Default 0,
-  /// valid [0, 1].
+  /// Amplitude of gradient noise on sigma_s inside the meshes: sigma_s becomes sigma_s (1 + ScatteringNoise noise),
+  /// with the noise of IndexNoise. Default 0, valid [0, 1].
   tyndallRangeMacro(ScatteringNoise, double, 0.0, 1.0);
   ///@}
 
   ///@{
-  /// Feature size of the noise, length. Default 0: an eighth of the box's longest edge. Valid [0, infinity).
+  /// Feature size of the noise (IndexNoise, ScatteringNoise), length. Default 0: an eighth of the box's longest edge.
+  /// Valid [0, infinity).
   tyndallRangeMacro(NoiseSize, double, 0.0, tyndall::AnyHigh);
   ///@}
 
@@ -158,23 +162,23 @@ public:
   ///@}
 
   ///@{
-  /// Fine voxels per edge of a voxel. Occupancy varies continuously, because the position of the surface between fine
-  /// centres is included; the factor determines how well it follows edges and curvature. Default 4, valid [1, 16].
+  /// Number of fine voxels per edge of a voxel. Occupancy varies continuously with the position of the surface for any
+  /// factor; the factor determines how well it resolves edges and curvature of the surface. Default 4, valid [1, 16].
   tyndallRangeMacro(SupersamplingFactor, int, 1, 16);
   ///@}
 
   ///@{
-  /// Width of the Gaussian that smooths n, in voxels; its standard deviation is a sixth of the width. Default 9, valid
-  /// odd numbers from 1 (no smoothing) to 65.
+  /// Width of the Gaussian filter that smooths n, in voxels; the standard deviation is a sixth of the width. Default 9,
+  /// valid odd numbers from 1 (no smoothing) to 65.
   tyndallRangeMacro(FilterSize, int, 1, 65);
   ///@}
 
   tyndallDeviceMacro();
 
   ///@{
-  /// Results of the last update: the volume inside the meshes (length^3, including its discretisation error), sigma_s
-  /// outside (red, green, blue, 1/length), run time in seconds, name of the device, and the steps that the scene did
-  /// not need, one per line.
+  /// Results of the last update: the volume inside the meshes (length^3, including the discretisation error), sigma_s
+  /// outside (red, green, blue, 1/length), run time in seconds, name of the device, and the computations that the scene
+  /// did not need, one per line.
   vtkGetMacro(OccupiedVolume, double);
   vtkGetVector3Macro(UsedOutsideScattering, double);
   vtkGetMacro(Seconds, double);

@@ -38,9 +38,10 @@ using tyndall::Rgb;
 using tyndall::Text;
 using tyndall::Times;
 
-constexpr std::size_t VoxelsOfThread = 16384; ///< minimum number of voxels per thread
+constexpr std::size_t VoxelsOfThread = 16384; ///< smallest number of voxels that one host thread computes
 
-/// Parameters of the medium at relative density 1, in the dataset's unit.
+/// Properties of the medium at relative density 1: sigma_s, sigma_a (1/length), emission (W/(length^3 sr)) and mean
+/// cosine g, per channel, in the dataset's unit of length.
 struct Recipe
 {
   Rgb sigma_s;
@@ -59,7 +60,8 @@ void RequireMeanCosine(const char* property, double g)
   Require(std::abs(g) < 1.0, std::string(property) + " is " + Text("%g", g) + "; it must lie between -1 and 1.");
 }
 
-/// The numbers in a column of the phase function's table.
+/// Values of a column of the table of phase function TABULATED.
+/// @throws InvalidInput if the column is missing or has not one number per row
 std::vector<double> ColumnOf(vtkTable* table, const char* name)
 {
   vtkAbstractArray* const column = table->GetColumnByName(name);
@@ -77,7 +79,10 @@ std::vector<double> ColumnOf(vtkTable* table, const char* name)
   return values;
 }
 
-/// @param g  mean cosines of the medium
+/// Description of the phase function that PhaseFunction selects.
+/// @param g  mean cosines of the medium, per channel
+/// @param table  PhaseTable; null if none is connected
+/// @throws InvalidInput if the phase function is invalid
 tyndall::PhaseDescription DescriptionOf(vtkParticipatingMedium* filter, const Rgb& g, vtkTable* table)
 {
   constexpr const char* names[] = { "isotropic", "henyey_greenstein", "double_henyey_greenstein", "schlick", "rayleigh",
@@ -96,7 +101,7 @@ tyndall::PhaseDescription DescriptionOf(vtkParticipatingMedium* filter, const Rg
     description.cosines = ColumnOf(table, "cosine");
     description.values = ColumnOf(table, "value");
   }
-  description.Functions(); // throws if it is invalid
+  description.Functions(); // throws if the phase function is invalid
   return description;
 }
 
@@ -118,11 +123,11 @@ struct Unit
   const char* name;
   double millimetres;
 };
-/// In the order of LengthUnits from MICROMETRES on.
+/// Units of length, in the order of LengthUnits from MICROMETRES on.
 constexpr std::array<Unit, 5> Units = { { { "um", 1e-3 }, { "mm", 1.0 }, { "cm", 10.0 }, { "m", 1e3 },
   { "km", 1e6 } } };
 
-/// Length of the dataset's unit, millimetres.
+/// Length of the dataset's unit in millimetres.
 double MillimetresOf(vtkParticipatingMedium* filter)
 {
   const int unit = filter->GetLengthUnit();
@@ -164,7 +169,9 @@ double LargestExtinction(const Recipe& recipe)
   return largest;
 }
 
-/// @param ofChannels  empty, or the mean cosines of red, green and blue
+/// Mean cosines per channel: ChannelMeanCosines or, if these are empty, MeanCosine.
+/// @param ofChannels  ChannelMeanCosines: empty, or the mean cosines of red, green and blue
+/// @throws InvalidInput if a mean cosine is outside (-1, 1), or `ofChannels` has another size
 Rgb MeanCosines(vtkParticipatingMedium* filter, const std::vector<double>& ofChannels)
 {
   Require(ofChannels.empty() || ofChannels.size() == 3,
@@ -186,7 +193,7 @@ Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& chann
 {
   Require(NotNegative(filter->GetExtinctionScale()),
     "ExtinctionScale is " + Text("%g", filter->GetExtinctionScale()) + "; it must be finite and not negative.");
-  const Rgb g = MeanCosines(filter, channelMeanCosines); // validated with a preset as well
+  const Rgb g = MeanCosines(filter, channelMeanCosines); // read also with a preset, to check the values
   Recipe recipe = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? CustomMedium(filter) : RealMedium(filter);
   recipe.g = filter->GetPreset() == vtkParticipatingMedium::CUSTOM ? g : recipe.g;
   for (int c = 0; c < 3; ++c)
@@ -199,7 +206,8 @@ Recipe RecipeOf(vtkParticipatingMedium* filter, const std::vector<double>& chann
   return recipe;
 }
 
-/// Relative density of each voxel: 0 at `minimum`, 1 at `maximum`, linear beyond.
+/// Relative density of each voxel: max(0, (density - minimum) / (maximum - minimum)), above 1 beyond `maximum`.
+/// @throws InvalidInput if the limits are invalid, or a density is not finite
 std::vector<float> RelativeDensity(
   const tyndall::FloatField& density, const tyndall::Grid& grid, double minimum, double maximum)
 {
@@ -228,7 +236,8 @@ std::vector<float> RelativeDensity(
   return relative;
 }
 
-/// The same for a level set.
+/// Relative density of each voxel from the signed distance to a level set (FogInside).
+/// @throws InvalidInput if a distance is not finite
 std::vector<float> FogOfLevelSet(const tyndall::FloatField& distance, const tyndall::Grid& grid)
 {
   const float* const values = distance.Values();
@@ -242,14 +251,15 @@ std::vector<float> FogOfLevelSet(const tyndall::FloatField& distance, const tynd
   return relative;
 }
 
-/// Extreme values by which an array is recognised as a level set.
+/// Extreme values of an array, in the image and on its border, by which a level set is recognised.
 struct Signs
 {
   double lowest = AnyValue, highest = -AnyValue, lowestOnBorder = AnyValue;
   static constexpr double AnyValue = std::numeric_limits<double>::max();
 };
 
-/// @param box  voxels of the array, relative to the complete grid
+/// Extreme values of an array.
+/// @param box  voxels of the array, in voxels of the complete grid
 Signs SignsOf(const float* values, const tyndall::VoxelBox& box, const tyndall::Grid& whole)
 {
   Signs signs;
@@ -277,7 +287,7 @@ Signs SignsOf(const float* values, const tyndall::VoxelBox& box, const tyndall::
   return signs;
 }
 
-/// Whether field data of vtkVDBReader say that an array was a level set.
+/// Whether field data of vtkVDBReader report that an array was read from a level set.
 bool WasLevelSet(vtkImageData* image, const std::string& array)
 {
   auto* const kind =
@@ -285,7 +295,7 @@ bool WasLevelSet(vtkImageData* image, const std::string& array)
   return kind && kind->GetNumberOfValues() == 1 && kind->GetValue(0) == "level set";
 }
 
-/// Sets the relative density of hidden cells to 0, whatever MinimumDensity is.
+/// Sets the relative density of hidden cells to 0.
 void EmptyHidden(vtkImageData* image, std::vector<float>& relative)
 {
   const std::vector<unsigned char> hidden = tyndall::HiddenCells(image);
@@ -319,7 +329,7 @@ const tyndall::MediumPreset* PresetOf(int preset)
   return isThere ? &tyndall::MediumPresets()[preset - 1] : nullptr;
 }
 
-/// Computes the output from the input.
+/// Computes the output of this rank from its piece of the density.
 /// @return the relative density of each voxel
 std::vector<float> FillMedium(vtkParticipatingMedium* filter, const Recipe& recipe, vtkImageData* input,
   vtkInformationVector* phaseTable, vtkImageData* output)
@@ -421,8 +431,8 @@ int vtkParticipatingMedium::RequestInformation(
   return done;
 }
 
-/// Requests the matching piece of the density if each rank requests its own piece; otherwise the complete density,
-/// whose size is reported.
+/// Requests the piece of the density that matches the requested output if each rank requests its own piece; otherwise
+/// requests the complete density, whose size PhysicalExtent reports.
 int vtkParticipatingMedium::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -459,11 +469,11 @@ void vtkParticipatingMedium::NoteSize(const tyndall::Grid& grid, const tyndall::
 }
 
 /// Warns if the density looks like a level set. Collective.
-/// @param box  voxels of the image, relative to the complete grid
+/// @param box  voxels of the image, in voxels of the complete grid
 void vtkParticipatingMedium::DoubtLevelSet(
   const tyndall::Domain& domain, vtkImageData* image, const tyndall::VoxelBox& box)
 {
-  constexpr double small = 0.01; // threshold relative to the largest value: smaller negative values are noise about 0
+  constexpr double small = 0.01; // relative to the largest value; negative values below this are noise about 0
   if (this->LevelSet)
   {
     return;
@@ -498,7 +508,7 @@ int vtkParticipatingMedium::RequestData(
   const bool asksForPiece = tyndall::EachAsksForItsPiece(request, outputs);
   tyndall::WorkOnSubdomains work;
   work.port = DENSITY;
-  work.wholeOnEachRank = true; // cell by cell
+  work.wholeOnEachRank = true; // each cell depends only on its own density
   work.wantsPieces = [&](vtkInformationVector**) { return asksForPiece; };
   work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
     if (pieces.GetDomain().Any(pieces.IsDecomposed() && !asksForPiece))
@@ -511,7 +521,8 @@ int vtkParticipatingMedium::RequestData(
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 
-/// Makes the medium of this rank's piece of the density; the reported size is that of the complete grid. Collective.
+/// Computes the medium of this rank's piece of the density, and sets the properties that report the size of the
+/// complete dataset. Collective.
 void vtkParticipatingMedium::MakeMedium(
   const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkImageData* output)
 {

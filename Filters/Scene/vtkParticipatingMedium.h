@@ -23,9 +23,9 @@ struct VoxelBox;
  *
  * Input: vtkImageData with a cell or point array of one component (SetPointData): the active scalars, or the array
  * selected by SetInputArrayToProcess(0, ...). An input array `g` (1 or 3 components), for example of a mixture, is the
- * mean cosine by voxel; it is passed on and takes precedence over MeanCosine.
+ * mean cosine per voxel; it is copied to the output and takes precedence over MeanCosine.
  *
- * Input 1, optional: vtkTable with the columns `cosine` and `value`, the phase function of TABULATED.
+ * Input 1, optional: vtkTable with the columns `cosine` and `value`, the phase function if PhaseFunction is TABULATED.
  *
  * Output: the input with the cell arrays
  *
@@ -35,9 +35,8 @@ struct VoxelBox;
  * | `sigma_s`  | 1, or 3 if coloured  | 1/length          |
  * | `emission` | 1 or 3; only if EmissionScale is not 0 | W/(length^3 sr) |
  *
- * and the phase function as field data: `phase_function` (its name), `g` (mean cosine; 3 numbers if channels differ),
- * and if needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`. Lengths are in the dataset's own
- * unit.
+ * and the phase function as field data: `phase_function` (name), `g` (mean cosine; 3 numbers if channels differ), and
+ * if needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`. Lengths are in the dataset's own unit.
  *
  * With the relative density rho = (density - MinimumDensity) / (MaximumDensity - MinimumDensity), at least 0:
  *
@@ -46,13 +45,13 @@ struct VoxelBox;
  *     emission = rho EmissionScale EmissionColor
  *
  * With LevelSet the array is a signed distance from a surface, negative inside: rho is 1 inside, decreases linearly
- * within one voxel of the surface, and is 0 outside. A level set that is used as a density would put the fog outside of
- * the surface. A warning is given if field data of vtkVDBReader say that the array is a level set, or if it is negative
+ * within one voxel of the surface, and is 0 outside. A level set used as a density would fill the outside of the
+ * surface. A warning is issued if field data of vtkVDBReader report that the array is a level set, or if it is negative
  * inside the image and positive on its border.
  *
- * A preset provides sigma_s, sigma_a (1/mm at rho = 1) and g of a real medium instead of Albedo and MeanCosine;
- * ExtinctionScale multiplies the coefficients, 1 being the medium as measured, and LengthUnit or MillimetresPerUnit
- * gives the length of the dataset's unit.
+ * A preset provides measured sigma_s, sigma_a (1/mm at rho = 1) and g of a medium, which replace Albedo and MeanCosine;
+ * ExtinctionScale multiplies the coefficients (1: as measured), and LengthUnit or MillimetresPerUnit sets the length of
+ * the dataset's unit.
  *
  * An optical thickness above 0 but below 0.01, or above 1e6, causes a warning, because it is seldom intended.
  *
@@ -67,14 +66,15 @@ public:
   vtkTypeMacro(vtkParticipatingMedium, vtkImageAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Media for SetPreset. GetPresetSource names the source of each.
+  /// Media for SetPreset, with the meaning of relative density rho = 1. GetPresetSource returns the source of the data
+  /// of a medium.
   enum Presets
   {
     CUSTOM = 0,
     CLOUD,     ///< rho 1: 1 g of liquid water per cubic metre, droplets of 10 um
     FOG,       ///< rho 1: 1 droplet per cubic centimetre
     SMOKE,     ///< rho 1: 1 g of soot per cubic metre
-    SKIM_MILK, ///< for this and the following: rho 1 is the medium as measured
+    SKIM_MILK, ///< from SKIM_MILK to SKIN_2, rho 1: the medium as measured
     WHOLE_MILK,
     CREAM,
     ESPRESSO,
@@ -85,8 +85,8 @@ public:
   };
 
   ///@{
-  /// The medium, one of Presets. Default CUSTOM: uses Albedo and MeanCosine. PhaseFunction applies to presets as well:
-  /// their own one is HENYEY_GREENSTEIN, which is isotropic for g 0.
+  /// The medium, one of Presets. Default CUSTOM: uses Albedo and MeanCosine. PhaseFunction applies to presets, too;
+  /// their data are for HENYEY_GREENSTEIN, which is isotropic for g = 0.
   tyndallRangeMacro(Preset, int, CUSTOM, SKIN_2);
   ///@}
 
@@ -98,10 +98,10 @@ public:
   ///@}
 
   ///@{
-  /// How point arrays are read. 0 (default): each point is the centre of a voxel with its value; n points are n voxels,
-  /// the output has cell arrays, and its bounds are half a spacing wider than the input's on each side. 1: voxels are
-  /// the cells between points, with the mean of their points; n points are n - 1 voxels. If a cell array is read as
-  /// well, voxels are the cells and point arrays are averaged; field data `settings_used` then say so.
+  /// How point arrays are read. 0 (default): each point is the centre of a voxel with its value: n points make n
+  /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's. 1: points are
+  /// averaged to the voxels between them: n points make n - 1 voxels. If a cell array is read as well, the cells are
+  /// the voxels and points are averaged; field data `settings_used` then report it.
   enum PointDataKinds
   {
     VOXELS_AROUND_POINTS = 0,
@@ -111,7 +111,7 @@ public:
   ///@}
 
   ///@{
-  /// Densities up to this value are vacuum. Default 0.
+  /// Density that has relative density 0: voxels of this or a smaller density are vacuum. Default 0.
   tyndallRangeMacro(MinimumDensity, double, tyndall::AnyLow, tyndall::AnyHigh);
   ///@}
 
@@ -123,14 +123,14 @@ public:
 
   ///@{
   /// Whether the array is a level set: signed distance from a surface in the dataset's unit, negative inside. Default
-  /// off. On: fog fills the inside, with a linear ramp of one voxel (its shortest edge) at the surface; MinimumDensity
-  /// and MaximumDensity are ignored.
+  /// off. On: the relative density is 1 inside, with a linear ramp of one voxel (its shortest edge) at the surface;
+  /// MinimumDensity and MaximumDensity are ignored.
   tyndallFlagMacro(LevelSet);
   ///@}
 
   ///@{
-  /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset a factor for its coefficients.
-  /// Default 1, valid [0, infinity).
+  /// Extinction coefficient sigma_t at relative density 1, 1/length; with a preset, a factor of the preset's
+  /// coefficients. Default 1, valid [0, infinity).
   tyndallRangeMacro(ExtinctionScale, double, 0.0, tyndall::LargestFloat);
   ///@}
 
@@ -146,7 +146,7 @@ public:
   {
     ISOTROPIC = 0,
     HENYEY_GREENSTEIN,
-    DOUBLE_HENYEY_GREENSTEIN, ///< FirstPart of the light with MeanCosine, the rest with SecondMeanCosine
+    DOUBLE_HENYEY_GREENSTEIN, ///< FirstPart of the light scatters with MeanCosine, the rest with SecondMeanCosine
     SCHLICK,
     RAYLEIGH, ///< for particles much smaller than the wavelength
     TABULATED ///< given by PhaseTable
@@ -159,13 +159,13 @@ public:
 
   ///@{
   /// Mean cosine g of the scattering angle (Henyey-Greenstein, Schlick; for DOUBLE_HENYEY_GREENSTEIN that of the first
-  /// lobe): 0 isotropic, near 1 forward. Default 0, valid (-1, 1). Ignored with a preset, which has its own.
+  /// lobe): 0 isotropic, near 1 forward. Default 0, valid (-1, 1). Ignored with a preset, which defines g.
   tyndallRangeMacro(MeanCosine, double, -1.0, 1.0);
   ///@}
 
   ///@{
-  /// Mean cosines of red, green and blue instead of MeanCosine, added one per call. None (default) or three, valid (-1,
-  /// 1).
+  /// Mean cosines of red, green and blue, which replace MeanCosine; AddChannelMeanCosine adds one per call. None
+  /// (default) or three, valid (-1, 1).
   void SetChannelMeanCosines(double red, double green, double blue);
   void AddChannelMeanCosine(double g);
   void RemoveAllChannelMeanCosines();
@@ -183,19 +183,20 @@ public:
   ///@}
 
   ///@{
-  /// The phase function TABULATED: a table with the columns `cosine` (of the scattering angle, from -1 to 1, ascending
-  /// or descending) and `value` (not negative, in any unit). Values are interpolated linearly between rows.
+  /// Phase function for PhaseFunction TABULATED: a table with the columns `cosine` (of the scattering angle, from -1 to
+  /// 1, ascending or descending) and `value` (not negative, in any unit). Values are interpolated linearly between
+  /// rows.
   tyndallInputMacro(PhaseTable, PHASE_TABLE);
   ///@}
 
   ///@{
-  /// Emitted radiance per unit length at relative density 1, W/(length^3 sr); it is multiplied by EmissionColor.
-  /// Default 0, valid [0, infinity).
+  /// Emitted radiance per unit length at relative density 1, W/(length^3 sr); multiplied by EmissionColor. Default 0,
+  /// valid [0, infinity).
   tyndallRangeMacro(EmissionScale, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Red, green and blue factors of EmissionScale. Default (1, 1, 1), valid [0, infinity).
+  /// Factors of EmissionScale for red, green and blue. Default (1, 1, 1), valid [0, infinity).
   tyndallSetRange3Macro(EmissionColor, double, 0.0, tyndall::LargestFloat);
   vtkGetVector3Macro(EmissionColor, double);
   ///@}
@@ -226,8 +227,8 @@ public:
   /// Size of the complete dataset at the last update, the same on every rank: its edges with their unit of length, such
   /// as "480 x 480 x 240 m"; the largest optical thickness of a row of voxels along x, y or z, dimensionless; and the
   /// mean free path, 1 over the mean extinction of the voxels that are not empty, in the dataset's unit (0 if all are
-  /// empty). Both refer to the channel with the largest extinction. 0 and empty before the first update and after an
-  /// error.
+  /// empty). Optical thickness and mean free path refer to the channel with the largest extinction. The values are 0
+  /// and empty before the first update and after an error.
   vtkGetCharFromStdStringMacro(PhysicalExtent);
   vtkGetMacro(OpticalThickness, double);
   vtkGetMacro(MeanFreePath, double);
@@ -254,7 +255,8 @@ private:
   vtkParticipatingMedium(const vtkParticipatingMedium&) = delete;
   void operator=(const vtkParticipatingMedium&) = delete;
 
-  /// Sets the properties that report the optical size; warns if the medium is too thin or too thick to be meant.
+  /// Sets PhysicalExtent, OpticalThickness and MeanFreePath; warns if the optical thickness is above 0 and below 0.01,
+  /// or above 1e6.
   void NoteSize(const tyndall::Grid& grid, const tyndall::OpticalSize& size);
   void DoubtLevelSet(const tyndall::Domain& domain, vtkImageData* image, const tyndall::VoxelBox& box);
   void MakeMedium(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, vtkImageData* output);

@@ -8,7 +8,7 @@
  * @class vtkPointLight
  * @brief an isotropic point source
  *
- * It is drawn as a ball.
+ * The shape of the light in a view is a ball.
  *
  * @sa vtkLightSource vtkLightRig
  */

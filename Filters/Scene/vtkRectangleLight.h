@@ -8,9 +8,9 @@
  * @class vtkRectangleLight
  * @brief a rectangle that emits from one side, as a Lambertian emitter
  *
- * Its position is its centre. Like a plane it is placed by its normal, not by a focal point. Its first edge is
- * horizontal (normal to z and to the direction; along x if the direction is vertical), its second edge is normal to the
- * first and to the direction. It is drawn as a rectangle with an arrow on its emitting side.
+ * Position is the centre of the rectangle, Direction its normal. The first edge is horizontal (normal to z and to the
+ * direction; along x if the direction is vertical), the second edge is normal to the first edge and to the direction.
+ * The shape in a view is a rectangle with an arrow on the emitting side.
  *
  * @sa vtkLightSource vtkLightRig
  */
@@ -22,13 +22,13 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Normal of the rectangle on its emitting side; any length but 0. Default (1, 0, -1).
+  /// Normal of the rectangle on its emitting side, of any length above 0. Default (1, 0, -1).
   tyndallSetRange3Macro(Direction, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(Direction, double);
   ///@}
 
   ///@{
-  /// Lengths of the first and the second edge. Default (0.25, 0.25), valid above 0.
+  /// Lengths of the first and the second edge of the rectangle. Default (0.25, 0.25), valid above 0.
   tyndallSetRange2Macro(Size, double, tyndall::AboveZero, tyndall::AnyHigh);
   vtkGetVector2Macro(Size, double);
   ///@}

@@ -8,7 +8,7 @@
  * @class vtkSpotLight
  * @brief a point source that emits uniformly into a cone about the direction to its focal point
  *
- * It is drawn as the outline of the cone, which extends to the focal point.
+ * The shape of the light in a view is the outline of the cone, which extends to the focal point.
  *
  * @sa vtkLightSource vtkLightRig
  */

@@ -6,10 +6,10 @@
 
 /**
  * @class vtkSun
- * @brief parallel light in all of space, in the direction from its position to its focal point
+ * @brief a directional light: parallel light everywhere, in the direction from its position to its focal point
  *
- * By default it equals the default sun of vtkLightRig to 1e-5. It is drawn as an arrow from its position halfway to the
- * focal point.
+ * By default the sun equals the default sun of vtkLightRig to 1e-5. The shape of the sun in a view is an arrow from its
+ * position halfway to the focal point.
  *
  * @sa vtkLightSource vtkLightRig
  */
