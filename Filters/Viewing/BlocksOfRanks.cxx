@@ -16,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-/// Axes of the first rank that has a part of the image. Collective.
+/// Axes of the image of the first rank that has voxels. Collective.
 OwnAxes AxesOfFirst(Communicator& communicator, vtkImageData* image)
 {
   std::vector<double> words = OwnAxesOf(image).Words();
@@ -38,14 +38,14 @@ BlocksOfRanks::BlocksOfRanks(vtkImageData* whole)
   : Pieces(whole)
   , AxesOfAll(OwnAxesOf(whole))
 {
-  GridOf(whole); // checks it
+  GridOf(whole); // throws InvalidInput if the image has no valid grid
 }
 
 BlocksOfRanks::BlocksOfRanks(Communicator& communicator, vtkImageData* image)
   : Pieces(communicator, nullptr, image)
   , AxesOfAll(AxesOfFirst(communicator, image))
 {
-  if (!this->Over().Partition().blocks.empty()) // none is listed if no rank has cells
+  if (!this->Over().Partition().blocks.empty()) // the list of blocks is empty if no rank has cells
   {
     const auto rank = static_cast<std::size_t>(communicator.Rank());
     this->OwnBlock = BlockOfRank(this->Over().Partition(), communicator.Rank(), this->Given()[rank]);
@@ -84,7 +84,7 @@ bool FitTogether(const BlocksOfRanks& blocks, bool able, std::vector<double> pro
   properties.insert(properties.end(), { able ? 1.0 : 0.0, blocks.HasOwn() ? 1.0 : 0.0, arrays });
   const std::vector<double> said = SaidByAll(blocks.Over().Comm(), properties);
   const auto count = static_cast<std::ptrdiff_t>(properties.size());
-  std::optional<double> first; // arrays of the first rank with a block
+  std::optional<double> first; // hash of the arrays of the first rank with a block
   bool fit = blocks.MakeUpTheWhole();
   for (auto rank = said.begin(); rank != said.end(); rank += count)
   {
@@ -101,7 +101,7 @@ bool FitTogether(const BlocksOfRanks& blocks, bool able, std::vector<double> pro
 
 double ExposureOfParts(const Domain& domain, const Picture& part, const PixelRect& counted, bool background)
 {
-  Picture own = part; // cropped to the pixels that count
+  Picture own = part; // cropped to the pixels that this rank counts
   own = PartOf(std::move(own), counted);
   const std::vector<int> here = LuminanceCounts(own.radiance, background ? std::vector<float>() : own.alpha);
   const std::vector<double> all = domain.Sum(std::vector<double>(here.begin(), here.end()));
@@ -116,7 +116,7 @@ PixelRect RectOf(const std::array<int, 6>& extent)
 PixelRect OwnPixels(const Communicator& communicator, const std::array<int, 6>& all)
 {
   std::array<int, 6> own = PartOfExtent(all, communicator.Rank(), communicator.Ranks());
-  for (int last : { 1, 3 }) // pieces share their border pixels
+  for (int last : { 1, 3 }) // extents of neighbouring ranks share border pixels: drops the last column or row
   {
     own[last] -= own[last] < all[last] ? 1 : 0;
   }
@@ -142,7 +142,7 @@ std::vector<std::string> OnAllLists(Communicator& communicator, const std::vecto
 {
   std::vector<int> ranks(static_cast<std::size_t>(communicator.Ranks()));
   std::iota(ranks.begin(), ranks.end(), 0);
-  std::vector<char> said; // each line with its end, after a letter for the list
+  std::vector<char> said; // lines, each ended by a line feed, after a "+" if this rank has a list
   for (const std::string& line : own)
   {
     said.insert(said.end(), line.begin(), line.end());

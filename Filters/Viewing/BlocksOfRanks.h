@@ -17,67 +17,71 @@ class vtkImageData;
 
 namespace tyndall
 {
-/// An image that is distributed over ranks, or the complete image on one rank. Each rank has a block of its voxels, and
-/// may have ghost cells, flagged as duplicates. Exchange is collective, also for ranks without a block.
+/// An image that is distributed over ranks, or the complete image on one rank. Each rank has a block of the image's
+/// voxels or none, and may have ghost cells, flagged as duplicates.
 class BlocksOfRanks
 {
 public:
-  /// Serial.
+  /// Creates the serial case: one block, the complete image.
   /// @throws InvalidInput as GridOf
   explicit BlocksOfRanks(vtkImageData* whole);
-  /// Collective.
+  /// Creates the distributed case, from the pieces of all ranks. Collective.
   /// @param communicator  must outlive this object
   /// @param image  this rank's piece; null or without cells if it has no block
   BlocksOfRanks(Communicator& communicator, vtkImageData* image);
 
-  /// Whether the blocks tile one grid: each of its voxels is in exactly one block. The same on all ranks.
+  /// Whether the blocks tile one grid: each voxel of the grid is in exactly one block. The same on all ranks.
   bool MakeUpTheWhole() const { return this->Pieces.MakeUpTheWhole(); }
   bool HasOwn() const { return this->OwnBlock.OwnVoxels() > 0; }
   const GridBlock& Own() const { return this->OwnBlock; }
   const OwnAxes& Axes() const { return this->AxesOfAll; }
 
-  // Only if MakeUpTheWhole; in voxels of the whole grid, and in Axes.
+  // The following methods are valid only if MakeUpTheWhole. Boxes are in voxels of the whole grid, in Axes.
   const Domain& Over() const { return this->Pieces.GetDomain(); }
   const Grid& Whole() const { return this->Over().Whole(); }
-  /// Voxels of each rank's input image, by rank: block and ghost cells.
+  /// Voxels of the input image of each rank, ghost cells included, by rank.
   const std::vector<VoxelBox>& Given() const { return this->Pieces.HeldByRanks(); }
-  /// Whether `held` equals Given.
+  /// Whether the boxes `held`, by rank, equal Given.
   bool AreGiven(const std::vector<VoxelBox>& held) const;
-  /// Voxels that each rank needs to render its block (HeldBox), by rank; Given, if that is enough on all ranks.
+  /// Voxels that each rank needs to render its block (HeldBox), by rank; Given if each rank's input contains them.
+  /// @param moments, surface  whether the light has angular moments, or radiance at the faces
   std::vector<VoxelBox> HeldFor(const ViewSettings& settings, bool moments, bool surface) const;
 
-  /// ExchangePixels for a camera in the scene's coordinates.
+  /// Exchanges the pixels that the ranks rendered of their blocks (ExchangePixels), for a camera in the scene's
+  /// coordinates. Collective, also for ranks without a block.
   std::optional<SeenBlocks> Exchange(
     const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const;
 
 private:
   PieceBlocks Pieces;
   OwnAxes AxesOfAll;
-  GridBlock OwnBlock; ///< without voxels if this rank has none, or if the domain is serial
+  GridBlock OwnBlock; ///< block of this rank; without voxels if this rank has none, or if the domain is serial
 };
 
-/// Whether the blocks tile one grid and all ranks are able to render them: with equal properties, and those that have a
-/// block with equal arrays. Collective, the same on all ranks.
+/// Whether the ranks can render their blocks together: the blocks tile one grid, all ranks are able, their properties
+/// are equal, and so are the arrays of all ranks with a block. Collective, the same on all ranks.
 /// @param able        whether this rank can render its block; true if it has none
-/// @param properties  of the filter
-/// @param arrays      hash of which arrays there are, and of the field data used
+/// @param properties  the filter's properties as numbers
+/// @param arrays      hash of the arrays and field data of this rank's block (ArraysInANumber)
 bool FitTogether(const BlocksOfRanks& blocks, bool able, std::vector<double> properties, double arrays);
 
-/// AutomaticExposure of a picture of which each rank has a part. Collective.
-/// @param counted  the part's pixels that this rank alone counts, relative to the part
+/// Automatic exposure (AutomaticExposure) of a picture that is distributed over ranks. Collective.
+/// @param part     pixels of the picture on this rank; parts of different ranks may overlap
+/// @param counted  pixels that only this rank counts, relative to the first pixel of `part`
 /// @param background  whether the background is visible behind the medium
 double ExposureOfParts(const Domain& domain, const Picture& part, const PixelRect& counted, bool background);
 
-/// The pixels of a picture's extent.
+/// Pixels of a picture's extent, as a rectangle.
 PixelRect RectOf(const std::array<int, 6>& extent);
 
-/// This rank's share of the pixels of a picture; the ranks' shares are disjoint.
+/// This rank's share of the pixels of a picture with extent `all`; the shares of the ranks are disjoint.
 PixelRect OwnPixels(const Communicator& communicator, const std::array<int, 6>& all);
 
-/// The smallest rectangle that contains both.
+/// The smallest rectangle that contains both rectangles; an empty rectangle is ignored.
 PixelRect Around(const PixelRect& a, const PixelRect& b);
 
-/// Entries that are on the lists of all ranks with `says`, in the order of the first list. Ranks without a block have
-/// no list. Collective.
+/// Entries that are in the lists of all ranks, in the order of the first list. Collective.
+/// @param own   this rank's list
+/// @param says  whether this rank has a list; false if it has no block
 std::vector<std::string> OnAllLists(Communicator& communicator, const std::vector<std::string>& own, bool says);
 }

@@ -13,33 +13,34 @@
 
 class vtkMediumRayCaster;
 
-/// Conversion of a ray caster's properties to the kernels' settings.
+/// Conversion of the properties of a vtkMediumRayCaster to settings of the kernels.
 namespace tyndall
 {
-/// Radiance behind the medium in a picture that is displayed with this exposure.
-/// @param exposure  0 if not known yet
+/// Radiance behind the medium, W/(length^2 sr): BackgroundRadiance or, if that is 0, the radiance that is displayed as
+/// BackgroundColor with this exposure.
+/// @param exposure  factor by which radiance is displayed; 0: not known yet, BackgroundColor counts as black
 Rgb BackgroundOf(vtkMediumRayCaster* filter, double exposure);
 
 ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure);
 
-/// Transforms a camera from the scene's coordinates to a medium's own axes, and back.
+/// InOwnAxes transforms a camera from the scene's coordinates to a medium's own axes; InScene is the inverse.
 Camera InOwnAxes(const Camera& inScene, const OwnAxes& axes);
 Camera InScene(const Camera& camera, const OwnAxes& axes);
 
-/// The filter's camera, in the axes in which the filter works.
-/// @param grid  the whole medium's grid, which the camera frames if none is set
+/// Camera of the filter, in the medium's own axes.
+/// @param grid  grid of the whole medium, which the camera frames if CameraPosition equals CameraFocalPoint
 Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid);
 
-/// The properties that must be equal on all ranks that render a picture together.
+/// Values of the properties that must be equal on all ranks that render a picture together.
 std::vector<double> PropertiesAsNumbers(vtkMediumRayCaster* filter);
 
-/// Request of vtkLitVolumeMapper to its ray caster for one picture.
+/// Request of vtkLitVolumeMapper to its vtkMediumRayCaster for one picture.
 struct AskedView
 {
-  Camera camera;                  ///< replaces the filter's own camera
-  std::array<int, 2> size = {};   ///< pixels, replaces ImageSize
-  std::vector<float> ends;        ///< length at which each ray ends, see MediumRayCaster::Render
-  double exposure = 0.0;          ///< of the display, to convert BackgroundColor to radiance; 0: not known yet
-  std::optional<GridBlock> block; ///< the block of a larger grid that the medium is, see MediumRayCaster::Render
+  Camera camera;                  ///< camera in the scene's coordinates; replaces the filter's camera
+  std::array<int, 2> size = {};   ///< columns and rows of pixels; replaces ImageSize
+  std::vector<float> ends;        ///< length at which each ray ends (MediumRayCaster::Render)
+  double exposure = 0.0;          ///< exposure by which BackgroundColor is converted to radiance; 0: not known yet
+  std::optional<GridBlock> block; ///< block of a larger grid, if the medium is only that (MediumRayCaster::Render)
 };
 }

@@ -26,8 +26,11 @@ namespace tyndall
 {
 namespace
 {
-/// Reads the solver's field data on light at the box's faces; empty if there are none, or they do not fit these voxels.
-/// @param parts  components per channel
+/// Reads field data of a solver on light at the faces of the box.
+/// @param name  name of the array
+/// @param tuples  required number of tuples
+/// @param parts  number of components per channel
+/// @return the values; empty if there is no such array, or its shape differs
 FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, int parts)
 {
   FaceValues faces;
@@ -46,7 +49,7 @@ FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, 
   return faces;
 }
 
-/// All fields with a value per voxel, in an order that is the same on all ranks.
+/// Arrays of the inputs with a value per voxel, without `ior`, in an order that is the same on all ranks.
 std::vector<FloatField*> FieldsOf(ViewedInputs& inputs)
 {
   return { &inputs.medium.sigma_a, &inputs.medium.sigma_s, &inputs.medium.emission, &inputs.medium.g, &inputs.fluence,
@@ -116,13 +119,13 @@ double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
     }
   }
   const std::uint64_t number = ContentKey(facts) ^ std::hash<std::string>()(words);
-  return static_cast<double>(number >> 11); // the 53 bits that a double represents exactly
+  return static_cast<double>(number >> 11); // 53 bits, which a double represents exactly
 }
 
 namespace
 {
-/// Crops the values on the faces of the whole grid to the faces of a block's arrays.
-/// @param size  voxels of the block's arrays
+/// Crops values on the boundary faces of the whole grid to the faces of a block's arrays.
+/// @param size  number of voxels of the block's arrays along x, y and z
 void KeepFacesOf(const GridBlock& block, const std::array<int, 3>& size, ViewedInputs& inputs)
 {
   for (FaceValues* const faces : { &inputs.surface, &inputs.power })
@@ -134,8 +137,9 @@ void KeepFacesOf(const GridBlock& block, const std::array<int, 3>& size, ViewedI
   }
 }
 
-/// Gathers an array of the voxels in this rank's wanted box from the ranks' blocks. Collective.
-/// @param wanted  boxes by rank, in voxels of the whole; empty if a rank has no block
+/// Values of an array in this rank's wanted box, gathered from the blocks of all ranks. Collective.
+/// @param wanted  boxes by rank, in voxels of the whole grid; empty if a rank has no block
+/// @param field   the array on this rank's input image, ghost cells included
 std::vector<float> SpreadTo(const std::vector<VoxelBox>& wanted, const BlocksOfRanks& blocks, const Field& field)
 {
   const Domain& domain = blocks.Over();
@@ -156,8 +160,8 @@ std::vector<float> SpreadTo(const std::vector<VoxelBox>& wanted, const BlocksOfR
   return ValuesInBox(domain.Comm(), domain.Partition(), wanted, values, components);
 }
 
-/// The inputs of the voxels in this rank's wanted box, gathered from the ranks' blocks. Collective.
-/// @param image  its field data describe the phase function
+/// Inputs of the ray caster in this rank's wanted box, gathered from the blocks of all ranks. Collective.
+/// @param image  this rank's input image, whose field data describe the phase function
 ViewedInputs SpreadTo(
   const std::vector<VoxelBox>& wanted, const BlocksOfRanks& blocks, vtkImageData* image, const ViewedInputs& inputs)
 {
@@ -181,7 +185,7 @@ ViewedInputs SpreadTo(
       medium.medium.sigma_a = medium.sigma_a;
       medium.medium.sigma_s = medium.sigma_s;
       medium.medium.emission = medium.emission;
-      vtkNew<vtkImageData> asLarge; // an image of these arrays' size
+      vtkNew<vtkImageData> asLarge; // an image of the size of the gathered arrays
       asLarge->SetDimensions(box.size[0] + 1, box.size[1] + 1, box.size[2] + 1);
       asLarge->SetFieldData(image->GetFieldData());
       medium.medium.phase = ReadPhase(asLarge, medium.g, medium.sigma_s);
@@ -191,10 +195,11 @@ ViewedInputs SpreadTo(
   return spread;
 }
 
-/// Fetches what this rank's block needs of its neighbours. Collective.
-/// @param viewed  this rank's inputs; set to those of the voxels held[rank]
-/// @param held  set to the voxels that each rank's ray caster holds
-/// @param ior   set to the refractive index of the voxels BlockOfScene::known, if it varies
+/// Gathers the halo that this rank needs to render its block. Collective.
+/// @param viewed  inputs in this rank's piece; set to the inputs in the voxels held[rank]
+/// @param held  set to the voxels that the ray caster of each rank holds, by rank
+/// @param ior   set to the refractive index in the voxels BlockOfScene::known if it varies, else unchanged
+/// @return this rank's block, and properties of the scene that all ranks share
 BlockOfScene FetchHalo(
   const SceneSource& source, ViewedInputs& viewed, std::vector<VoxelBox>& held, std::vector<float>& ior)
 {

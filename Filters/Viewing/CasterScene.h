@@ -17,7 +17,8 @@ class vtkMediumRayCaster;
 
 namespace tyndall
 {
-/// Indices, for SetInputArrayToProcess, of the arrays that a ray caster reads beside those of MediumArray.
+/// Indices, for SetInputArrayToProcess, of the arrays that vtkMediumRayCaster reads in addition to those of
+/// MediumArray.
 enum ViewedArrays
 {
   ViewedFluence = 3,
@@ -27,11 +28,12 @@ enum ViewedArrays
   ViewedArrayCount = 7
 };
 
-/// Default names of the arrays, by index.
+/// Default names of the arrays of MediumArray and ViewedArrays, by index.
 constexpr const char* ViewedNames[ViewedArrayCount] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct",
   "ior", "mean_direction" };
 
-/// Values on the boundary faces of the whole image, cell by cell (BoxFaces.h); empty if not known.
+/// Values on the boundary faces of the whole grid, one tuple per voxel face (BoxFaces.h) or per face of the box; empty
+/// if unknown.
 struct FaceValues
 {
   std::vector<float> values;
@@ -40,58 +42,60 @@ struct FaceValues
   Field Seen() const { return { this->values.empty() ? nullptr : this->values.data(), this->components }; }
 };
 
-/// A medium and its light as input of the ray caster, with the arrays that own the values.
+/// Input of the ray caster: a medium and its light, with the arrays that own the values.
 struct ViewedInputs
 {
   MediumInput medium;
   FloatField fluence, direct, ior, meanDirection;
   MomentsInput moments;
-  FaceValues surface, power, albedo; ///< light at the faces
+  FaceValues surface, power, albedo; ///< outgoing radiance, power and albedo at the box's faces
 
   SolvedLight Light() const;
 };
 
-/// @param whole  the grid of which the image is a part; field data on light at faces covers all of it
+/// Reads the input of the ray caster from an image.
+/// @param whole  grid of the domain, of which the image is a block; field data on light at faces are for the whole grid
 /// @throws InvalidInput as ReadChosenCells and Check
 ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const Grid& whole);
 
-/// Hash of which of the arrays read an image has, and of the field data used: these must be the same in all ranks'
-/// pieces.
+/// Hash of the presence and components of the arrays that the filter reads, and of the field data that it uses: both
+/// must be the same in the pieces of all ranks.
 double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image);
 
-/// Medium, light and illumination on the device, ready for rendering.
+/// Medium, light and illumination on the device, prepared for rendering.
 struct CasterScene
 {
   InputsKey key;
   vtkTimeStamp made;
   Grid grid;
-  bool lightsAlone = false;        ///< there is no fluence, so shadow rays are needed
-  std::vector<std::string> doubts; ///< warnings not issued yet
-  std::vector<VoxelBox> held;      ///< by rank, the voxels that the rank's ray caster holds
+  bool lightsAlone = false;        ///< whether there are lights but no fluence, so that shadow rays are used
+  std::vector<std::string> doubts; ///< warnings that have not been issued yet
+  std::vector<VoxelBox> held;      ///< voxels that the ray caster of each rank holds, by rank
   std::unique_ptr<MediumRayCaster> caster;
 };
 
-/// What a scene is made from.
+/// Input of MakeScene.
 struct SceneSource
 {
   vtkMediumRayCaster* filter;
   vtkImageData* image; ///< this rank's piece, or the complete image
   ViewSettings settings;
   const BlocksOfRanks& blocks;
-  const GridBlock* alone = nullptr; ///< the image is this block of a larger grid, rendered alone; null: it is not
+  const GridBlock* alone = nullptr; ///< the block that the image is, if it is rendered alone; else null
 
   const Domain& Over() const { return this->blocks.Over(); }
-  /// The block that the image is; null: it is the complete grid.
+  /// Block of the domain that the image is; null if the image is the complete grid.
   const GridBlock* Block() const
   {
     return this->alone ? this->alone : this->Over().IsSerial() ? nullptr : &this->blocks.Own();
   }
 };
 
-/// Prepares the scene: of the complete image, of a block that is rendered alone, or of each rank's block with a halo,
-/// which is fetched from the neighbours if the input has none. Collective.
+/// Prepares a scene on the device: of the complete image, of a block that is rendered alone, or of the block of each
+/// rank with a halo, which is gathered from other ranks if the input has none. Collective.
+/// @param key  cache key of the scene
 /// @return null if this rank has no block
-/// @throws on all ranks, if on one
+/// @throws InvalidInput as ReadViewed, and as the constructor of MediumRayCaster; on all ranks if on any
 std::unique_ptr<CasterScene> MakeScene(
   const SceneSource& source, const InputsKey& key, const Illumination& illumination);
 }

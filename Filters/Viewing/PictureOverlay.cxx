@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-// Constants of OpenGL's headers, which VTK's headers do not include.
+// Constants that OpenGL's headers define; VTK's headers do not include those.
 constexpr unsigned int GlOne = 1;
 constexpr unsigned int GlOneMinusSourceAlpha = 0x0303;
 constexpr unsigned int GlBlend = 0x0BE2;
@@ -92,7 +92,7 @@ void PictureOverlay::Draw(
   {
     state->vtkglDisable(GlDepthTest);
   }
-  else // tested per sample: an edge covers some samples of a pixel
+  else // the depth test is per sample: an edge may cover some samples of a pixel
   {
     state->vtkglEnable(GlDepthTest);
     state->vtkglDepthFunc(over == Over::Background ? GlLessOrEqual : GlGreater);
@@ -105,7 +105,7 @@ void PictureOverlay::Draw(
   quad.Program->SetUniformi("picture", texture->GetTextureUnit());
   quad.Render();
   texture->Deactivate();
-  state->vtkglDepthFunc(GlLessOrEqual); // restores VTK's default
+  state->vtkglDepthFunc(GlLessOrEqual); // VTK's default depth function
 }
 
 void PictureOverlay::Release(vtkWindow* window)

@@ -10,17 +10,17 @@ class vtkWindow;
 
 namespace tyndall
 {
-/// Size of a renderer's viewport, columns and rows of pixels.
+/// Size of a renderer's viewport (of its current tile), columns and rows of pixels.
 std::array<int, 2> DrawnSize(vtkRenderer* renderer);
 
-/// The renderer's depth buffer, in [0, 1], row by row from below; 1 where nothing has been drawn.
+/// Depth buffer of a renderer's viewport, values in [0, 1], rows from bottom to top; 1 where nothing has been drawn.
 std::vector<float> DrawnDepths(vtkRenderer* renderer);
 
-/// Blends pictures over what a renderer has drawn.
+/// Blends pictures over the image that a renderer has drawn, by OpenGL.
 class PictureOverlay
 {
 public:
-  /// Which part of the viewport to draw over, tested per sample if multisampling is on.
+  /// Part of the viewport over which a picture is blended, tested per sample if multisampling is on.
   enum class Over
   {
     All,
@@ -31,12 +31,13 @@ public:
   PictureOverlay();
   ~PictureOverlay();
 
-  /// @param pixels  red, green, blue, premultiplied by alpha, and alpha, row by row from below
-  /// @param size    columns and rows of the picture, which is stretched to the renderer's viewport
+  /// Blends a picture over the viewport.
+  /// @param pixels  red, green, blue, premultiplied by alpha, and alpha of each pixel, rows from bottom to top
+  /// @param size    columns and rows of the picture, which is scaled to the renderer's viewport
   void Draw(vtkRenderer* renderer, const std::vector<std::uint8_t>& pixels, const std::array<int, 2>& size,
     Over over = Over::All);
 
-  /// Frees graphics resources: to be called before the window is deleted or another one is drawn in.
+  /// Frees the graphics resources. To be called before the window is deleted, or before drawing in another window.
   void Release(vtkWindow* window);
 
 private:

@@ -16,8 +16,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double AlikeScales = 1e-6;       ///< relative tolerance for uniform scaling
-constexpr double SmallestDistance = 1e-15; ///< of camera and focal point, relative to the camera's from the origin
+constexpr double AlikeScales = 1e-6;       ///< relative tolerance for uniform scaling without shear
+constexpr double SmallestDistance = 1e-15; ///< from camera to focal point, over that from origin to camera
 
 using Vec = std::array<double, 3>;
 
@@ -27,7 +27,7 @@ Vec Column(vtkMatrix4x4* matrix, int column)
 }
 
 /// Scale factor of a transformation.
-/// @throws InvalidInput if it does not scale uniformly, shears or mirrors
+/// @throws InvalidInput if the transformation does not scale uniformly, shears or mirrors
 double ScaleOf(vtkMatrix4x4* matrix)
 {
   const Vec columns[3] = { Column(matrix, 0), Column(matrix, 1), Column(matrix, 2) };
@@ -52,6 +52,7 @@ double ScaleOf(vtkMatrix4x4* matrix)
 
 namespace
 {
+/// Checks the vectors of a camera.
 /// @throws InvalidInput if position, focal point or view up are not finite, or position and focal point coincide
 void CheckCamera(vtkCamera* camera)
 {
@@ -64,7 +65,7 @@ void CheckCamera(vtkCamera* camera)
     Require(std::isfinite(place[0]) && std::isfinite(place[1]) && std::isfinite(place[2]),
       "The camera's position, focal point or view up is not finite.");
   }
-  // VTK separates coinciding points by a distance that is lost in rounding for numbers of this size.
+  // VTK moves coinciding points apart, but for large coordinates by a distance that is lost in rounding.
   const double distance = std::sqrt(vtkMath::Distance2BetweenPoints(position.data(), focalPoint.data()));
   Require(distance > SmallestDistance * vtkMath::Norm(position.data()) && distance > 1e-19,
     "The camera's position and focal point are the same; move one, so that it is clear where it looks.");
@@ -81,11 +82,12 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   vtkNew<vtkMatrix4x4> fromEye;
   vtkMatrix4x4::Invert(toEye, fromEye);
   vtkMatrix4x4* const projection =
-    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0); // the matrix that OpenGL gets
+    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0); // as passed to OpenGL
   const auto element = [projection](int row, int column) { return projection->GetElement(row, column); };
   this->Depth = { element(2, 2), element(2, 3), element(3, 2), element(3, 3) };
 
-  // Origin and direction of the central ray, in eye coordinates; fromEye's columns have the length of the world's unit.
+  // Origin and direction of the central ray, in eye coordinates; a column of fromEye is a unit vector of the eye's
+  // axes, times one world length, in the volume's coordinates.
   Vec origin = { 0.0, 0.0, 0.0 }, forward = { 0.0, 0.0, -1.0 };
   this->Seen.parallelProjection = camera->GetParallelProjection() != 0;
   this->Seen.aspect = element(1, 1) / element(0, 0);
@@ -93,8 +95,8 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   {
     this->Seen.parallelScale = 1.0 / (element(1, 1) * this->Scale);
     this->Seen.shift = { -element(0, 3), -element(1, 3) };
-    // In stereo VTK shears the picture of each eye, so that rays are oblique to its plane. Here the plane is rotated
-    // with the rays, by about a degree.
+    // For stereo VTK shears the picture of each eye, so that parallel rays are oblique to the picture's plane. Here the
+    // plane is rotated with the rays instead, by about a degree.
     forward[0] = element(0, 2) / element(0, 0);
     forward[1] = element(1, 2) / element(1, 1);
   }
@@ -102,7 +104,7 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   {
     this->Seen.viewAngle = std::atan(1.0 / element(1, 1)) * 360.0 / Pi;
     this->Seen.shift = { element(0, 2), element(1, 2) };
-    // In stereo each eye is beside the camera; both see points at the focal distance in the same place.
+    // For stereo each eye is shifted sideways from the camera; points at the focal distance coincide in both pictures.
     origin[0] = -element(0, 3) / element(0, 0);
     origin[1] = -element(1, 3) / element(1, 1);
   }

@@ -35,16 +35,17 @@
 namespace
 {
 constexpr double StillTime = 1.0;         ///< allowed seconds per frame from which on the view counts as still
-constexpr double CoarsestRays = 8.0;      ///< largest distance between rays, pixels
-constexpr double StepsOfCoarseness = 4.0; ///< per pixel of ray distance, so the size rarely changes
-constexpr double FarAway = 1e4;           ///< in diagonals of a piece
+constexpr double CoarsestRays = 8.0;      ///< largest distance between neighbouring rays, pixels
+constexpr double StepsOfCoarseness = 4.0; ///< steps per pixel in which ray distance changes
+constexpr double FarAway = 1e4;           ///< extension of bounds beside the medium, in diagonals of a piece
 constexpr int ExposedSize[2] = { 64, 48 };
 
 /// Viewing directions for the automatic exposure: the corners of a tetrahedron.
 constexpr double ExposedFrom[4][3] = { { 1, 1, 1 }, { -1, -1, 1 }, { -1, 1, -1 }, { 1, -1, -1 } };
 
-/// Pixels to blend over the scene: tone-mapped radiance, and alpha. Where the background is visible the pixel is
-/// opaque.
+/// Pixels to blend over the scene, red, green, blue, alpha: tone-mapped radiance and the medium's alpha.
+/// @param ends  lengths of rays (RenderedCamera::EndsOf)
+/// @param background  whether the background is visible: pixels whose rays meet no surface are then opaque
 std::vector<std::uint8_t> PixelsOf(
   const tyndall::Picture& picture, const std::vector<float>& ends, bool background, const tyndall::ToneMapping& tones)
 {
@@ -57,9 +58,9 @@ std::vector<std::uint8_t> PixelsOf(
   return pixels;
 }
 
-/// Pixels to blend over objects that cover part of a pixel while its ray missed them, as a line thinner than a pixel:
-/// the object is seen through the medium, and hides the background.
-/// @param pixels  from PixelsOf, with background
+/// Pixels to blend over objects that cover part of a pixel, such as a line thinner than a pixel, but that the ray of
+/// the pixel missed: the medium attenuates the object, and the object hides the background.
+/// @param pixels  pixels of PixelsOf with background
 std::vector<std::uint8_t> PixelsBeforeObjects(
   std::vector<std::uint8_t> pixels, const tyndall::Picture& picture, const std::vector<float>& ends)
 {
@@ -71,7 +72,8 @@ std::vector<std::uint8_t> PixelsBeforeObjects(
   return pixels;
 }
 
-/// Pixels of a piece that is rendered alone and composited with other pieces: see SetPiece.
+/// Pixels of a piece that is rendered alone and composited with other pieces in depth order: radiance is divided by
+/// alpha before tone mapping, and the pixel value multiplied by alpha (see SetPiece).
 std::vector<std::uint8_t> PixelsOfPiece(
   tyndall::Picture picture, const std::vector<float>& ends, bool background, const tyndall::ToneMapping& tones)
 {
@@ -100,7 +102,8 @@ std::vector<double> Words(const tyndall::Camera& camera)
   return words;
 }
 
-/// The renderer's camera; none if the volume is not scaled uniformly, which Render reports as an error.
+/// Camera of the renderer in the coordinates of the volume; none if camera or transformation are invalid, which Render
+/// reports as an error.
 std::optional<tyndall::Camera> CameraOf(vtkRenderer* renderer, vtkVolume* volume)
 {
   try
@@ -113,10 +116,10 @@ std::optional<tyndall::Camera> CameraOf(vtkRenderer* renderer, vtkVolume* volume
   }
 }
 
-/// The largest distance between rays that any rank asks for, pixels. Collective.
+/// Distance between rays that all ranks use, pixels: the largest that any rank requests. Collective.
 /// @param alike  numbers that must be the same on all ranks
-/// @param apart  this rank's distance; 0 if it cannot render
-/// @return nothing, on all ranks, if ranks differ or one cannot render
+/// @param apart  distance that this rank requests; 0 if it cannot render
+/// @return nothing, on all ranks, if `alike` differs between ranks or a rank cannot render
 std::optional<double> AgreedRaysApart(tyndall::Communicator& others, std::vector<double> alike, double apart)
 {
   alike.push_back(apart);
@@ -134,7 +137,8 @@ std::optional<double> AgreedRaysApart(tyndall::Communicator& others, std::vector
   return most;
 }
 
-/// Request for one of the small pictures for the automatic exposure.
+/// Request for a small picture of the whole grid, for the automatic exposure.
+/// @param from  direction from which the camera looks at the grid
 tyndall::AskedView ExposedView(const tyndall::Grid& grid, const tyndall::OwnAxes& axes, const double from[3])
 {
   tyndall::AskedView view;
@@ -145,16 +149,16 @@ tyndall::AskedView ExposedView(const tyndall::Grid& grid, const tyndall::OwnAxes
 }
 }
 
-/// State of a mapper of one of several pieces, and the pixels that SeePieces prepared for the next frame.
+/// State of a mapper for one of several pieces (SetPiece), and the pixels that SeePieces prepared for the next frame.
 struct vtkLitVolumeMapper::Pieces
 {
   vtkMultiProcessController* ranks = nullptr;
   vtkNew<vtkTrivialProducer> surrounded;
-  std::optional<tyndall::AskedView> view; ///< none if each rank renders its piece alone
-  std::array<int, 2> drawn = {};          ///< the size of the frame
+  std::optional<tyndall::AskedView> view; ///< view of the next frame; none if each rank renders its piece alone
+  std::array<int, 2> drawn = {};          ///< columns and rows of pixels of the frame
   bool together = false;                  ///< whether the last frame showed all pieces together
   tyndall::ShownBlock shown;
-  double seconds = 0.0; ///< time that SeePieces took
+  double seconds = 0.0; ///< run time of SeePieces for this frame
 };
 
 vtkStandardNewMacro(vtkLitVolumeMapper);
@@ -204,6 +208,8 @@ bool vtkLitVolumeMapper::IsPiece() const
   return this->Spread && this->Spread->ranks;
 }
 
+/// Updates the inputs of the ray caster.
+/// @param asked  connection of the medium
 /// @return whether the medium has cells
 bool vtkLitVolumeMapper::UpdateInputs(vtkAlgorithmOutput* asked)
 {
@@ -217,10 +223,11 @@ bool vtkLitVolumeMapper::UpdateInputs(vtkAlgorithmOutput* asked)
     }
   }
   auto* const medium = vtkImageData::SafeDownCast(this->RayCaster->GetInputDataObject(Port::MEDIUM, 0));
-  return medium && medium->GetNumberOfCells() > 0; // empty if other ranks have all of the medium
+  return medium && medium->GetNumberOfCells() > 0; // no cells if other ranks have the whole medium
 }
 
-/// @return this rank's piece with ghost cells; null if it has none
+/// Updates the inputs of the ray caster for this rank's piece with ghost cells (SetPiece).
+/// @return the piece; null if this rank has none
 vtkImageData* vtkLitVolumeMapper::UpdateSurrounded()
 {
   vtkTrivialProducer* const surrounded = this->Spread->surrounded;
@@ -252,14 +259,15 @@ double vtkLitVolumeMapper::EstimateExposure()
       this->AddSeen(picture, radiance, alpha);
     }
   }
-  catch (const std::exception&) // the image is no medium: Render will report the error
+  catch (const std::exception&) // the image is no valid medium: Render reports the error
   {
     return 0.0;
   }
   return tyndall::AutomaticExposure(radiance, alpha);
 }
 
-/// Appends a picture to the samples for the automatic exposure.
+/// Appends the pixels of a picture to the samples for the automatic exposure; alpha only if the background does not
+/// count.
 void vtkLitVolumeMapper::AddSeen(
   const tyndall::Picture& picture, std::vector<float>& radiance, std::vector<float>& alpha)
 {
@@ -270,8 +278,8 @@ void vtkLitVolumeMapper::AddSeen(
   }
 }
 
-/// Exposure from pictures of all pieces together. Collective.
-/// @return 0 if the pieces cannot be rendered together
+/// Automatic exposure from small pictures of all pieces together. Collective.
+/// @return the exposure; 0 if the pieces cannot be rendered together
 double vtkLitVolumeMapper::ExposureOfPieces(tyndall::Communicator& others)
 {
   const tyndall::BlocksOfRanks blocks(others, this->UpdateSurrounded());
@@ -304,15 +312,15 @@ void vtkLitVolumeMapper::SetPiece(vtkMultiProcessController* ranks, vtkImageData
   this->Spread->surrounded->SetOutput(surrounded);
 }
 
-/// Whether on any rank properties of rendering have changed since the exposure was chosen. Collective.
+/// Whether properties of rendering have changed on any rank since the automatic exposure was chosen. Collective.
 bool vtkLitVolumeMapper::IsExposureOld(tyndall::Communicator& others)
 {
   const bool old = this->RayCaster->GetExposure() == 0.0 && this->RayCaster->GetMTime() > this->ExposureTime;
   return tyndall::OnAnyRank(others, old);
 }
 
-/// Calls `act` with the ranks' communicator. Errors, for example a lost rank, are reported on this rank: each piece is
-/// then rendered alone.
+/// Calls `act` with the communicator of the ranks of SetPiece. Exceptions, for example because a rank is lost, are
+/// reported as an error of this mapper; each piece is then rendered alone.
 void vtkLitVolumeMapper::WithOthers(const std::function<void(tyndall::Communicator&)>& act)
 {
   try
@@ -333,7 +341,7 @@ void vtkLitVolumeMapper::AgreeOnExposure()
 void vtkLitVolumeMapper::AgreeOnExposure(tyndall::Communicator& others)
 {
   this->CommonExposure = this->ExposureOfPieces(others);
-  if (this->CommonExposure == 0.0) // geometric mean of the exposures of the ranks' pieces
+  if (this->CommonExposure == 0.0) // then the geometric mean of the exposures of the pieces
   {
     const double own = this->EstimateExposure();
     const std::vector<double> all = others.Sum({ own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 });
@@ -342,8 +350,9 @@ void vtkLitVolumeMapper::AgreeOnExposure(tyndall::Communicator& others)
   this->ExposureTime.Modified();
 }
 
-/// Sets UsedExposure; an automatic one is chosen once per scene.
-/// @return false if that failed
+/// Sets UsedExposure: Exposure of the ray caster or, if that is 0, the automatic exposure, which is chosen once per
+/// scene.
+/// @return false if no exposure could be chosen
 bool vtkLitVolumeMapper::FindExposure()
 {
   const double given = this->RayCaster->GetExposure();
@@ -362,7 +371,9 @@ bool vtkLitVolumeMapper::FindExposure()
   return this->UsedExposure > 0.0;
 }
 
-/// Distance between rays, pixels.
+/// Distance between neighbouring rays, pixels, for which casting the rays takes at most FrameTime and the allowed time;
+/// 1 if the view is still.
+/// @param drawn  columns and rows of the viewport
 /// @param allowed  seconds that the renderer has for the frame
 double vtkLitVolumeMapper::RaysApart(const int drawn[2], double allowed) const
 {
@@ -408,8 +419,8 @@ bool vtkLitVolumeMapper::ShowsBackgroundColor()
   return this->RayCaster->GetShowBackground() && std::any_of(color, color + 3, [](double c) { return c > 0.0; });
 }
 
-/// Exchanges the pieces' pixels before a frame: a piece's contribution depends on the pieces in front of it, on other
-/// ranks, and not all ranks may draw in the frame itself. Collective.
+/// Renders this rank's piece and exchanges pixels with all ranks before a frame: the pixels of a piece depend on the
+/// pieces in front of it, and in the frame itself some ranks may not draw. Collective.
 void vtkLitVolumeMapper::SeePieces(vtkRenderer* renderer, vtkVolume* volume)
 {
   if (this->IsPiece())
@@ -422,7 +433,7 @@ void vtkLitVolumeMapper::SeePieces(tyndall::Communicator& others, vtkRenderer* r
 {
   const double start = tyndall::ClockSeconds();
   this->Spread->view.reset();
-  // Reset first, so that a frame that fails on one rank does not count as rendered together on the others.
+  // Is reset first, so that a frame that fails on one rank does not count as rendered together on other ranks.
   const bool together = std::exchange(this->Spread->together, false);
   if (together && this->IsExposureOld(others))
   {
@@ -461,7 +472,8 @@ void vtkLitVolumeMapper::SeePieces(tyndall::Communicator& others, vtkRenderer* r
   this->Spread->seconds = tyndall::ClockSeconds() - start;
 }
 
-/// @return false if the pieces are not rendered together, so that this one is to be rendered alone
+/// Draws the pixels that SeePieces prepared, with rays ended at the surfaces of the scene.
+/// @return false if the pieces are not rendered together, so that the caller must render this piece alone
 bool vtkLitVolumeMapper::DrawPiece(vtkRenderer* renderer, vtkVolume* volume)
 {
   const auto camera = CameraOf(renderer, volume);

@@ -27,22 +27,22 @@ struct ToneMapping;
 
 /**
  * @class vtkLitVolumeMapper
- * @brief volume mapper that renders a medium with its solved light in a VTK scene
+ * @brief volume mapper that renders a medium and its solved light in a VTK scene
  *
  * Renders by vtkMediumRayCaster with the renderer's camera. Rays end at the opaque surfaces that the renderer has
- * already drawn, and their radiance is blended over these: the medium attenuates surfaces behind it, but does not
- * illuminate them. The volume may be rotated, translated and scaled uniformly; its property (transfer functions) is not
- * used.
+ * already drawn, and the radiance of the rays is blended over these surfaces: the medium attenuates surfaces behind it,
+ * but does not illuminate them. The volume may be rotated, translated and scaled uniformly; its property (transfer
+ * functions) is not used.
  *
  * Input: vtkImageData with the arrays of vtkMediumRayCaster. The properties of RayCaster control rendering, and lights
- * and environment are connected to it; its ImageSize, camera and first input are not used. Its ShowBackground is off by
- * default here; if it is on, the environment hides the renderer's background.
+ * and environment are inputs of RayCaster; ImageSize, camera and first input of RayCaster are not used. ShowBackground
+ * is off by default here; if it is on, the environment hides the renderer's background.
  *
- * With Exposure 0 (default) the exposure is chosen once per scene, from four small pictures around it, so that it stays
- * the same while the camera moves; UsedExposure reports it.
+ * With Exposure 0 (default) the exposure is chosen once per scene, from four small pictures of the medium from
+ * different directions, so that it stays the same while the camera moves; UsedExposure reports it.
  *
- * If the renderer has little time for a frame (vtkRenderWindow::SetDesiredUpdateRate, as interactors set it), fewer
- * rays are cast, so that a frame takes FrameTime. If it has a second or more, one ray is cast per pixel.
+ * If the renderer allows less than a second for a frame (vtkRenderWindow::SetDesiredUpdateRate, as interactors set it),
+ * fewer rays are cast, so that a frame takes FrameTime; else one ray per pixel.
  *
  * @sa vtkMediumRayCaster
  */
@@ -53,7 +53,7 @@ public:
   vtkTypeMacro(vtkLitVolumeMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// The filter that casts the rays: lights and environment are connected to it, and its properties control rendering.
+  /// Filter that casts the rays: lights and environment are its inputs, and its properties control rendering.
   vtkMediumRayCaster* GetRayCaster();
 
   ///@{
@@ -62,35 +62,35 @@ public:
   ///@}
 
   ///@{
-  /// For a medium that is distributed over ranks, each with a mapper for its piece, whose pictures are composited in
-  /// depth order. SetPiece sets the ranks, and this rank's piece with one layer of ghost cells, flagged as duplicates;
-  /// the mapper's input is the piece without ghost cells. All ranks, also those without a piece, must then call
-  /// AgreeOnExposure when the medium has changed, and SeePieces before each frame; both are collective. The composited
-  /// picture is that of one mapper with the whole medium.
+  /// Rendering of a medium that is distributed over ranks: each rank has a mapper for its piece, and the pictures are
+  /// composited in depth order. SetPiece sets the ranks, and this rank's piece with one layer of ghost cells, flagged
+  /// as duplicates; the mapper's input is the piece without ghost cells. All ranks, also those without a piece, must
+  /// then call AgreeOnExposure when the medium has changed, and SeePieces before each frame; both are collective. The
+  /// composited picture equals that of one mapper with the whole medium.
   ///
-  /// This is not possible if rays bend or meet a table, or if the pieces do not tile one grid: each mapper then renders
-  /// its piece alone. It divides radiance by alpha before tone mapping and multiplies the pixel value by alpha, so that
-  /// no seam is visible.
+  /// If rays bend or meet a table, or the pieces do not tile one grid, each mapper renders its piece alone. It then
+  /// divides radiance by alpha before tone mapping and multiplies the pixel value by alpha, so that no seam is visible.
   void SetPiece(vtkMultiProcessController* ranks, vtkImageData* surrounded);
   void AgreeOnExposure();
   void SeePieces(vtkRenderer* renderer, vtkVolume* volume);
   ///@}
 
   ///@{
-  /// Results of the last frame: factor by which radiance was multiplied, columns and rows of rays, and total seconds.
+  /// Results of the last frame: factor by which radiance was multiplied, columns and rows of rays, and total time in
+  /// seconds.
   vtkGetMacro(UsedExposure, double);
   vtkGetVector2Macro(CastSize, int);
   vtkGetMacro(Seconds, double);
   ///@}
 
   ///@{
-  /// Bounds of the input. For the piece that draws the background beside the medium, bounds of all that may be visible,
-  /// because IceT discards a rank's pixels outside its bounds.
+  /// Bounds of the input. For the piece that draws the background beside the medium, bounds of everything that may be
+  /// visible, because IceT discards pixels of a rank outside the bounds of its props.
   double* GetBounds() override;
   using Superclass::GetBounds;
   ///@}
 
-  /// Latest modification of this object and of RayCaster.
+  /// Time of the latest modification of this object or of RayCaster.
   vtkMTimeType GetMTime() override;
 
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;
@@ -128,12 +128,12 @@ private:
 
   vtkNew<vtkMediumRayCaster> RayCaster;
   double FrameTime = 0.025;
-  double CommonExposure = 0.0; ///< exposure of all pieces, for Exposure 0; 0: not chosen yet
+  double CommonExposure = 0.0; ///< automatic exposure of all pieces (Exposure 0); 0: not chosen yet
   std::unique_ptr<Pieces> Spread;
 
   std::unique_ptr<tyndall::PictureOverlay> Overlay;
   double AutomaticExposure = 0.0;
-  vtkTimeStamp ExposureTime; ///< when AutomaticExposure or CommonExposure was chosen
+  vtkTimeStamp ExposureTime; ///< time at which AutomaticExposure or CommonExposure was chosen
   double SecondsOfRay = 0.0; ///< seconds per ray in the last frame; 0: not known yet
 
   double UsedExposure = 0.0;

@@ -57,7 +57,7 @@ std::array<int, 6> WholePicture(vtkMediumRayCaster* filter)
 }
 
 /// Writes a picture as an image: point data `color` (red, green, blue, alpha), `radiance`, `alpha`, `depth`.
-/// @param first  column and row of the picture's first pixel
+/// @param first  column and row of the picture's first pixel in the whole picture
 /// @throws InvalidInput if a pixel is not finite; the message names it
 void WritePicture(
   tyndall::Picture&& picture, const std::array<int, 2>& first, std::vector<std::uint8_t>&& color, vtkImageData* output)
@@ -135,7 +135,8 @@ int vtkMediumRayCaster::RequestInformation(vtkInformation*, vtkInformationVector
   information->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
   information->Set(vtkDataObject::ORIGIN(), origin, 3);
   information->Set(vtkDataObject::SPACING(), spacing, 3);
-  information->Remove(vtkDataObject::DIRECTION()); // the medium's
+  // The picture has no direction matrix; the one that is removed was copied from the medium.
+  information->Remove(vtkDataObject::DIRECTION());
   vtkDataObject::SetPointDataActiveScalarInfo(information, VTK_UNSIGNED_CHAR, 4);
   return 1;
 }
@@ -160,8 +161,8 @@ void vtkMediumRayCaster::ForgetOldScene()
   }
 }
 
-/// Frees the device memory of an old scene before upstream filters run, which may need it. In a parallel pipeline each
-/// rank asks for its piece of the medium.
+/// Frees the device memory of a cached scene that is out of date before upstream filters run. In a parallel pipeline
+/// each rank requests its piece of the medium with one layer of ghost cells.
 int vtkMediumRayCaster::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -218,8 +219,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, cons
   return key;
 }
 
-/// @return the cached scene of the last picture if it is still valid for the inputs, else null. The cache is then empty
-///   until the next picture succeeds.
+/// Takes the scene of the last picture out of the cache, which stays empty until the next picture succeeds.
+/// @return the scene if it is valid for the inputs and settings, else null
 std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::TakeKept(
   const tyndall::InputsKey& key, const tyndall::ViewSettings& settings)
 {
@@ -234,7 +235,7 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::TakeKept(
   return stays ? std::move(kept) : nullptr;
 }
 
-/// Finds or prepares the scene. Cached scenes are reused on all ranks or on none. Collective.
+/// Returns the cached scene, if it is valid on all ranks with a block, or prepares a new one. Collective.
 /// @return null if this rank has no block
 std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindScene(
   vtkInformationVector** inputs, const tyndall::SceneSource& source)
@@ -256,7 +257,7 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::FindScene(
     this->SceneKept = true;
     return scene;
   }
-  scene.reset(); // free its memory before the next one is prepared
+  scene.reset(); // frees device memory before the new scene is prepared
   tyndall::Illumination illumination;
   domain.Collective([&] { illumination = this->ReadIllumination(inputs); });
   return tyndall::MakeScene(source, key, illumination);
@@ -269,7 +270,7 @@ bool vtkMediumRayCaster::SeesRadianceBehind()
     (this->GetNumberOfInputConnections(ENVIRONMENT) > 0 || behind[0] > 0.0 || behind[1] > 0.0 || behind[2] > 0.0);
 }
 
-/// Issues a scene's warnings, once.
+/// Issues the warnings of a scene and removes them, so that each is issued once.
 void vtkMediumRayCaster::SayDoubts(tyndall::CasterScene& scene)
 {
   for (const std::string& doubt : std::exchange(scene.doubts, {}))
@@ -278,18 +279,18 @@ void vtkMediumRayCaster::SayDoubts(tyndall::CasterScene& scene)
   }
 }
 
-/// Result of an update.
+/// Result of rendering one picture.
 struct vtkMediumRayCaster::Shot
 {
-  std::unique_ptr<tyndall::CasterScene> scene; ///< null if ranks have one block each, and this rank has none
-  tyndall::Picture picture;                    ///< the whole picture, or the part for this rank
-  std::array<int, 2> first = {};               ///< column and row of its first pixel
+  std::unique_ptr<tyndall::CasterScene> scene; ///< null if the medium is distributed and this rank has no block
+  tyndall::Picture picture;                    ///< the whole picture, or the part that this rank needs
+  std::array<int, 2> first = {};               ///< column and row of the first pixel of `picture`
   double exposure = 0.0;
   double seconds = 0.0;
   std::vector<std::string> leftOut;
 };
 
-/// Whether the ranks' pieces fit together, with equal properties and arrays. Collective.
+/// Whether the ranks can render their pieces together (FitTogether). Collective.
 bool vtkMediumRayCaster::PiecesFit(const tyndall::BlocksOfRanks& blocks, vtkImageData* image)
 {
   double arrays = 0.0;
@@ -304,13 +305,13 @@ bool vtkMediumRayCaster::PiecesFit(const tyndall::BlocksOfRanks& blocks, vtkImag
   return tyndall::FitTogether(blocks, ending.kind == tyndall::Ending::Done, std::move(properties), arrays);
 }
 
-/// Renders the medium, with one piece of it per rank, or all of it on one. Chooses the exposure if that is 0, from a
+/// Renders the medium, distributed over ranks or complete on one rank. Chooses the exposure if `exposure` is 0, from a
 /// picture without BackgroundColor. Collective.
-/// @param inputs  the medium, or its piece; the other inputs are whole
-/// @param exposure  0: automatic
+/// @param inputs  inputs of the filter: this rank's piece of the medium, and the complete other inputs
+/// @param exposure  factor by which radiance is multiplied; 0: automatic
 /// @param asked   extent of the picture that is requested from this rank
-/// @return the part of the picture with that extent; nothing, on all ranks, if the pieces do not fit together:
-///   rendering the whole then reports why
+/// @return a part of the picture that contains that extent; nothing, on all ranks, if the pieces cannot be rendered
+///   together: the caller then renders the whole medium, which reports errors
 std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::See(
   const tyndall::BlocksOfRanks& blocks, vtkInformationVector** inputs, double exposure, const std::array<int, 6>& asked)
 {
@@ -371,7 +372,7 @@ void vtkMediumRayCaster::CropToRequest(Shot&& shot, vtkInformationVector* output
   const std::vector<float> opaque;
   auto color = tyndall::ToneMap(shot.picture.radiance, this->ShowBackground ? opaque : shot.picture.alpha, toneMapping);
   vtkImageData* const output = vtkImageData::GetData(outputs);
-  if (shot.picture.width > 0) // else no pixels are requested from this rank
+  if (shot.picture.width > 0) // false if no pixels are requested from this rank
   {
     WritePicture(std::move(shot.picture), shot.first, std::move(color), output);
   }

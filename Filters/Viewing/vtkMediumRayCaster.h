@@ -26,13 +26,13 @@ struct ViewSettings;
 
 /**
  * @class vtkMediumRayCaster
- * @brief renders a picture of a medium with its solved light, by ray casting
+ * @brief renders a picture of a medium and its solved light, by ray casting
  *
  * Marches a ray through every pixel of the picture and integrates scattered and emitted radiance along it, attenuated
  * by the medium in front; the background is attenuated by the whole medium. The source is interpolated linearly between
- * voxel centres. Where the refractive index varies, rays bend as d/ds(n dx/ds) = grad n says, surfaces of refractive
- * objects may reflect, and the background is looked up along the direction in which a ray leaves. If the index is
- * constant none of that is computed.
+ * voxel centres. Where the refractive index n varies, rays follow d/ds(n dx/ds) = grad n, surfaces of refractive
+ * objects may reflect, and the background is evaluated along the direction in which a ray leaves the box. If the index
+ * is constant, none of this is computed.
  *
  * Input 0, the medium with its light: vtkImageData with cell arrays (point arrays: see SetPointData)
  *
@@ -41,41 +41,41 @@ struct ViewSettings;
  * | `sigma_a` | 1 or 3 | 1/length | absorption coefficient |
  * | `sigma_s` | 1 or 3 | 1/length | scattering coefficient |
  * | `emission` | 1 or 3 | W/(length^3 sr) | emitted radiance per unit length; optional |
- * | `fluence` | 1 or 3 | W/length^2 | light, as every solver writes it; optional |
- * | `fluence_direct` | 1 or 3 | W/length^2 | its uncollided part; needed only to separate it |
+ * | `fluence` | 1 or 3 | W/length^2 | fluence, as every solver writes it; optional |
+ * | `fluence_direct` | 1 or 3 | W/length^2 | uncollided part of `fluence`; needed only to separate that part |
  * | `ior` | 1 | 1 | refractive index n, above 0; optional |
- * | `mean_direction` | 3 | 1 | power-weighted mean direction, its length the anisotropy; optional |
+ * | `mean_direction` | 3 | 1 | power-weighted mean direction; its length is the anisotropy; optional |
  *
- * or those chosen by SetInputArrayToProcess 0 to 6, how the medium scatters, and, optional, `surface_radiance`,
- * as vtkLightPropagationMaps writes it if voxels at the faces of the box are optically thick: rays that enter there
- * show it instead of the light at the voxels' centres (not with ShadowRays and lights, SingleScatteringOnly,
- * `mean_direction`, a table, or bent rays). It belongs to the array `fluence` of the same image and is not used if
- * another array is chosen as fluence.
+ * or those chosen by SetInputArrayToProcess 0 to 6, the phase function (see below), and, optional, field data
+ * `surface_radiance`, as vtkLightPropagationMaps writes it if voxels at the faces of the box are optically thick: where
+ * rays enter such voxels, it replaces the light at the voxels' centres (not with ShadowRays and lights,
+ * SingleScatteringOnly, `mean_direction`, a table, or bent rays). It is used only with the array `fluence` of the same
+ * image, not if another array is chosen as fluence.
  * Input 1, optional: lights as vtkLightRig makes them, for shadow rays.
  * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array
  * `radiance`.
  *
- * The light in a voxel that is scattered towards the camera:
+ * The incident light in a voxel, per steradian, that is scattered towards the camera:
  *
- * |  | SingleScatteringOnly | else |
+ * |  | with SingleScatteringOnly | without SingleScatteringOnly |
  * |---|---|---|
  * | without ShadowRays | `fluence_direct` / 4 pi | `fluence` / 4 pi |
- * | with ShadowRays | the lights behind the medium, with its phase function | that, and the rest of `fluence` / 4 pi |
+ * | with ShadowRays | attenuated lights, with the phase function | these, and the rest of `fluence` / 4 pi |
  *
- * The phase function is the medium's own, per channel and voxel: field data `phase_function` and `g`, or cells `g`.
+ * The phase function is that of the medium, per channel and voxel: field data `phase_function` and `g`, or cells `g`.
  * If there is `mean_direction` m, the terms that are divided by 4 pi are multiplied by f: 4 pi times the phase
- * function, averaged over a distribution of directions about m. So collimated light (|m| = 1) is scattered by the phase
- * function, isotropic light (|m| = 0) isotropically, and the total scattered power is the same. Without
+ * function, averaged over a distribution of directions about m. Collimated light (|m| = 1) is thus scattered by the
+ * phase function, isotropic light (|m| = 0) isotropically, and the total scattered power does not depend on f. Without
  * `mean_direction`, with ShadowRays, or if scattering is isotropic, f is 1.
  *
  * Where the input has `scattered_moments`, `straight_on` and field data `lamps_apart`, as vtkLightPropagationMaps
- * writes them if it solves in angular moments, and SingleScatteringOnly is off, the picture is computed from these
- * instead: multiply scattered light by its moments, the lamps' first scattering by shadow rays and the full phase
- * function; no property and no Lights are needed. They belong to the array `fluence` of the same image and are not used
- * if another array is chosen as fluence.
+ * writes them if it solves in angular moments, and SingleScatteringOnly is off, the picture is computed from these:
+ * multiply scattered light from its angular moments, the first scattering of lamps by shadow rays and the full phase
+ * function; no property and no Lights are needed. These arrays are used only with the array `fluence` of the same
+ * image, not if another array is chosen as fluence.
  *
- * The rest of `fluence` excludes the light that shadow rays already show, so that no light counts twice. If there are
- * lights but no `fluence`, shadow rays are used even if ShadowRays is off.
+ * The rest of `fluence` is `fluence` without the light that shadow rays show. If there are lights but no `fluence`,
+ * shadow rays are used even if ShadowRays is off.
  *
  * Output: vtkImageData of ImageSize pixels (x to the right, y upwards), point arrays
  *
@@ -84,24 +84,24 @@ struct ViewSettings;
  * | `color` | uint8 x 4 | sRGB | the picture for display, active scalars; see ShowBackground |
  * | `radiance` | float x 3 | W/(length^2 sr) | radiance that arrives at the camera |
  * | `alpha` | float | 1 | 1 - transmittance (mean of the channels) |
- * | `depth` | float | length | along the view direction, to where the channels' mean transmittance falls to 1/2 |
+ * | `depth` | float | length | distance along the view direction where the channels' mean transmittance is 1/2 |
  *
- * and field data `exposure` (the factor by which radiance was multiplied), `left_out` (what the scene did not need),
- * `settings_used` ("Name = value" of the properties that Quality chooses), `device`.
+ * and field data `exposure` (the factor by which radiance was multiplied), `left_out` (computations that the scene did
+ * not need), `settings_used` ("Name = value" of the properties that Quality chooses), `device`.
  *
  * Medium, light and illumination stay on the device, so that a picture from another camera, of another size, or with
- * another display mapping needs only its rays. Their memory is freed when an input changes, another one is connected, a
- * changed setting requires it, another device is chosen, or the filter is deleted.
+ * another display mapping only requires casting rays. The device memory is freed when an input changes, another input
+ * is connected, a changed setting requires it, another device is chosen, or the filter is deleted.
  *
- * As long as CameraPosition and CameraFocalPoint are equal, which is the default, the camera frames the whole medium,
- * from above, z upwards.
+ * If CameraPosition and CameraFocalPoint are equal, which is the default, the camera frames the whole medium, seen from
+ * above, z upwards.
  *
  * If ranks of a parallel pipeline run the filter together, each requests its piece of the medium with one layer of
  * ghost cells, casts rays through it, and returns the requested part of the picture, which equals that of a serial run,
  * to rounding. Rays that bend, are reflected or meet a table continue from rank to rank, and lamps cast shadows across
  * pieces; data that a piece needs beyond its ghost cells (for the index, angular moments, light at the surface of thick
- * voxels) are fetched from the other ranks. Every rank instead gathers the whole medium if properties differ between
- * ranks, or pieces overlap without ghost flags.
+ * voxels) are gathered from other ranks. Every rank gathers the whole medium if properties differ between ranks, or
+ * pieces overlap without ghost flags.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks
@@ -121,23 +121,23 @@ public:
 
   enum ToneCurves
   {
-    LINEAR = 0, ///< radiance times exposure, clipped at white
-    FILMIC = 1  ///< bright parts are compressed as by film
+    LINEAR = 0, ///< radiance times exposure, clipped at 1 (white)
+    FILMIC = 1  ///< compresses bright pixels as film does (Narkowicz)
   };
 
   enum SurfaceReflections
   {
     NONE = 0,
     FRESNEL = 1, ///< Fresnel reflectance of unpolarised light
-    FIXED = 2    ///< SurfaceReflectance
+    FIXED = 2    ///< reflectance SurfaceReflectance at all angles
   };
 
   enum Qualities
   {
-    DRAFT = 0, ///< fast, while the camera moves
-    USUAL = 1, ///< every property as set
+    DRAFT = 0, ///< fast and inaccurate, for moving cameras
+    USUAL = 1, ///< uses all properties as they are set
     FINE = 2,
-    REFERENCE = 3 ///< for comparisons
+    REFERENCE = 3 ///< most accurate and slowest, for comparison with other settings
   };
 
   ///@{
@@ -153,8 +153,8 @@ public:
   ///@}
 
   ///@{
-  /// Position and focal point of the camera, as in vtkCamera. Default (0, 0, 0) both: as long as they are equal, the
-  /// camera frames the medium. Valid up to 1e15 voxels from it.
+  /// Position and focal point of the camera, as in vtkCamera. Default (0, 0, 0) both: if they are equal, the camera
+  /// frames the medium. Valid up to 1e15 voxels from the medium.
   tyndallSetRange3Macro(CameraPosition, double, tyndall::AnyLow, tyndall::AnyHigh);
   vtkGetVector3Macro(CameraPosition, double);
   tyndallSetRange3Macro(CameraFocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh);
@@ -191,21 +191,21 @@ public:
   ///@}
 
   ///@{
-  /// Whether to compute the uncollided light of lights by shadow rays and scatter it by the medium's phase function.
-  /// Default off: this light is then part of `fluence`, scattered isotropically or according to `mean_direction`.
-  /// Without lamp and sun the option has no effect and takes no time; `left_out` reports it.
+  /// Whether to compute the uncollided light of Lights by shadow rays and scatter it by the medium's phase function.
+  /// Default off: the uncollided light is taken from `fluence`, scattered isotropically or according to
+  /// `mean_direction`. Without lights the property has no effect and takes no time; `left_out` reports it.
   tyndallFlagMacro(ShadowRays);
   ///@}
 
   ///@{
-  /// Samples along each edge of a rectangular light. Default 3, valid [1, 32].
+  /// Number of shadow rays along each edge of a rectangle light. Default 3, valid [1, 32].
   tyndallRangeMacro(RectangleSamples, int, 1, 32);
   ///@}
 
   ///@{
   /// Whether the environment, or else BackgroundRadiance or BackgroundColor, is visible behind the medium. Default on:
-  /// `color` is opaque. Off: `color` blended over black looks like the picture with a black background; its alpha is
-  /// the array `alpha`, or larger where bright thin smoke would exceed white.
+  /// `color` is opaque. Off: `color` blended over black looks like the picture with a black background; the alpha of
+  /// `color` is the array `alpha`, or larger where bright thin smoke would exceed white.
   tyndallFlagMacro(ShowBackground);
   ///@}
 
@@ -225,37 +225,37 @@ public:
   ///@}
 
   ///@{
-  /// Reflection at the surface of refractive objects, for rays that meet it from the side of the smaller index: NONE
-  /// (default), FRESNEL or FIXED. Without a varying `ior` there is no surface.
+  /// Reflection at the surface of refractive objects, for rays that meet the surface from the side of the smaller
+  /// index: NONE (default), FRESNEL or FIXED. Without a varying `ior` there is no surface.
   tyndallRangeMacro(SurfaceReflection, int, NONE, FIXED);
   ///@}
 
   ///@{
-  /// Refractive index at the surface, which is an isosurface of n. Default 0: midway between the smallest and the
-  /// largest n. Valid [0, infinity).
+  /// Refractive index at the surface of refractive objects, which is an isosurface of n. Default 0: midway between the
+  /// smallest and the largest n. Valid [0, infinity).
   tyndallRangeMacro(SurfaceIndex, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Reflectance of the surface if SurfaceReflection is FIXED. Default 0.1, valid [0, 1].
+  /// Reflectance of the surface of refractive objects if SurfaceReflection is FIXED. Default 0.1, valid [0, 1].
   tyndallRangeMacro(SurfaceReflectance, double, 0.0, 1.0);
   ///@}
 
   ///@{
-  /// Face of the box that is a table, a reflecting surface seen from within: 0 to 5 for -x, +x, -y, +y, -z, +z. Default
-  /// -1: none.
+  /// Face of the box that is a table, a reflecting surface on the inside of the face: 0 to 5 for -x, +x, -y, +y, -z,
+  /// +z. Default -1: none.
   tyndallRangeMacro(TableFace, int, -1, 5);
   ///@}
 
   ///@{
-  /// Diffuse reflectance of the table, red, green, blue; the light in the adjacent voxels illuminates it. Default (0.6,
-  /// 0.6, 0.6), valid [0, 1].
+  /// Diffuse reflectance of the table (TableFace), red, green, blue; the table is illuminated by the light in adjacent
+  /// voxels. Default (0.6, 0.6, 0.6), valid [0, 1].
   tyndallSetRange3Macro(TableColor, double, 0.0, 1.0);
   vtkGetVector3Macro(TableColor, double);
   ///@}
 
   ///@{
-  /// Specular reflectance of the table. Default 0.1, valid from 0 to 1 minus TableColor.
+  /// Specular reflectance of the table (TableFace). Default 0.1, valid from 0 to 1 minus TableColor.
   tyndallRangeMacro(TableReflectance, double, 0.0, 1.0);
   ///@}
 
@@ -272,8 +272,8 @@ public:
   ///@}
 
   ///@{
-  /// Factor by which radiance is multiplied for `color`. Default 0: chosen such that the mean of the picture's lit part
-  /// becomes a medium grey. Valid [0, 1e30].
+  /// Factor by which radiance is multiplied for `color`. Default 0: chosen such that the mean of the picture's lit
+  /// pixels becomes a medium grey. Valid [0, 1e30].
   tyndallRangeMacro(Exposure, double, 0.0, 1e30);
   ///@}
 
@@ -284,8 +284,8 @@ public:
   };
 
   ///@{
-  /// Pictures from which an Exposure of 0 is computed: EACH_PICTURE (default), or the FIRST_PICTURE after this was set,
-  /// whose exposure is used for all later ones, so that an animation does not flicker.
+  /// Picture from which the exposure is computed if Exposure is 0: EACH_PICTURE (default), or the FIRST_PICTURE after
+  /// FIRST_PICTURE was set, whose exposure is used for all later pictures, so that an animation does not flicker.
   tyndallRangeMacro(AutoExposure, int, EACH_PICTURE, FIRST_PICTURE);
   ///@}
 
@@ -295,9 +295,9 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: seconds for casting rays and reading the picture, the exposure used, whether medium
-  /// and light were still on the device from an earlier picture, the device's name, and what the scene did not need,
-  /// one per line.
+  /// Results of the last update: time for casting rays and reading the picture, seconds; the exposure used; whether
+  /// medium and light were on the device from an earlier picture; the device's name; and the computations that the
+  /// scene did not need, one per line.
   vtkGetMacro(Seconds, double);
   vtkGetMacro(UsedExposure, double);
   vtkGetMacro(SceneKept, bool);
@@ -326,13 +326,13 @@ private:
   void operator=(const vtkMediumRayCaster&) = delete;
 
   friend class vtkLitVolumeMapper;
-  /// Renders a picture with another camera and size, without updating the inputs: for the mapper, which has updated
-  /// them.
-  /// @return false if it failed: the error is reported once, not again until something has changed
+  /// Renders a picture with another camera and size, without updating the inputs. Called by vtkLitVolumeMapper, which
+  /// updates the inputs.
+  /// @return false after an error, which is reported once and not again until an input or property has changed
   bool See(const tyndall::AskedView& view, tyndall::Picture& picture);
 
-  /// Whether the background counts for automatic exposure: the environment and BackgroundRadiance do, BackgroundColor
-  /// does not, because it looks the same at any exposure.
+  /// Whether the background counts for automatic exposure: environment and BackgroundRadiance count, BackgroundColor
+  /// does not, because its display is independent of exposure.
   bool SeesRadianceBehind();
 
   void ForgetOldScene();
@@ -377,7 +377,7 @@ private:
   int MemoryBudget = 0;
 
   std::shared_ptr<tyndall::Device> Within;    ///< device limited by MemoryBudget, or null
-  std::unique_ptr<tyndall::CasterScene> Kept; ///< scene of the last picture, if it succeeded
+  std::unique_ptr<tyndall::CasterScene> Kept; ///< cached scene of the last picture; null after an error
 
   double Seconds = 0.0;
   double UsedExposure = 0.0;
