@@ -19,7 +19,7 @@ class Communicator;
 /// RGB, W), `weight` (1: the photon's power over its power if the photons of its light were evenly distributed),
 /// `light` (1: number of the photon's light, -1 the environment or sky) and `batch` (1: number of the photon's
 /// independent set). `direction` is the active vectors, so that glyphs point along it. Field data `photon_box`: bounds
-/// of the box that the photons were made for, in the box's own axes.
+/// of the box that the photons were made for, in the axes of the box.
 /// @param box  box that the photons were emitted for
 /// @param axes  axes of the box and of the emitted photons; photons are written in the scene's coordinates
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, const OwnAxes& axes, vtkPolyData* output);

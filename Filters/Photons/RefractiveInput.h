@@ -30,7 +30,7 @@ struct RefractiveInput
 RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree = nullptr);
 /// Reads the medium, refractive index and octree of this rank's block of a domain. Collective.
 /// @param medium, octree  images of the block; null if it has no voxels
-/// @throws InvalidInput, the same on all ranks
+/// @throws InvalidInput as the serial overload, the same error on all ranks
 RefractiveInput ReadRefractiveMedium(
   vtkAlgorithm* filter, const Domain& domain, vtkImageData* medium, vtkImageData* octree = nullptr);
 
@@ -41,7 +41,7 @@ class KeptMarcher
 public:
   struct Found
   {
-    InputsKey key; ///< cache key: what `marcher` depends on; keeps the device alive
+    InputsKey key; ///< cache key of `marcher`: medium, octree, settings, device; keeps the device alive
     std::unique_ptr<PhotonMarcher> marcher;
     bool kept = false; ///< whether the cached marcher was still valid
   };
@@ -61,7 +61,7 @@ public:
   void Forget() { this->Marcher.reset(); }
 
 private:
-  InputsKey Key; ///< cache key: what Marcher depends on; keeps the device alive
+  InputsKey Key; ///< cache key of Marcher: medium, octree, settings, device; keeps the device alive
   std::unique_ptr<PhotonMarcher> Marcher;
   vtkTimeStamp Made;
 };

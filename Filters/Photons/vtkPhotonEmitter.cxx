@@ -40,7 +40,8 @@ vtkPolyData* vtkPhotonEmitter::GetOutput()
   return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-/// Declares the arrays of the medium, although none is read, so that the box equals that of filters that read them.
+/// Declares the arrays of the medium, although none is read, so that the box is the same as in filters that read these
+/// arrays (PointData).
 int vtkPhotonEmitter::FillInputPortInformation(int port, vtkInformation* information)
 {
   const int done = this->Superclass::FillInputPortInformation(port, information);

@@ -112,8 +112,8 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: number of photons, their power (W; red, green, blue, because energy balances are per
-  /// channel), seconds. Photons and power are summed over the ranks that run the update together.
+  /// Results of the last update: number of photons; total power of the photons, red, green, blue, W; run time in
+  /// seconds. Photons and power are summed over the ranks that run the update together.
   vtkGetMacro(Photons, vtkIdType);
   vtkGetVector3Macro(Power, double);
   vtkGetMacro(Seconds, double);

@@ -129,7 +129,8 @@ int vtkPhotonImportance::RequestInformation(
   return 1;
 }
 
-/// Frees the device memory of the cached medium, if a filter upstream has run, before other upstream filters run.
+/// Frees the device memory of a cached medium that is out of date before upstream filters run, and requests this rank's
+/// piece of the medium.
 int vtkPhotonImportance::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {

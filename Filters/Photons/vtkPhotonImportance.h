@@ -31,7 +31,7 @@ struct Importance;
  * evenly.
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
- * `ior` (1 component; missing: constant), or those chosen by SetInputArrayToProcess 0, 1 and 3, and optionally
+ * `ior` (1 component; missing: constant), or the arrays chosen by SetInputArrayToProcess 0, 1 and 3, and optionally
  * `octree_level`, as vtkPhotonMarcher reads them. Input 1, optional: lights as vtkLightRig makes them. Input 2,
  * optional: the environment, as vtkEnvironmentReader makes it. vtkPhotonEmitter needs the same inputs.
  *
@@ -92,7 +92,7 @@ public:
   ///@}
 
   ///@{
-  /// Source of the thresholds: OWN or AUTOMATIC (default).
+  /// Source of the thresholds by which cells are chosen: OWN or AUTOMATIC (default).
   tyndallRangeMacro(Thresholds, int, OWN, AUTOMATIC);
   ///@}
 
@@ -122,8 +122,8 @@ public:
   ///@}
 
   ///@{
-  /// Device memory that the filter may use, MiB, including what it keeps between updates; if it needs more, an error
-  /// states how much. Default 0: all that the device has. Valid [0, 2^31).
+  /// Device memory that the filter may use, MiB, including memory that it keeps between updates; a scene that needs
+  /// more is an error, which states the required memory. Default 0: all memory of the device. Valid [0, 2^31).
   tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 

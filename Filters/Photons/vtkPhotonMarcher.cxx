@@ -263,8 +263,8 @@ bool vtkPhotonMarcher::WantsBlocks(
     : this->Decomposition == BLOCKS;
 }
 
-/// Frees the device memory of the cached medium, if a filter upstream has run, before other upstream filters run.
-/// Requests this rank's piece of each input with BLOCKS, else the complete inputs.
+/// Frees the device memory of a cached medium that is out of date before upstream filters run. Requests this rank's
+/// piece of each input with BLOCKS, else the complete inputs.
 int vtkPhotonMarcher::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -280,7 +280,9 @@ int vtkPhotonMarcher::RequestUpdateExtent(
 
 namespace
 {
-/// Image of the octree cropped to this rank's block; null if its voxels are then not those of `medium`.
+/// Image of the octree, cropped to this rank's block.
+/// @param medium  image of this rank's block of the medium
+/// @return null if the cropped image has other voxels than `medium`, or `octree` has no cells
 vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkImageData* octree, vtkImageData* medium)
 {
   if (octree->GetNumberOfCells() == 0)
@@ -474,7 +476,7 @@ void vtkPhotonMarcher::Note(const Marched& marched)
   this->LeftOut = tyndall::Lines(light.light.leftOut);
 }
 
-/// Issues the warnings of a march. To be called on the first rank only, because the result is that of all ranks.
+/// Issues the warnings of a march. To be called on the first rank only, because the results of all ranks are equal.
 /// @param photons  number of photons of all ranks
 void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photons)
 {

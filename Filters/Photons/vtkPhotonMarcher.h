@@ -39,7 +39,7 @@ class vtkImageData;
  * photons are followed through several scatterings.
  *
  * Input 0, the medium: vtkImageData with cell arrays `sigma_a`, `sigma_s` (1 or 3 components, 1/length) and optionally
- * `ior` (1 component; missing: constant) or those chosen by SetInputArrayToProcess 0, 1 and 3.
+ * `ior` (1 component; missing: constant) or the arrays chosen by SetInputArrayToProcess 0, 1 and 3.
  * Input 1: photons as vtkPhotonEmitter makes them. Input 2, optional: an image of the same voxels with cell array
  * `octree_level`, as vtkRefractionOctree makes it; without this input, `octree_level` of the medium is used, if there
  * is such an array.
@@ -57,7 +57,7 @@ class vtkImageData;
  * | `fluence_batches` | (1 or 3) x batches | W/length^2 | `fluence` estimated from each of several batches |
  *
  * (the last three by the conservative scheme only, for vtkPhotonReconstruction), and field data `energy_balance` (W:
- * entered, emitted, absorbed, escaped, left over; absorbed includes what is scattered), `scattered` (W, scattered for
+ * entered, emitted, absorbed, escaped, left over; absorbed includes the scattered power), `scattered` (W, scattered for
  * the first time), `face_power_out`, `left_out`, `device`; if MaximumOrders is not 1, `scatterings` and `exchanged` (W
  * added by Russian roulette minus W removed by it; `absorbed` is then the power that the medium absorbed); by the
  * published scheme also `packing_loss` (see PackingLoss).
@@ -185,7 +185,7 @@ public:
 
   ///@{
   /// Whether to skip computations that the scene does not need. Default on; off computes everything, for comparison:
-  /// the same light in more time. Conservative scheme only.
+  /// the result is the same in more time. Conservative scheme only.
   tyndallFlagMacro(LeaveOut);
   ///@}
 
@@ -217,8 +217,8 @@ public:
   ///@}
 
   ///@{
-  /// Device memory that the filter may use, MiB, including what it keeps between updates; if it needs more, an error
-  /// states how much. Default 0: all that the device has. Valid [0, 2^31).
+  /// Device memory that the filter may use, MiB, including memory that it keeps between updates; a scene that needs
+  /// more is an error, which states the required memory. Default 0: all memory of the device. Valid [0, 2^31).
   tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 

@@ -33,10 +33,10 @@ class vtkImageData;
  * | `photon_weight` | 1 | 1 | mean weight of these photons (PhotonCounts) | 0 |
  * | `fluence_batches` | (1 or 3) x batches | W/length^2 | fluence of each of 2 or more Batches (vtkPhotonEmitter) | 1 |
  *
- * or those chosen by SetInputArrayToProcess 0 to 4.
+ * or the arrays chosen by SetInputArrayToProcess 0 to 4.
  *
- * Output: the input with `fluence`, `fluence_direct` (the same) and `mean_direction` replaced by smooth ones, without
- * `fluence_batches`, and with
+ * Output: the input with `fluence`, `fluence_direct` (equal to `fluence`) and `mean_direction` replaced by smooth
+ * arrays, without `fluence_batches`, and with
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
@@ -126,8 +126,8 @@ public:
 
   ///@{
   /// Results of the last update: `fluence_bias`; for the conservative scheme the root mean square of `fluence_error`
-  /// over that of `fluence` (0 for the others); run time in seconds, the device's name, and the computations that were
-  /// not needed, one per line.
+  /// over that of `fluence` (0 for other schemes); run time in seconds, the device's name, and the computations that
+  /// were not needed, one per line.
   vtkGetMacro(Bias, double);
   vtkGetMacro(MeanError, double);
   vtkGetMacro(Seconds, double);

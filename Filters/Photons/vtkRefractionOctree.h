@@ -19,13 +19,13 @@ class vtkImageData;
  * @class vtkRefractionOctree
  * @brief groups voxels of nearly equal refractive index, so that photons cross them in one step
  *
- * Input: vtkImageData with cell array `ior` (refractive index, 1 component, above 0), or that chosen by
- * SetInputArrayToProcess 0; with IncludeExtinction also `sigma_a` and `sigma_s` (1 or 3 components, 1/length), or those
- * chosen as 1 and 2. For point arrays see SetPointData.
+ * Input: vtkImageData with cell array `ior` (refractive index, 1 component, above 0), or the array chosen by
+ * SetInputArrayToProcess 0; with IncludeExtinction also `sigma_a` and `sigma_s` (1 or 3 components, 1/length), or the
+ * arrays chosen as 1 and 2. For point arrays see SetPointData.
  *
  * Output 0: the input with cell array `octree_level` (uint8: 0 a single voxel, k a node of 2^k voxels per edge) and
  * field data `left_out` (computations that the scene did not need) and `device`.
- * Output 1: the same octree as vtkHyperTreeGrid, for viewing. Its leaves are the nodes, with cell array `octree_level`.
+ * Output 1: the octree as vtkHyperTreeGrid, for viewing. The leaves are the nodes, with cell array `octree_level`.
  *
  * A node of level k > 0 is the cube of 2^k voxels per edge whose lowest voxel has indices, counted from the image's
  * lower corner, that are multiples of 2^k. It is a node if

@@ -32,7 +32,7 @@ class LastLight;
  * | `sigma_s`  | 1 or 3     | 1/length         | scattering coefficient                           |
  * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
  *
- * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `g` (default 0).
+ * or the arrays chosen by SetInputArrayToProcess 0, 1 and 2, and field data `g` (default 0).
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
  * Input 3, optional: uncollided light of another filter; replaces lights and environment (vtkScatteringSolver).
@@ -98,7 +98,8 @@ public:
   ///@}
 
   ///@{
-  /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved with more.
+  /// Number of directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved
+  /// with more.
   tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 

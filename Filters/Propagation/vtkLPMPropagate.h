@@ -34,9 +34,9 @@
  * |---|---|---|---|
  * | `T_xmin`, `T_xmax`, ..., `T_zmax` | DirectionsPerFace x 1 or 3 | W/(length sr) | T over sigma_s |
  *
- * with channels varying fastest: component k of grey light belongs to direction k of the face; of coloured light,
- * components 3 k to 3 k + 2 are its red, green and blue. T of Eq. (6) is sigma_s times these arrays; without that
- * factor they are defined also in voxels that do not scatter. Memory: 6 DirectionsPerFace x 4 bytes per voxel and
+ * with channels varying fastest: for grey light, component k belongs to direction k of the face; for coloured light,
+ * components 3 k to 3 k + 2 are red, green and blue of direction k. T of Eq. (6) is sigma_s times these arrays; without
+ * that factor they are defined also in voxels that do not scatter. Memory: 6 DirectionsPerFace x 4 bytes per voxel and
  * channel; 64^3 voxels in RGB with 25 directions take 472 MB (GetBytes). Field data: `directions` (6 DirectionsPerFace
  * unit vectors along which light travels), `map_resolution`, `stored_directions_count`, `scattering_order`.
  *
@@ -57,7 +57,7 @@ public:
   tyndallDeviceMacro();
 
   ///@{
-  /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ...
+  /// Number of directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ...
   tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 

@@ -38,8 +38,8 @@ struct SceneBlock;
  * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
  * | `ior`      | 1          | 1                | refractive index; optional, default 1            |
  *
- * or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g` (default 0), which reduces scattering by
- * the similarity relation, sigma_s (1 - g).
+ * or the arrays chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `g` (default 0), which reduces
+ * scattering by the similarity relation, sigma_s (1 - g).
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it.
  * Input 3, optional: uncollided light of another filter; replaces lights and environment (vtkScatteringSolver). Without

@@ -30,8 +30,8 @@ class LastLight;
  * | `sigma_s`  | 1 or 3     | 1/length         | scattering coefficient                           |
  * | `emission` | 1 or 3     | W/(length^3 sr)  | emitted radiance per unit length; optional       |
  *
- * or those chosen by SetInputArrayToProcess 0, 1 and 2, and field data `phase_function` and `g`, or cells `g` (default:
- * isotropic). The published scheme needs the same phase function in all voxels.
+ * or the arrays chosen by SetInputArrayToProcess 0, 1 and 2, and field data `phase_function` and `g`, or cells `g`
+ * (default: isotropic). The published scheme needs the same phase function in all voxels.
  * Input 1, optional: lights as vtkLightRig makes them.
  * Input 2, optional: the environment, vtkImageData in latitude-longitude layout, point array `radiance` (1 or 3
  * components, W/(length^2 sr)), as vtkEnvironmentReader makes it.
@@ -132,13 +132,13 @@ public:
   ///@}
 
   ///@{
-  /// Directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved with more
-  /// (GridAxes.h).
+  /// Number of directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved
+  /// with more (GridAxes.h).
   tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Directions per face of a cube for the uncollided flux of boundary sources: faces, sky and environment
+  /// Number of directions per face of a cube for the uncollided flux of boundary sources: faces, sky and environment
   /// (conservative scheme). Uncollided flux has sharp shadows but is swept only once, so that more directions than for
   /// scattered light are affordable. Default -1: a number that adds a quarter to the run time, for boundary sources on
   /// faces only (LightSources.h); 0: as DirectionsPerFace; else square numbers up to 4096.

@@ -293,7 +293,7 @@ int vtkSolverComparison::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->Note({}, 0.0);
-  tyndall::WorkOnSubdomains work; // on the first rank only: others would distort timings
+  tyndall::WorkOnSubdomains work; // on the first rank only: work on other ranks would distort the timings
   work.port = MEDIUM;
   work.others = { REFERENCE };
   work.work = [&](const tyndall::PieceBlocks&, vtkInformationVector** inputs) {

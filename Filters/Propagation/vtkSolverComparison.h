@@ -26,8 +26,8 @@ struct ComparisonSettings;
  *
  * Input 0, the medium: vtkImageData as vtkLightPropagationMaps and vtkPhotonMarcher read it: cell arrays `sigma_a`,
  * `sigma_s` (1 or 3 components, 1/length), optionally `emission` (W/(length^3 sr)), `ior` and `octree_level` (photons
- * only), or those chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data
- * `phase_function` and `g`, or cells `g`.
+ * only), or the arrays chosen by SetInputArrayToProcess 0, 1, 2 and 3, and field data `phase_function` and `g`, or
+ * cells `g`.
  * Input 1, optional: lights as vtkLightRig makes them. Input 2, optional: the environment, as vtkEnvironmentReader
  * makes it.
  * Input 3, optional: the reference, vtkImageData of the same box, its voxels as large as the medium's or a whole number
@@ -45,7 +45,7 @@ struct ComparisonSettings;
  * | `grid` | | size in voxels, for example 64x64x64 |
  * | `seconds` | s | median of Repeats runs, from input arrays to output arrays, without compilation of kernels |
  * | `peak_bytes` | byte | peak device memory; NaN for a method on the host |
- * | `error_l2` | 1 | root of the sum of squared differences over voxels and channels, over that of the reference |
+ * | `error_l2` | 1 | 2-norm of the difference over voxels and channels, over the 2-norm of the reference |
  * | `error_max` | 1 | largest difference in a voxel, over the largest fluence of the reference |
  * | `error_relative` | 1 | root mean square of the voxels' relative errors, where the reference is above 0 |
  * | `balance` | 1 | relative error of the energy balance |
@@ -67,10 +67,11 @@ struct ComparisonSettings;
  * Directions nearest to 25. For photons: all PhotonCounts with the Hammersley sampler, and with AllSamplers the second
  * largest count with the other samplers. The lattices of 18 and of 6 directions are tried on all Coarsenings.
  *
- * With EstimateError (default on here) solvers estimate their own errors, by an extra run that is not timed. Photons do
- * not support periodic axes and are skipped if there are any.
+ * With EstimateError (default on here) solvers estimate their errors, by an additional run that is not timed. Photons
+ * do not support periodic axes and are skipped if there are any.
  *
- * In a parallel pipeline the first rank compares, and has output 0; each rank has its piece of output 1.
+ * In a parallel pipeline the first rank runs the comparison and returns output 0; each rank returns its piece of output
+ * 1.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkPhotonReconstruction
  */

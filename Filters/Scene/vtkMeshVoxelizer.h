@@ -41,7 +41,7 @@ struct Solid;
  * | `g` | 1, or 3 if `sigma_s` or `sigma_a` is coloured | 1 | mean cosine, only if scattering materials differ in it |
  *
  * and the field data `phase_function`, `g` (mean cosine, if all voxels have the same), `left_out` (computations that
- * the scene did not need) and `device`. Lengths are in the dataset's own unit.
+ * the scene did not need) and `device`. Lengths are in the unit of the meshes' coordinates.
  *
  * A voxel is divided into SupersamplingFactor^3 fine voxels, whose centres are classified as inside or outside in
  * integer arithmetic: a centre on an edge or corner of a triangle is counted once, a closed mesh never leaks, and the
@@ -128,8 +128,8 @@ public:
   ///@{
   /// Defines the material of cells with this number, instead of the Inside properties: index n, sigma_s and sigma_a
   /// (red, green, blue, 1/length), and mean cosine g. If a number is defined several times, the last definition
-  /// applies. AddMaterialNumber takes the same nine numbers one at a time. Incomplete or invalid materials cause an
-  /// error on update, even if no cell has their number.
+  /// applies. AddMaterialNumber adds the nine arguments of AddMaterial one at a time. Incomplete or invalid materials
+  /// cause an error on update, even if no cell has their number.
   void AddMaterial(double number, double n, double scatteringR, double scatteringG, double scatteringB,
     double absorptionR, double absorptionG, double absorptionB, double g);
   void AddMaterialNumber(double number);
@@ -156,7 +156,7 @@ public:
   ///@}
 
   ///@{
-  /// Seed of the noise: the same seed gives the same noise. Default 0.
+  /// Seed of the noise (IndexNoise, ScatteringNoise): the same seed reproduces the same noise. Default 0.
   vtkSetMacro(NoiseSeed, int);
   vtkGetMacro(NoiseSeed, int);
   ///@}

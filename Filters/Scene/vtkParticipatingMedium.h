@@ -148,8 +148,8 @@ public:
     HENYEY_GREENSTEIN,
     DOUBLE_HENYEY_GREENSTEIN, ///< FirstPart of the light scatters with MeanCosine, the rest with SecondMeanCosine
     SCHLICK,
-    RAYLEIGH, ///< for particles much smaller than the wavelength
-    TABULATED ///< given by PhaseTable
+    RAYLEIGH, ///< of particles much smaller than the wavelength
+    TABULATED ///< values of PhaseTable
   };
 
   ///@{
@@ -158,7 +158,7 @@ public:
   ///@}
 
   ///@{
-  /// Mean cosine g of the scattering angle (Henyey-Greenstein, Schlick; for DOUBLE_HENYEY_GREENSTEIN that of the first
+  /// Mean cosine g of the scattering angle (HENYEY_GREENSTEIN, SCHLICK; for DOUBLE_HENYEY_GREENSTEIN, of the first
   /// lobe): 0 isotropic, near 1 forward. Default 0, valid (-1, 1). Ignored with a preset, which defines g.
   tyndallRangeMacro(MeanCosine, double, -1.0, 1.0);
   ///@}

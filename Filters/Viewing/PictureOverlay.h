@@ -24,8 +24,8 @@ public:
   enum class Over
   {
     All,
-    Background, ///< where nothing has been drawn
-    Objects,    ///< where something has been drawn
+    Background, ///< only where the renderer has drawn nothing
+    Objects,    ///< only where the renderer has drawn an object
   };
 
   PictureOverlay();

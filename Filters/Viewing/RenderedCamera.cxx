@@ -17,7 +17,7 @@ namespace tyndall
 namespace
 {
 constexpr double AlikeScales = 1e-6;       ///< relative tolerance for uniform scaling without shear
-constexpr double SmallestDistance = 1e-15; ///< from camera to focal point, over that from origin to camera
+constexpr double SmallestDistance = 1e-15; ///< distance camera to focal point, over distance camera to origin
 
 using Vec = std::array<double, 3>;
 

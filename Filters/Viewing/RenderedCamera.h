@@ -33,6 +33,6 @@ public:
 private:
   Camera Seen;
   std::array<double, 4> Depth = {}; ///< elements of the projection matrix: rows 2 and 3, columns 2 and 3
-  double Scale = 1.0;               ///< scale factor of `place`: world length over length in the volume's coordinates
+  double Scale = 1.0; ///< scale factor from the volume's to eye coordinates: world length over volume length
 };
 }

@@ -46,7 +46,7 @@ struct ViewSettings;
  * | `ior` | 1 | 1 | refractive index n, above 0; optional |
  * | `mean_direction` | 3 | 1 | power-weighted mean direction; its length is the anisotropy; optional |
  *
- * or those chosen by SetInputArrayToProcess 0 to 6, the phase function (see below), and, optional, field data
+ * or the arrays chosen by SetInputArrayToProcess 0 to 6, the phase function (see below), and, optional, field data
  * `surface_radiance`, as vtkLightPropagationMaps writes it if voxels at the faces of the box are optically thick: where
  * rays enter such voxels, it replaces the light at the voxels' centres (not with ShadowRays and lights,
  * SingleScatteringOnly, `mean_direction`, a table, or bent rays). It is used only with the array `fluence` of the same
@@ -260,14 +260,14 @@ public:
   ///@}
 
   ///@{
-  /// Device memory that the filter may use, MiB, including what it keeps between updates; if it needs more, an error
-  /// states how much. Default 0: all that the device has. Valid [0, 2^31).
+  /// Device memory that the filter may use, MiB, including memory that it keeps between updates; a scene that needs
+  /// more is an error, which states the required memory. Default 0: all memory of the device. Valid [0, 2^31).
   tyndallRangeMacro(MemoryBudget, int, 0, VTK_INT_MAX);
   ///@}
 
   ///@{
   /// Whether to skip computations that the scene does not need. Default on; off computes everything, for comparison:
-  /// the same picture in more time.
+  /// the picture is the same in more time.
   tyndallFlagMacro(LeaveOut);
   ///@}
 
