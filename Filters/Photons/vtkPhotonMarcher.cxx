@@ -147,7 +147,7 @@ void WriteLightOf(tyndall::PhotonLight&& photons, vtkImageData* output)
 struct vtkPhotonMarcher::MarchInput
 {
   vtkSmartPointer<vtkImageData> image,
-    octree; ///< of this rank's block; null if it has no voxels, or there is no octree
+    octree; ///< image of the octree of this rank's block; null without octree or without voxels
   tyndall::MarchSettings settings;
   std::vector<tyndall::Photon> photons; ///< this rank's share of the photons
 };
@@ -497,7 +497,7 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =
     tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
-  if (trapped > 0.01 && this->MaximumOrders < 2) // else omitted scattering orders leave power over
+  if (trapped > 0.01 && this->MaximumOrders < 2) // with more orders, left-over power is that of omitted orders
   {
     vtkWarningMacro(
       << std::lround(100.0 * trapped)

@@ -193,8 +193,8 @@ public:
   enum EmptySpaces
   {
     BY_VOXEL = 0, ///< never: all light is stored voxel by voxel
-    AS_READ = 1,  ///< if the medium's field data `active_part` (vtkVDBReader) is at most 0.25
-    BY_BRICK = 2  ///< whenever the medium is mostly empty
+    AS_READ = 1,  ///< by bricks if the medium's field data `active_part` (vtkVDBReader) is at most 0.25
+    BY_BRICK = 2  ///< by bricks whenever the medium is mostly empty
   };
 
   ///@{

@@ -156,7 +156,7 @@ void Write(tyndall::ReconstructedLight&& light, vtkImageData* output)
     cells->RemoveArray(earlier);
   }
   tyndall::AddLight(output, "fluence", std::move(light.fluence), channels);
-  if (tyndall::ReadFact(output, tyndall::ScatteringsFact, 0.0) == 0.0) // no scattered photons
+  if (tyndall::ReadFact(output, tyndall::ScatteringsFact, 0.0) == 0.0) // no photon was scattered
   {
     tyndall::AddSameLight(output, "fluence_direct", "fluence");
   }

@@ -109,7 +109,7 @@ struct Tree
 {
   std::vector<unsigned char> levels;  ///< octree level of each vertex
   std::vector<unsigned char> outside; ///< whether each vertex is outside the grid
-  std::vector<unsigned char> refined; ///< whether each vertex is refined; omits the deepest level, where none is
+  std::vector<unsigned char> refined; ///< whether each vertex is refined; without the deepest level, which never is
   vtkIdType nodes = 0;
 };
 

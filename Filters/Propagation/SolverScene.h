@@ -28,7 +28,7 @@ struct SolverScene
   vtkSmartPointer<vtkImageData> uncollided; ///< owns the arrays of UncollidedLight; null without that input
   vtkPolyData* share = nullptr;             ///< this rank's share of the photons; null without such an input
   MediumInput input;
-  Medium medium;      ///< empty if the subdomain is empty
+  Medium medium;      ///< medium of the subdomain; empty if the subdomain has no voxels
   bool emits = false; ///< whether the medium emits on any rank
   IlluminationInput shining;
 };

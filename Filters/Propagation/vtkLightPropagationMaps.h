@@ -90,10 +90,10 @@ public:
 
   enum Sources
   {
-    CONSTANT = 0,         ///< constant in each voxel, as published
-    LINEAR = 1,           ///< linear between voxel centres: accurate for voxels of any optical thickness
+    CONSTANT = 0,         ///< source constant in each voxel, as published
+    LINEAR = 1,           ///< source linear between voxel centres: accurate for voxels of any optical thickness
     AUTOMATIC_SOURCE = 2, ///< LINEAR if iteration is accelerated, OCTANTS if many voxels are thick, else CONSTANT
-    OCTANTS = 3           ///< by octant in thick voxels, accurate if they absorb much; LINEAR if accelerated
+    OCTANTS = 3 ///< one source per octant in thick voxels, accurate if they absorb much; LINEAR if accelerated
   };
 
   enum Accelerations

@@ -57,7 +57,7 @@ void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light
   spread(light.scatteredRadiance, light.channels * stored);
   const std::vector<double> ofMoments =
     pieces.GetDomain().Max({ static_cast<double>(light.scatteredMoments.size() / voxels),
-      static_cast<double>(light.straightOn.size() / voxels) }); // unknown on ranks without voxels
+      static_cast<double>(light.straightOn.size() / voxels) }); // components, unknown on ranks without voxels
   spread(light.scatteredMoments, static_cast<int>(ofMoments[0]));
   spread(light.straightOn, static_cast<int>(ofMoments[1]));
 }
@@ -165,7 +165,7 @@ int vtkScatteringSolver::RequestData(
   }
   else if (!this->HasSolved && vtkImageData::GetData(outputs, 0)->GetNumberOfCells() > 0)
   {
-    this->Solved->Keep({}, {}, outputs); // piece of a serial solve, for RestoreLightBefore
+    this->Solved->Keep({}, {}, outputs); // this rank's piece of a serial solve, for RestoreLightBefore
     this->SolvedInPieces = true;
   }
   return done;

@@ -76,7 +76,7 @@ public:
 
   enum Decompositions
   {
-    AUTOMATIC_DECOMPOSITION = 0, ///< BLOCKS unless WHOLE is better
+    AUTOMATIC_DECOMPOSITION = 0, ///< BLOCKS or WHOLE, chosen for the scene (see SetDecomposition)
     WHOLE = 1,                   ///< the first rank solves the whole domain
     BLOCKS = 2                   ///< each rank solves its piece
   };

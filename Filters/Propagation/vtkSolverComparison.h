@@ -127,10 +127,10 @@ public:
   /// Whether, without input 3, the reference is a Monte Carlo run (sixteen or more sets of photons) also if light
   /// travels in straight lines. Such a reference shares no solver with the compared methods, but has noise; field data
   /// `reference` reports its standard error. 0: never, the reference is light propagation maps. 1: always; it is an
-  /// error if the medium emits, axes are periodic or faces reflect light. 2 (default): if its predicted standard error
-  /// after half of TimeBudget is at most a third of the error of the finest light propagation maps that are tried, or
-  /// if those take too long or do not fit in memory; never if only photons are compared. Field data `reference` reports
-  /// the choice and its reason.
+  /// error if the medium emits, axes are periodic or faces reflect light. 2 (default): if the predicted standard error
+  /// of Monte Carlo after half of TimeBudget is at most a third of the error of the finest light propagation maps that
+  /// are tried, or if those take too long or do not fit in memory; never if only photons are compared. Field data
+  /// `reference` reports the choice and its reason.
   enum MonteCarloReferences
   {
     NEVER = 0,

@@ -327,7 +327,7 @@ tyndall::VoxelBox VoxelsOf(const std::array<int, 6>& extent, const tyndall::Grid
   return box;
 }
 
-/// Voxels that the pipeline requests.
+/// Voxels that the pipeline requests from this rank.
 /// @param output  information of the output, with the update extent and piece
 /// @param divided  whether each rank requests its own piece
 AskedVoxels VoxelsAskedFor(vtkInformation* output, const tyndall::Grid& grid, bool divided)
@@ -460,7 +460,7 @@ int vtkMeshVoxelizer::FillInputPortInformation(int, vtkInformation* information)
 
 int vtkMeshVoxelizer::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  tyndall::Grid grid; // default without ModelBounds, when the box depends on the meshes
+  tyndall::Grid grid; // default values without ModelBounds: the box then depends on the meshes
   tyndall::GuardedInformation(this, [&] {
     if (IsOn(this->ModelBounds))
     {

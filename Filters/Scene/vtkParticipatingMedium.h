@@ -71,10 +71,10 @@ public:
   enum Presets
   {
     CUSTOM = 0,
-    CLOUD,     ///< rho 1: 1 g of liquid water per cubic metre, droplets of 10 um
-    FOG,       ///< rho 1: 1 droplet per cubic centimetre
-    SMOKE,     ///< rho 1: 1 g of soot per cubic metre
-    SKIM_MILK, ///< from SKIM_MILK to SKIN_2, rho 1: the medium as measured
+    CLOUD,     ///< rho = 1: 1 g of liquid water per cubic metre, droplets of 10 um
+    FOG,       ///< rho = 1: 1 droplet per cubic centimetre
+    SMOKE,     ///< rho = 1: 1 g of soot per cubic metre
+    SKIM_MILK, ///< rho = 1, from SKIM_MILK to SKIN_2: the medium as measured
     WHOLE_MILK,
     CREAM,
     ESPRESSO,
@@ -148,8 +148,8 @@ public:
     HENYEY_GREENSTEIN,
     DOUBLE_HENYEY_GREENSTEIN, ///< FirstPart of the light scatters with MeanCosine, the rest with SecondMeanCosine
     SCHLICK,
-    RAYLEIGH, ///< of particles much smaller than the wavelength
-    TABULATED ///< values of PhaseTable
+    RAYLEIGH, ///< phase function of particles much smaller than the wavelength
+    TABULATED ///< phase function from PhaseTable
   };
 
   ///@{
@@ -204,7 +204,7 @@ public:
   /// Units for SetLengthUnit.
   enum LengthUnits
   {
-    AS_GIVEN = 0, ///< given by MillimetresPerUnit
+    AS_GIVEN = 0, ///< unit of length of MillimetresPerUnit millimetres
     MICROMETRES,
     MILLIMETRES,
     CENTIMETRES,

@@ -36,8 +36,8 @@ namespace
 {
 constexpr double StillTime = 1.0;         ///< allowed seconds per frame from which on the view counts as still
 constexpr double CoarsestRays = 8.0;      ///< largest distance between neighbouring rays, pixels
-constexpr double StepsOfCoarseness = 4.0; ///< steps per pixel in which ray distance changes
-constexpr double FarAway = 1e4;           ///< extension of bounds beside the medium, in diagonals of a piece
+constexpr double StepsOfCoarseness = 4.0; ///< number of values of the ray distance per pixel, so that it rarely changes
+constexpr double FarAway = 1e4; ///< margin of the bounds of a piece that draws the background, in its diagonals
 constexpr int ExposedSize[2] = { 64, 48 };
 
 /// Viewing directions for the automatic exposure: the corners of a tetrahedron.
@@ -341,7 +341,7 @@ void vtkLitVolumeMapper::AgreeOnExposure()
 void vtkLitVolumeMapper::AgreeOnExposure(tyndall::Communicator& others)
 {
   this->CommonExposure = this->ExposureOfPieces(others);
-  if (this->CommonExposure == 0.0) // then the geometric mean of the exposures of the pieces
+  if (this->CommonExposure == 0.0) // pieces are rendered alone: geometric mean of their exposures
   {
     const double own = this->EstimateExposure();
     const std::vector<double> all = others.Sum({ own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 });
@@ -495,7 +495,7 @@ bool vtkLitVolumeMapper::DrawPiece(vtkRenderer* renderer, vtkVolume* volume)
     tyndall::Picture ended;
     if (!this->UpdateSurrounded() || !this->Cast(view, ended))
     {
-      return true; // the ray caster has said why
+      return true; // the ray caster has reported the error
     }
     std::vector<bool> isEnded(view.ends.size());
     std::transform(
@@ -512,7 +512,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   const auto size = tyndall::DrawnSize(renderer);
   if (renderer->GetSelector() || size[0] <= 0 || size[1] <= 0)
   {
-    return; // a medium cannot be picked: it fills its whole box
+    return; // no picking: the medium fills its box
   }
   if (this->DrawPiece(renderer, volume))
   {
@@ -541,7 +541,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   tyndall::Picture picture;
   if (!this->Cast(view, picture) || !this->FindExposure())
   {
-    return; // the ray caster has said why
+    return; // the ray caster has reported the error
   }
   if (this->ShowsBackgroundColor() && view.exposure != this->UsedExposure)
   {

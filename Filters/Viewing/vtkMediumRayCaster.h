@@ -211,8 +211,8 @@ public:
 
   ///@{
   /// Display colour behind the medium if there is no environment, red, green, blue, sRGB as in the array `color`,
-  /// independent of exposure and tone curve: the background's radiance is computed from it. Automatic exposure treats
-  /// the background as black. Default (0, 0, 0), valid [0, 1].
+  /// independent of exposure and tone curve: the background's radiance is computed from this colour. Automatic exposure
+  /// treats the background as black. Default (0, 0, 0), valid [0, 1].
   tyndallSetRange3Macro(BackgroundColor, double, 0.0, 1.0);
   vtkGetVector3Macro(BackgroundColor, double);
   ///@}
@@ -376,7 +376,7 @@ private:
   bool LeaveOut;
   int MemoryBudget = 0;
 
-  std::shared_ptr<tyndall::Device> Within;    ///< device limited by MemoryBudget, or null
+  std::shared_ptr<tyndall::Device> Within;    ///< device limited by MemoryBudget, or null; outlives Kept
   std::unique_ptr<tyndall::CasterScene> Kept; ///< cached scene of the last picture; null after an error
 
   double Seconds = 0.0;
