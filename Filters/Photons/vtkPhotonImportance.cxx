@@ -140,8 +140,8 @@ int vtkPhotonImportance::RequestUpdateExtent(
   return done;
 }
 
-/// Reads the light sources.
-/// @return nothing, after a warning, if there are none
+/// Reads the light sources: lights, environment and SkyColor.
+/// @return the light sources; nothing, after a warning, if none emits light
 std::optional<tyndall::Illumination> vtkPhotonImportance::ReadLight(vtkInformationVector** inputs)
 {
   tyndall::Illumination illumination = this->ReadIllumination(inputs);

@@ -101,7 +101,7 @@ tyndall::PublishedSettings PublishedSettingsOf(vtkPhotonMarcher* filter)
   return settings;
 }
 
-/// Extends the light of a rank's block to all voxels of the output, ghost cells included. Collective.
+/// Extends the arrays of fluence of this rank's block to all voxels of the output, ghost cells included. Collective.
 void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::PhotonLight& photons)
 {
   pieces.SpreadToHeld(photons.light.fluence, photons.light.channels);
@@ -143,7 +143,7 @@ void WriteLightOf(tyndall::PhotonLight&& photons, vtkImageData* output)
 }
 }
 
-/// Input of a rank's march: its block of the medium and its photons.
+/// Input of a march on this rank: the rank's block of the medium and its share of the photons.
 struct vtkPhotonMarcher::MarchInput
 {
   vtkSmartPointer<vtkImageData> image,

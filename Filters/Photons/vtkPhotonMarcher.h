@@ -153,7 +153,8 @@ public:
   ///@}
 
   ///@{
-  /// Step length in voxels where the index varies and the octree has single voxels. Default 1, valid [0.05, 1e4].
+  /// Step length of the integrator, in voxels, where the refractive index varies and the octree has single voxels.
+  /// Default 1, valid [0.05, 1e4].
   tyndallRangeMacro(StepSize, double, 0.05, 1e4);
   ///@}
 
@@ -165,9 +166,9 @@ public:
 
   ///@{
   /// Scattering orders through which photons are followed. 1 (default): to the first scattering, which is
-  /// deterministic; m: through m - 1 scatterings; 0: until they are absorbed or leave. Valid [0, infinity). Scattered
-  /// photons are an unbiased reference for every other solver: Monte Carlo along bent rays, with the medium's phase
-  /// function. Values other than 1 are an error with the published scheme.
+  /// deterministic; m: through m - 1 scatterings; 0: until they are absorbed or leave the volume. Valid [0, infinity).
+  /// Scattered photons are an unbiased reference for every other solver: Monte Carlo along bent rays, with the medium's
+  /// phase function. Values other than 1 are an error with the published scheme.
   tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 
@@ -178,8 +179,8 @@ public:
   ///@}
 
   ///@{
-  /// Batches of scattered photons from whose differences `fluence_error` is computed: 2 to 64, default 16; 0: no
-  /// `fluence_error`. Used if MaximumOrders is not 1, without PhotonCounts.
+  /// Number of batches of scattered photons, from whose differences `fluence_error` is computed: 2 to 64, default 16;
+  /// 0: no `fluence_error`. Used if MaximumOrders is not 1, without PhotonCounts.
   tyndallRangeMacro(ErrorBatches, int, 0, 64);
   ///@}
 
@@ -207,7 +208,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of photons, evenly chosen from all, whose paths are written to output 1. Default 0, valid [0, infinity).
+  /// Number of photons, evenly chosen from all photons, whose paths are written to output 1. Default 0, valid [0,
+  /// infinity).
   tyndallRangeMacro(PathCount, int, 0, VTK_INT_MAX);
   ///@}
 

@@ -213,7 +213,7 @@ int vtkPhotonReconstruction::RequestUpdateExtent(
   return 1;
 }
 
-/// Smooths the light of this rank's block. Collective.
+/// Smooths the fluence of this rank's block and writes the output. Collective.
 void vtkPhotonReconstruction::Reconstruct(const tyndall::PieceBlocks& pieces, vtkImageData* image, vtkImageData* output)
 {
   const tyndall::Domain& domain = pieces.GetDomain();

@@ -83,7 +83,7 @@ public:
   ///@}
 
   ///@{
-  /// Largest number of pyramid levels above the voxels, cut to what the grid allows. Default 5, valid [1, 8].
+  /// Largest number of pyramid levels above the voxels; the size of the grid may allow fewer. Default 5, valid [1, 8].
   tyndallRangeMacro(Levels, int, 1, 8);
   ///@}
 

@@ -71,7 +71,7 @@ public:
 
   ///@{
   /// With IncludeExtinction: largest error of the optical thickness along a straight path through a node, if extinction
-  /// is taken as constant in it. Default 0.1, valid [0, infinity).
+  /// is taken as constant in the node. Default 0.1, valid [0, infinity).
   tyndallRangeMacro(ExtinctionTolerance, double, 0.0, tyndall::AnyHigh);
   ///@}
 

@@ -116,7 +116,8 @@ public:
   ///@}
 
   ///@{
-  /// Largest number of scattering orders (published scheme: steps). Default 0: as many as Tolerance requires.
+  /// Limit on the number of scattering orders (in the published scheme, of steps). Default 0: as many as Tolerance
+  /// requires.
   tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 

@@ -73,8 +73,8 @@ public:
   ///@}
 
   ///@{
-  /// Diffuse radiance that enters through the faces -x, +x, -y, +y, -z, +z in order 0, W/(length^2 sr). Default 0,
-  /// valid [0, infinity).
+  /// Incident isotropic radiance of order 0 at the faces -x, +x, -y, +y, -z, +z, W/(length^2 sr). Default 0, valid [0,
+  /// infinity).
   tyndallSetRange6Macro(FaceRadiance, double, 0.0, tyndall::LargestFloat);
   vtkGetVector6Macro(FaceRadiance, double);
   ///@}

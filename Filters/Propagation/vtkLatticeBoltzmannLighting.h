@@ -91,7 +91,7 @@ public:
   static constexpr int PHOTONS = UNCOLLIDED + 1; ///< input port of the photons
 
   ///@{
-  /// Photons (vtkPolyData) by connection or as data; null: none.
+  /// Photons of input 4 (vtkPolyData) by connection or as data; null: none.
   tyndallInputMacro(Photons, PHOTONS);
   ///@}
 
@@ -137,8 +137,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of steps. Default 0: until Tolerance is met; the conservative scheme without blocks (BlockSize 0) then
-  /// solves for the steady state.
+  /// Number of lattice steps. Default 0: steps until Tolerance is met; the conservative scheme without blocks
+  /// (BlockSize 0) then solves for the steady state.
   tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 

@@ -182,7 +182,7 @@ public:
   ///@}
 
   ///@{
-  /// Largest number of scattering orders. Default 0: as many as Tolerance requires.
+  /// Limit on the number of scattering orders. Default 0: as many as Tolerance requires.
   tyndallRangeMacro(MaximumOrders, int, 0, VTK_INT_MAX);
   ///@}
 

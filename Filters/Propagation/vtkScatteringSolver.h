@@ -134,7 +134,8 @@ public:
   ///@}
 
   ///@{
-  /// Tone curve from radiance to `lit_color`, as vtkMediumRayCaster::ToneCurve: 0 linear, 1 filmic (default).
+  /// Tone curve from radiance to `lit_color`, one of the ToneCurves of vtkMediumRayCaster: 0 linear, 1 filmic
+  /// (default).
   void SetToneCurve(int curve);
   vtkGetMacro(ToneCurve, int);
   ///@}
@@ -183,8 +184,8 @@ protected:
   /// properties stay empty if the solve fails.
   virtual void Note(const tyndall::LightField& light);
 
-  /// Whether the solver takes the medium's cell array `ior` into account. Default: no, with a warning if `ior` is not
-  /// 1.
+  /// Whether the solver uses the medium's cell array `ior` (refractive index). If not, which is the default, an `ior`
+  /// other than 1 causes a warning.
   virtual bool KnowsIndex() const { return false; }
 
   /// Properties and inputs that rule out a decomposition, as text for an error message; empty if there are none.
@@ -196,8 +197,8 @@ protected:
 
   /// Input port of photons that are distributed over ranks (SolverScene::share); -1 if there is none.
   virtual int PortOfShares() const { return -1; }
-  /// Reads and checks the light sources of a subdomain: by default UncollidedLight, or else lights, environment, sky
-  /// and boundary radiance, or the default sky.
+  /// Reads and checks the light sources of a subdomain: by default UncollidedLight or, if it is not connected, lights,
+  /// environment, sky and boundary radiance, or the default sky.
   virtual tyndall::IlluminationInput ReadShining(tyndall::SolverScene& scene, vtkInformationVector** inputs);
 
   /// Whether the solver reads the property Quality: not for previews.

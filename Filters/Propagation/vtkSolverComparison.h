@@ -84,7 +84,7 @@ public:
 
   /// Input port of the reference; lower numbers are the ports of vtkLitMediumAlgorithm.
   static constexpr int REFERENCE = 3;
-  /// Output port of the reference.
+  /// Output port of the reference, a vtkImageData.
   static constexpr int REFERENCE_OUTPUT = 1;
 
   vtkTable* GetOutput();

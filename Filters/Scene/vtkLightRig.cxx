@@ -106,6 +106,7 @@ struct vtkLightRig::AddedLights
     }
   }
 
+  /// Checks that no light is incomplete.
   /// @throws InvalidInput if a light lacks numbers
   void CheckNumbers() const
   {

@@ -387,6 +387,7 @@ struct vtkMeshVoxelizer::AddedMaterials
   std::vector<std::pair<double, Material>> InOrder; ///< materials with their numbers, in the order of addition
   std::vector<double> Numbers;                      ///< pending numbers of an incomplete material
 
+  /// Checks all materials.
   /// @throws InvalidInput if a material is incomplete or invalid
   void Check() const
   {

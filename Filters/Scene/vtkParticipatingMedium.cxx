@@ -135,7 +135,8 @@ double MillimetresOf(vtkParticipatingMedium* filter)
                                                   : Units[unit - vtkParticipatingMedium::MICROMETRES].millimetres;
 }
 
-/// The grid's edge lengths as text, in the largest unit in which the longest edge is at least 1.
+/// Edge lengths of a grid as text, in the largest unit of Units in which the longest edge is at least 1.
+/// @param millimetres  length of the grid's unit in millimetres
 std::string ExtentInWords(const tyndall::Grid& grid, double millimetres)
 {
   const double longest = std::max({ grid.Length(0), grid.Length(1), grid.Length(2) }) * millimetres;

@@ -85,8 +85,8 @@ public:
   };
 
   ///@{
-  /// The medium, one of Presets. Default CUSTOM: uses Albedo and MeanCosine. PhaseFunction applies to presets, too;
-  /// their data are for HENYEY_GREENSTEIN, which is isotropic for g = 0.
+  /// Medium whose properties are used, one of Presets. Default CUSTOM: uses Albedo and MeanCosine. PhaseFunction
+  /// applies to presets, too; their data are for HENYEY_GREENSTEIN, which is isotropic for g = 0.
   tyndallRangeMacro(Preset, int, CUSTOM, SKIN_2);
   ///@}
 
@@ -141,7 +141,7 @@ public:
   vtkGetVector3Macro(Albedo, double);
   ///@}
 
-  /// Phase functions for SetPhaseFunction.
+  /// Names of phase functions, for SetPhaseFunction.
   enum PhaseFunctions
   {
     ISOTROPIC = 0,
@@ -153,7 +153,7 @@ public:
   };
 
   ///@{
-  /// The phase function, one of PhaseFunctions. Default HENYEY_GREENSTEIN.
+  /// Phase function of the medium, one of PhaseFunctions. Default HENYEY_GREENSTEIN.
   tyndallRangeMacro(PhaseFunction, int, ISOTROPIC, TABULATED);
   ///@}
 
@@ -201,7 +201,7 @@ public:
   vtkGetVector3Macro(EmissionColor, double);
   ///@}
 
-  /// Units for SetLengthUnit.
+  /// Units of length, for SetLengthUnit.
   enum LengthUnits
   {
     AS_GIVEN = 0, ///< unit of length of MillimetresPerUnit millimetres

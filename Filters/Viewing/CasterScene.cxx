@@ -83,7 +83,7 @@ ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const G
   inputs.direct = read(ViewedFluenceDirect, { 1, 3 });
   inputs.ior = read(ViewedIndex, { 1 });
   inputs.meanDirection = read(ViewedMeanDirection, { 3 });
-  // Moments and light at faces belong to the array `fluence` that the solver wrote.
+  // Moments and light at faces are valid only with the array `fluence` that the solver wrote.
   if (inputs.fluence.IsThere() &&
     ChosenArray(filter, ViewedFluence, image, ViewedNames[ViewedFluence]) == image->GetCellData()->GetArray("fluence"))
   {

@@ -188,7 +188,7 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, cons
   }
   if (!source.Over().IsSerial())
   {
-    // The width of the halo that a block needs depends on these settings.
+    // The width of the halo of a block depends on the step size if surfaces reflect.
     const bool reflects = source.settings.surfaceReflection != tyndall::SurfaceReflection::None;
     key.Add({ reflects ? source.settings.stepSize : 0.0 });
   }

@@ -173,15 +173,16 @@ public:
   ///@}
 
   ///@{
-  /// Whether rays are parallel (default off), and half the picture's height, a length, for parallel rays (default 1,
-  /// valid (0, infinity)). A camera that frames the medium chooses the height itself.
+  /// Whether rays are parallel (CameraParallelProjection, default off), and half the height of the picture for parallel
+  /// rays, a length (CameraParallelScale, default 1, valid (0, infinity)). If the camera frames the medium,
+  /// CameraParallelScale is not used.
   tyndallFlagMacro(CameraParallelProjection);
   tyndallRangeMacro(CameraParallelScale, double, 0.0, tyndall::AnyHigh);
   ///@}
 
   ///@{
-  /// Distance between two samples on a ray, in voxels. Default 0.5, valid [0.01, 10]. The error is proportional to its
-  /// square.
+  /// Distance between two samples on a ray, in voxels. Default 0.5, valid [0.01, 10]. The error is proportional to the
+  /// square of the distance.
   tyndallRangeMacro(StepSize, double, 0.01, 10.0);
   ///@}
 
