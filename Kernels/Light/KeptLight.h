@@ -39,7 +39,8 @@ struct KeptLight
   Rgb rate = {};           ///< ratio of the light of successive iterations at the end of the solve
   std::vector<ConvergenceRow> fromDarkness; ///< convergence rows of the last solve without an initial guess
 
-  bool Empty() const { return this->scattered.empty() || Sum(this->firstScattered) == 0.0; }
+  /// Whether no light is kept. A rank without voxels keeps the powers of the domain, but no values.
+  bool Empty() const { return Sum(this->firstScattered) == 0.0; }
 };
 
 /// Reason, as a clause, why a solve cannot start from kept light; empty if it can.

@@ -35,7 +35,8 @@ public:
   void Build(); ///< computes the levels of all pyramids from the voxels up to the shared level
   /// Cells of the shared level of a pyramid over this rank's box.
   std::vector<float> Shared(std::size_t pyramid) const { return this->Pyramids[pyramid].Read(this->Part.shared); }
-  /// Computes the levels above the shared level, from its cells in the domain.
+  /// Computes the levels that are coarser than the shared level, the one that all ranks exchange.
+  /// @param cells  cells of the shared level, over the whole domain
   void BuildAbove(std::size_t pyramid, const std::vector<float>& cells);
 
   void Choose(double weightStep); ///< computes light, levels and directions of the result

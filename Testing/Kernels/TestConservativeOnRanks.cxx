@@ -725,7 +725,7 @@ TEST_F(ConservativeOnRanks, SaysWhatASerialSolveWouldDoBetter)
   layers.scene.sigma_a[7] = 0.2f; // none any more
   expect("", layers, { true, false, true });
   orders.scene.sigma_a[7] = 0.002f;
-  expect("many scattering orders", orders, { true, true, false });
+  expect("", orders, { true, true, false }); // coarse-mesh DSA wraps around on several ranks, too
   MediumToCut dark = even(0.05f, 0.05f);
   dark.scene.light = {};
   dark.scene.emission = RandomValues(dark.scene.sigma_a.size(), 0.0, 0.01, 7);

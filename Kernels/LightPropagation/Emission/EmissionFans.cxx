@@ -428,7 +428,8 @@ private:
   const FanScene& Scene;
   const Buffer<float> Emission;
   Buffer<float> Outside, Halves, FaceHalves; ///< arguments of lay_out() and collect_fans()
-  int LaidOut = -1;                          ///< first axis of the fans for which Outside is valid; -1: none
+  /// Marching axis of the fans for which the extinction in `Outside` is laid out, 0 to 2; -1: not laid out yet
+  int LaidOut = -1;
   FanLight Light;
   double Emitted = 0.0;      ///< integral of emission over the emitting box, W / sr
   int Points = FewestPoints; ///< fans into each part of space that are traced, or about to be traced

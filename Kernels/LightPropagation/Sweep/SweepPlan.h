@@ -71,7 +71,7 @@ struct SweepPlan : SweepDescription
   std::vector<cl_int2> roundSchedule;
 
   int Planes() const { return this->box.size[this->axes.axis]; }
-  /// Number of planes in which the rays of a sweep start
+  /// Number of planes over which rays repeat their sideways moves: those of all laps around a periodic axis
   int PatternPlanes() const { return this->Planes() * this->laps; }
   /// Number of planes of the grid that rays cross before they reach the swept box.
   /// @param way  sense of marching: 0 forward, 1 backward
