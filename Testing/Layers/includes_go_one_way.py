@@ -30,7 +30,6 @@ LAYERS = {
         ["Scattering", "Uncollided", "Diffusion", "PlaneParallel"],
         ["Emission", "ThickVoxels", "CoarseDiffusion"],
         ["Conservative", "Published"],
-        ["Distributed"],
         ["Accuracy"],
     ],
     "Kernels/Viewing": [
