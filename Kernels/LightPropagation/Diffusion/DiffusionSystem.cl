@@ -153,8 +153,8 @@ static float remainder_of_face(
   return remainder_of(layout, axis, &face);
 }
 
-// Net power that leaves through a face of the box if the voxel's fluence is arrays->model, as a sweep would find it (M_d
-// of numerics.md, Eq. (59)). `dark` receives the same power by diffusion if the voxel's fluence is 0.
+// Net power that leaves through a face of the box if the voxel's fluence is arrays->model, as a sweep would find it
+// (M_d of numerics.md, Eq. (59)). `dark` receives the same power by diffusion if the voxel's fluence is 0.
 static float model_of_boundary(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* at, float* dark)
 {
