@@ -150,7 +150,7 @@ bool IsStoppedByOthers(vtkAlgorithm* filter);
 /// A rank that did not reach the barrier of FindMissingRank.
 struct MissingRank
 {
-  /// Number of the first such rank; 0 on a rank that arrives after the others gave up; -1: none.
+  /// Number of the first such rank; -1: none. A rank that arrives after the time-out gets no answer, and reports rank 0.
   int rank = -1;
   bool elsewhere = false; ///< whether that rank reached another filter than the first rank
 };

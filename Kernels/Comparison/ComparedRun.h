@@ -62,7 +62,8 @@ struct ComparedSettings
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
   double tolerance = PropagationSettings().tolerance; ///< tolerance of propagation, PropagationSettings::tolerance
-  /// Whether the photons of the reference are also scattered with a varying refractive index.
+  /// With a varying refractive index photons give the reference: whether they are followed through all collisions;
+  /// false: only their uncollided light is used.
   bool scattersReference = false;
   /// Whether scattered photons are also the reference with a constant refractive index; the reference then shares no
   /// solver with the compared methods.

@@ -107,8 +107,10 @@ public:
   std::vector<AxisBundles> AllRays() const; ///< all rays of the usual quadrature
   /// Angular functions in the usual directions, for SweepRequest::angular; null: scattering is isotropic.
   const AngularValues* UsualValues() const { return this->Angular ? &this->Angular->Values() : nullptr; }
-  void DarkenBeams();                                ///< sets the sources of beams in Source to 0
-  BeamsInSource BeamsOfSource();                     ///< access to the sources of beams in Source
+  void DarkenBeams(); ///< sets the sources of beams in Source to 0
+  /// Object that moves the beams' first-collision sources out of Source for the sweep in which beams are traced, and
+  /// back for the next one (BeamScattering.h).
+  BeamsInSource BeamsOfSource();
   void LightBeams(const Buffer<float>& given) const; ///< copies the sources of beams from `given` to Source
   std::size_t BeamValues() const { return this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0; }
   /// Whether the angular moments of scattered light are part of the result.

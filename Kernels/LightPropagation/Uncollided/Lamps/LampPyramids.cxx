@@ -59,7 +59,8 @@ struct ConeInPlane
 /// where two pyramids meet.
 std::array<double, 3> WeightsOfAxes(const Grid& grid, const glm::dvec3& position)
 {
-  // Largest tangent at which beams still move laterally by less than a voxel per step
+  // Largest tangent of a widened pyramid: its beams move sideways by 0.75 voxels per step of half a layer, which must
+  // be below 1.
   constexpr double widest = 1.5;
   double least = widest;
   std::array<double, 3> weights = { 1.0, 1.0, 1.0 };
