@@ -247,6 +247,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
   domain.Collective([&] { problem.Undo(light); });
   light.faceAlbedo = illumination.faceAlbedo;
   WarnAboutInputLight(domain, illumination, light);
+  ShareLeftOut(domain, light);
   return light;
 }
 }

@@ -108,6 +108,11 @@ void ShareFigures(Communicator& communicator, bool found, LightField& light)
   light.leftOut = ShareLines(communicator, found, light.leftOut);
 }
 
+void ShareLeftOut(const Domain& domain, LightField& light)
+{
+  light.leftOut = ShareLines(domain.Comm(), !domain.IsEmpty(), light.leftOut);
+}
+
 std::string WhyNotBegunOnAny(Communicator& communicator, const KeptLight& kept, const std::string& whyNot)
 {
   const std::string words = WordsOfAny(communicator, whyNot);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "Distribution/Communicator.h"
+#include "Distribution/Domain.h"
 #include "Light/KeptLight.h"
 #include "Light/LightField.h"
 
@@ -14,6 +14,9 @@ namespace tyndall
 /// @param found  true on the one rank that has the result
 /// @param light  the result on that rank; receives it on the others
 void ShareFigures(Communicator& communicator, bool found, LightField& light);
+
+/// Sets `light.leftOut` on all ranks to that of the first rank that has voxels. Collective.
+void ShareLeftOut(const Domain& domain, LightField& light);
 
 /// Reason, in the same clause on all ranks, why a distributed solve cannot start from kept light; empty if it can. Each
 /// rank keeps the light of its block; if one rank cannot start from it, none does. Collective.

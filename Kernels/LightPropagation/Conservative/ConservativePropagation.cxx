@@ -3,6 +3,7 @@
 #include "Device/Device.h"
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
+#include "Distribution/SharedLight.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
@@ -275,6 +276,7 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
   }
   JudgeConvergence(settings, light);
   WarnAboutInputLight(domain, illumination, light);
+  ShareLeftOut(domain, light);
   return light;
 }
 }
