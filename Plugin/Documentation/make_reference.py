@@ -20,16 +20,18 @@ NAME = re.compile(r"\b[A-Za-z]+(?:_[A-Za-z0-9]+)+\b")
 
 HEAD = """# Reference
 
-Every filter and every property. `make_reference.py` generates this page from `Plugin/ServerManager/*.xml`: change the
-documentation there, then run the script. How to combine the filters is in the [guide](guide.md).
+This page lists every filter and every property. `make_reference.py` generates it from `Plugin/ServerManager/*.xml`:
+change the documentation there, then run the script. The [guide](guide.md) shows how to combine the filters.
 
-Names are those of Python and of ParaView's traces; the panel writes them with spaces. The C++ class of a filter `X` is
-`vtkX`; a property `P` is set by `SetP` and a result `R` read by `GetR`. Properties marked *advanced* are on the panel
-after a click on the gear beside its search field. Lengths are in the dataset's own unit. A number outside its valid
-values is refused with an error, never replaced (some classes accept more than panels offer: angles beyond a turn, more
-directions). Choices accept their text or their number: `Scheme="Conservative"` or `Scheme=1`.
+Properties have the names that Python and ParaView's traces use; the panel shows them with spaces. The C++ class of a
+filter `X` is `vtkX`; a property `P` is set by `SetP`, and a result `R` is read by `GetR`. Properties marked *advanced*
+appear on the panel after a click on the gear beside its search field. "Length" as a unit means the dataset's own unit
+of length. A number outside the valid values of a property is refused with an error, never replaced. Some C++ classes
+accept more values than panels offer, for example angles above a full turn, or more directions. A choice accepts its
+text or its number: `Scheme="Conservative"` or `Scheme=1`.
 
-The *domain* is the whole grid, a *subdomain* its part on one rank, a *halo* the layer of ghost cells around it.
+The *domain* is the whole grid, a *subdomain* is the part of it on one rank, and a *halo* is the layer of ghost cells
+around a subdomain.
 """
 
 
