@@ -452,8 +452,8 @@ TEST_P(SceneOnRanks, HasTheSerialLight)
 INSTANTIATE_TEST_SUITE_P(
   Of, SceneOnRanks, testing::ValuesIn(Scenes()), [](const auto& info) { return info.param.name; });
 
-/// What beams deposit is in fixed point, whichever rank follows them. Only the factor that makes the entering power that
-/// of the solid angle is a sum in floats, in the order of ranks.
+/// What beams deposit is in fixed point, whichever rank follows them. Only the factor that makes the entering power
+/// that of the solid angle is a sum in floats, in the order of ranks.
 TEST_F(ConservativeOnRanks, HasTheUncollidedLightOfLampsButForOneFactor)
 {
   MediumToCut medium = Everything({ 4, 3, 2 });
