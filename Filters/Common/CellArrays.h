@@ -72,8 +72,8 @@ void CheckShape(vtkDataArray* array, const std::string& name, vtkIdType tuples, 
 /// @throws InvalidInput naming the array and its number of components, or the arrays that exist if it is missing
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 
-/// Reads values of cells, as ReadCells does, from the array that SetInputArrayToProcess selected as number `index`, by
-/// name or by attribute. If a point array was selected, it takes precedence over a cell array of the same name. If
+/// Calls ReadCells for the array that the user selected by SetInputArrayToProcess, under the number `index`, by name or
+/// by attribute. If a point array was selected, it takes precedence over a cell array of the same name. If
 /// nothing was selected (SCALARS in VTK, "" in ParaView before it knows the input), or the name `otherwise`, the
 /// function reads the array that the filter upstream used for this quantity (NoteChoices), or else the array
 /// `otherwise`, where "" stands for the active scalars. An array selected by another name is never optional.

@@ -93,7 +93,8 @@ struct MediumInput
 /// `g` (optional, 1 or 3 components) if the mean cosine varies by voxel, otherwise field data `g` (1 or 3 numbers;
 /// default 0); field data `phase_function` and the parameters in PhaseFunctionData.h (default Henyey-Greenstein).
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
-/// Reads the medium of a rank's block of a domain, as ReadMedium does for an image on one process. Collective.
+/// Reads and checks the medium of this rank's block: the arrays and field data that ReadMedium(filter, image) reads.
+/// Collective.
 /// @param own  the block's image; null if it has no voxels
 /// @throws InvalidInput, the same on all ranks, if ReadMedium throws on any
 MediumInput ReadMedium(vtkAlgorithm* filter, const Domain& domain, vtkImageData* own);

@@ -26,13 +26,13 @@ namespace tyndall
 void AddCells(
   vtkImageData* image, const char* name, std::vector<float>&& values, int components, const char* advice = nullptr);
 
-/// Adds a cell array of light to an image, as AddCells does. With 3 channels the components are named R, G, B.
+/// Adds a cell array with one component per channel to an image by AddCells, and names three components R, G, B.
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
 /// Adds the image's array `as` a second time, under the name `name`. The arrays share memory; values are not checked.
 void AddSameLight(vtkImageData* image, const char* name, const char* as);
 
-/// Adds a cell array of light that a user gave, as AddLight does, but without a check of the values: they may be NaN
+/// Adds a cell array of light from the user's input. Unlike AddLight it does not check the values, which may be NaN
 /// where the light is unknown.
 void AddGivenLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 

@@ -212,7 +212,8 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& io
   }
   else if (this->IsBlock() && this->hasLevels)
   {
-    const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0); // placeholder, replaced by SetNodes
+    // Level 0 everywhere: OwnNodes only tests where the index varies. SetNodes then sets the nodes of the domain.
+    const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0);
     this->PackVoxels(medium, ior, single.data());
   }
   else
