@@ -148,7 +148,7 @@ void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor
   CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
   if (!this->Kernel.IsBorderClear() || volume.faceIn)
   {
-    // Light in the columns outside the plane has entered; it must not enter again when rays wrap around.
+    // Incident light in the columns outside the plane has entered; it must not enter again when rays wrap around.
     this->RunOnMaps("darken_beside", nullptr, false, this->RowsOfMaps());
   }
   this->Kernel.ClearBorder();
@@ -172,7 +172,8 @@ void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffe
 {
   const SweepPlan& plan = this->Plan;
   const Deposit& to = volume.deposit;
-  // One compiled program serves both open and periodic boxes where planes are never chained.
+  // With angular moments or cells of faces, planes are never chained; one program, compiled for periodic boxes, then
+  // also serves open boxes.
   const bool faces = to.faceOut || entry.byCells, alone = plan.angular || faces;
   cl::Kernel kernel =
     this->Kernel.Make(faces, alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v], false);

@@ -34,15 +34,15 @@ public:
   /// Starts one sweep through the volume, forward and backward. Only queues the work on an open axis; waits on a
   /// periodic axis.
   /// @param boundary  incident light; empty: none
-  /// @param mostPlanes  maximum number of planes that rays cross along a periodic axis in this sweep; the rest of their
-  /// power waits in the maps for the next sweep
+  /// @param mostPlanes  maximum number of planes that rays cross along a periodic axis in this sweep; rays that are then
+  /// still in transit stay in the maps for the next sweep
   /// @param monitor  receives the completed fraction of this sweep, 0 to 1
   void Start(const SweepVolume& volume, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
 
   /// Discards the rays in transit along a periodic axis.
   void Forget();
 
-  /// Waits for the end of the sweep begun by Start. @return incident, escaped and remaining power, W
+  /// Waits for the end of the sweep begun by Start. @return incident power, escaped power, and power in transit, W
   SweepTally Finish();
 
 private:
@@ -50,8 +50,8 @@ private:
   struct Entry
   {
     bool source = false;    ///< whether the medium has a source (emission or scattered light)
-    bool border = false;    ///< whether light is incident on the faces that rays cross sideways
-    bool byCells = false;   ///< whether incident radiance is also given per cell of those faces
+    bool border = false;    ///< whether light is incident on the faces parallel to the marching axis
+    bool byCells = false;   ///< whether incident radiance is also given per cell of these faces
     bool mapsEmpty = false; ///< whether the memory of the maps is uninitialised
   };
   void Enter(const SweepBoundary& boundary, std::size_t firstChannel);

@@ -11,7 +11,7 @@ namespace tyndall
 std::array<double, 2> SidewaysMoves(const Bundle& bundle, int firstPlane, int planes);
 
 /// Adds power that escaped through the faces parallel to the marching axis to SweepTally::out.
-/// @param left  escaped power, W, [any][-u, +u, -v, +v][channel]
+/// @param left  escaped power, W, consecutive arrays [-u, +u, -v, +v][channel], which are added up
 void CountSideways(const SweepPlan& plan, const std::vector<float>& left, SweepTally& tally);
 
 /// Incident light of a sweep along one axis, in the layout of the sweep's buffers. Each array holds both senses of
@@ -30,8 +30,8 @@ public:
   /// @param boundary  incident radiance; not empty
   SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds = Holds::Maps);
 
-  /// Incident power of a ray, W, [sense][bundle][member][channel]; components: entering through the face across u,
-  /// through the face across v, and at the start of the ray.
+  /// Incident power of a ray, W, [sense][bundle][member][channel]; components x, y, z: power if the ray enters through
+  /// the face across u, through the face across v, or at the face where rays start.
   std::vector<cl_float4> rays;
 
   /// Initial power of each ray, W; columns outside the plane hold the power of rays that enter through the faces across

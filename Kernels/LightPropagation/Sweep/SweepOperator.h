@@ -41,14 +41,14 @@ struct Deposit
 /// Optical thickness of a voxel below which collisions of lamps' light are taken as uniform in the voxel.
 constexpr float ThinForFirstMoments = 0.02f;
 
-/// Planes of voxels that rays cross along the marching axis, for rays that leave through a face parallel to that axis.
-/// A ray nearly parallel to the face represents the power that leaves through cells of several planes
+/// Planes along the marching axis to which a ray that leaves through a face parallel to that axis belongs. If the ray
+/// is nearly parallel to the face, it represents the power that leaves through cells of several planes
 /// (Deposit::spreadsAside).
 struct AsidePlanes
 {
   int size;
   bool periodic;
-  bool spreads; ///< false: a ray leaves only through the cell of the plane in which it meets the face
+  bool spreads; ///< whether a ray may belong to several planes; false: only to the plane in which it meets the face
 };
 
 /// Calls act(plane, part) for each plane through whose cells a ray leaves, with the fraction of the ray's power that

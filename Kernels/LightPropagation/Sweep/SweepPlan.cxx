@@ -16,7 +16,8 @@ constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9;
 /// Magnitude below which an angular function (of mean square 1) is taken as zero
 constexpr double ZeroFunction = 1e-6;
-/// Maximum number of groups of bundles that march in the same sense, two slabs behind each other
+/// Maximum number of groups of bundles that march concurrently in the same sense, each two slabs behind the previous
+/// group
 constexpr int MostGroups = 4;
 
 /// Coefficients of (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), a minimax polynomial with an
@@ -393,16 +394,17 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t quantities =
     PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
-  // Planes have all rows also with rowsKept, since cells of faces need them.
+  // All rows of a plane, even if rowsKept is set: with cells of faces, kernels use all of them.
   const std::size_t planes = quantities * rows * this->row;
-  // Moments of source and of path.
+  // Packed rows of the moments of the source and of the path integral
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow;
   return ring + planes + rows + packed + 3 * this->vector;
 }
 
-/// Borders of slabs of planes. The number of slabs is even, large enough to keep launches short, and at least eight per
-/// group if there are several groups. Borders lie between blocks and chains, except in the middle, and are symmetric
-/// about it, because units of opposite senses wait for each other.
+/// Borders between slabs, the ranges of planes that a unit crosses in one launch. The number of slabs is even, large
+/// enough to keep launches short, and at least eight per group if there are several groups. Except for the middle
+/// border, no border separates planes that are packed or chained together (PlaneInfo::together). Borders are symmetric
+/// about the middle, because units of opposite senses wait for each other.
 std::vector<int> SweepPlan::SlabBorders(int groups)
 {
   const int planes = this->Planes();

@@ -61,17 +61,19 @@ struct SweepPlan : SweepDescription
   int momentRow = 0;
 
   std::vector<UnitInfo> units;
-  /// Planes that each unit crosses in each launch, [launch][unit], first and end
+  /// Range of planes (first, end) that each unit crosses in each launch, [launch][unit]
   std::vector<cl_int2> schedule;
   int launches = 0;
   double secondsPerLaunch = 0.0; ///< upper estimate of the time of a launch on a slow core, s
-  /// Number of laps around a short periodic axis in which rays start, so that their pattern of moves fits; else 1
+  /// Number of laps around a short periodic axis in which rays start, so that the axis is long enough for their pattern
+  /// of moves; else 1
   int laps = 1;
-  /// Planes that each unit crosses when rays wrap around a periodic axis; units run one after another
+  /// Range of planes (first, end) that each unit crosses in each launch when rays wrap around a periodic axis,
+  /// [launch][unit]; only one unit runs in each launch
   std::vector<cl_int2> roundSchedule;
 
   int Planes() const { return this->box.size[this->axes.axis]; }
-  /// Number of planes over which rays repeat their sideways moves: those of all laps around a periodic axis
+  /// Number of planes of the ray pattern, after which the sideways moves of rays repeat: the planes of all `laps`
   int PatternPlanes() const { return this->Planes() * this->laps; }
   /// Number of planes of the grid that rays cross before they reach the swept box.
   /// @param way  sense of marching: 0 forward, 1 backward

@@ -26,7 +26,8 @@ enum
   RowsOfChainKept = 64,
   RowsAhead = 2,     ///< number of rows by which the prefetch of a ray map is ahead in chained planes
   FloatsOfLine = 16, ///< number of floats in a cache line
-  FirstRow = -2      ///< lowest row of a plane at which a first stage may begin
+  /// Lowest row at which a first stage begins: along a periodic v, it also crosses two rows before the plane
+  FirstRow = -2
 };
 
 /// Indices of the first quantities stored per row of a plane that is being crossed; path, flux and partial currents
@@ -81,7 +82,7 @@ typedef struct
   float power;  ///< power of a ray of radiance 1 (numerics.md, Eq. (19)), length^2 sr
   float cosine; ///< cosine of the angle between the bundle's directions and the marching axis, for the net flux
   float sineU, sineV;
-  /// Number of planes between two moves along u, and along v; at most the planes of the axis
+  /// Mean number of planes between two moves of a ray along u, and along v; at most the number of planes of the axis
   float planesU, planesV;
   int move[MaxMembers]
           [4]; ///< per member, signed permutation of the bundle's moves: u from u, u from v, v from u, v from v
@@ -175,8 +176,8 @@ typedef struct
   EachWay eachWay;
   int empty;  ///< 1: the maps are uninitialised, and are cleared where rays start
   int shines; ///< 1: the medium has a source (emission or scattered light)
-  int border; ///< 1: light is incident on the faces that rays cross sideways
-  /// 1: rays wrap around the marching axis, so each plane is added to many times, with compensated summation
+  int border; ///< 1: light is incident on the faces parallel to the marching axis
+  /// 1: rays wrap around the marching axis, so sums are added to each plane repeatedly, with compensated summation
   int roundAxis;
   int periodicU, periodicV; ///< 1: the box is periodic along u, along v
   int bundles;
@@ -195,7 +196,7 @@ typedef struct
   int streamed; ///< 1: the volumes are streamed in slices through slots (SliceStream.h)
   /// Floats of a slot of the source, and of a slot of the path integral, if streamed
   ulong sourceSlot, pathSlot;
-  int outerSides; ///< for a subdomain: bit i: light that crosses side i leaves the domain
+  int outerSides; ///< for a subdomain: bit i is set if light that crosses side i of -u, +u, -v, +v leaves the domain
 } SweepInfo;
 
 /// Arguments of the kernels on the maps of rays (SweepMaps.cl). Maps are [sense][bundle][row][member][channel], with

@@ -23,8 +23,8 @@ static void go_to_plane(sweep_state* state, int k)
 }
 
 #if OCTANT_SOURCE
-// The two combinations of senses along u and v (WaysAside) of a member's direction; they differ if it has no component
-// along u or v.
+// The two combinations of senses along u and v (WaysAside) to which a member's direction belongs. They are equal unless
+// the direction has no component along u or v.
 static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 {
   const float2 signs = signs_of(bundle, m);
@@ -63,7 +63,7 @@ typedef struct
   int backward;
 } swept_volume;
 
-// Rays of a unit's sense of marching, see the arguments of `sweep`.
+// Maps, incident power, bundles and moves of the rays of a unit's sense of marching; see the arguments of `sweep`.
 typedef struct
 {
   __global float* maps;
@@ -74,7 +74,7 @@ typedef struct
   __global leaving_float* leaving;
 } swept_rays;
 
-// Scratch of a unit, in addition to that in sweep_state.
+// Arrays in a unit's scratch memory, in addition to those in sweep_state.
 typedef struct
 {
   __global float* planes;
@@ -90,7 +90,8 @@ typedef struct
   __global float* planes;
   __global int* thin; // whether all voxels of a row are optically thin, [plane][row]
   int first, count;
-  // Path integrals per unit source within the voxel of origin: from the first plane crossed on
+  // Path integral, per unit of source, of light within its voxel of origin; one element per plane, from the first one
+  // crossed
   const __global OwnLightInfo* own;
 } packed_planes;
 
@@ -334,7 +335,7 @@ static void go_to_channel(swept_volume* volume)
   volume->octants += 8 * info->first;
 }
 
-// Sets the part of the state that is the same for all planes, except its pointers.
+// Sets the members of the state that are the same for all planes, except for pointers.
 static void begin_state(sweep_state* state, const SweepInfo* info)
 {
   const PlaneInfo* layout = &info->planes;
@@ -369,7 +370,7 @@ static void begin_state(sweep_state* state, const SweepInfo* info)
 #endif
 }
 
-// Number of bundles that cross the same planes before other bundles do.
+// Number of bundles that alternate on tiles of the same planes; further bundles cross these planes afterwards.
 static int bundles_together(const sweep_state* state, int bundles)
 {
   return ANGULAR || state->tile > 0 ? min(bundles, (int)BundlesTogether) : bundles;

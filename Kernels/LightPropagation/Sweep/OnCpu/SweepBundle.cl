@@ -102,7 +102,7 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
     return;
   }
 #if OCTANT_SOURCE
-  // Power of the additional octant source is not lost in its own voxel
+  // The path integral is reduced by the power that the octant source adds to the rays, so that total power is conserved
   sum -= all_more * load_real(x, rows->inverse) * rows->power;
 #endif
   __global float* path = rows->path + c * ROW;
@@ -572,7 +572,8 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
 // @param radiance power of rays that enter through the faces across u, W, [member][channel]
 // @param crossings  moves and segments in the first plane; those in the following planes are state->allBundles apart
 // @param coefficients  values of the bundle's angular functions
-// @param first_row, end_row  rows of the first stage that are crossed in this call; successive calls start at FirstRow
+// @param first_row, end_row  range of rows that the first stage crosses in this call; the first of successive calls
+// begins at FirstRow
 static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
   const __global float* coefficients, int first_row, int end_row)

@@ -30,7 +30,7 @@ public:
     const Buffer<float>& maps;
     const Buffer<float>& scratch;
     const Buffer<CrossingInfo>& crossings;
-    /// Planes of each unit, [launch][unit], first and end; if streamed, SliceStream::Schedule::rows
+    /// Range of planes (first, end) of each unit, [launch][unit]; if streamed, SliceStream::Schedule::rows
     const Buffer<cl_int2>& schedule;
     /// Incident radiance per cell of the faces, or power of the rays that enter through the sides (Sweep.cl)
     const cl::Buffer& entering;

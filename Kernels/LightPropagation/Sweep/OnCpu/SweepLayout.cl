@@ -65,15 +65,15 @@
 #define MOMENTS_OF_CHANNEL(info) ((ulong)(info)->moments.groups * ((info)->moments.functions - 1) * MomentGroup)
 #endif
 
-// Limits of a chain: planes, stages, and the lag of the last stage.
+// Maximum number of planes in a chain.
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)
-// Maximum number of rows by which the last stage lags behind the first
+// Maximum number of rows by which the last stage of a chain lags behind the first
 #define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2)
 typedef struct
 {
-  int stages; // number of stages of the planes in `of`
-  int before; // number of stages of the chain's planes before the first plane in `of`
+  int stages; // number of elements of `of` that are used
+  int before; // number of stages of earlier planes of the chain, which are not in `of`
   struct
   {
     int plane, stage; // index of the plane, and of the stage in that plane
@@ -105,7 +105,7 @@ typedef struct
   __global float* planes;           // quantities of the plane that is being crossed
   __global int* thin;               // 1 if all voxels of a row of that plane are thin, [row]
   float meanLength[MeanLengthTerms];
-  int chained_before; // number of planes of the chain that were crossed before those of `places`
+  int chained_before; // number of planes of the chain that were crossed before those in `places`
   // Prefetch, if CHAINED: next address, and number of cache lines per vector of voxels
   const __global float* asked;
   int asks;
@@ -117,8 +117,8 @@ typedef struct
   __global float* sources;
   __global float* paths;   // path integrals of the members, W length, laid out as sources
   __global float* ownPath; // path integral of a unit source within its own voxel, MomentRows rows
-  // Moments of the plane from the second function on: of source and path, and the floats from one row, and one channel,
-  // to the next.
+  // Moments, from the second function on, of the plane's source and of its path integral; number of floats from one row
+  // to the next, and from one channel to the next.
   const __global float* momentSource;
   __global float* momentPath;
   ulong momentStep, momentChannel;
@@ -174,7 +174,7 @@ static float sum_of_row(const __global float* row, int count)
   return sum_of(sum);
 }
 
-// With compensation of rounding errors (Kahan)
+// Adds `value` to *sum, with compensated (Kahan) summation; *rounding is the accumulated rounding error.
 static void add_exactly(float* sum, float* rounding, float value)
 {
   const float y = value - *rounding;

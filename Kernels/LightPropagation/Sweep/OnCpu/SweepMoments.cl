@@ -37,9 +37,9 @@
     FUNCTIONS_OF(MACRO, end_2, end_3, 3) \
   }
 
-// Computes the source in the direction of each member (numerics.md, Eq. (29b)), in row y, into slot `slot` of
-// state->sources. Rows are laid out as in the rings; the border of the rings' last row is also that of the first row
-// here.
+// Computes the source in the direction of each member (numerics.md, Eq. (29b)), in row y, and stores it in slot `slot`
+// of state->sources. Rows have the layout of the ring buffers, whose last row ends with the padding that precedes the
+// first row of the sources.
 // @param frames  number of frames of the bundle, a compile-time constant
 static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)

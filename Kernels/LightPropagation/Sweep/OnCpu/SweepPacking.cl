@@ -215,7 +215,8 @@ static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
   return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u, info->moments.functions - 1);
 }
 
-// Number of planes in the same group of moments, from the next plane that rays cross on.
+// Number of planes, from plane `next` on in marching order along x, whose moments are in the same group of MomentGroup
+// voxels.
 static int of_one_group(const PlaneInfo* layout, int next, int backward)
 {
   const int plane = layout->firstP + (backward ? layout->sizeP - 1 - next : next);

@@ -30,8 +30,9 @@ static BY_ROW void add_current(sweep_state* state, int y, int face, const __glob
   add_currents(state, y, face, &rays, 1, part);
 }
 
-// Adds the fraction `part` of the rays that pass to column x through column x - du of row y, which they enter through
-// v. They then enter column x through u, or leave the box.
+// Adds the fraction `part` of row y's diagonal rays to the partial currents through `face` of the voxels that the rays
+// cross on their way: a ray that arrives at column x passes through column x - du, which it enters through the face
+// across v. It then enters column x through the face across u, or leaves the box.
 static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int size = state->sizeU;

@@ -70,7 +70,8 @@ static BY_ROW void give_sides(
 #define LEAVES_GRID(state, side) true
 #endif
 
-// Index of cell i of a side, which is at row i (sides across u) or column i (across v) of the plane that is crossed.
+// Index, in the cells of the box's faces, of cell i of a side: the cell at row i (sides across u) or column i (across
+// v) of the plane that is crossed.
 #if FACES
 #define FACE_CELL(state, side, i, c) \
   ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)

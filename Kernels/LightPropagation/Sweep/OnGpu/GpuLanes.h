@@ -45,15 +45,16 @@ struct GpuLanes
   GpuLanes(const Device& device, const SweepVolume& volume, std::vector<AxisBundles> rays,
     const std::array<bool, 3>& periodic, bool atOnce);
 
-  std::vector<SweepPlan> plans; ///< plans of the non-empty entries of the request's rays; open axes first
+  std::vector<SweepPlan> plans; ///< plans of the axes along which rays march; open axes first
   std::vector<SweepLane> lanes;
   std::vector<LaneBatch> batches;
   std::vector<BundleInfo> bundles;
   std::vector<CrossingInfo> crossings;
   /// Values of the angular functions in each ray's direction, [ray][function, then beam]; empty without angular moments
   std::vector<float> functions;
-  std::vector<std::size_t> ends; ///< per lane: index of the first sum over a row of its maps, [ray][channel][v]
-  /// Per lane: index of the first sum over a row of the power that escapes sideways
+  /// Per lane: index, in LanePowers' sums at the ends of axes, of the first row of its maps, [ray][channel][v]
+  std::vector<std::size_t> ends;
+  /// Per lane: index, in LanePowers' sums at the sides, of its first row, [plane][side][channel]
   std::vector<std::size_t> sides;
   std::size_t endRows = 0, sideRows = 0;
   std::size_t escaped = 0; ///< number of floats of escaped power, all lanes; see SweepLane::escaped

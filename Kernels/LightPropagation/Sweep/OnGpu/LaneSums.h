@@ -47,7 +47,7 @@ public:
 
   using MapsOfLane = std::function<const Buffer<float>&(const SweepLane&)>;
 
-  /// Sums the rows of the planes that a batch crossed last.
+  /// Sums each row of `maps`, and of the power that escaped sideways, for the planes that the batch has just crossed.
   void AddUp(const LaneBatch& batch, const MapsOfLane& maps);
   /// Adds the power that escaped through the faces parallel to the marching axis, from the sums of AddUp(), to
   /// SweepTally::out.

@@ -13,9 +13,9 @@ namespace
 constexpr int MostAtOnce = 4; ///< lanes that run concurrently may use 1 / MostAtOnce of the memory
 constexpr int AllSides = 15;  ///< bits 0 to 3: each side of the box is a face of the domain
 
-/// Returns lanes of which both senses of all axes run concurrently, if their arrays fit in memory together. Otherwise,
-/// and if only a part of the grid is swept (the arrays of the remainder would have to be cleared) or the volume is in
-/// host memory, lanes run one after another.
+/// Returns the lanes of a sweep. They run concurrently, both senses of all axes, if their arrays fit in memory
+/// together. They run one after another if the arrays do not fit, if only a subregion of the grid is swept (the arrays
+/// outside it would have to be cleared), or if the volume is in host memory.
 GpuLanes ChooseLanes(const Device& device, const SweepVolume& volume, const std::vector<AxisBundles>& rays,
   const std::array<bool, 3>& periodic, SweepOnGpu::Ways ways)
 {

@@ -60,8 +60,8 @@ typedef struct
   float power;
   float length[3], part[3];
   int du[3], dv[3];
-  bool bothAtOnce; // whether its rays move along u and v at once in some segment
-  int octants[2];  // octants of the member's direction; they differ if it has no component along u or v
+  bool bothAtOnce; // whether the member's rays move along u and v at once in some segment
+  int octants[2];  // the two octants of the member's direction; equal unless it has no component along u or v
 } member_state;
 
 static segment_effect effect_of(const plane_state* state, float sigma, float length)
@@ -254,7 +254,7 @@ typedef struct
 } voxel_sums;
 
 // Adds the path integral, and net flux, of a segment to the sums.
-// @param not_lost  power of the voxel's additional octant source, which is not lost in the voxel itself
+// @param not_lost  power that is subtracted from each ray, W, see not_lost_of
 static void put_down(voxel_sums* sums, colours rays, colours not_lost, float meanLength, float3 along)
 {
   for (int c = 0; c < CHANNELS; ++c)
@@ -284,7 +284,7 @@ static void count_escaped(
   {
 #if SIDES == 2
     const __global float* in = member->sidesIn + c * SIDE_FLOATS(state);
-    // Power that enters at the voxel, where rays move along u and v at once in this segment
+    // Power that enters the voxel through u's and v's face, where rays move along u and v at once in this segment
     const float2 beyond = (float2)(in[state->sizeU + v], in[u]);
 #else
     const float2 beyond = member->entering[c].xy;
@@ -339,7 +339,8 @@ static void count_currents(
 }
 #endif
 
-// Power of the additional octant source that is not lost in the voxel itself, W, see put_down.
+// Power that is subtracted from each ray in the path integral, W, so that the voxel loses what its octant source adds
+// to the rays.
 static colours not_lost_of(const plane_state* state, const member_state* member, long voxel)
 {
   colours more = { { 0.0f } };

@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// Values of the voxels just outside a block at the faces that they share with it, from an array with a value per voxel
-/// and face such as Deposit::partialCurrents.
+/// Values of the voxels that touch a block's faces from outside, each at the face that it shares with the block; from
+/// an array with one value per voxel and face, such as Deposit::partialCurrents.
 struct BeyondFaces
 {
   /// Values [channel][face][cell, x before y before z]; null: the block is the whole domain

@@ -23,7 +23,7 @@ struct BlockWorkspace
 {
   SweepWorkspace sweep;
   Buffer<float> sidesIn, sidesOut;
-  /// For GPU kernels: maps of every other plane, and the source along each ray
+  /// For GPU kernels: power of the rays before planes with odd index, W, and source along each ray, W / (length^3 sr)
   Buffer<float> otherMaps, directed;
 };
 
@@ -52,7 +52,8 @@ public:
   /// @param slot  index within the bundle, [member][channel]
   virtual std::size_t RowOfMap(const BundleInfo& bundle, std::size_t slot, int v) const = 0;
 
-  /// Sets the pattern of moves for rays that have crossed `planes` planes of the domain when they enter it.
+  /// Sets the moves and segments of rays that crossed `planes` planes of the domain in earlier laps around a periodic
+  /// axis.
   virtual void LayPattern(int planes) = 0;
 
   /// Carries rays through all planes of the block and adds to the volume's deposit.
@@ -60,12 +61,12 @@ public:
   /// across v. Needed because some light enters and leaves at an edge of the domain without crossing a voxel
   /// @param outerSides  bit i: light that crosses side i of -u, +u, -v, +v leaves the domain
   /// @param rays  on entry, the incoming rays; on return, the outgoing ones
-  /// @return power that left the domain sideways, W, [any][-u, +u, -v, +v][channel]
+  /// @return power that left the domain sideways, W, consecutive arrays [-u, +u, -v, +v][channel], to be added up
   virtual std::vector<float> Cross(const SweepVolume& volume, const std::vector<cl_float4>& beyond, int outerSides,
     RaysAtFaces& rays, const Monitor& monitor) = 0;
 };
 
-/// Create a BlockCrossing for a CPU or a GPU.
+/// Creates a BlockCrossing with kernels for a CPU, or for a GPU.
 /// @param workspace  must outlive the result; its buffers for sides must be large enough
 std::unique_ptr<BlockCrossing> MakeBlockCrossingOnCpu(
   Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace);

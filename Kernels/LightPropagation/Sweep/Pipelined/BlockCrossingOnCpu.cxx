@@ -53,7 +53,7 @@ public:
   }
 
 private:
-  /// Sets the incident power of each ray, W, for both senses of marching; the rays use only one of them.
+  /// Sets the incident power of each ray, W, in the arrays of both senses of marching, of which the kernel reads one.
   void SetBorder(const std::vector<cl_float4>& beyond)
   {
     const SweepPlan& plan = this->Rays.plan;

@@ -100,7 +100,8 @@ BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t
   return { through(axes.u), through(axes.v), through(axes.axis) };
 }
 
-/// Calls act(light, row of the bundle, index of the ray in the bundle, channel) for each ray per voxel and channel.
+/// Calls act(incident power, bundle, [member][channel] index in the bundle, channel) for each member of each bundle and
+/// each channel; not at all if no light is incident.
 template <class Act>
 void BlockSweep::ForRaysFrom(const SweepBoundary& boundary, const Act& act) const
 {
@@ -261,7 +262,7 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
   const VoxelBox& cells = contact.cells;
   const int firstU = cells.first[axes.u] - this->Block.first[axes.u], endU = firstU + cells.size[axes.u];
   const int firstV = cells.first[axes.v] - this->Block.first[axes.v], endV = firstV + cells.size[axes.v];
-  // Row or column through which rays leave across u
+  // Column of the block from which rays leave across u
   const int edgeU = this->Bundles.signs[axes.u] > 0 ? plan.plane.sizeU - 1 : 0;
   for (int plane = 0; plane < cells.size[axes.axis]; ++plane)
   {

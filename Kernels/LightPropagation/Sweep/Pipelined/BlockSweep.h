@@ -38,7 +38,7 @@ public:
   BlockSweep& operator=(const BlockSweep&) = delete;
 
   /// Begins a lap around a periodic axis.
-  /// @param planes  number of planes of the domain that rays have crossed when they enter at its end
+  /// @param planes  number of planes of the domain that rays have crossed in earlier laps
   void BeginLap(int planes);
 
   /// Rays that enter the block from outside the domain; rays from other blocks are zero.

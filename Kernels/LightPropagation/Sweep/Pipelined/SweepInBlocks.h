@@ -66,7 +66,7 @@ private:
   struct Task
   {
     std::unique_ptr<BlockSweep> sweep;
-    /// Contacts with each rank from which rays come, or to which they are sent, within the domain
+    /// Contacts, within the domain, with each rank from which this block receives rays, and to which it sends rays
     std::vector<Contacts> senders, receivers;
     std::vector<Around> aroundFrom; ///< rays that wrap around a periodic axis from each rank to this one
     /// Contacts around periodic axes with each receiving rank: sideways, and along the marching axis

@@ -160,7 +160,8 @@ struct TaskGraph
   std::vector<int> behind;
 };
 
-/// Number of rays through one layer of cells; for a sideways contact it depends on how often the bundles' rays move.
+/// Number of rays that cross a contact, per channel. For a sideways contact, rays are counted by their mean number of
+/// moves per plane.
 std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& contact)
 {
   const double cells = static_cast<double>(contact.cells.VoxelCount());

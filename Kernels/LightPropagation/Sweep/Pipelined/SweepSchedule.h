@@ -16,8 +16,8 @@ struct ParallelBundles
   int axis = 0;
   int way = 0;                            ///< sense of marching: 0 forward along the axis, 1 backward
   std::array<int, 3> signs = { 1, 1, 1 }; ///< sign of the directions along x, y, z: 1 or -1
-  std::vector<Bundle> bundles;            ///< bundles whose members each have a direction for one sense only
-  bool goThroughEdges = false;            ///< whether some rays move along u and v at once
+  std::vector<Bundle> bundles; ///< bundles of these rays; the direction of opposite sense is removed from each member
+  bool goThroughEdges = false; ///< whether some rays move along u and v at once
 
   int Rays() const; ///< number of rays per voxel of a plane across the axis
 };

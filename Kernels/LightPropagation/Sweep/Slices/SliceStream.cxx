@@ -219,7 +219,7 @@ VolumeArrays SliceStream::Arrays() const
     this->Slots(SlotArray::PartialCurrents) };
 }
 
-/// Number of planes whose angular moments are adjacent in memory.
+/// Number of neighbouring planes whose angular moments share a group of adjacent memory: MomentGroup along x, else 1.
 int SliceStream::Aligned() const
 {
   return this->HasMoments() && this->Plan.axes.axis == 0 ? MomentGroup : 1;
@@ -303,7 +303,7 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   return arrays;
 }
 
-/// Rows of a piece in one part of an array without moments.
+/// Rows of floats to copy for a piece, in one part (such as a channel) of an array without moments.
 SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
 {
   const int axis = this->Plan.axes.axis;
@@ -319,7 +319,7 @@ SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
     place(inSlot, this->Extent), Count(this->Extent[0]), Count(this->Extent[0]) * Count(this->Extent[1]) };
 }
 
-/// Rows of a piece in the angular moments, all functions except the first.
+/// Rows of floats to copy for a piece, in the angular moments of all functions except the first.
 SliceStream::Rows SliceStream::MomentRows(const SlicePiece& piece) const
 {
   const MomentPlaces& host = this->Plan.moments;
