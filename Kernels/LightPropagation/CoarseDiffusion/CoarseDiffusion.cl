@@ -10,7 +10,7 @@
 
 #define CELLS_AT_ONCE 64
 
-// Sums scale times value plus `more` over the voxels of each cell that the block has. Work-items process rows of cells.
+// Sums scale times value plus `more` over the block's voxels in each cell. Work-items process rows of cells.
 __kernel void sum_cells(
   CoarseCells box, const __global float* values, float scale, float more, __global float* sums, ulong first)
 {
@@ -162,8 +162,9 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
   tally[r] = (float8)(sum, magnitude, kept[0], kept[1], kept[2], kept[3], kept[4], kept[5]);
 }
 
-// The two cells between whose centres a voxel lies along an axis, and the distance from the centre of `from`, in cells.
-// Beyond the last centre `way` is negative, for extrapolation from the last two cells.
+// The two cells between whose centres a voxel lies along an axis, and the voxel's distance `way` from the centre of
+// cell `from`, in units of a cell's edge. Beyond the last centre `way` is negative, for extrapolation from the last two
+// cells.
 typedef struct
 {
   int from, to;

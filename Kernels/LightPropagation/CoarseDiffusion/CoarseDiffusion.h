@@ -40,7 +40,7 @@ public:
   /// Powers of one scattering order in one channel, summed over ranks, W.
   struct Powers
   {
-    double absorbed = 0.0;  ///< absorbed from the light of this order and of the predicted later orders
+    double absorbed = 0.0;  ///< power absorbed from the light of this order and of the predicted later orders
     double scattered = 0.0; ///< power of the next source
     double magnitude = 0.0; ///< sum of the absolute values of the next source
     double left = 0.0;      ///< power of later orders that the solution neither absorbs nor lets escape

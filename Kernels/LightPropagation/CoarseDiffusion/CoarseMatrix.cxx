@@ -94,9 +94,9 @@ double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
   return edge * std::pow(wide / edge, -std::log(tau) / std::log(wide * thick / tau));
 }
 
-/// Extinction that limits diffusion by cell, 1/length: max(sigma_t, 1 / W), with W the edge of the box around the cell
-/// that is one mean free path thick (numerics.md, Eq. (76h)). With 1 / (3 sigma_t) of thin cells light would diffuse
-/// too fast over distances below a mean free path.
+/// Extinction of each cell in the diffusion coefficient, 1/length: max(sigma_t, 1 / W), with W the edge of the box
+/// around the cell that is one mean free path thick (numerics.md, Eq. (76h)). With 1 / (3 sigma_t) of thin cells light
+/// would diffuse too fast over distances below a mean free path.
 std::vector<double> Diffusing(const Level& level)
 {
   if (level.sigmaT.size() == 1)

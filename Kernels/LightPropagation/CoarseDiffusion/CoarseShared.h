@@ -17,7 +17,7 @@ typedef struct
   int heldFirst, heldFirstT; ///< offsets of the channel in arrays with ghost voxels
   float spacing[3];
   int linear;           ///< 1: light varies linearly across voxels; 0: it is constant in each
-  int periodic[3];      ///< of the whole grid
+  int periodic[3];      ///< 1: periodic axes of the whole grid
   int halvings[3];      ///< a cell has 2^halvings voxels along the axis; the last cell may have fewer
   MultigridLevel cells; ///< memory layout of arrays over cells of the whole grid
 } CoarseCells;

@@ -38,7 +38,7 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     sum[5] += d1 * f;
     sum[6] += d2 * f;
   }
-  // The eighth sum is unused and 0.
+  // The eighth element is padding and remains 0.
   const exact8 all = (exact8)(sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6], sum[7]);
   __global exact8* of_chunks = (__global exact8*)sums;
   PUT_SUM_OF_GROUP(exact8, all, of_chunks[get_group_id(0)])

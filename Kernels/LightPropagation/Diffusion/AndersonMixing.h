@@ -22,7 +22,7 @@ public:
   /// sigma_s length; 0 without scattering.
   struct Weighting
   {
-    /// 1/length; below 0 in ghost voxels, which are excluded because their owners count them.
+    /// Scattering coefficient, 1/length; below 0 in ghost voxels, which are excluded because their owners count them.
     const Buffer<float>* sigma_s;
     std::size_t first; ///< offset of the first voxel's value in sigma_s
     float length;
@@ -30,8 +30,10 @@ public:
 
   using Sums = std::array<double, AndersonSums>;
 
-  /// Sums over this rank's values (AndersonMixing.cl). Mix() needs them summed over all ranks.
+  /// Computes the sums of anderson_sums (AndersonMixing.cl) over this rank's values. Mix() needs them summed over all
+  /// ranks.
   Sums SumsOf(const ExactValues& given, const ExactValues& found, const Weighting& weighting) const;
+  /// Computes the input of the next iteration.
   /// @param given  the input of the iteration whose result is `found`; replaced by the next input
   /// @param sums  SumsOf(), summed over all ranks
   void Mix(const ExactValues& given, const ExactValues& found, const Sums& sums);
@@ -46,7 +48,7 @@ private:
   Device& TheDevice;
   std::size_t Voxels, Count;
   ExactValues OfChunks;
-  /// Result, and change found - given, of the previous iteration [0] and of the one before it [1].
+  /// Results, and changes found - given, of the previous iteration (index 0) and of the one before it (index 1).
   std::array<Buffer<float>, 2> FoundBefore, ChangeBefore;
   int Mixes = 0;
 };

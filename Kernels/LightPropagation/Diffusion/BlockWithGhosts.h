@@ -39,14 +39,14 @@ public:
   /// Whether a voxel belongs to the block.
   /// @param voxel  indices relative to the first voxel of the box with ghosts
   bool IsOwn(const std::array<int, 3>& voxel) const;
-  /// Index in arrays over the block of a voxel of the block.
+  /// Index of a voxel of the block in arrays over the block (layout Own()).
   /// @param voxel  indices relative to the first voxel of the box with ghosts
   std::size_t OwnAt(const std::array<int, 3>& voxel) const;
 
 private:
   friend class GhostedBuffer;
-  /// Copies `parts` consecutive arrays over the block to arrays with ghosts, and sets ghosts to `elsewhere`; TakeOwn()
-  /// copies the block's values back.
+  /// Copies `parts` consecutive arrays over the block to arrays with ghosts, and sets the ghost voxels to `elsewhere`.
+  /// TakeOwn() copies the block's values back.
   std::vector<float> Placed(const std::vector<float>& own, int parts, float elsewhere) const;
   std::vector<float> TakeOwn(const std::vector<float>& held, int parts) const;
 
@@ -74,7 +74,7 @@ public:
 
   const Buffer<float>& Values() const { return this->Held.Size() > 0 ? this->Held : *this->Own; }
   void Fill();                          ///< copies the block's values, and the values of ghosts from their owners
-  void FillOwn(float elsewhere = 0.0f); ///< copies the block's values, and sets ghosts to `elsewhere`
+  void FillOwn(float elsewhere = 0.0f); ///< copies the block's values, and sets ghost voxels to `elsewhere`
   void TakeOwn();                       ///< copies the block's values back to `own`, which must not be const
 
 private:

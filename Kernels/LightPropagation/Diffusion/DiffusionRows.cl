@@ -22,12 +22,11 @@ inline int voxel_at(const DiffusionLayout* layout, int y, int z)
   return (z * layout->size[1] + y) * layout->size[0];
 }
 
-// A contiguous range of voxels of a row whose low faces, perpendicular to an axis, have a neighbouring voxel behind
-// them.
+// Contiguous range of voxels of a row whose low faces, perpendicular to an axis, are not on the box's boundary.
 typedef struct
 {
-  int begin, end; // range of x
-  int before;     // index of the neighbour of a voxel with x = 0 behind these faces
+  int begin, end; // range of x of the voxels
+  int before;     // index of the voxel behind the low face at x = 0; for other x, add x
 } face_span;
 
 // Finds all face_spans of a row. At the box's boundary there are none; perpendicular to x the first span is the face
@@ -87,8 +86,8 @@ __kernel void diffusion_flat_source(
         real current = flat_source_current(sweeps * layout.spacing[axis]);
         if (MOMENTS)
         {
-          // A fraction of the current is carried by the first moment of the source, exactly; only the rest has the
-          // excess of a constant source.
+          // A fraction of the current is carried by the first moment of the source, exactly; only the remaining current
+          // has the excess of a constant source, Eq. (51).
           const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
           const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
           current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
@@ -268,7 +267,7 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
         real source_of_fluence = load_real(here + x, source);
         if (PASSING)
         {
-          // The solved fluence does not include this source, either.
+          // The lamps' source is subtracted, because the solved fluence does not include it either.
           source_of_fluence -= load_real(here + x, of_lamps);
         }
         const real shining = 4.0f * M_PI_F * source_of_fluence / fmax(sigma_t[0], (real)1e-37f);
@@ -291,7 +290,8 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
 typedef struct
 {
   const __global float *sigma_t, *sigma_a, *flatSource, *model;
-  const __global float *low, *high; // power that entered voxels in the sweep through their low and high faces, W
+  // Power that entered voxels in the sweep through their low faces, and through their high faces, W
+  const __global float *low, *high;
   // Power of lamps' first-scattered light that leaves through these faces, W.
   const __global float *passedLow, *passedHigh;
   const __global float* givenFlux;

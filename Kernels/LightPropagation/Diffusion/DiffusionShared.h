@@ -20,12 +20,12 @@ typedef struct
   int size[3];
   int first[3], end[3]; ///< range of the voxels that this rank owns; all others are ghost voxels
   int halved[3];        ///< 1: the next coarser level joins pairs of voxels along this axis
-  int shift[3];         ///< voxel x of the next coarser level's box begins at voxel (x << halved) + shift of this one
-  int single[3];        ///< 1: the whole grid of the level has one voxel along this axis
-  int pitch;            ///< distance between rows, floats
-  int plane;            ///< distance between planes, floats
-  int floats;           ///< size of an array, floats
-  int together;         ///< number of rows per work-item on a CPU
+  int shift[3];  ///< voxel x of the next coarser level's box begins at voxel (x << halved) + shift of this level's box
+  int single[3]; ///< 1: the whole grid of the level has one voxel along this axis
+  int pitch;     ///< distance between rows, floats
+  int plane;     ///< distance between planes, floats
+  int floats;    ///< size of an array, floats
+  int together;  ///< number of rows per work-item on a CPU
 } MultigridLevel;
 
 /// Geometry and constants of the diffusion system of one channel, and the offsets of the channel in the solver's
@@ -47,7 +47,7 @@ typedef struct
   float floor; ///< minimum optical length between voxel centres: conductance does not grow below it
   /// Factor of absorption in the weight of the transport correction: 3, Eq. (55); 0 with moments.
   float absorbingWeight;
-  float incoming[6];   ///< incident power through each face of the box, W / length^2
+  float incoming[6];   ///< incident power per area through each face of the box, W / length^2
   float albedo[6];     ///< albedo of each face of the box
   MultigridLevel rows; ///< memory layout of the conductances
 } DiffusionLayout;
@@ -57,7 +57,7 @@ enum
 {
   BorderNet = 0,     ///< outgoing minus incoming power, without the transport correction; accurate for each voxel
   BorderShare = 1,   ///< transport correction of BorderNet; accurate only in sums over a face of the box
-  BorderSeeming = 2, ///< outgoing power in the sweep (estimated)
+  BorderSeeming = 2, ///< outgoing power in the sweep (estimated, numerics.md, Eq. (61))
   /// Weight of the transport correction if the voxel has several faces on the box, else -1; dimensionless.
   BorderWeight = 3,
   BorderCame = 4,       ///< incoming power in the sweep

@@ -30,7 +30,8 @@ CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, con
   return pattern;
 }
 
-/// Factor by which one correction reduces the residual; a smaller one would hardly save sweeps.
+/// Factor by which one correction reduces the residual of the diffusion system; a stronger reduction would hardly save
+/// sweeps.
 constexpr double Reduction = 3e-3;
 /// Reduction of the residual from the 13th correction on: in slow iterations the residuals of successive corrections
 /// add up.
@@ -113,7 +114,7 @@ DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, c
   this->Solver->Coarsen();
 }
 
-/// Runs `step` on the system of a rank that has voxels. Collective.
+/// Runs `step` on this rank's system, if the rank has voxels. Collective.
 void DiffusionSolver::OnSystem(const std::function<void(DiffusionSystem&)>& step) const
 {
   this->TheDomain.Collective([&] {
@@ -207,7 +208,8 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
       voxel[axes.axis] = face % 2 ? size[axes.axis] - 1 : 0;
       voxel[axes.u] = u;
       voxel[axes.v] = v;
-      return this->Block.IsOwn(voxel); // where the box with ghosts ends at an own voxel, the whole grid ends, too
+      // A voxel of the block at an end of the box with ghosts is at an end of the whole grid
+      return this->Block.IsOwn(voxel);
     });
   });
   std::vector<double> values = { sums.transportWeight, sums.shared };
@@ -217,7 +219,7 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
   }
   values = this->TheDomain.Sum(values);
   sums.transportWeight = values[0];
-  // If the sweep tallies power by cell, nothing has to be divided among faces.
+  // If sweeps tally power by cell, the power of voxels with several faces on the box need not be divided among faces.
   sums.shared = this->ByCells ? 0.0 : values[1];
   auto next = values.begin() + 2;
   for (std::array<double, 6>* ofFaces : { &sums.out, &sums.seeming, &sums.came })

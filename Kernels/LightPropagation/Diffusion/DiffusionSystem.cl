@@ -119,7 +119,8 @@ static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays
   return MOMENTS ? 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i] : 0.0f;
 }
 
-// drive() from a voxel through its face d to the centre of voxel j, or, in drive_out(), to the face of the box.
+// Fluence difference equivalent to the given source's net flux, as drive(), from the centre of voxel i through its face
+// d to the centre of voxel j. drive_out(): to the box's face d.
 static float drive_through(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j)
 {
   return (d & 1 ? 1.0f : -1.0f) * (drive(layout, arrays, d / 2, i) + drive(layout, arrays, d / 2, j));
@@ -153,8 +154,8 @@ static float remainder_of_face(
   return remainder_of(layout, axis, &face);
 }
 
-// Net power that leaves through a face of the box if the voxel's fluence is arrays->model, as a sweep would find it
-// (M_d of numerics.md, Eq. (59)). `dark` receives the same power by diffusion if the voxel's fluence is 0.
+// Net power that leaves through face d of the box in a sweep if the voxel's fluence is arrays->model (M_d of
+// numerics.md, Eq. (59)). `dark` receives the net power by diffusion if the voxel's fluence is 0.
 static float model_of_boundary(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* at, float* dark)
 {
@@ -210,7 +211,7 @@ static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arr
 
 // Remainder of the net outgoing power through all faces of the box at voxel i: weighted power of the sweep minus that
 // of the model (R_box of numerics.md, Eq. (60)), W.
-//   power    power that the voxel emits and scatters in the sweep, minus the power of the sweep that collides in it
+//   power    emitted and scattered power of the voxel in the sweep, minus the power that collides in it, W
 //   share    [face] part of the remainder for each face, in proportion to `seeming`
 //   seeming  [face] outgoing power of the sweep; estimated, since its tally is not by voxel (numerics.md, Eq. (61))
 //   transport_weight  weight of the remainder, Eq. (55)
@@ -272,8 +273,8 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
 #endif
 }
 
-// Outgoing power of the medium through face d of the box in the solution, before reflection at the face; `share` is
-// from remainder_of_borders().
+// Power of the medium that reaches face d of the box from inside in the solution, before reflection, W, without the
+// response to incident light (m of numerics.md, Eq. (76b)); `share` is from remainder_of_borders().
 static exact sent_by_medium(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, float passes, float share)
 {
@@ -319,8 +320,8 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
 }
 
 #if FACES
-// Outgoing power through face d of the box in the solution, with reflected light and before reflection at the face, W
-// (numerics.md, Eq. (76c)).
+// Outgoing power through face d of the box in the solution, W: all power that reaches the face from inside, including
+// light that the face reflected earlier (J_out of numerics.md, Eq. (76c)).
 static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, const int* at, float share)
 {

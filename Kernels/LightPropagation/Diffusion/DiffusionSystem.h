@@ -80,7 +80,7 @@ public:
     const Buffer<float>* sigma_a; ///< 1/length
     const Buffer<float>* sigma_s; ///< 1/length
     const Buffer<float>* given;   ///< emission and first-collision source, W / (length^3 sr)
-    MomentPlaces moments;         ///< places of the angular moments in `path`
+    MomentPlaces moments;         ///< memory layout of the angular moments in `path`
     int channel;                  ///< channel of this system
     /// Net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][stride]; null: isotropic.
     const Buffer<float>* givenFlux;
@@ -163,7 +163,8 @@ public:
 private:
   std::size_t Values() const { return this->HasMoments() ? 4 * this->Count : this->Count; }
   bool HasMoments() const { return this->Inputs.swept != this->Inputs.sigma_t; }
-  // Arguments for arrays that a kernel reads only if they exist; if not, any other array.
+  // Kernel arguments for optional arrays. An array that does not exist is replaced by another one, which the kernel
+  // does not read.
   const Buffer<float>& GivenFlux() const
   {
     return this->Inputs.givenFlux ? *this->Inputs.givenFlux : *this->Inputs.given;
@@ -175,8 +176,8 @@ private:
   std::string Options() const;
   cl::Kernel Kernel(const char* name) const;
   cl::Kernel RowsKernel(const char* name) const; ///< kernel of DiffusionRows.cl
-  void Run(cl::Kernel& kernel);                  ///< one work-item per voxel
-  void RunBorder(cl::Kernel& kernel);            ///< runs one work-item per cell of the box's faces
+  void Run(cl::Kernel& kernel);                  ///< runs a kernel with one work-item per voxel
+  void RunBorder(cl::Kernel& kernel);            ///< runs a kernel with one work-item per cell of the box's faces
   void RunRows(cl::Kernel& kernel) const;
   /// Creates a kernel whose arguments are the layout, the arrays of the channel, and then `more`.
   template <class... More>
@@ -192,6 +193,6 @@ private:
   bool AnySkin = false;
   AndersonMixing Mixing;
   ExactValues Borders;
-  ExactValues Next, Solution; ///< states, in the layout of State()
+  ExactValues Next, Solution; ///< input of the next sweep, and the last solution, in the layout of State()
 };
 }

@@ -147,7 +147,7 @@ static float residual_at(
 }
 
 // Replaces the right-hand side by the residual r of `values`, times per_unit, and computes Jacobi's initial guess for
-// it.
+// the correction of `values`.
 //   sums  [work-group] r r
 __kernel void begin_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global exact* values, float per_unit, __global float* right,

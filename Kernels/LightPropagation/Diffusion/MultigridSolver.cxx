@@ -26,16 +26,18 @@ constexpr float Damping = 0.87f;
 /// Number of coarse levels, counted from the second level, that are visited twice per cycle; more do not save
 /// iterations.
 constexpr std::size_t VisitedTwice = 2;
-/// Factor of the correction of each of two visits. With it the preconditioner is positive definite as long as a visit
-/// overshoots by less than a factor of 2.5, as happens where voxels of unequal coefficients are joined.
+/// Factor of the correction of each of two visits of a level. With this factor the preconditioner is positive definite
+/// if one visit returns less than 2.5 times the exact correction; it returns too much where voxels of unequal
+/// coefficients are joined.
 constexpr float PartOfVisit = 0.8f;
 
 constexpr int MostIterations = 300;
 /// Number of iterations within which the residual must halve; if it does not, the iteration stops.
 constexpr int Patience = 12;
-/// Ratio of the bounds on the reduction of the residual in the root mean square and in the preconditioner's norm.
+/// Bound on the reduction of the residual's root mean square, divided by the bound on its reduction in the
+/// preconditioner's norm.
 constexpr double Looser = 10.0;
-/// Ratio of r z to the largest initial r z below which the residual is rounding error.
+/// Ratio of the residual's norm, sqrt(r z), to its largest initial value below which the residual is rounding error.
 constexpr double Negligible = 1e-12;
 
 /// Test whether an iteration should go on: whether the residual is above its bound and has halved recently. To be

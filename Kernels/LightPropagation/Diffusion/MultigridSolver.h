@@ -120,8 +120,8 @@ private:
   /// Approximate inverse of the coarsest level's matrix, on devices where it is faster (level_answers); else empty.
   Buffer<float> Answers;
   ExactValues Sums;
-  /// Largest initial r z of all solves so far, relative to `unit`: later solves do not reduce the residual below the
-  /// rounding error of this value.
+  /// Largest initial r z of all solves so far, relative to `unit`. Later solves stop at residuals that are rounding
+  /// errors relative to this value.
   double FirstResidual = 0.0;
 };
 }

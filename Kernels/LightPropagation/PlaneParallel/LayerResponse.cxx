@@ -222,8 +222,8 @@ LayerSource::LayerSource(Eigen::Index nodes)
 {
 }
 
-/// Adds the response that cancels the incident light of a solution with a = 0 at both boundaries of the layer, given
-/// its b where the beam enters and where it leaves.
+/// Adds the response that cancels the incident light of a solution with a = 0 at both boundaries of the layer.
+/// @param bAtEntry, bAtExit  amplitude b of this solution where the beam enters the layer, and where it leaves
 void LayerSource::AddEnds(const LayerModes& modes, const LayerOperator& layer, const Eigen::VectorXd& bAtEntry,
   const Eigen::VectorXd& bAtExit, bool fromTop)
 {

@@ -138,8 +138,8 @@ private:
       const std::size_t layer = this->Scene.LayerOf(i / all);
       light.fluence[i] = static_cast<float>(std::max(column.fluence[layer], 0.0));
       light.fluenceDirect[i] = static_cast<float>(column.direct[layer]);
-      // From the fluence, whose negative values are set to 0: values around 1e-16 of the incident light are differences
-      // of larger numbers.
+      // Computed from the fluence, in which negative values are set to 0: values around 1e-16 of the incident light are
+      // differences of larger numbers.
       light.scatteredRadiance[i] = light.fluence[i] / (4.0f * static_cast<float>(Pi));
       for (int a = 0; a < 3 && this->Settings.netFlux; ++a)
       {

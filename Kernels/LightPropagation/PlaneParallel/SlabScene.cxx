@@ -24,8 +24,8 @@ struct FallOff
   double mean, left;
 };
 
-/// Integral over the cosine of values times, optionally, cosine and sine of the direction. `values` already contain the
-/// square root of the weight.
+/// Integral over the cosine of values at the nodes, which include the square root of the weight; times the cosine if
+/// `cosine`, times the sine if `sine`.
 double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values, bool cosine, bool sine)
 {
   double sum = 0.0;

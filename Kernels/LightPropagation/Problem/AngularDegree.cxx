@@ -19,7 +19,7 @@ constexpr double MuchThinner = 8.0;
 /// Number of arrays of moments: source, path, given light, and uncollided light.
 constexpr std::size_t ArraysOfMoments = 4;
 
-/// Largest magnitude of any of the medium's phase functions' moments, by degree.
+/// Largest magnitude of a moment over all phase functions of the medium, by degree.
 std::vector<double> LargestMoments(const Medium& medium)
 {
   std::vector<double> largest(MostMoments + 1, 0.0);
@@ -48,8 +48,8 @@ std::vector<double> LargestMoments(const Medium& medium)
   return largest;
 }
 
-/// Highest degree, at most `degree`, whose arrays of moments fit in half of the memory; the other half is for all other
-/// arrays.
+/// Highest degree, at most `degree`, whose arrays of moments fit in half of the memory; all other arrays need the other
+/// half.
 int HighestThatFits(std::size_t voxels, int degree, const DeviceMemory& memory)
 {
   constexpr std::size_t MostChannels = 3;

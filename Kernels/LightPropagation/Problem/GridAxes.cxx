@@ -11,8 +11,8 @@ namespace tyndall
 {
 namespace
 {
-/// Width of a voxel along unvarying axes, in edges along the other axes: larger widths gain little, and flat voxels
-/// slow down the diffusion solve.
+/// Width of a voxel along unvarying axes, in units of its edge along the other axes: larger widths gain little, and
+/// flat voxels slow down the diffusion solve.
 constexpr double Width = 10.0;
 constexpr int EdgeInSlabs = 12;
 /// Even number of directions along a cube face's edge whose quadrature has directions of cosine 0 to an axis; their
@@ -101,7 +101,8 @@ void AxisPermutation::TurnBackCells(std::vector<float>& values, const Grid& grid
 }
 
 /// Converts scattered moments from harmonics of permuted directions to harmonics of original directions, degree by
-/// degree. The coefficients are integrals of their products over all directions, by an exact quadrature.
+/// degree. The coefficients of the conversion are integrals over all directions of products of the two harmonics,
+/// computed by an exact quadrature.
 void AxisPermutation::TurnBackMoments(LightField& light, const Grid& grid) const
 {
   const std::size_t channels = static_cast<std::size_t>(light.channels);

@@ -26,10 +26,10 @@ PropagationSettings AtQuality(const Domain& domain, Quality quality, Propagation
 
 /// Text "Name = value" for each setting that a quality level may choose.
 std::vector<std::string> Words(const PropagationSettings& settings);
-/// Text "Name = value" for each of these settings as SolveConservative used it for `light`: more directions if a slab
-/// needs them (GridAxes.h), and the chosen uncollidedDirections, 0 if no light used them. SolvePlaneParallel uses none
-/// of these settings; for its light the text is "PolarNodes = value".
+/// Text "Name = value" for each setting that a quality level may choose, with the value that SolveConservative used for
+/// `light`: more directions if a slab needs them (GridAxes.h), and the chosen uncollidedDirections, 0 if no light used
+/// them. SolvePlaneParallel uses none of these settings; for its light the text is "PolarNodes = value".
 std::vector<std::string> Words(PropagationSettings settings, const LightField& light);
-/// Text "Name = value" for each of these settings that the published scheme uses.
+/// Text "Name = value" for each setting that a quality level may choose and that the published scheme uses.
 std::vector<std::string> WordsAsPublished(const PropagationSettings& settings);
 }

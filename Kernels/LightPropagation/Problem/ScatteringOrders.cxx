@@ -14,11 +14,11 @@ namespace tyndall
 {
 namespace
 {
-/// Ratio of the thickest line to the mean line (weighted by thickness) above which a medium is uneven.
+/// Ratio of the thickest line of voxels to the mean line (weighted by thickness) above which a medium is uneven.
 constexpr double Uneven = 1.5;
 
-/// Tolerance until which orders are counted: the default rather than the user's, so that the choice of a scheme does
-/// not depend on it.
+/// Residual at which the number of orders is estimated: the default tolerance rather than the user's, so that the
+/// choice of a scheme does not depend on the latter.
 const double UsualTolerance = PropagationSettings().tolerance;
 /// Extrapolation distance: distance beyond a face at which the diffuse flux extrapolates to zero, mean free paths
 /// (numerics.md, Eq. (86)).
@@ -28,7 +28,7 @@ constexpr double ThickVoxel = 10.0;
 
 /// Time of an accelerated solve, in units of one unaccelerated scattering order of the same scene (`./run bench
 /// thick`): set-up and finish, number of iterations (rows), and correction per iteration, in addition to its sweep.
-/// LightSources.cxx has a separate, older figure.
+/// LightSources.cxx uses a fixed total of 18 orders instead.
 struct AcceleratedTime
 {
   double setUp, rows, correction;

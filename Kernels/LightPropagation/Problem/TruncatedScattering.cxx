@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Number of directions per face that are tested as incident ones, in addition to those of the set.
+/// Number of directions per cube face that are tested as incident directions, in addition to those of the quadrature.
 constexpr int FromPerFace = 144;
 /// Smallest accepted value of the phase function, relative to its mean; allows for rounding.
 constexpr double LeastPart = 1e-3;
@@ -179,7 +179,7 @@ std::vector<std::string> TruncatedScattering::LeftOut() const
   return words;
 }
 
-/// Highest degree at which the voxel is not optically thick along `shortest`, length of its shortest edge.
+/// Highest degree at which the voxel is not optically thick along its shortest edge, of length `shortest`.
 int TruncatedScattering::FittingDegree(std::size_t voxel, int channel, double shortest) const
 {
   const double absorbs = this->TheMedium.sigma_a.At(voxel, channel);

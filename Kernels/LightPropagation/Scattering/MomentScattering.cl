@@ -39,7 +39,8 @@ static float16 load_group(const __global float* values, int voxels)
     }                                                                                                            \
   }
 
-// Processes one scattering order: overwrites the source, sets the path integrals to 0.
+// Processes one scattering order: overwrites the moments of the source with those scattered from `path`, and sets
+// `path` to 0.
 __kernel void scatter_moments(MomentPlaces places, int channel, __global float* path, __global float* source,
   const __global float* sigma_s, ulong stride, float per_path)
 {

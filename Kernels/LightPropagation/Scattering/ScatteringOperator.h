@@ -24,8 +24,8 @@ public:
   /// Processes one scattering order: adds the light of a sweep to `fluence`, writes its scattering source to `source`,
   /// and sets the path integrals of the sweep to 0.
   /// @param swept  light of the sweep; its flux is a sum over all orders and is not cleared
-  /// @param fluence  of all orders, W / length^2
-  /// @param source  W / (length^3 sr)
+  /// @param fluence  fluence of all orders, W / length^2; added to
+  /// @param source  scattering source, W / (length^3 sr); overwritten
   /// @param range  index range of each channel outside which the path integrals are 0, in whole vectors
   /// @return absorbed and scattered power of this order
   virtual Powers ScatterOrder(const Deposit& swept, const Buffer<float>& fluence, const Buffer<float>& source,
@@ -51,7 +51,7 @@ public:
   /// Writes one channel of `source`: the given source plus the scattering source of the fluence of all orders, as DSA
   /// computes it between two sweeps. Nowhere negative.
   /// @param swept  light of the last sweep, for operators that also need its angular distribution
-  /// @param fluence  of this channel, W / length^2
+  /// @param fluence  fluence of this channel, W / length^2
   /// @param given  emission and first-collision source, W / (length^3 sr); negative where a correction by a finer
   ///   quadrature removes light
   virtual void ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence, const Buffer<float>& given,
