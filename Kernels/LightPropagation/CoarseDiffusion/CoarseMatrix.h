@@ -15,7 +15,7 @@ struct CoarseMatrix
   std::vector<double> borders;
 };
 
-/// Computes the matrix.
+/// Computes the diffusion matrix of the cells.
 /// @param grid  voxels of the whole domain
 /// @param cells  grid of the cells of `box`; only its size is used
 /// @param sigmaT, sigmaS  1/length, summed over the voxels of each cell, x fastest

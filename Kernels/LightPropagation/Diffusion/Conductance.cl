@@ -93,7 +93,7 @@ inline real pass_boundary(const DiffusionLayout* layout, real way)
 // if the voxel is thick and the neighbour thin, 0 if the neighbour is thicker (numerics.md, Eq. (62)).
 inline real contrast(real tau, real beyond)
 {
-  // avoids overflow of the fourth power; the contrast of larger values is the same
+  // limits tau so that its fourth power does not overflow; the contrast of a larger tau is the same
   const real bounded = fmin(tau, (real)1e4f);
   const real thick = 0.8f * bounded * bounded;
   const real unlike = select((real)0.0f, 1.0f - beyond / fmax(tau, (real)1e-37f), tau > beyond);
@@ -112,7 +112,8 @@ inline real weight_of_transport(const DiffusionLayout* layout, real tau, real ab
 //   crossing  value for thick voxels (CrossingPattern.h)
 inline real pattern_of(real crossing, real tau)
 {
-  const real thick = 1.0f - 1.0f / (1.0f + tau * tau); // in thin voxels the fluence has this pattern, too
+  // The factor is 1 in thin voxels, where the fluence has the crossing pattern, too
+  const real thick = 1.0f - 1.0f / (1.0f + tau * tau);
   return 1.0f + thick * (crossing - 1.0f);
 }
 

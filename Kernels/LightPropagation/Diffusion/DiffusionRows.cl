@@ -148,8 +148,8 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
   }
 }
 
-// Copies sigma_t to rows. Beyond the box's boundary it has the value of the outermost voxel, so that contrast() is 0
-// there.
+// Copies sigma_t to rows. The ghosts of a row beyond the box's boundary get the value of the outermost voxel, so that
+// contrast() is 0 at the boundary.
 __kernel void diffusion_extinction(DiffusionLayout layout, const __global float* sigma_t, __global float* extinction)
 {
   sigma_t += layout.firstT;
@@ -292,7 +292,7 @@ typedef struct
   const __global float *sigma_t, *sigma_a, *flatSource, *model;
   // Power that entered voxels in the sweep through their low faces, and through their high faces, W
   const __global float *low, *high;
-  // Power of lamps' first-scattered light that leaves through these faces, W.
+  // Power of lamps' first-scattered light that leaves through the low faces, and through the high faces, W.
   const __global float *passedLow, *passedHigh;
   const __global float* givenFlux;
 } face_arrays;

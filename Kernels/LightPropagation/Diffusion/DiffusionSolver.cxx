@@ -208,7 +208,7 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
       voxel[axes.axis] = face % 2 ? size[axes.axis] - 1 : 0;
       voxel[axes.u] = u;
       voxel[axes.v] = v;
-      // A voxel of the block at an end of the box with ghosts is at an end of the whole grid
+      // Where a voxel of this rank is at an end of the box with ghosts, the whole grid ends, too
       return this->Block.IsOwn(voxel);
     });
   });

@@ -64,7 +64,7 @@ private:
   bool ByCells; ///< whether sweeps tally escaped power by cell of the box's faces
   std::unique_ptr<MultigridSolver> Solver;
   std::unique_ptr<DiffusionSystem> System; ///< system of the block with ghosts; null on a rank without voxels
-  ExactValues NoVoxels;                    ///< in place of the system's solution on a rank without voxels
+  ExactValues NoVoxels;                    ///< empty; passed to the linear solver on a rank without voxels
   ExactValues OwnNext;                     ///< result of NextFluence(); empty if the block has no ghosts
   int Corrections = 0;
 };

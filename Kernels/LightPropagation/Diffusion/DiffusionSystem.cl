@@ -22,8 +22,8 @@ static float conductance_at(const DiffusionLayout* layout, const __global float*
   return conductance[d / 2 * rows->floats + RowsLead + of[2] * rows->plane + of[1] * rows->pitch + of[0]];
 }
 
-// Adds the power that leaves through the box's faces per fluence to the loss term of the matrix. One work-item per cell
-// of the box's faces.
+// Adds, to the loss term of the matrix, the power per fluence that leaves through the box's faces. One work-item per
+// cell of the box's faces.
 __kernel void diffusion_border_loss(
   DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a, __global float* loss)
 {

@@ -90,7 +90,7 @@ struct LayerMeans
   Eigen::VectorXd flux; ///< mean of downward minus upward radiance
 };
 
-/// Means over the depth of a layer of the light of internal sources and of incident light.
+/// Means over the depth of a layer of the radiance that its internal sources and the light incident on it cause.
 /// @param downAtTop, upAtTop, downAtBottom, upAtBottom  radiance at the nodes at both boundaries of the layer
 LayerMeans MeansOf(const LayerModes& modes, const LayerSource& source, double depth, const Eigen::VectorXd& downAtTop,
   const Eigen::VectorXd& upAtTop, const Eigen::VectorXd& downAtBottom, const Eigen::VectorXd& upAtBottom);

@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Cache of the modes of each kind of layer and the operators of each layer.
+/// Cache of the modes of each kind of layer (StackLayer::kind) and of the operators of each layer.
 class Library
 {
 public:

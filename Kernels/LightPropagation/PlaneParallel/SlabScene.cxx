@@ -142,7 +142,7 @@ LayerStack SlabScene::StackOf(int channel, int degree) const
   const Medium& medium = this->TheMedium;
   LayerStack stack;
   std::map<double, DeltaM> phases;                        // delta-M truncations by mean cosine
-  std::map<std::pair<double, double>, std::size_t> kinds; // indices of kinds by absorption and mean cosine
+  std::map<std::pair<double, double>, std::size_t> kinds; // index in LayerStack::kinds; key: absorption and mean cosine
   for (std::size_t i = 0; i < this->Count(); ++i)
   {
     const std::size_t voxel = this->VoxelOf(i);

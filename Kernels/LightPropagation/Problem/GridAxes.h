@@ -41,12 +41,13 @@ private:
   int Along = 0; ///< axis of the layers in the original scene; 0: no permutation
 };
 
-/// Periodic axes of one voxel, along which nothing varies. A scene with two of them is a plane-parallel slab.
+/// Periodic axes on which the grid has one voxel, so that nothing varies along them. A scene with two such axes is a
+/// plane-parallel slab.
 class UnvaryingAxes
 {
 public:
-  /// Finds the axes. There are none if a lamp is inside or near the box, or if the source is constant as in the
-  /// published scheme.
+  /// Finds the unvarying axes of a scene. There are none if a lamp is inside or near the box, or if the source is
+  /// constant as in the published scheme.
   UnvaryingAxes(const Grid& grid, const Illumination& illumination, const PropagationSettings& settings);
 
   bool IsSlab() const { return this->Single[0] + this->Single[1] + this->Single[2] == 2; }

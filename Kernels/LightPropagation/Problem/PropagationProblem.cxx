@@ -34,7 +34,8 @@ PropagationProblem::PropagationProblem(const Domain& domain, const Medium& mediu
   this->Given = domain.Any(this->SolvedLight.uncollided.IsThere());
   this->Isotropic = !domain.Any(!domain.IsEmpty() && !this->Solved.phase.IsIsotropic());
   this->Truncate(memory);
-  // Until here, greyExtinction refers to the extinction of the similarity relation only.
+  // TraitsOf() compares the extinctions of the similarity relation. If degree > 0, sweeps use other extinctions, which
+  // are equal in all channels if the medium is grey.
   this->TheTraits.greyExtinction =
     this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
 }

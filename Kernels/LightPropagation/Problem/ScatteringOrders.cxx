@@ -28,7 +28,7 @@ constexpr double ThickVoxel = 10.0;
 
 /// Time of an accelerated solve, in units of one unaccelerated scattering order of the same scene (`./run bench
 /// thick`): set-up and finish, number of iterations (rows), and correction per iteration, in addition to its sweep.
-/// LightSources.cxx uses a fixed total of 18 orders instead.
+/// LightSources.cxx uses fixed totals instead: 18 orders for DSA, 12 for coarse-mesh DSA.
 struct AcceleratedTime
 {
   double setUp, rows, correction;
@@ -156,8 +156,8 @@ double LeakAlong(double longest, double extrapolations)
   return Pi * Pi / 3.0 / (extrapolated * extrapolated);
 }
 
-/// Sum of the extrapolation distances at both faces across an axis, mean free paths. A reflecting face acts as if the
-/// medium continued there, at most as a mirror image of the medium.
+/// Sum of the extrapolation distances at both faces normal to an axis, mean free paths. A reflecting face acts as if
+/// the medium continued there, at most as a mirror image of the medium.
 double BothExtrapolations(const ScatteringOfScene& scene, int axis, int channel, double longest)
 {
   const auto beyond = [&](int face) {

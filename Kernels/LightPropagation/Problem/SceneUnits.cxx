@@ -111,7 +111,7 @@ AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illuminati
     2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
   if (illumination.uncollided.IsThere())
   {
-    all.first = 0.0; // given light is scaled by a power of two only, so that its digits stay as given, bit for bit
+    all.first = 0.0; // given light is scaled by a power of two only, so that no digits of its floats change
     for (int c = 0; c < 3; ++c)
     {
       all.power += PowerLost(illumination.uncollided, medium, c);
@@ -128,7 +128,8 @@ double PowerUnitFor(const AllThatShines& all)
     return 1.0;
   }
   const int exponent = std::ilogb(all.power);
-  // The total power is then about 2^40, so that a source 1e-36 times as strong as the strongest is still represented.
+  // In this unit the total power is about 2^40, so that a source 1e-36 times as strong as the strongest is still
+  // represented.
   return std::abs(exponent) <= UsualExponent ? digits : std::scalbn(digits, exponent - UsualExponent);
 }
 

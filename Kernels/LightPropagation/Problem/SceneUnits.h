@@ -22,7 +22,7 @@ struct AllThatShines
   double first = 0.0;
 };
 
-/// Finds these quantities for a scene.
+/// Computes the quantities of AllThatShines for a scene.
 /// @param grid  grid of the domain
 /// @param medium  medium of the domain, or of a subdomain
 AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illumination& illumination);

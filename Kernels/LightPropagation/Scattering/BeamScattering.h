@@ -30,8 +30,8 @@ std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& t
 std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
   const AngularBasis& basis, const std::array<double, 3>& beam);
 
-/// First-collision sources of beams, stored in a source array after its angular moments. Each is emitted in one sweep:
-/// not in that during which the beams were traced, but in the next one.
+/// First-collision sources of beams, stored in a source array after its angular moments. Each source is emitted in one
+/// sweep: the one after the sweep during which its beam was traced.
 class BeamsInSource
 {
 public:

@@ -230,7 +230,7 @@ FaceInfo AxisSweep::Faces(std::size_t firstChannel, const Deposit& to) const
 }
 
 /// Runs a kernel of SweepMaps.cl.
-/// @param volume  determines the cells of the faces across the marching axis; null: the kernel uses no cells
+/// @param volume  determines the cells of the faces normal to the marching axis; null: the kernel uses no cells
 /// @param ofFarFaces  whether the cells are on the faces where rays end; false: on those where rays start
 template <class... Arguments>
 void AxisSweep::RunOnMaps(

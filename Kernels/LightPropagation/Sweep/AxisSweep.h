@@ -34,8 +34,8 @@ public:
   /// Starts one sweep through the volume, forward and backward. Only queues the work on an open axis; waits on a
   /// periodic axis.
   /// @param boundary  incident light; empty: none
-  /// @param mostPlanes  maximum number of planes that rays cross along a periodic axis in this sweep; rays that are then
-  /// still in transit stay in the maps for the next sweep
+  /// @param mostPlanes  maximum number of planes that rays cross along a periodic axis in this sweep; rays that are
+  /// then still in transit stay in the maps for the next sweep
   /// @param monitor  receives the completed fraction of this sweep, 0 to 1
   void Start(const SweepVolume& volume, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
 
@@ -51,7 +51,7 @@ private:
   {
     bool source = false;    ///< whether the medium has a source (emission or scattered light)
     bool border = false;    ///< whether light is incident on the faces parallel to the marching axis
-    bool byCells = false;   ///< whether incident radiance is also given per cell of these faces
+    bool byCells = false;   ///< whether incident radiance is also given per cell of the box's faces
     bool mapsEmpty = false; ///< whether the memory of the maps is uninitialised
   };
   void Enter(const SweepBoundary& boundary, std::size_t firstChannel);

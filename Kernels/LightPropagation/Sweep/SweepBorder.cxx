@@ -99,7 +99,7 @@ Rgb SweepBorder::PowerOfRay(const SweepBoundary& boundary, const Bundle& bundle,
 
 /// Writes the power of the incident rays of one bundle member and channel, W.
 /// @param slot  index within the bundle, [member][channel]
-/// @param fromU, fromV, fromP  power of a ray that enters through the face across u, v, or the marching axis
+/// @param fromU, fromV, fromP  power of a ray that enters through the face normal to u, v, or the marching axis
 void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fromV, float fromP)
 {
   const BundleInfo& bundle = this->Plan.bundleRows[b];

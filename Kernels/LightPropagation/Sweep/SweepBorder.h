@@ -31,15 +31,15 @@ public:
   SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds = Holds::Maps);
 
   /// Incident power of a ray, W, [sense][bundle][member][channel]; components x, y, z: power if the ray enters through
-  /// the face across u, through the face across v, or at the face where rays start.
+  /// the face normal to u, through the face normal to v, or at the face where rays start.
   std::vector<cl_float4> rays;
 
-  /// Initial power of each ray, W; columns outside the plane hold the power of rays that enter through the faces across
-  /// u.
+  /// Initial power of each ray, W; columns outside the plane hold the power of rays that enter through the faces normal
+  /// to u.
   std::vector<float> maps;
-  /// Power of rays that enter through the faces across v, W, [bundle][member][channel][row]
+  /// Power of rays that enter through the faces normal to v, W, [bundle][member][channel][row]
   std::vector<float> outside;
-  /// Power of a ray that enters through a face across u, W, [bundle][member][channel]
+  /// Power of a ray that enters through a face normal to u, W, [bundle][member][channel]
   std::vector<float> radiance;
   std::array<Rgb, 6> powerIn = {}; ///< incident power through each face of the box, W
 

@@ -140,9 +140,9 @@ struct SweepRequest
   Deposit deposit; ///< output arrays; its buffers must outlive the sweep
   std::vector<AxisBundles> rays;
   VoxelBox box = {}; ///< region of the grid that is swept, voxels; empty: the whole grid
-  /// Maximum number of planes that rays cross along a periodic axis before they wait for the next sweep
+  /// Maximum number of planes that rays cross along a periodic axis in one sweep; the next sweep carries them on
   int mostPlanes = MostPlanesAround;
-  /// Whether the boundary source is the same in every sweep, so that its processed form is cached
+  /// Whether the boundary source is the same in every sweep, so that the incident power of the rays is cached
   bool sameBoundary = false;
   /// Values of the angular functions in the rays' directions; must outlive the sweep. Sources and path integrals are
   /// then angular moments, which include the net flux. Null: no angular moments, fluence only.

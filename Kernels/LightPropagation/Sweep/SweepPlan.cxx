@@ -388,7 +388,7 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t kept = this->angular
     ? together * BUNDLE_FLOATS(this->channels, this->row)
     : together * RINGS_OF(static_cast<std::size_t>(this->plane.chained)) * RingRows * raysOfRow;
-  // With incident radiance per cell, one more row holds the rays that enter through the faces across v.
+  // With incident radiance per cell, one more row holds the rays that enter through the faces normal to v.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;
   const std::size_t quantities =

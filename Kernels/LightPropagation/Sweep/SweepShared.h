@@ -41,7 +41,8 @@ enum
   PlaneSource = 3
 };
 
-/// Faces of a voxel through which a ray enters: across the marching axis, or the lower or upper face across u or v.
+/// Faces of a voxel through which a ray enters: normal to the marching axis, or the lower or upper face normal to u or
+/// v.
 enum
 {
   CurrentAxis = 0,
@@ -76,9 +77,10 @@ enum
 typedef struct
 {
   int members;
-  int map;      ///< index of the first float of the bundle's maps (power of its rays)
-  int border;   ///< index of the bundle's first radiance at the faces across u, [member][channel]
-  int outside;  ///< index of the bundle's first float in the rows that enter across v, [member][channel][ROW]
+  int map;    ///< index of the first float of the bundle's maps (power of its rays)
+  int border; ///< index of the bundle's first value in the incident power at faces normal to u, [member][channel]
+  /// Index of the bundle's first float in the rows that enter through faces normal to v, [member][channel][ROW]
+  int outside;
   float power;  ///< power of a ray of radiance 1 (numerics.md, Eq. (19)), length^2 sr
   float cosine; ///< cosine of the angle between the bundle's directions and the marching axis, for the net flux
   float sineU, sineV;
@@ -143,7 +145,8 @@ typedef struct
 } OwnLightInfo;
 
 /// Memory layout of the cells of the box's faces (BoxFaces.h). For the faces -u, +u, -v, +v, the cell at position i of
-/// plane p (i along v for the faces across u, along u for those across v) has the index first + p * plane + i * along.
+/// plane p (i along v for the faces normal to u, along u for those normal to v) has the index first + p * plane + i *
+/// along.
 typedef struct
 {
   int first[4], plane[4], along[4];
@@ -161,8 +164,8 @@ typedef struct
 typedef struct
 {
   ulong maps;
-  ulong outside;      ///< power of rays that enter through the faces across v: one row per member and channel
-  ulong radiance;     ///< power of rays that enter through the faces across u: one value per member and channel
+  ulong outside;      ///< power of rays that enter through the faces normal to v: one row per member and channel
+  ulong radiance;     ///< power of rays that enter through the faces normal to u: one value per member and channel
   ulong coefficients; ///< values of the angular functions
 } EachWay;
 

@@ -446,7 +446,8 @@ static void go_to_moments(
   if (info->momentsInPlace)
   {
     const ulong line = info->moments.channels * channel;
-    const ulong across = info->axis == 2 ? 1 : info->sizeY; // lines from one row of the plane to the next
+    // Number of lines (rows of voxels along x) from one row of the plane to the next
+    const ulong across = info->axis == 2 ? 1 : info->sizeY;
     const ulong along = info->axis == 2 ? info->sizeY : 1;
     const ulong here = line * ((layout->firstP + plane) * along + layout->firstV * across);
     state->momentSource = volume->moments + here;
@@ -522,7 +523,8 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
   for (int i = 0, chained; i < packed->count; i += chained)
   {
     const int k = begin + i;
-    // Chains begin at the same planes wherever a range begins, so that rows and sums are processed in the same order.
+    // Chains begin at the same planes whatever range a launch crosses, so that rows and sums are processed in the same
+    // order.
     state->chained_before = CHAINED ? (unit->planesBefore + k) % info->planes.chained : 0;
     chained = CHAINED ? min(info->planes.chained - state->chained_before, packed->count - i) : 1;
     state->places = places + i;

@@ -54,7 +54,7 @@ typedef struct
   float power, cosine; // power of a ray at radiance 1, and cosine to the marching axis, see BundleInfo
 } SEGMENT_ROWS;
 
-// Directions of the bundle's members across the marching axis.
+// Components of the members' directions normal to the marching axis.
 typedef struct
 {
   float alongU[MEMBERS], alongV[MEMBERS]; // components along u and v, for the net flux
@@ -204,8 +204,8 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 // moves, to the escaped power. Rays that move along u and v at once are taken to cross u first and v first in equal
 // parts. At the box's edge, half of their power leaves through either face, and half of the light that enters next to
 // the edge passes straight through.
-// across_u, across_v  power that enters through the faces across u and v, W, at [m][c] and at [FIRST(m, c)] of the row,
-//                     without light given per cell
+// across_u, across_v  power that enters through the faces normal to u and v, W, at [m][c] and at [FIRST(m, c)] of the
+//                     row, without light given per cell
 static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv,
   float part, const __global BundleInfo* bundle, const __global float* across_u, const __global float* across_v)
 {
@@ -284,7 +284,7 @@ static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global floa
   }
 }
 
-// Writes the power of the rays that enter through the faces across u to the columns at both ends of every row in the
+// Writes the power of the rays that enter through the faces normal to u to the columns at both ends of every row in the
 // rings.
 static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
@@ -300,7 +300,7 @@ static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radianc
 }
 
 #if FACES
-// Adds the light incident per cell of the faces across u to the columns beside row y.
+// Adds the light incident per cell of the faces normal to u to the columns beside row y.
 static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, int s, __global float* out)
 {
@@ -316,7 +316,7 @@ static BY_ROW void ENTER_ASIDE(sweep_state* state, int y, const __global float* 
   }
 }
 
-// Computes the row of rays that enter through the faces across v, including the light incident per cell.
+// Computes the row of rays that enter through the faces normal to v, including the light incident per cell.
 static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outside, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
 {
@@ -443,7 +443,7 @@ static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __glob
   }
 }
 
-// Writes the rays that enter through the faces across u to the columns beside a row within a plane, before stage s.
+// Writes the rays that enter through the faces normal to u to the columns beside a row within a plane, before stage s.
 static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, __global float* out)
 {
@@ -465,7 +465,8 @@ static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* ra
 }
 
 // Begins to carry a bundle through a chain of planes: lists the chain's stages, and fills the rows and columns of rays
-// that enter sideways. Parameters as for CROSS_PLANES. Returns the row of rays that enter through the faces across v.
+// that enter sideways. Parameters as for CROSS_PLANES. Returns the row of rays that enter through the faces normal to
+// v.
 static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __global float* map,
   const __global float* outside, const __global float* radiance, const __global BundleInfo* bundle,
   const __global CrossingInfo* crossings, bool begins, chain_of_stages* chain)
@@ -512,7 +513,7 @@ static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __globa
 }
 
 // Carries row y of a bundle through stage g of a chain. Parameters as for CROSS_PLANES.
-// @param beside  row of rays that enter through the faces across v
+// @param beside  row of rays that enter through the faces normal to v
 static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state, const chain_of_stages* chain, int g,
   int y, __global float* map, const __global float* beside, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossings,
@@ -568,8 +569,8 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
 //
 // @param planes   number of planes; 1 if CHAINED is 0
 // @param map      power of the bundle's rays, W, [row][member][channel][ROW], with two rows more than the plane
-// @param outside  row of rays that enter through the faces across v, W, [member][channel][ROW]
-// @param radiance power of rays that enter through the faces across u, W, [member][channel]
+// @param outside  row of rays that enter through the faces normal to v, W, [member][channel][ROW]
+// @param radiance power of rays that enter through the faces normal to u, W, [member][channel]
 // @param crossings  moves and segments in the first plane; those in the following planes are state->allBundles apart
 // @param coefficients  values of the bundle's angular functions
 // @param first_row, end_row  range of rows that the first stage crosses in this call; the first of successive calls

@@ -140,7 +140,7 @@ typedef struct
   const __global float* faceIn;
 #endif
 #if FACES || SIDES
-  __global float* outside; // row of the bundle's rays that enter this plane through the faces across v
+  __global float* outside; // row of the bundle's rays that enter this plane through the faces normal to v
 #endif
 #if SIDES
   const __global float* sidesIn; // rays at the sides of the plane that is being crossed (SweepSides.cl)

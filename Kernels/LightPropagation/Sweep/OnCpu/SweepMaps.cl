@@ -79,8 +79,8 @@ __kernel void leave_by_cells(
   }
 }
 
-// Adds the escaped power per cell of all units, in the order of the units, to face_out, and clears it. One work-item
-// per value.
+// Adds the escaped power per cell of all units, in the order of the units, to face_out, and clears the units' values.
+// One work-item per value.
 __kernel void take_face_cells(__global exact* units, int count, ulong values, __global float* face_out)
 {
   const ulong i = get_global_id(0);

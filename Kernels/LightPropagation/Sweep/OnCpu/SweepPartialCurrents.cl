@@ -32,7 +32,7 @@ static BY_ROW void add_current(sweep_state* state, int y, int face, const __glob
 
 // Adds the fraction `part` of row y's diagonal rays to the partial currents through `face` of the voxels that the rays
 // cross on their way: a ray that arrives at column x passes through column x - du, which it enters through the face
-// across v. It then enters column x through the face across u, or leaves the box.
+// normal to v. It then enters column x through the face normal to u, or leaves the box.
 static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int size = state->sizeU;

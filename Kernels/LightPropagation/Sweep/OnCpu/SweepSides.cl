@@ -17,7 +17,7 @@
 #define SIDE_FLOATS(state) ((state)->sizeU + (state)->sizeV + 1)
 #define SIDE_OF_RAY(state, sides, bundle, ray) ((sides) + ((bundle)->border + (ray)) * SIDE_FLOATS(state))
 
-// Reads the rays of all members that enter across v into the row `outside`.
+// Reads the rays of all members that enter through the face normal to v into the row `outside`.
 static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* bundle, int rays)
 {
   for (int ray = 0; ray < rays; ++ray)
@@ -33,7 +33,7 @@ static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* 
   }
 }
 
-// Writes a member's rays that enter across u in a move of `du` to the column beside row y.
+// Writes a member's rays that enter through the face normal to u in a move of `du` to the column beside row y.
 static BY_ROW void take_across_u(
   sweep_state* state, const __global BundleInfo* bundle, int member, int y, int du, __global float* out)
 {
@@ -70,8 +70,8 @@ static BY_ROW void give_sides(
 #define LEAVES_GRID(state, side) true
 #endif
 
-// Index, in the cells of the box's faces, of cell i of a side: the cell at row i (sides across u) or column i (across
-// v) of the plane that is crossed.
+// Index, in the cells of the box's faces, of cell i of a side: the cell at row i (sides normal to u) or column i (sides
+// normal to v) of the plane that is crossed.
 #if FACES
 #define FACE_CELL(state, side, i, c) \
   ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)

@@ -11,7 +11,7 @@
 // Index in the box of the k-th plane that a lane crosses, k >= 0.
 static int plane_of(const __global SweepLane* lane, int k)
 {
-  // Beyond the axis' planes, rays are in another lap around a periodic axis
+  // If k is beyond the planes of the axis, rays are in another lap around a periodic axis
   const int of_axis = k % lane->planes.sizeP;
   return lane->backward ? lane->planes.sizeP - 1 - of_axis : of_axis;
 }

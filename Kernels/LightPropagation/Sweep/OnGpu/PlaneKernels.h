@@ -75,7 +75,7 @@ public:
   {
     int u = 0, v = 0;     ///< largest extents of a plane of any lane, voxels
     int lanes = 1;        ///< number of lanes that run concurrently
-    std::size_t rays = 0; ///< number of rays of all these lanes, times channels
+    std::size_t rays = 0; ///< number of rays of all lanes that run concurrently, times channels
   };
 
   /// @param sides  compiler option SIDES (SidesNotStored, SidesOfBlock or SidesOfDomain)

@@ -185,8 +185,8 @@ void SweepOnGpu::CrossOnce(const LaneBatch& batch, const SweepVolume& volume, Sw
   this->Powers.CountEnds(batch, tally);
 }
 
-/// Carries the rays of a batch of a periodic axis through all laps in which they start and, with those of the previous
-/// sweep, around the axis until almost no power is in transit (numerics.md, section 4.6).
+/// Carries the rays of a batch of a periodic axis, and those in transit from the previous sweep, through all laps in
+/// which rays start, and then around the axis until almost no power is in transit (numerics.md, section 4.6).
 void SweepOnGpu::GoRound(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
   this->BeginLost(batch);

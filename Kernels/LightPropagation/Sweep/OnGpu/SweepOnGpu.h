@@ -102,8 +102,8 @@ private:
   Buffer<float> Maps[2];  ///< power of the rays of open axes, W
   /// Rays in transit along periodic axes; key: first lane of the batch, and group of channels
   std::map<std::pair<int, int>, OnTheWay> Rounds;
-  /// Incident power of each ray, W, [ray][channel]: through the face across u, through the face across v, and where
-  /// rays start
+  /// Incident power of each ray, W, [ray][channel]: through the face normal to u, through the face normal to v, and
+  /// where rays start
   Buffer<cl_float4> Entering;
   Buffer<cl_float4> Nothing; ///< zeros, in the layout of Entering: no incident light
   LaneArrays OfLanes;

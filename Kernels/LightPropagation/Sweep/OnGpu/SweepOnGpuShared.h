@@ -16,7 +16,7 @@ typedef struct
   /// Number of planes in which the rays of a sweep start: those of the axis, or of several laps around a periodic axis
   int patternPlanes;
   int around;               ///< whether the marching axis is periodic, so rays cross a voxel repeatedly
-  int periodicU, periodicV; ///< whether the axes across the marching axis are periodic
+  int periodicU, periodicV; ///< whether the axes u and v, normal to the marching axis, are periodic
   int firstBundle, bundles;
   int crossings; ///< index of the first of the crossings of the lane's first plane, [plane][bundle]
   /// Index of the lane's first ray among the rays of all lanes: in `entering` (a float4 per ray and channel),

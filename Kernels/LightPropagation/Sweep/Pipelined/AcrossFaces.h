@@ -16,7 +16,7 @@ namespace tyndall
 /// an array with one value per voxel and face, such as Deposit::partialCurrents.
 struct BeyondFaces
 {
-  /// Values [channel][face][cell, x before y before z]; null: the block is the whole domain
+  /// Values [channel][face][cell of the face, its lower axis fastest]; null: the block is the whole domain
   const Buffer<float>* values = nullptr;
   BeyondFacesInfo info = { { -1, -1, -1, -1, -1, -1 }, 0 };
 };
@@ -25,8 +25,9 @@ struct BeyondFaces
 /// valid until the next call.
 using FetchBeyondFaces = std::function<BeyondFaces(const Buffer<float>& byFaces)>;
 
-/// Halo exchange of face values: each rank receives, for every voxel that touches a face of its block from outside and
-/// every channel, a value from the rank that owns the voxel (around a periodic axis possibly the same rank).
+/// Halo exchange of face values. For every voxel that touches a face of its block from outside, and every channel, each
+/// rank receives the voxel's value at that face from the rank that owns the voxel (around a periodic axis possibly the
+/// same rank).
 class AcrossFaces
 {
 public:

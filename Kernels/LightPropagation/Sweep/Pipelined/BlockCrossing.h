@@ -57,8 +57,9 @@ public:
   virtual void LayPattern(int planes) = 0;
 
   /// Carries rays through all planes of the block and adds to the volume's deposit.
-  /// @param beyond  power of light incident from outside the domain, W, [ray][channel]: through the face across u,
-  /// across v. Needed because some light enters and leaves at an edge of the domain without crossing a voxel
+  /// @param beyond  power of light incident from outside the domain, W, [ray][channel]: through the face normal to u,
+  /// and through the face normal to v. Needed because some light enters and leaves at an edge of the domain without
+  /// crossing a voxel
   /// @param outerSides  bit i: light that crosses side i of -u, +u, -v, +v leaves the domain
   /// @param rays  on entry, the incoming rays; on return, the outgoing ones
   /// @return power that left the domain sideways, W, consecutive arrays [-u, +u, -v, +v][channel], to be added up

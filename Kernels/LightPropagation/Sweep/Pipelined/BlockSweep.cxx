@@ -262,7 +262,7 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
   const VoxelBox& cells = contact.cells;
   const int firstU = cells.first[axes.u] - this->Block.first[axes.u], endU = firstU + cells.size[axes.u];
   const int firstV = cells.first[axes.v] - this->Block.first[axes.v], endV = firstV + cells.size[axes.v];
-  // Column of the block from which rays leave across u
+  // Column of the block from which rays leave through the face normal to u
   const int edgeU = this->Bundles.signs[axes.u] > 0 ? plan.plane.sizeU - 1 : 0;
   for (int plane = 0; plane < cells.size[axes.axis]; ++plane)
   {
@@ -312,8 +312,8 @@ void BlockSweep::ForEachPlaceAlong(const BlockContact& contact, const Visit& vis
   }
 }
 
-/// Calls act(ray) for the rays of all bundles and channels that make a sideways move of this kind in plane k of the
-/// block.
+/// Calls act(ray) for the rays of all bundles and channels that make a sideways move of the kind `kind` in plane k of
+/// the block.
 template <class Act>
 void BlockSweep::ForRaysThatMove(int k, BlockContact::Kind kind, const Act& act) const
 {

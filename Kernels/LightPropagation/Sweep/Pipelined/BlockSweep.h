@@ -68,7 +68,7 @@ public:
 private:
   struct Light
   {
-    /// Power of a ray that enters through a face across u, across v, or across the marching axis, W
+    /// Power of a ray that enters through a face normal to u, to v, or to the marching axis, W
     Rgb u, v, along;
   };
   Light LightOf(const SweepBoundary& boundary, std::size_t bundle, const Member& member) const;

@@ -238,7 +238,8 @@ void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& bound
   }
 }
 
-/// Sums the power that leaves through the face across axis `through` after entry through the face across axis `from`.
+/// Sums the power that leaves through the face normal to axis `through` after entry through the face normal to axis
+/// `from`.
 /// @param alike  power of incident light that is uniform over the face, W; BlockCrossing adds it to the tally
 void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, double alike, SweepTally& tally) const
 {
@@ -253,7 +254,7 @@ void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, doub
   }
 }
 
-/// Adds power that leaves through the face across `axis` to the cells in all planes that the ray represents.
+/// Adds power that leaves through the face normal to `axis` to the cells in all planes that the ray represents.
 void BlockSweep::ByCells::LeaveThrough(const Aside& ray, int axis, const Voxel& voxel, double power) const
 {
   const SweepPlan& plan = this->Sweep.Plan;

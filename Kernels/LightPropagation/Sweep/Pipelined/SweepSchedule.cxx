@@ -107,7 +107,8 @@ std::vector<BlockContact> ContactsBetween(
     return {};
   }
   const PlaneAxes axes = AcrossAxis(rays.axis);
-  // Finds a contact; its cells are those upwind of the target block along each of the axes `along`.
+  // Finds the contact of the given kind: the cells of the source block that are next to the target block, upwind along
+  // each of the axes `along`.
   const auto contact = [&](BlockContact::Kind kind, std::initializer_list<int> along) {
     BlockContact found = { from, to, kind, target, false };
     for (const int axis : along)

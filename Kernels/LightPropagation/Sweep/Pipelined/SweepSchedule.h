@@ -31,8 +31,8 @@ struct BlockContact
 {
   enum Kind
   {
-    Along,  ///< through faces across the marching axis, after the last plane of a block
-    AsideU, ///< AsideU, AsideV: through faces across u, v, within a plane
+    Along,  ///< through faces normal to the marching axis, after the last plane of a block
+    AsideU, ///< AsideU, AsideV: through faces normal to u, v, within a plane
     AsideV,
     Edge ///< by a sideways move along u and v at once
   };

@@ -14,7 +14,7 @@ namespace tyndall
 struct SlicePiece
 {
   cl_int2 range = { { 0, 0 } }; ///< planes of the ray pattern, first and end, as in SweepPlan::schedule
-  /// The same planes as indices in the box, [begin, end); empty: the unit is idle in this launch
+  /// The planes of `range` as indices in the box, [begin, end); empty: the unit is idle in this launch
   int begin = 0, end = 0;
 };
 
@@ -42,8 +42,8 @@ public:
   struct Schedule
   {
     std::vector<std::vector<SlicePiece>> pieces; ///< pieces of each launch, [launch][unit]; empty: not streamed
-    /// Planes of each unit, first and end, as the kernel reads them: [launch][unit]; of pieces
-    /// [launch][ranges, slots][unit]
+    /// Argument `schedule` of the kernel `sweep`: planes of each unit, first and end, [launch][unit]; if streamed
+    /// [launch][planes, slots][unit]
     Buffer<cl_int2> rows;
   };
   Schedule Cut(const std::vector<cl_int2>& schedule) const;
