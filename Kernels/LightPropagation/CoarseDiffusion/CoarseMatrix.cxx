@@ -104,7 +104,7 @@ std::vector<double> Diffusing(const Level& level)
     return level.sigmaT;
   }
   std::vector<double> sigma = level.sigmaT;
-  std::vector<double> around; // result for the next coarser grid; computed on demand
+  std::vector<double> around; // result of this function for the next coarser grid; computed when first needed
   Level coarser;
   ForCells(level.size, [&](int x, int y, int z) {
     double& here = sigma[level.At(x, y, z)];

@@ -10,9 +10,9 @@
 namespace tyndall
 {
 /// Crossing pattern of a quadrature: power of the rays that cross a voxel face at uniform radiance, divided by its mean
-/// over the grid (numerics.md, Eq. (65)). About 1, because rays repeat a pattern that crosses some faces more often.
-/// For faces perpendicular to an axis it is the sum of two table entries, one for the voxel's index along each of the
-/// two other axes.
+/// over the grid (numerics.md, Eq. (65)). It differs slightly from 1, because rays repeat a pattern of moves that
+/// crosses some faces more often than others. For faces perpendicular to an axis it is the sum of two table entries,
+/// one for the voxel's index along each of the two other axes.
 struct CrossingPattern
 {
   std::vector<float> values;

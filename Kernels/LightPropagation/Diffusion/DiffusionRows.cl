@@ -399,7 +399,7 @@ __kernel void diffusion_balance(DiffusionLayout layout, const __global float* gi
 }
 
 // Computes the absorbed power of a fluence, W, in the voxels that this rank owns.
-//   sums  [work-group] partial sums
+//   sums  partial sums of the absorbed power, W, [work-group]
 __kernel void diffusion_absorbed(
   DiffusionLayout layout, const __global float* sigma_a, const __global exact* fluence, __global exact* sums)
 {

@@ -47,9 +47,10 @@ public:
   std::vector<double> Found() const; ///< fluence of the last solution, W / length^2, by voxel of the block
   /// Fluence from which the next sweep's source is to be computed, W / length^2, by voxel of the block.
   const ExactValues& NextFluence();
-  void ShapeSource(); ///< DiffusionSystem::ShapeSource()
+  void ShapeSource(); ///< calls DiffusionSystem::ShapeSource() on this rank
   void PutNextFlux(const Buffer<float>& path);
-  /// DiffusionSystem::AddFlux(); afterwards ghost voxels do not have the values of their owners.
+  /// Calls DiffusionSystem::AddFlux() for the block. The values of ghost voxels in `flux` then differ from those of
+  /// their owners.
   void AddFlux(const Buffer<float>& flux);
   /// Power through the cells of the block's faces in the last solution; valid only for cells on the box's faces.
   SurfacePowers PowersAtSurface() const;

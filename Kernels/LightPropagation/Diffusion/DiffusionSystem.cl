@@ -218,7 +218,7 @@ static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arr
 static float remainder_of_borders(const DiffusionLayout* layout, const diffusion_arrays* arrays, int i, const int* next,
   const int* at, float power, float* share, float* seeming, float* transport_weight)
 {
-  float left = power; // net outgoing power through the box's faces
+  float left = power; // becomes the net outgoing power through the box's faces
   float in = 0.0f, expected = 0.0f, longest = 0.0f, sum = 0.0f, borders = 0.0f;
   float model[6];
   for (int d = 0; d < 6; ++d)

@@ -77,8 +77,8 @@ public:
     std::size_t stride, firstT, first;
     const Buffer<float>* sigma_t; ///< transport extinction, 1/length: sigma_a + sigma_s (1 - g)
     const Buffer<float>* swept;   ///< extinction used by the sweeps, 1/length
-    const Buffer<float>* sigma_a; ///< 1/length
-    const Buffer<float>* sigma_s; ///< 1/length
+    const Buffer<float>* sigma_a; ///< absorption coefficient, 1/length
+    const Buffer<float>* sigma_s; ///< scattering coefficient, 1/length; below 0 in ghost voxels
     const Buffer<float>* given;   ///< emission and first-collision source, W / (length^3 sr)
     MomentPlaces moments;         ///< memory layout of the angular moments in `path`
     int channel;                  ///< channel of this system
@@ -106,8 +106,8 @@ public:
     const DirectionSet& directions, const CrossingPattern& pattern, const Arrays& arrays,
     const std::array<double, 6>& incoming, bool linear);
 
-  /// The last solution: fluence, result of FindModel(), W / length^2, [voxel]; with angular moments followed by the
-  /// moments of degree 1, [x, y, z][voxel].
+  /// The last solution: fluence, W / length^2, [voxel]; with angular moments, followed by the moments of degree 1,
+  /// [x, y, z][voxel].
   std::vector<double> State() const { return this->Solution.Read(); }
   /// Sets the state, in the layout of State(), from which the next sweep's source and the next correction are computed.
   /// The initial state is 0.
@@ -139,7 +139,8 @@ public:
   /// Sums over cells of the box's faces, W, from which DiffusionSolver::Outflow() computes the escaped power.
   struct BorderSums
   {
-    /// By face: outgoing power of the solution, of the sweep (estimated), and incident power of the sweep.
+    /// By face: outgoing power of the solution, outgoing power of the sweep (estimated), and incident power of the
+    /// sweep.
     std::array<double, 6> out = {}, seeming = {}, came = {};
     /// Sum of the weights of the transport correction over cells of voxels with several faces on the box, and number of
     /// these cells.

@@ -29,7 +29,7 @@ public:
 
   /// Copies the values of ghost voxels from their owners, in an array of the finest level in rows.
   void FillGhosts(Buffer<float>& rows) const;
-  void FillGhosts(ExactValues& ofVoxels) const; ///< copies ghost values in an array by voxel
+  void FillGhosts(ExactValues& ofVoxels) const; ///< copies the values of ghost voxels in an array by voxel
   /// Sums values of touched cells over all ranks, in the order of ranks.
   /// @param arrays  number of consecutive arrays in `ofTouched`
   /// @return rows of the whole second level on the first rank; empty on all other ranks
@@ -46,7 +46,7 @@ private:
   MultigridLevel OfBlock, OfTouched, Coarser;
   std::vector<VoxelBox> TouchedBoxes; ///< boxes of touched cells, by rank
   std::unique_ptr<GhostCells> Ghosts;
-  /// Indices in rows of this rank's voxels that are ghosts of other ranks, and of this rank's ghosts.
+  /// Indices, in the row layout, of this rank's voxels that are ghosts on other ranks, and of this rank's ghosts.
   Buffer<cl_int> Owned, Copied;
 };
 }

@@ -148,7 +148,7 @@ static float residual_at(
 
 // Replaces the right-hand side by the residual r of `values`, times per_unit, and computes Jacobi's initial guess for
 // the correction of `values`.
-//   sums  [work-group] r r
+//   sums  partial sums of r r, [work-group]
 __kernel void begin_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global exact* values, float per_unit, __global float* right,
   __global float* guess, __global exact* sums)
@@ -291,7 +291,7 @@ __kernel void level_prolong(
 }
 
 // One step of Jacobi's method: better = values + inverse (right - A values).
-//   sums  [work-group] right times better
+//   sums  partial sums of right times better, [work-group]
 __kernel void level_smooth(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global float* right, const __global float* values, __global float* better,
   __global exact* sums)
@@ -390,7 +390,7 @@ static exact finish(const MultigridLevel* level, const __global float* conductan
 }
 
 // finish(), run by one work-item.
-//   sums  [0] right times values
+//   sums  [0] sum of right times values
 __kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* right, __global float* values, __global exact* sums, int rounds)
 {
@@ -418,7 +418,7 @@ __kernel void level_answers(MultigridLevel level, const __global float* conducta
 }
 
 // Applies the matrix of level_answers to a right-hand side, in place of level_finish. One work-group.
-//   sums  [0] right times values
+//   sums  [0] sum of right times values
 __kernel void level_answer(MultigridLevel level, const __global float* answers, const __global float* right,
   __global float* values, __global exact* sums)
 {
@@ -441,7 +441,7 @@ __kernel void level_answer(MultigridLevel level, const __global float* answers, 
 }
 
 // Product of the matrix with the search direction: applied = A direction.
-//   sums  [work-group] direction times applied
+//   sums  partial sums of direction times applied, [work-group]
 __kernel void apply_matrix(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* direction, __global float* applied, __global exact* sums)
 {
@@ -466,7 +466,7 @@ __kernel void apply_matrix(MultigridLevel level, const __global float* conductan
 //   direction, applied  p and A p
 //   left    r
 //   values  x by voxel, without ghosts between rows, in W / length^2; r and p are in the solver's unit
-//   sums    [work-group] r r
+//   sums    partial sums of r r, [work-group]
 __kernel void go_along(MultigridLevel level, const __global float* direction, const __global float* applied,
   const __global float* inverse, float step, exact step_of_values, __global float* left, __global float* guess,
   __global exact* values, __global exact* sums)

@@ -62,7 +62,7 @@ public:
 private:
   double Most; ///< bound on the squared norm
   double Smallest = std::numeric_limits<double>::infinity();
-  int SinceHalved = 0; ///< iterations
+  int SinceHalved = 0; ///< number of iterations since the residual halved
 };
 }
 

@@ -37,7 +37,7 @@ double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values,
   return sum;
 }
 
-/// Calls act(layer, mean irradiance of a beam perpendicular to it) for each layer.
+/// Calls act(layer, mean over the layer of the beam's irradiance, perpendicular to the beam) for each layer.
 template <class Act>
 void ForLayersOf(const LayerStack& stack, const StackBeam& beam, const Act& act)
 {

@@ -17,7 +17,7 @@ struct DeviceMemory
   std::size_t all = std::numeric_limits<std::size_t>::max();
   std::size_t one = std::numeric_limits<std::size_t>::max(); ///< size of the largest single array
 };
-/// Memory of a device that is not in use.
+/// Returns the free memory of a device.
 DeviceMemory MemoryOf(const Device& device);
 
 /// Mean optical thickness of the box: mean extinction times mean edge.

@@ -83,7 +83,7 @@ LineSums SumAlongLines(const Grid& grid, const Value& value)
       }
     }
   });
-  // separately, since lines along z cross the planes of the threads above
+  // Sums along z in a separate pass, because lines along z cross the planes that the threads above divide
   InThreads(n[1], 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
     {

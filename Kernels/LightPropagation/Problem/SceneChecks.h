@@ -10,7 +10,7 @@ namespace tyndall
 /// Checks that a scene can be solved. Collective.
 /// @param medium  medium of this rank's subdomain; not read on a rank without voxels
 /// @throws InvalidInput  if Check() of medium, illumination or settings throws, if the medium does not have the size of
-///   its subdomain, if a reflecting face lies across a periodic axis, from RequireSame, or from RequireSink
+///   its subdomain, if a reflecting face is normal to a periodic axis, from RequireSame, or from RequireSink
 void Check(
   const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings);
 

@@ -27,7 +27,7 @@ struct Deposit
   /// +z][stride]; null: not computed
   const Buffer<float>* partialCurrents = nullptr;
   /// First moments of the deposit of lamps, W length, [channel][-x, +x, -y, +y, -z, +z][stride]: path integral times
-  /// the distance, in voxels (0 to 1/2), of the mean place of collision from the voxel's centre towards each face
+  /// the distance, in voxels (0 to 1/2), of the mean position of collisions from the voxel's centre towards each face
   /// (numerics.md, Eq. (37)). 0 in voxels thinner than ThinForFirstMoments. Null: not computed.
   const Buffer<float>* firstMoments = nullptr;
   /// Escaped power per cell of the box's faces, W, [channel][cell] (BoxFaces.h); null: not computed. Requires a sweep
@@ -153,9 +153,9 @@ struct SweepRequest
   const Buffer<float>* faceIn = nullptr;
   /// Additional source per octant of directions, W / (length^3 sr), [channel][octant][stride], added to the source for
   /// light that leaves the voxel. Bits 0, 1, 2 of an octant's index are set if its directions are positive along x, y,
-  /// z. Additional power that leaves is subtracted from the voxel's own path integral (power that stays is added), so
-  /// the total power is that of the source. Not with angular moments. Must outlive the sweep; null: the source is the
-  /// same in all octants.
+  /// z. The power that this source adds to rays is subtracted from the voxel's own path integral, so the total power is
+  /// that of the source alone. Not with angular moments. Must outlive the sweep; null: the source is the same in all
+  /// octants.
   const Buffer<float>* octantSource = nullptr;
 };
 

@@ -16,7 +16,7 @@ namespace tyndall
 struct SweepDescription
 {
   Grid grid;
-  VoxelBox box = {}; ///< region of the grid that is swept; empty, and if any axis is periodic: the whole grid
+  VoxelBox box = {}; ///< region of the grid that is swept; the whole grid if it is empty or if any axis is periodic
   std::array<bool, 3> periodic = {};
   int channels = 1;
   bool netFlux = false;

@@ -26,7 +26,7 @@ enum
   RowsOfChainKept = 64,
   RowsAhead = 2,     ///< number of rows by which the prefetch of a ray map is ahead in chained planes
   FloatsOfLine = 16, ///< number of floats in a cache line
-  /// Lowest row at which a first stage begins: along a periodic v, it also crosses two rows before the plane
+  /// Lowest row at which a first stage begins: along a periodic v, it also crosses up to two rows before the plane
   FirstRow = -2
 };
 

@@ -19,7 +19,7 @@ public:
   void SetBorder(const std::vector<float>& outside, const std::vector<float>& radiance);
   void ClearBorder();
   bool IsBorderClear() const { return this->BorderIsClear; }
-  /// Path integral per unit of source in the voxel of origin, see SweepPlan::OwnLight
+  /// Sets the path integrals, per unit of source, of light within its voxel of origin (SweepPlan::OwnLight).
   void SetOwnLight(const std::vector<OwnLightInfo>& own);
 
   /// Arguments of one or several launches of the kernel.

@@ -5,10 +5,10 @@
 //   FACES  1: escaped power may be summed, and incident radiance given, per cell of the box's faces; FaceInfo tells
 //          which
 //
-// Memory layout of the power of rays from and to neighbours: [plane][ray][SIDE_FLOATS], with rays at the voxel they
-// come from, or are in, before they move. First the rays that move across v, one for each column; then those that move
-// across u, one for each row; then the ray that moves across both at once. Incoming rays come from beyond the box,
-// outgoing ones from its last columns and rows. Rays are numbered as the bundles' radiances, [bundle][member][channel].
+// Memory layout of the power of rays exchanged with neighbours: [plane][ray][SIDE_FLOATS], for each ray at the voxel
+// from which it moves. The rays that cross the face normal to v are first, one per column; then those that cross the
+// face normal to u, one per row; last the ray that crosses both faces at once. The voxels of incoming rays are next to
+// the box, those of outgoing rays are its last columns and rows. Rays are in the order [bundle][member][channel].
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"

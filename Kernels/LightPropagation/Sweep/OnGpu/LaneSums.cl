@@ -33,8 +33,8 @@ __kernel void sum_rows(const __global float* rows, ulong first, int length, __gl
   sums[first_sum + get_global_id(0)] = sum;
 }
 
-// Adds the deposits of lanes with their own arrays to the sum, in the order of the lanes, so that the result is
-// identical, bit for bit, to that of lanes that add to the sum directly. One work-item per value.
+// Adds the deposits of lanes with their own arrays to `sum`, in the order of the lanes, so that the result is
+// identical, bit for bit, to that of lanes that add to `sum` directly. One work-item per value.
 __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values, __global float* sum, ulong first)
 {
   const ulong i = get_global_id(0);
@@ -46,7 +46,7 @@ __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values,
   sum[first + i] = all;
 }
 
-// Adds the angular moments of lanes with their own arrays to the sum, in the order of the lanes. One work-item per
+// Adds the angular moments of lanes with their own arrays to `sum`, in the order of the lanes. One work-item per
 // voxel, function and channel.
 __kernel void add_moments_of_lanes(
   PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)

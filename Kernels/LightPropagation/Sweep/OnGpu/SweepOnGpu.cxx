@@ -216,7 +216,8 @@ void SweepOnGpu::GoRound(const LaneBatch& batch, const SweepVolume& volume, Swee
   }
 }
 
-/// Clears the rounding errors of the path integrals and the own arrays of lanes that wrap around.
+/// Sets to 0, before a sweep around a periodic axis, the lanes' own arrays or, if they have none, the rounding errors
+/// of the path integrals.
 void SweepOnGpu::BeginLost(const LaneBatch& batch)
 {
   if (batch.hasArrays)

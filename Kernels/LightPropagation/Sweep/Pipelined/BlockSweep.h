@@ -54,13 +54,13 @@ public:
   RaysAtFaces Cross(const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary, const LightByCells& cells,
     SweepTally& tally, const Monitor& monitor);
 
-  /// Pack() appends to `message` the rays that cross a contact with another block, in an order that both ranks know.
-  /// Unpack() reads them from the message.
+  /// Pack() appends to `message` the rays that cross a contact with another block, in the order of the contact's cells
+  /// in the whole domain. Unpack() reads them from the message.
   /// @param at  index of the contact's first value in `message`; on return, the index after its last value
   void Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const;
   void Unpack(const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const;
 
-  /// Number of values in the messages of incoming rays.
+  /// Number of incoming rays that cross `contacts`, i.e. of the values in their messages.
   std::size_t Values(const std::vector<BlockContact>& contacts) const;
   int Axis() const { return this->Bundles.axis; }
   std::size_t Bytes() const; ///< host memory of the incoming and outgoing rays at the block's faces

@@ -245,7 +245,7 @@ TaskGraph GraphOf(const BlockPartition& partition, const ParallelBundles& bundle
   return graph;
 }
 
-/// Event simulation of a distributed sweep.
+/// Discrete-event simulation of a distributed sweep.
 class Play
 {
 public:
@@ -351,7 +351,7 @@ private:
   std::vector<bool> Busy;
   std::set<int> Touched;                             ///< ranks with an event at the current time
   std::map<std::pair<int, int>, double> LastArrival; ///< time of the last message; key: rank, task
-  using Event = std::tuple<double, int, int, int>;   ///< time; 0: task ready, 1: task finished; rank; task
+  using Event = std::tuple<double, int, int, int>; ///< time; 0 if a task becomes ready, 1 if it is finished; rank; task
   std::priority_queue<Event, std::vector<Event>, std::greater<Event>> Events;
 };
 }
