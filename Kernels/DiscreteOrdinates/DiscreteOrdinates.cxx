@@ -50,7 +50,7 @@ private:
   const KeptLight* Kept;
   const OrdinatesSettings& Settings;
   KeptLight Left;
-  std::string WhyNot; ///< why the first channel that does not use its guess does not
+  std::string WhyNot; ///< reason why a channel does not use its guess, of the first such channel; empty: all use it
 };
 
 OrdinatesGuess OrdinatesWarmStart::Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles)

@@ -201,7 +201,7 @@ private:
   {
     for (float& value : this->Result.fluence)
     {
-      // Negative remainders of the guess, which later sweeps would remove.
+      // Removes negative fluence, a remainder of the guess that later sweeps would have removed.
       value = this->IsWarm() ? std::max(value, 0.0f) : value;
     }
     for (std::size_t i = 0; i < this->Result.fluence.size() && this->Scene.guess.keeps; ++i)
@@ -272,7 +272,8 @@ private:
     {
       return true;
     }
-    // Number of orders until the rate of decrease is known; a guess brings that of the previous solve.
+    // Least number of orders, after which the rate of decrease is known; a guess comes with the rate of the previous
+    // solve.
     const int least = this->IsWarm() ? 2 : 3;
     return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
                                             : orders >= least && this->Record.Residual() <= this->Settings.tolerance;
@@ -289,8 +290,9 @@ private:
   OrdinatesResult Result;
   /// Guess, W / length^2; empty once its source has been subtracted.
   std::vector<float> Guess;
-  bool CountsGuess = false;                             ///< whether the source contains that of the guess
-  double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0; ///< W
+  bool CountsGuess = false; ///< whether the source contains that of the guess
+  /// Power that the next order carries, power that wraps around periodic axes, and reflected power, W.
+  double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0;
   /// Power that wrapped around periodic axes in the last sweep, W.
   double WasOnTheWay = 0.0;
 };

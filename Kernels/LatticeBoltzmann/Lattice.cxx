@@ -46,7 +46,7 @@ Lattice::Lattice(Device& device, const LatticeBox& box, const LatticeSettings& s
 void Lattice::LayOut(const LatticeVoxels& voxels)
 {
   std::copy(this->Size.begin(), this->Size.end(), this->TheInfo.size);
-  // The value after a row may be the first one of the next row.
+  // The ghost value after a row may be stored in the unused values at the beginning of the next row.
   this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst;
   this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
   for (int i = 0; i < 18; ++i)

@@ -120,8 +120,8 @@ std::vector<float> Settling::Run(const StepsBefore& before, const Monitor& monit
   const double start = ClockSeconds() - before.seconds;
   const bool asked = this->Settings.maximumSteps > 0;
   const int most = asked ? this->Settings.maximumSteps : MostSteps;
-  // Reads the probes every `look` steps, because reading costs about as much as a step; with blocks after whole
-  // exchanges.
+  // Reads the probes every `look` steps, because reading costs about as much as a step. With blocks, `look` is a
+  // multiple of the steps between exchanges.
   const int exchange = this->Settings.blockSize > 0 ? this->Settings.stepsPerExchange : 1;
   const int look = (StepsPerLook + exchange - 1) / exchange * exchange;
   double residual = 1.0, done = 0.0;

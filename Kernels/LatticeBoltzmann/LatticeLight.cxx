@@ -31,7 +31,7 @@ void CheckCubes(const Grid& grid)
 /// that can be resolved.
 void CheckThickness(const Medium& medium)
 {
-  constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // relative to the precision of double, 1e-16
+  constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // absorption of 1e-13 per collision; doubles round to 1e-16
   const double edge = medium.grid.spacing[0];
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {

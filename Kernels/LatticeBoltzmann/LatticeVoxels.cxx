@@ -226,7 +226,7 @@ double LatticeVoxels::OpenWeight(std::size_t voxel) const
   {
     open -= bits >> pair & 1 ? 2.0 * LatticeWeight(this->Directions, 2 * pair) : 0.0;
   }
-  // Above 0 also if all lines are endless.
+  // At least the weight of one direction, so that the result is above 0 even if all lines are endless.
   return std::max(open, LatticeWeight(this->Directions, this->Directions - 1));
 }
 

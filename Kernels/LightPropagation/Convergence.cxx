@@ -11,24 +11,27 @@ namespace tyndall
 {
 namespace
 {
-constexpr double WarmMargin = 1.5;      ///< safety factor, since the error of an initial guess does not decrease evenly
-constexpr double MarginOfChanges = 1.5; ///< safety factor, since changes do not decrease evenly
-/// Fraction of the power above which left-over power is reported, unless the tolerance is larger.
+/// Factor on RestOfOrders::After() after a warm start, since the error of a guess decreases unevenly.
+constexpr double WarmMargin = 1.5;
+/// Factor on the error that RestOfChanges::After() estimates, since changes decrease unevenly.
+constexpr double MarginOfChanges = 1.5;
+/// Fraction of the incoming power above which left-over power adds a warning, unless the tolerance is larger.
 constexpr double MuchLeftOver = 0.01;
-constexpr double SlowestFall = 1e-4; ///< relative decrease per order below which wrapping light is endless
-/// Largest other power, relative to endless light, with which that is recognised.
+/// Relative decrease per order below which light that wraps around periodic axes counts as endless.
+constexpr double SlowestFall = 1e-4;
+/// Light that wraps around periodic axes counts as endless only if all other power is at most this fraction of it.
 constexpr double NextToAll = 1e-3;
 
 constexpr double ImbalanceAtMost = 1e-2; ///< imbalance, as fraction of the power, above which the solve fails
 constexpr double ImbalanceUnsaid = 1e-4; ///< imbalance, as fraction of the power, up to which there is no warning
-/// Smallest power of a channel, relative to the brightest, with which its imbalance is compared.
+/// Smallest power, relative to the brightest channel, to which the imbalance of a channel is related.
 constexpr double FaintChannel = 1e-3;
 constexpr double OpaqueVoxel = 100.0; ///< approximate optical thickness beyond which floats lose light in a voxel
 
 struct ThickestVoxel
 {
-  double thickness = 0.0; ///< transport optical thickness along its longest edge, largest of all channels
-  std::string name;       ///< description of its position; empty: not known
+  double thickness = 0.0; ///< sigma_t of the similarity relation times its longest edge, largest of all channels
+  std::string name;       ///< text that describes its position in the grid; empty: not known
 };
 
 /// Voxel of a medium with the largest transport extinction.
@@ -75,9 +78,9 @@ enum class Balancing
   Not
 };
 
-/// Largest value over channels of powerOf(channel, incoming power) relative to the incoming power (entered plus
-/// emitted). A faint channel is compared with a thousandth of the brightest one; for grey light the other channels are
-/// empty.
+/// Largest value over channels of powerOf(channel, incoming power), relative to the incoming power (entered plus
+/// emitted) of the channel or, if that is larger, a thousandth of that of the brightest channel. In a solve with one
+/// channel the other two are 0.
 /// @param powerOf  function of channel and incoming power in W, returns W
 template <class PowerOf>
 double LargestPart(const EnergyBalance& balance, const PowerOf& powerOf)

@@ -62,8 +62,9 @@ private:
 /// @param others  all other power that the next order carries, W
 double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double others);
 
-/// Power of one channel that remains, W, as GoesOnToItsEnd(), for accelerations whose prediction already includes light
-/// that wraps around. Such light is not added if it decreases, which shows convergence.
+/// Power of one channel that remains after an accelerated order, W; as GoesOnToItsEnd(), for accelerations whose
+/// prediction already includes light that wraps around periodic axes. That light is added only if it does not decrease
+/// from order to order.
 /// @param others  power of the last order that the acceleration did not predict, W
 double GoesOnAsForeseen(double before, double onTheWay, double others);
 

@@ -165,8 +165,8 @@ static Behind pass_voxel(exact straight, exact source, exact arrived, exact back
   return behind;
 }
 
-// Crosses the link to the next voxel up: light that arrives there from below (V of Eq. (L10)), and the fraction of the
-// light it sends down that returns to it (Q).
+// Crosses the link to the next voxel up: returns the light that arrives in that voxel from below (V of Eq. (L10)), and
+// the fraction of the light sent down by that voxel that returns to it (Q).
 static Behind cross_up(Link link, Behind here)
 {
   const exact again = 1 / (1 - here.returns * (1 - link.up));
@@ -174,8 +174,8 @@ static Behind cross_up(Link link, Behind here)
   return next;
 }
 
-// Light at a link: that arrives in the voxel above it (up_arrives), arrives in the voxel below it (lower), and is sent
-// up by the voxel below it (up).
+// Light at a link: `up_arrives` in the voxel above it, `lower` in the voxel below it, and `up`, sent up by the voxel
+// below.
 typedef struct
 {
   exact up_arrives, lower, up;
@@ -189,8 +189,8 @@ static Crossed cross_down(Link link, Behind below, exact down)
   return crossed;
 }
 
-// Lower end of a line or piece: light that arrives in its first voxel from below, the fraction of the light which that
-// voxel sends down that returns, and, at a cut, the fraction of the light sent up the cut that the link transmits.
+// Lower end of a line or piece: light that arrives in the first voxel from below; fraction of the light sent down by
+// the first voxel that returns to it; and, at a cut, the fraction of the light sent up the cut that the link transmits.
 typedef struct
 {
   exact arrived, back, part;

@@ -42,8 +42,8 @@ double FallenTo(int directions)
   return below.error * std::pow(above->error / below.error, part);
 }
 
-/// Root mean square of the difference of two solutions in part(light, index of a value), relative to that of the
-/// fluence of `other`.
+/// Root mean square over values i of part(one, i) - part(other, i), relative to the root mean square of the fluence of
+/// `other`.
 template <class Part>
 double Difference(Communicator& communicator, const LightField& one, const LightField& other, const Part& part)
 {

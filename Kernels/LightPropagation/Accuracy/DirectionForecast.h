@@ -43,7 +43,8 @@ public:
 
 private:
   double Fallen; ///< ratio of the difference between the two solutions to the error with 9 directions on the finer grid
-  double OfUncollided = 0.0, OfScattered = 0.0; ///< errors with 9 directions per face, relative to the fluence
+  /// Errors of uncollided and of scattered light with 9 directions per face, relative to the fluence.
+  double OfUncollided = 0.0, OfScattered = 0.0;
   bool Separated = false;
   double Sweeps = 1.0;
 };

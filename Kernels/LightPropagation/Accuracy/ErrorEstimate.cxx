@@ -16,8 +16,9 @@ constexpr double OrderInDirections = 0.9; ///< order of convergence: error ~ (nu
 constexpr double OrderInSpace = 2.0;
 constexpr double FinePart = 0.8; ///< fraction of the progress that is attributed to the solve on the fine grid
 
-/// Number of directions per cube face of the coarse solve that is compared: fewer than `directionsPerFace`, unless that
-/// is 1; an even number of rows if `directionsPerFace` has one.
+/// Number of directions per cube face of the second coarse solve, whose difference from the first one gives the angular
+/// error: fewer than `directionsPerFace`, unless that is 1; an even number of rows of directions if `directionsPerFace`
+/// has one.
 int OtherDirections(int directionsPerFace)
 {
   const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(directionsPerFace))));
@@ -73,8 +74,8 @@ bool IsStoppedTooSoonToTell(const LightField& light)
   return light.convergence.size() == 1 && light.convergence.front().residual > 0.0;
 }
 
-/// Variance of fluence in fine voxels: that of their coarse voxels, in proportion to squared fluence, since brighter
-/// voxels have larger errors, as next to lamps.
+/// Variance of the fluence of fine voxels: the variance of the coarse voxel that contains a fine voxel, times the
+/// squared ratio of their fluences, since brighter voxels (next to lamps) have larger errors.
 /// @param averages, variance  fluence of the coarse voxels that overlap this rank's subdomain, and its variance
 std::vector<double> InVoxels(const LightField& light, const std::vector<float>& averages,
   const std::vector<double>& variance, const Coarsening& seen)
@@ -105,7 +106,7 @@ double SumOf(const std::vector<double>& values)
 /// solve and of two coarse solves.
 struct ErrorOfAverages
 {
-  double inSpace, partOfDifference; ///< factors from differences between solves to errors in space and in directions
+  double inSpace, partOfDifference; ///< factors that convert differences of solves to errors in space and in directions
 
   double InSpace(float fine, float same) const { return this->inSpace * (static_cast<double>(fine) - same); }
   double InDirections(float same, float other) const
@@ -133,9 +134,9 @@ struct VarianceOfAverages
   std::vector<double> variance;       ///< variance of the fluence
 };
 
-/// Sets fluenceError and relativeError of `light`. Errors by voxel are smoothed with their total preserved. Relative to
-/// the light, they are at least as large as in the coarse voxels, which do not resolve the decrease of light within
-/// voxels next to lamps.
+/// Sets fluenceError and relativeError of `light`. The errors by voxel are smoothed; the sum of their squares is
+/// preserved. Relative to the fluence, this sum is the larger one of those over coarse voxels and over fine voxels
+/// (InVoxels): coarse voxels do not resolve the decrease of light next to lamps.
 void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfAverages& own, VarianceOfAverages seen)
 {
   const Coarsening& toSeen = blocks.Seen();

@@ -152,7 +152,7 @@ LightField Shown(LightField&& found, const CoarseBlocks& blocks)
   light.balance = found.balance;
   light.facePowerOut = found.facePowerOut;
   static_cast<SolveReport&>(light) = std::move(found);
-  light.doubts.clear(); // a preview is not judged
+  light.doubts.clear(); // the accuracy of a preview is not assessed
   light.converged = true;
   light.leftOut.insert(light.leftOut.begin(),
     "detail: a preview, of " + SizeOf(blocks.Coarse().whole) + " of " + SizeOf(blocks.Fine().whole) +

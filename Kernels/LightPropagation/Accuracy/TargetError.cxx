@@ -20,7 +20,8 @@ namespace
 {
 constexpr double Aim = 0.95;          ///< estimated error at which the search ends (Goal), relative to the target
 constexpr double DirectionPart = 0.9; ///< fraction of Goal that is allowed for the angular error
-/// Smallest angular error, relative to Goal, that is required in addition to the error in voxel size.
+/// Smallest allowance for the angular error, relative to Goal. Voxels are halved only if the error in voxel size
+/// exceeds the same limit.
 constexpr double LeastRoom = 0.3;
 /// Error in voxel size, relative to Goal, above which more directions do not help.
 constexpr double MuchTooCoarse = 1.5;
@@ -28,7 +29,8 @@ constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
 /// Order of convergence in voxel size; measured: clouds 1.7, lamps in fog 1.4 to 1.7.
 constexpr double OrderOfClouds = 1.7, OrderBesideLamps = 1.4;
-constexpr double MuchUncollided = 0.3; ///< fraction of uncollided light's error above which one more solve measures it
+/// Fraction of the error due to uncollided light above which one more solve measures that error.
+constexpr double MuchUncollided = 0.3;
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
 

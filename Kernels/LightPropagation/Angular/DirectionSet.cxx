@@ -167,8 +167,8 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
 }
 
 /// Scales radiance so that the flux through each face of the cube equals the environment's, up to the quadrature's
-/// half-range error. A direction's factor is 1 + sum over faces of (coefficient of the face) (cosine to its normal); of
-/// all solutions, the one nearest to 1 (numerics.md, Eq. (31a)).
+/// half-range error. A direction's factor is 1 + sum over faces of (coefficient of the face) (cosine to its normal);
+/// the coefficients are those with factors nearest to 1 (numerics.md, Eq. (31a)).
 void KeepFlux(const DirectionSet& set, const Seen& seen, std::vector<Rgb>& radiance)
 {
   for (int c = 0; c < 3; ++c)

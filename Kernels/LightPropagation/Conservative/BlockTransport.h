@@ -43,6 +43,6 @@ private:
   const std::array<bool, 3> Periodic;
   SweepWorkspace Workspace;
   BlockWorkspace PipelineWorkspace;
-  std::unique_ptr<AcrossFaces> Across; ///< null for a serial domain
+  std::unique_ptr<AcrossFaces> Across; ///< exchange of values across the faces of blocks; null for a serial domain
 };
 }

@@ -16,15 +16,15 @@ namespace
 /// cells of a face in one plane have the same value.
 using ByPlane = std::array<std::vector<double>, 6>;
 
-/// Axes across the marching axis of rays, and the planes of voxels that the rays cross.
+/// Axes perpendicular to the marching axis of rays, and the planes of voxels that the rays cross.
 struct Aside
 {
   PlaneAxes axes;
   AsidePlanes planes;
 };
 
-/// Adds the power of the rays of a bundle that enter sideways, as SweepBorder counts it; on a short periodic axis
-/// averaged over laps (SweepPlan::LayLaps).
+/// Adds to `power` the power of the rays of a bundle that enter through faces parallel to the marching axis, as
+/// SweepBorder counts it. On a short periodic axis it is the average over laps (SweepPlan::LayLaps).
 void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
 {
   const PlaneAxes& axes = aside.axes;

@@ -56,7 +56,8 @@ public:
   /// `power` scaled by one factor per face and channel, such that the total over each face equals that of `sums`. Both
   /// arrays are [channel][cell], W.
   std::vector<double> ScaledTo(std::vector<double> power, const std::vector<double>& sums) const;
-  /// @param shouldBe  the totals, W by face and channel
+  /// `power`, W, [channel][cell], scaled by one factor per face and channel, such that the total over each face is
+  /// `shouldBe`, W.
   std::vector<double> ScaledTo(std::vector<double> power, const std::array<Rgb, 6>& shouldBe) const;
   /// Converts W, [channel][cell], to W / length^2, [cell][channel] (the layout of LightField::facePower).
   std::vector<float> PerArea(const std::vector<double>& power) const;

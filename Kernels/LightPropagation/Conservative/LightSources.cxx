@@ -67,8 +67,8 @@ SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& come
                                                                                  : SplitEmission();
 }
 
-/// Boundary source of the finer directions: radiance of faces and sky. Lamps and environment of the result are not to
-/// be used.
+/// Boundary source that is transported along the finer directions: radiance of faces and sky of the result. Its lamps
+/// and environment are not to be used.
 Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining)
 {
   Illumination part = finer.perFace > 0 ? shining : Illumination();
@@ -76,7 +76,8 @@ Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& s
   return part;
 }
 
-/// Boundary source of the quadrature of scattered light: `shining` without that of AlongFiner().
+/// Boundary source that is transported along the usual quadrature: `shining` without the radiance that AlongFiner()
+/// returns.
 Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& shining)
 {
   Illumination part = shining;
@@ -103,7 +104,8 @@ std::unique_ptr<const SweptDirections> FinerDirections(
 UncollidedDirections UncollidedDirectionsFor(
   const PropagationProblem& problem, const DirectionSet& usual, IterationScheme how)
 {
-  const bool besideUsual = how == IterationScheme::Dsa; // false: finer directions replace the usual ones for this light
+  // Whether finer directions are swept in addition to the usual ones; false: instead of them.
+  const bool besideUsual = how == IterationScheme::Dsa;
   const PropagationSettings& settings = problem.Settings();
   const Illumination& shining = problem.Shining();
   const bool scatters = problem.Traits().scatters;
@@ -119,7 +121,8 @@ UncollidedDirections UncollidedDirectionsFor(
   }
   if (besideUsual && problem.Scattering().Degree() > 0)
   {
-    // 0, since the moments of four kinds of uncollided light would be stored at once: hundreds of bytes per voxel.
+    // No finer directions: four sets of moments of uncollided light would be stored at once, hundreds of bytes per
+    // voxel.
     return {};
   }
   const double before = settings.directionsPerFace;

@@ -35,8 +35,8 @@ public:
     return std::any_of(this->Owed.begin(), this->Owed.end(), [](double owed) { return owed > 0.0; });
   }
 
-  /// Subtracts the owed power from the neighbouring voxels, which owe power in turn if they become negative.
-  /// Collective.
+  /// Subtracts the owed power from the neighbouring voxels. A neighbour whose fluence becomes negative owes that power
+  /// to its own neighbours in the next call. Collective.
   void Collect()
   {
     std::vector<float> own(this->Owed.size());

@@ -96,8 +96,8 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->Result.ledger = this->Cells->WithOut(this->Result.ledger);
   }
-  // The fluence of dark voxels can be slightly negative: by rounding, because later sweeps would still have corrected
-  // it, and behind voxels with sources by octant.
+  // Fluence can be slightly negative: behind voxels with sources by octant, and in dark voxels after a warm start or
+  // coarse-mesh DSA, whose corrections stop before later sweeps would have removed the difference.
   if (this->AtFaces || this->Warm.Begins() || this->Cells)
   {
     Communicator& comm = this->TheDomain.Comm();
@@ -341,7 +341,7 @@ void SourceIteration::ScatterByCells()
     this->Cells->WithOut(this->Result.ledger));
 }
 
-/// Stores the uncollided fluence.
+/// Stores the uncollided fluence in Result.fluenceDirect and, if light is kept for the next solve, in Direct.
 /// @param scale  converts `fluence` to W / length^2
 void SourceIteration::LookAtDirect(const Buffer<float>& fluence, double scale)
 {
@@ -505,7 +505,8 @@ bool SourceIteration::Done() const
   {
     return true;
   }
-  // Sweeps until the rate of decrease is known; a guess brings that of the previous solve.
+  // Least number of sweeps, after which the rate of decrease is known; a guess comes with the rate of the previous
+  // solve.
   const int least = this->Warm.Begins() ? 2 : 3;
   return this->Settings.maximumOrders > 0
     ? this->Order >= this->Settings.maximumOrders

@@ -12,8 +12,8 @@ namespace
 {
 /// Error of the diffusion power through a cell, relative to sqrt(1 - albedo) times the incident light (Eq. (79)).
 constexpr double Uncertainty = 0.1;
-/// Error of the diffusion power through a cell, relative to the reflected light of lamps times its deviation from the
-/// average (Eq. (79)).
+/// Error of the diffusion power through a cell that lamps light unevenly: relative to the reflected light of lamps,
+/// times the deviation of their light in the cell's voxel from the average (Eq. (79)).
 constexpr double UncertainPart = 0.5;
 /// Largest ratio of lamp light deposited in a voxel to that expected from the irradiance.
 constexpr double MostUneven = 4.0;

@@ -140,8 +140,8 @@ SweepTally TransportParts::AddUncollided(const UncollidedSource& source, const D
       volume.beamPath = &path;
     }
   });
-  // AddTo() rethrows failures on all ranks, except for those after its last collective step; the next Collective() does
-  // that.
+  // AddTo() rethrows failures on all ranks, except for failures after its last collective step, which the Collective()
+  // below rethrows.
   SweepTally tally;
   std::exception_ptr error;
   try

@@ -50,7 +50,7 @@ UncollidedLight::UncollidedLight(
   , Coefficients(medium)
 {
   parts.Lights.CountEmission(this->Counted);
-  // Fraction of the time spent on lamps and localised emission.
+  // Fraction of the time for uncollided light that lamps and localised emission take; boundary light takes the rest.
   const double sources = parts.Lights.FineBoundary ? 0.5 : 1.0;
   this->AddSources(OfPart(monitor, 0.0, sources));
   this->TheDomain.Collective([&] {

@@ -33,7 +33,7 @@ public:
   UncollidedLight(
     TransportParts& parts, const BlockWithGhosts& block, const GhostedMedium& medium, const Monitor& monitor);
 
-  /// Path integrals of all this light, W length, [channel][stride].
+  /// Path integrals of all uncollided light of this object, W length, [channel][stride].
   const std::vector<float>& Path() const { return this->Lengths; }
   /// Path integrals of the light of lamps alone, W length, [channel][stride]; empty if there are no lamps.
   const std::vector<float>& PathOfLamps() const { return this->LengthsOfLamps; }
@@ -45,7 +45,8 @@ public:
   /// of lamps, W / (length^3 sr); DiffusionSystem::Arrays::passed and ofLamps.
   const Buffer<float>& Passed() const { return this->PassedWithGhosts.Values(); }
   const Buffer<float>& OfLamps() const { return this->OfLampsWithGhosts.Values(); }
-  /// Power of this light: emitted, incident, escaped uncollided, and absorbed at its first collision.
+  /// Energy balance of the light of this object: emitted, incident, escaped uncollided, and absorbed at its first
+  /// collision.
   const EnergyLedger& Ledger() const { return this->Counted; }
 
 private:
@@ -70,7 +71,8 @@ private:
   Buffer<float> ThroughFaces, ScatteredInVoxels; ///< sums over all lamps: Passed() and OfLamps() without ghost cells
   GhostedBuffer PathWithGhosts, MomentsWithGhosts, AllPathWithGhosts, PassedWithGhosts, OfLampsWithGhosts;
   EnergyLedger Counted;
-  /// Incident and escaped power; light in flight (onTheWay) wraps around periodic axes without end.
+  /// Incident and escaped power of lamps, localised emission and given light; onTheWay is light that wraps around
+  /// periodic axes without end.
   SweepTally OfSources;
 };
 }

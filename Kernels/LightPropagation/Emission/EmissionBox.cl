@@ -143,7 +143,7 @@ typedef struct
 } box_ray;
 
 // Sets `crossed` to the axes whose next voxel plane lies at or before position `end`, and advances `next` beyond these
-// planes; none if the ray ends there (way_ends).
+// planes. Sets it to no axis if the ray ends at `end`, i.e. `end` is at least `way_ends`.
 static void cross_planes(box_ray* ray, real end, real way_ends, integer* crossed)
 {
   for (int a = 0; a < 3; ++a)

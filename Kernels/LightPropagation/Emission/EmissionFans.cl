@@ -162,7 +162,8 @@ static void cross_layer(const turned_scene* s, const EmissionInfo* info, const F
   }
 }
 
-// Factor from light per solid angle to the mean over a voxel: the average of 1 / r^2 over the layer, 1/length^2.
+// Factor that converts light per solid angle to its mean over a voxel: the average of 1 / r^2 over the layer,
+// 1/length^2.
 static real spread(const turned_scene* s, const fan_lines* lines, float layers)
 {
   const float forward = layers * s->spacing[0], up = lines->row_tangent * lines->sample * s->spacing[2];
@@ -288,8 +289,9 @@ static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer,
   }
 }
 
-// Number of the 24 parts of space in which a voxel lies (several if it lies on a border of parts), or 0 if it is not in
-// the part of the permuted scene: all axes point away from the box, and the first one is that of the largest distance.
+// Number of the 24 parts of space that contain a voxel: more than 1 if it lies on a border between parts. 0 if it is
+// not in the part of the permuted scene, in which no distance is negative and the one along the first axis is the
+// largest.
 //   distance  half voxels from the centre of the box along each axis
 static int parts_of_space(const int* distance)
 {

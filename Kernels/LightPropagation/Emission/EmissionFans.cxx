@@ -15,8 +15,8 @@ namespace
 /// Initial number of fans into each of the 24 parts of space: two halves, each of two pairs of mirrored fans.
 constexpr int FewestPoints = 8;
 constexpr int MostPoints = 1024; ///< maximum number of fans into each of the 24 parts of space
-/// Maximum fraction of the voxels, per fan, whose two halves may differ without doubling the fans; these voxels trace
-/// rays individually.
+/// The number of fans n is doubled while the two halves of the fans differ in more than this fraction, times n, of all
+/// voxels. In the voxels where they still differ at the end, rays are traced for each voxel individually.
 constexpr double FewLeft = 0.001;
 constexpr double LinesPerVoxel = 1.02; ///< rays per voxel edge in the last layer, so that a ray crosses every voxel
 constexpr int LineStep = 16; ///< the number of lines is a multiple of this, the width of the widest SIMD packet

@@ -63,7 +63,7 @@ BrightVoxels FindBright(const Medium& medium)
     bright.all += sorted[i];
   }
   std::nth_element(sorted.begin(), sorted.begin() + most, sorted.end(), std::greater<double>());
-  // brightness of the first voxel after the brightest 64th: it is too common for a peak
+  // brightness of the brightest voxel that is not among the brightest 64th: so many voxels reach it that it is no peak
   const double next = sorted[most];
   double rest = 0.0;
   for (std::size_t i = most; i < voxels; ++i)
@@ -129,7 +129,7 @@ std::vector<std::vector<std::size_t>> Groups(const Grid& grid, const std::vector
   return groups;
 }
 
-/// A peak with the bounding box of a group of voxels, without emission.
+/// A peak with the bounding box of a group of voxels; its emission is not set.
 EmissionPeak BoxAround(const Grid& grid, const std::vector<std::size_t>& group)
 {
   EmissionPeak peak;

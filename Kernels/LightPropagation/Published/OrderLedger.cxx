@@ -13,7 +13,8 @@ namespace
 /// Limit on the number of orders; no convergent problem needs more.
 constexpr int MostOrders = 10000;
 
-/// Fraction of the remaining power, without endlessly wrapping light, below which the solve ends.
+/// The solve ends if the remaining power without light that wraps around periodic axes endlessly is at most this
+/// fraction of all remaining power.
 constexpr double Negligible = 1e-3;
 constexpr double LargestRatio = 0.9999; ///< largest ratio of successive orders of a convergent series
 }
@@ -74,7 +75,8 @@ void OrderLedger::CloseOrder(const std::vector<float>& fluence)
                                       : MeetsTolerance(this->Settings, residual) || this->Orders() >= MostOrders);
 }
 
-/// Estimated sum of all further orders, relative to the sum so far; orders finally decrease like a geometric series.
+/// Estimated sum of all further orders, relative to the sum of the orders so far (`orderSum` is that of the last
+/// order). Orders are assumed to decrease like a geometric series.
 double OrderLedger::EstimateResidual(const Rgb& orderSum) const
 {
   double residual = this->Orders() == 0 ? 1.0 : 0.0;

@@ -87,7 +87,7 @@ private:
 /// Why the published scheme cannot solve a scene: its phase function varies between voxels or channels, or faces
 /// reflect. Empty if it can solve the scene.
 std::string WhyNotPublished(const Medium& medium, const Illumination& illumination);
-/// @throws InvalidInput with the reason, if WhyNotPublished() gives one
+/// @throws InvalidInput if WhyNotPublished() is not empty; the error's text is that reason
 void CheckPublished(const Medium& medium, const Illumination& illumination);
 /// @throws InvalidInput if a face reflects: neither published algorithm has reflecting faces
 void CheckPublishedFaces(const Illumination& illumination);

@@ -13,7 +13,7 @@ constexpr const char* SequentialDevice = "host, one core"; ///< value of LightFi
 /// other on one core (numerics.md, section 3). The reference for the result and the speed of the parallel algorithm.
 /// Exponentials are those of the standard library, in double; radiance is float.
 ///
-/// Memory: host only, about (sources + moments) floats per voxel and channel.
+/// Memory: host only, about one float per voxel, channel, and source direction or moment.
 /// @throws InvalidInput if medium, illumination or settings are invalid
 /// @throws Aborted if the monitor requests it
 LightField SolveSequential(const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,

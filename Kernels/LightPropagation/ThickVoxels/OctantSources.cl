@@ -196,7 +196,8 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, con
     const __global float* nearest = falling + (int)place * ResponseValues;
     const layer_response slow = response_of(nearest, s / t, tau);
     const layer_response fast = response_of(nearest + ResponseValues, s / t, tau);
-    // factor for light that hardly decays across the voxel, whose first-collision source is uniform
+    // Factor that reduces the sources to 0 for light that hardly decays across the voxel: its first-collision source is
+    // uniform.
     const float falls = fmin(fall * exp2((float)-FirstProfile), 1.0f);
     const float differs = falls * mix(slow.differs, fast.differs, v);
     const float alike = falls * mix(slow.alike, fast.alike, v);

@@ -15,8 +15,8 @@ namespace tyndall
 namespace
 {
 constexpr double Rounding = 1e-6; ///< relative difference of radiances that are taken as equal
-/// Fraction of the power that whole rays may miss; in a box of one voxel they miss up to a fifth of the power through
-/// one face
+/// Largest relative difference between the incident power and the power that rays without fractional moves
+/// (numerics.md, Eq. (21)) carry in. In a box of one voxel they miss up to a fifth of the power through one face.
 constexpr double MissedAtMost = 0.3;
 
 int FaceOf(const Direction& direction, int axis)
@@ -29,7 +29,7 @@ bool Enough(double exact, double whole)
   return std::abs(whole - exact) <= MissedAtMost * exact;
 }
 
-/// Power that enters with exact fractional numbers of rays, and with whole rays, W.
+/// Incident power, W: `exact`, and `whole`, the power that rays without fractional moves carry in.
 struct EnteringRays
 {
   Rgb exact = {}, whole = {};
@@ -129,7 +129,7 @@ std::array<Rgb, 6> BoundaryLight::IncomingPower() const
   return power;
 }
 
-/// Power that enters through all faces with exact fractional numbers of rays, and with whole rays, W.
+/// Incident power through all faces, W: exact, and as carried in by rays without fractional moves.
 std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
 {
   EnteringRays entering;
@@ -222,7 +222,7 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor)
 {
-  // A function instead of none, so that the maps of the opposite sense of marching are cleared too
+  // A boundary source of 0 rather than none, so that the maps of the opposite sense of marching are cleared, too.
   const SweepBoundary dark = [](int, int) { return Rgb{}; };
   const Grid& grid = volume.domain.Whole();
   const int channels = volume.layout.Groups().front().count; // number of channels that are swept together

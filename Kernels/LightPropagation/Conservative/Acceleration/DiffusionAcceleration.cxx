@@ -19,10 +19,10 @@ namespace
 {
 constexpr int MostSweeps = 200;
 
-/// Limits the magnitude of the net flux to the fluence. In absorbing voxels the mean of the powers through opposite
-/// faces exceeds the net flux.
+/// Scales the net flux in `ofLight` down to the fluence where its magnitude exceeds it: in absorbing voxels the mean of
+/// the powers through opposite faces exceeds the net flux.
 /// @param fluence  W / length^2, [channel][stride]
-/// @param flux  net flux times the voxel's volume, [channel][x, y, z][stride]
+/// @param ofLight  net flux times the voxel's volume, [channel][x, y, z][stride]; changed
 void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& ofLight)
 {
   const std::size_t stride = layout.Stride();
@@ -364,8 +364,8 @@ void DiffusionAcceleration::CountLight()
 bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
-  // A guess brings the rate of convergence of the previous solve. With angular moments one more sweep is made, because
-  // the measured change does not include them.
+  // Least number of sweeps, after which the rate of convergence is known: 2 after a warm start, because the guess comes
+  // with the rate of the previous solve; 3 with angular moments, which the measured change does not include.
   const int least = this->Warm.Begins() && !this->HasMoments() ? 2 : 3;
   return iterations >= most || this->Residual == 0.0 ||
     (iterations >= least && MeetsTolerance(this->Settings, this->Residual));

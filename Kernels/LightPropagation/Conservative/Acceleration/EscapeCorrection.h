@@ -33,7 +33,7 @@ private:
   Device& TheDevice;
   const VolumeLayout& Layout;
   const Buffer<float>& SigmaT;
-  /// Power that escapes additionally from a source of 1, divided by sigma_t: W length, [channel][stride].
+  /// Additional escaped power of each voxel for a source of 1, divided by sigma_t: W length, [channel][stride].
   Buffer<float> Extra;
 };
 }

@@ -51,7 +51,7 @@ void FaceBalance::FindOwnCells(const BlockWithGhosts& block)
   const Grid& held = block.WithGhosts().grid;
   ForBoxFaceCells(held, [&](const BoxFaceCell& cell) {
     const std::array<int, 3> voxel = held.VoxelAt(cell.voxel);
-    if (block.IsOwn(voxel)) // the faces of the grid with ghost cells at an own voxel are faces of the box
+    if (block.IsOwn(voxel)) // of the faces of the grid with ghost cells, those at own voxels are faces of the box
     {
       const BoxFaceLayout layout = LayoutOfFace(this->Faces.Box(), cell.face);
       std::size_t place = layout.first;

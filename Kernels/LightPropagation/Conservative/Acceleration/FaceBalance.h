@@ -88,7 +88,7 @@ public:
   /// cells; 0 at ghost cells.
   const Buffer<float>& Rows(int channel) const { return this->OfBlock[channel]; }
   /// Reads the outgoing power of the diffusion solution, which the diffusion systems wrote to Rows().
-  /// @param lit  by channel: whether it was solved; equal on all ranks
+  /// @param lit  by channel: whether its diffusion system was solved; equal on all ranks
   void TakeLeaving(const std::vector<bool>& lit);
 
   /// Sets the reflected light incident in the next sweep from the outgoing power of the diffusion solution.
@@ -123,9 +123,9 @@ private:
   const Domain& TheDomain;
   FaceLight& Faces;
   const std::size_t Cells,
-    HeldCells; ///< number of cells of the box faces, and of those of the block with ghost cells
+    HeldCells; ///< number of cells of the box faces, and of the faces of the block with ghost cells
   std::vector<OwnCell> OwnCells;
-  std::vector<Buffer<float>> OfBlock; ///< by channel
+  std::vector<Buffer<float>> OfBlock; ///< see Rows(), by channel
   Rgb PowerGivenBack = {};
   std::vector<double> CameBack, GivenBackByCell, LeftUncollided;
   std::vector<float> LeftSwept;        ///< outgoing power of the last sweep, W

@@ -27,7 +27,7 @@ OrdersByCells::Powers OrdersByCells::ScatterOrder(EnergyLedger& ledger, const Rg
     all.left[c] = powers.left;
     for (int face = 0; face < 6; ++face)
     {
-      ledger.Escape(c, face, -this->Kept[face][c]); // overestimated escape of the last sweep
+      ledger.Escape(c, face, -this->Kept[face][c]); // the last sweep overestimated the escape by Kept
       this->Kept[face][c] = powers.kept[face];
       this->Out[face][c] = powers.out[face];
     }

@@ -43,7 +43,7 @@ public:
 
 private:
   TransportParts& Parts;
-  bool Closed; ///< all axes are periodic
+  bool Closed; ///< whether all axes are periodic
   CoarseDiffusion Cells;
   std::array<Rgb, 6> Kept = {}; ///< power by which the next sweep will overestimate the escape through each face, W
   std::array<Rgb, 6> Out = {};  ///< predicted escaped power of all later orders through each face, W

@@ -6,7 +6,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int OfDegreesToOne = 4; ///< number of functions of degrees 0 and 1
+constexpr int OfDegreesToOne = 4; ///< number of angular functions of degrees 0 and 1
 }
 
 MomentsWithGhosts::MomentsWithGhosts(const BlockWithGhosts& block, int functions)

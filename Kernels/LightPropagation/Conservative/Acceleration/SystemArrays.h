@@ -88,7 +88,8 @@ private:
   const BlockWithGhosts TheBlock;
   const GhostedMedium Coefficients;
   MomentsWithGhosts OfPath;
-  Buffer<float> TheGiven, GivenFlux, TheCurrents; ///< arrays of the block; meaning as in DiffusionSystem::Arrays
+  /// Arrays of the block without ghost cells, as in DiffusionSystem::Arrays.
+  Buffer<float> TheGiven, GivenFlux, TheCurrents;
   GhostedBuffer GivenWithGhosts, GivenFluxWithGhosts, SourceWithGhosts, CurrentsWithGhosts;
 };
 }

@@ -64,8 +64,8 @@ static bool is_image(const LampInfo* lamp, int axis, int around)
   return abs(around) <= (uint)(lamp->images[axis] * lamp->size[axis]);
 }
 
-// Whether a part of a rectangle illuminates a voxel (coordinates not wrapped): neither the larger part that was divided
-// into this part, nor the smaller parts of this part illuminate it.
+// Whether a part of a rectangle illuminates a voxel (coordinates not wrapped). Nearer voxels are illuminated by the
+// smaller parts into which this part is divided, farther ones by the larger part to which it belongs.
 static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
 {
   return !VACUUM ||
@@ -129,8 +129,8 @@ static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float 
   return all > 0.0f ? clamp(inside / all, 0.0f, 1.0f) : 0.0f;
 }
 
-// Tallies the power that left through a lateral face since the middle of the previous step, at most one step ago, in
-// two halves.
+// Tallies the power that left through a lateral face during the last step, until the middle of the current one: half of
+// it where the beam was a quarter of a step ago, half where it was three quarters of a step ago.
 //   at    current lateral position, voxels
 //   here  middle of the current step, in layers from the beam's start
 static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, float2 tangent, float2 at, float here,
@@ -179,7 +179,7 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     goes[k] = within[k] < beam->stays[k] ? 1.0f - within[k] / beam->stays[k] : 0.0f;
     beam->stays[k] = fmin(beam->stays[k], within[k]);
   }
-  // The power left between the previous step and this one, on average half way between them.
+  // The power left between the previous step and the current one, on average half way between them.
   const float ago = 0.5f * fmin(way.y - way.x, 0.5f * (way.x + way.y));
   for (int k = 0; k < 2; ++k)
   {

@@ -216,8 +216,8 @@ double FormFactor(const Polygon& first, const Polygon& second)
   return std::abs(sum) / (2.0 * Pi);
 }
 
-/// Fraction of a rectangle's light that enters the box: all light of the part inside the box, and for each face the
-/// light that the part beyond it emits through it.
+/// Fraction of a rectangle's light that enters the box: all light of the rectangle's part inside the box, and, for each
+/// face, the light that the part beyond this face emits through it.
 double OfRectangle(const Grid& grid, const RectangleArea& area, const glm::dvec3& normal)
 {
   const glm::dvec3 end = EndOf(grid);

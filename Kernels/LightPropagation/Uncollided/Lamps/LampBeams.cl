@@ -82,7 +82,7 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, floa
   {
     const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
     const float power = beam->left * part;
-    // Without any power left in the medium, the deposit in vacuum still counts
+    // With VACUUM, a beam whose power is used up continues, because its deposit in vacuum is summed, too.
     if ((VACUUM ? part : power) <= 0.0f)
     {
       continue;
@@ -160,7 +160,8 @@ static void enter_box(
   leave_sides(lamp, row, true, tangent, (float2)(0.0f), &edges_u, &edges_v, beam, tally);
 }
 
-// Fraction, of the cross-section along u (k 0) or v (1) that has not left the box, that is inside the box.
+// Fraction that is inside the box, of the cross-section along u (k 0) or v (1). The cross-section that has already left
+// the box is excluded.
 static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2 edges)
 {
   int up, first;
@@ -173,8 +174,8 @@ static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float 
     (place(lamp, axis, tangent, &second) == INSIDE ? 1.0f - part : 0.0f);
 }
 
-// Fraction, of the cross-section that has not left the box, that has not reached it yet, t layers from the beam's
-// start.
+// Fraction of a beam's cross-section that has not reached the box yet, t layers from the beam's start. The
+// cross-section that has already left the box is excluded.
 static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t)
 {
   const float2 edges_u = edges_at(start.x, tangent.x, row->openU, row->widthU, t);
@@ -182,8 +183,8 @@ static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start
   return 1.0f - part_inside(lamp, row, 0, tangent.x, edges_u) * part_inside(lamp, row, 1, tangent.y, edges_v);
 }
 
-// Removes the power of a beam that misses the box, where a beam that enters through lateral faces reaches the end of
-// the box: in the last half step more of it reaches the box, and the remainder never enters.
+// Removes the power of a beam that misses the box. Called at the end of the box for a beam that enters through lateral
+// faces: in the last half step a fraction of the waiting power still reaches the box, and the remainder never enters.
 //   waiting  power that had not reached the box in the middle of the last step, at `here`
 static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float here, float end,
   float waiting, BeamOnItsWay* beam, lamp_tally* tally)

@@ -87,14 +87,14 @@ std::vector<std::pair<glm::dvec3, double>> RectangleArea::Points(int perEdge) co
 
 namespace
 {
-/// Minimum distance of voxels from the centre of a part that lights them, in radii of the part; for nearer voxels it is
-/// divided.
+/// Minimum distance of a voxel from the centre of a rectangle's part that lights it, in radii of the part; for nearer
+/// voxels the part is divided.
 constexpr double PartDistance = 2.0;
 /// Number of Gauss points along an edge of a square: of a part, and of a rectangle that is not divided
 constexpr int PointsOfPart = 2, PointsOfAll = 3;
 constexpr double FinestPart = 2.0;   ///< longer edge of the smallest parts, voxels
 constexpr double PartsAcross = 64.0; ///< maximum number of smallest parts along the box's longest edge
-constexpr double Faint = 0.1;        ///< relative error below which one point represents a part
+constexpr double Faint = 0.1;        ///< relative error of the light below which one point represents a part
 
 /// Solid angle of a triangle, sr (van Oosterom and Strackee).
 double SolidAngle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
@@ -197,7 +197,8 @@ private:
   RectangleArea Whole;
   glm::dvec3 Normal;
   double Finest; ///< length of the longer edge of the smallest parts
-  double Away;   ///< PartDistance, adapted to the light's fineness like PerEdge and LeastError
+  /// Minimum distance of voxels from a part, in its radii: PartDistance, more for a light of large fineness.
+  double Away;
   int PerEdge;
   double LeastError;
 };
