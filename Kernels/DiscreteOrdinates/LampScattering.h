@@ -15,11 +15,12 @@ namespace tyndall
 /// Arrays that receive the first-collision source and the uncollided light of a lamp.
 struct LampTarget
 {
-  /// Source of all directions, W / (length^3 sr), relative to `scale` on entry; added to.
+  /// Source of all directions, W / (length^3 sr), added to. On entry the source of a voxel is its value here times
+  /// `scale`.
   const Buffer<float>& source;
-  Buffer<float>& scale;        ///< factor by voxel of `source`, which is multiplied by it; set to 1
+  Buffer<float>& scale;        ///< factor of `source` by voxel; on return 1, because `source` has been multiplied by it
   const Buffer<float>& direct; ///< uncollided fluence, W / length^2; added to
-  const OrdinatesLight& light; ///< whose fluence and net flux are added to
+  const OrdinatesLight& light; ///< its fluence and net flux are added to
 };
 
 /// First-collision source of uncollided light: proportional to the phase function between the ray and each direction,

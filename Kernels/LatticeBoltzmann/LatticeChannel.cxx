@@ -205,8 +205,8 @@ double LatticeAccount::CountVoxels(LightField& light, const std::vector<float>& 
     const std::size_t known = this->Box.Known(i);
     const double tau = edge * medium.sigma_a.At(known, channel);
     const double direct = this->Direct.image.fluence.At(known, channel), lost = this->Voxels.lost[known];
-    // Power per area of the source that is absorbed in its first step, before it is part of the lattice's fluence (Eq.
-    // (L4a)).
+    // Power per area that the source emits and the medium absorbs in the same step, before it enters the fluence of the
+    // lattice (Eq. (L4a)).
     const double own = this->Voxels.source[known] * (1.0 / this->Voxels.begins[known] - 1.0);
     const double absorbed = lost * fluence[i] + own;
     // Fluence of scattered light, averaged over a step (Eq. (L4)).

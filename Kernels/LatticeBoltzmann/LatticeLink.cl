@@ -19,8 +19,8 @@
 
 __constant char Ways[18][3] = LATTICE_WAYS;
 
-// Light that arrives along a link: what the link transmits of the neighbour's density, plus what it reflects of the
-// voxel's own (numerics.md, Eqs. (L3), (L5)).
+// Light that arrives along a link: the transmitted fraction of the neighbour's density plus the reflected fraction of
+// the voxel's own density (numerics.md, Eqs. (L3), (L5)).
 //   sent, back  densities: the neighbour's along the link, and the voxel's own in the opposite direction
 //   own, other  resistance of voxel and neighbour: inverse of the fraction that a link between two such voxels
 //               transmits

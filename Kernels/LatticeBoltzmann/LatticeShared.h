@@ -25,7 +25,7 @@ enum
 /// LatticeFirst.
 typedef struct
 {
-  int size[3]; ///< voxels
+  int size[3]; ///< number of voxels along each axis
   int row, layer;
   int periodic;      ///< bit mask of the periodic axes
   int inner;         ///< bit mask of the faces -x, +x, ... +z beyond which another block lies

@@ -14,7 +14,7 @@ namespace tyndall
 namespace
 {
 
-/// Minimum number of sample cells along a face's edge, if cells are not a grid.
+/// Minimum number of sample cells along a face's edge, if the quadrature's cells do not form a grid.
 constexpr int FewestParts = 48;
 constexpr double BorderTolerance = 1e-9; ///< relative offset of points on a border between two cells
 /// Smallest eigenvalue that KeepFlux() inverts, relative to the largest.
@@ -51,8 +51,9 @@ double SolidAngle(double s0, double s1, double t0, double t1)
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
 }
 
-/// Index, among a face's directions, of the one whose cell contains the tangents (s, t), if cells are not a grid. The
-/// set has the face's symmetry, so in each orbit the nearest direction is the one in the same eighth of the face.
+/// Index, among a face's directions, of the one whose cell contains the tangents (s, t), for a quadrature whose cells
+/// do not form a grid. The set has the face's symmetry, so in each orbit the nearest direction is the one in the same
+/// eighth of the face.
 int NearestOnFace(const DirectionSet& set, double s, double t)
 {
   const bool exchanged = std::abs(s) > std::abs(t);
@@ -130,7 +131,7 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
 {
   const int n = set.cellsPerEdge;
   const bool grid = set.orbits.empty();
-  // finer if cells are not a grid, since they cut through sample cells
+  // More sample cells if the quadrature's cells do not form a grid, since their borders then cut through sample cells.
   const int fewest = grid ? 2 : 2 * ((FewestParts + n) / (2 * n));
   const int parts = std::max(2 * std::clamp((environment.height / n + 1) / 2, 1, 128), fewest);
   const bool equiangular = set.equiangular || !grid;

@@ -37,7 +37,8 @@ DirectionSymmetry::DirectionSymmetry(const Grid& grid, const std::array<bool, 3>
   {
     single[a] = periodic[a] && grid.size[a] == 1;
   }
-  std::map<std::array<double, 3>, int> numbers; // by exact components: quadratures are symmetric to the last bit
+  // Class by exact components: mirror images in a quadrature agree to the last bit.
+  std::map<std::array<double, 3>, int> numbers;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
     const std::array<double, 3> standard = Standard(set.directions[d].omega, grid, single);

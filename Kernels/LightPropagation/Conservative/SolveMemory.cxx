@@ -14,7 +14,7 @@ namespace
 /// Parameters that determine the memory of a solve.
 struct SolveExtent
 {
-  std::array<int, 3> size; ///< voxels of the domain or of a rank's block
+  std::array<int, 3> size; ///< number of voxels along each axis, of the domain or of a rank's block
   const PropagationSettings& settings;
   int channels = 1;
   int degree = 0; ///< highest degree of the angular moments

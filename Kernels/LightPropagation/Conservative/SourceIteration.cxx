@@ -281,7 +281,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
     this->Result.ledger.Count(tally);
     return;
   }
-  for (int c = 0; c < 3; ++c) // the face is known only after OrderSweeps::SweepEmptySlabs
+  for (int c = 0; c < 3; ++c) // the faces of this escaped power are known only after OrderSweeps::SweepEmptySlabs
   {
     for (const Rgb& face : tally.out)
     {

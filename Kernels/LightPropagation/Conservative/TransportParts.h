@@ -127,7 +127,8 @@ private:
   SweepTally SumOfVoxels(const SweepTally& own) const;
 
   bool MediumShines = false;
-  std::unique_ptr<const SweptMoments> Angular; ///< null: isotropic, or the block has no voxels
+  /// Angular functions in the directions of sweeps; null: isotropic, or the block has no voxels.
+  std::unique_ptr<const SweptMoments> Angular;
 };
 
 /// Makes the TransportParts of a problem, with quadratures chosen for it. Collective.

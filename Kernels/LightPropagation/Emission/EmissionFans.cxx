@@ -19,7 +19,8 @@ constexpr int MostPoints = 1024; ///< maximum number of fans into each of the 24
 /// voxels. In the voxels where they still differ at the end, rays are traced for each voxel individually.
 constexpr double FewLeft = 0.001;
 constexpr double LinesPerVoxel = 1.02; ///< rays per voxel edge in the last layer, so that a ray crosses every voxel
-constexpr int LineStep = 16; ///< the number of lines is a multiple of this, the width of the widest SIMD packet
+/// The number of rays in a row of a fan is a multiple of this, the width of the widest SIMD packet.
+constexpr int LineStep = 16;
 constexpr std::size_t KeptFloats = 1 << 24; ///< approximate number of floats of the fans in memory at a time: 64 MiB
 constexpr int NearGap = 3;                  ///< voxels between the emitting box and the nearest voxel that uses fans
 
@@ -306,7 +307,8 @@ private:
     }
     const double nearest = fan.first[0] - box.First[0] - box.Size[0];
     const double farthest = ends[0] - box.First[0];
-    const double away = fan.first[0] + 1.0 - box.First[0] - 0.5 * box.Size[0]; // largest lateral distance of voxels
+    // Largest distance of voxels from the box's centre along the second and third axis.
+    const double away = fan.first[0] + 1.0 - box.First[0] - 0.5 * box.Size[0];
     fan.spacing = static_cast<float>(1.0 / (LinesPerVoxel * farthest));
     const auto cover = [&](int k, float& first, int& count) {
       const double low = std::min(0.0, (fan.first[k] - box.First[k] - box.Size[k]) / nearest);

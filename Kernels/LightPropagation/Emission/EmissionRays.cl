@@ -171,7 +171,8 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
     const real sin_range = high_v * rsqrt(across_u * across_u + high_v * high_v) - sin_low;
     const real sine = sin_low + sin_range * load_real(i, points + MOST);
     const real solid_angle = half_range * 2.0f / (1.0f + squared) * sin_range / share;
-    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f)); // not 0, whose direction would miss the side
+    // Above 0, since a ray parallel to the side would miss it.
+    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f));
     const integer ahead = voxel->inside ? high_side : ~high_side;
     const real forward = cosine * (1.0f - squared) / (1.0f + squared);
     const real turned[3] = { select(-forward, forward, ahead), cosine * 2.0f * tangent / (1.0f + squared), sine };

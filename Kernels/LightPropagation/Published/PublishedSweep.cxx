@@ -339,7 +339,7 @@ void PublishedSweep::CrossPlanes(
   cl::Kernel& kernel = this->CrossVoxels[emits ? 1 : 0];
   With(kernel, info, cl_int(0), cl_int(0), cl_int(0), batch.crossings, this->Volumes.Extinction[layout],
     this->Volumes.Scattering[layout], this->Volumes.Sources[layout], this->Rays, this->Contributions, this->Escaped);
-  const bool rows = this->Volumes.Width > 1; // one work-item per row, else per voxel
+  const bool rows = this->Volumes.Width > 1; // whether a work-item processes a row; false: one voxel
   double sinceReport = 0.0;
   for (std::size_t l = 0; l < pass.launches.size(); ++l)
   {

@@ -181,7 +181,7 @@ void OctantSources::Find(const Buffer<float>& source, const BeyondFaces& beyond)
     info.beyond = beyond.info;
     for (cl_int& periodic : info.periodic)
     {
-      periodic = periodic && !beyond.values; // `beyond` also holds the values across periodic axes
+      periodic = periodic && !beyond.values; // with `beyond`, values across periodic axes are read from it
     }
     With(find, info, this->The.medium.SigmaT(), this->The.medium.SigmaS(), source, this->Diffuse, this->Incoming,
       beyond.values ? *beyond.values : this->Incoming, lamps, cl_int(this->LampsShine), this->Found, cl_ulong(c));

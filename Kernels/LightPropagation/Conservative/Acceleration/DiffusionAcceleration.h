@@ -61,8 +61,9 @@ private:
   std::vector<float> UncollidedFluence; ///< fluence of uncollided light, W / length^2, [channel][stride]
   std::unique_ptr<SweepOperator> Swept; ///< sweep of scattered and boundary light along the usual quadrature
   std::vector<std::unique_ptr<DiffusionSolver>> Systems; ///< diffusion systems, by channel
-  std::optional<FaceBalance> Box;                        ///< unset unless faces reflect or face power is requested
-  SweepTally Tally;                                      ///< incident and escaped power of the last sweep
+  /// Power by cell of the box faces; unset unless faces reflect or face power is requested.
+  std::optional<FaceBalance> Box;
+  SweepTally Tally; ///< incident and escaped power of the last sweep
   /// Power emitted or first scattered, and power incident through the box faces, W by channel.
   Rgb GivenPower = {}, PowerIn = {};
   RestOfChanges Rest;

@@ -61,10 +61,11 @@ public:
   const GhostedMedium& Medium() const { return this->Coefficients; }
   const MomentsWithGhosts& Moments() const { return this->OfPath; }
 
-  /// Sets the given source: emission plus the first-collision source.
+  /// Sets Given(), the source that stays the same in all iterations: emission plus the first-collision source.
   /// @param uncollided  path integrals of uncollided light, W length; also copied to TransportParts::Path
   void Give(const std::vector<float>& uncollided);
-  const Buffer<float>& Given() const { return this->TheGiven; } ///< given source of the block, W / (length^3 sr)
+  /// Emission plus first-collision source of the block, W / (length^3 sr).
+  const Buffer<float>& Given() const { return this->TheGiven; }
 
   /// Partial currents of the sweep in the block, W (Deposit::partialCurrents).
   Buffer<float>& PartialCurrents() { return this->TheCurrents; }

@@ -125,7 +125,8 @@ static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float 
     edges->x = fmin(edges->x, edges->y);
   }
   const float inside = edges->y - edges->x;
-  *edges = inside > 0.0f ? *edges : (float2)(*up ? n - 0.5f : 0.5f); // floats cannot represent a voxel that ends at n
+  // An empty interval is placed in the voxel at the face: a float may not represent its end below n.
+  *edges = inside > 0.0f ? *edges : (float2)(*up ? n - 0.5f : 0.5f);
   return all > 0.0f ? clamp(inside / all, 0.0f, 1.0f) : 0.0f;
 }
 

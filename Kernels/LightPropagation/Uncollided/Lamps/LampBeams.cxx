@@ -25,11 +25,12 @@ static const int* WhereIs(const BeamOnItsWay& beam)
 
 namespace
 {
-/// Rows per launch; keeps it well below a tenth of a second for rows of a thousand voxels
+/// Number of rows of beams per launch, such that a launch with rows of a thousand voxels takes well below a tenth of a
+/// second.
 constexpr int RowsPerLaunch = 256;
 constexpr int BeamsOfRow = 64;                  ///< number of beams in a row below which a launch has more rows
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they are traced in a block
-/// Halo in voxels: a beam may extend one voxel beyond the block, and one more by rounding
+/// Width of the halo, voxels: a beam may extend one voxel beyond the block, and one more by rounding.
 constexpr int Reach = 2;
 
 constexpr int PassesAtMost = 9; ///< maximum number of passes along periodic axes
@@ -37,7 +38,7 @@ constexpr int PassesAtMost = 9; ///< maximum number of passes along periodic axe
 constexpr int EvenFrom = 3;
 constexpr double LeftAtMost = 5e-5; ///< fraction of the power in transit at which passes end
 
-/// Traces the beams of a pass and adds their tallies to the shares.
+/// Function that traces the beams of a pass and adds their tallies to the shares of FollowInPasses().
 /// @param factor  multiplies the initial power of the beams
 using FollowPass = std::function<void(const Pass& pass, double factor, const Monitor& monitor)>;
 

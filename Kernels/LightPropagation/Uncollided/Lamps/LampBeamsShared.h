@@ -6,8 +6,8 @@
 SHARED_BEGIN
 enum
 {
-  /// Number of tallies per row of beams: power that entered, escaped through each of 6 faces, is in transit at the end,
-  /// was emitted.
+  /// Number of tallies per row of beams: the powers that entered, that escaped through each of 6 faces, that are in
+  /// transit at the end, and that were emitted.
   LampRowSums = 9
 };
 

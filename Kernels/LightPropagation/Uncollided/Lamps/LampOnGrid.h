@@ -21,7 +21,8 @@ namespace tyndall
 /// Factors that convert the entries of LampShares to fractions of the lamp's power.
 struct LampFactors
 {
-  /// Factors for the power that enters, that the medium removes, and that escapes or is in transit.
+  /// Factors for the power that enters, for the power that the medium removes, and for the power that escapes or is in
+  /// transit.
   double in, taken, out;
 };
 
@@ -39,14 +40,14 @@ struct LampShares
   /// @param sums  tallies of the row, [LampRowSums]
   void Count(const BeamRow& row, const float* sums)
   {
-    // By marching direction, not by face, since light of a lamp inside the box enters through no face.
+    // Counted by marching direction, not by face, since light of a lamp inside the box enters through no face.
     this->in[2 * row.axis + row.up] += sums[0];
     for (int face = 0; face < 6; ++face)
     {
       this->out[face] += sums[1 + face];
     }
     this->onTheWay += sums[7];
-    // Only rows of the finest level, so that each part of a rectangle counts once.
+    // Counts only rows of the finest level, so that each part of a rectangle counts once.
     this->shone += row.skipped > 0 || row.partFrom > 0.0f ? 0.0 : sums[8];
   }
 
