@@ -69,7 +69,7 @@ public:
   Buffer<float> Scale;          ///< factor of the sources of each voxel, initially 1
   Buffer<float> Direct;         ///< uncollided fluence, W / length^2
   OrdinatesLight Light;
-  const std::unique_ptr<FaceLight> Faces; ///< null: no face reflects
+  const std::unique_ptr<FaceLight> Faces; ///< light by cell of the box faces; null: no face reflects
 
 private:
   double ScatteredAway() const

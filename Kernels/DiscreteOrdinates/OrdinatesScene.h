@@ -45,7 +45,7 @@ struct OrdinatesScene
   std::vector<Light> lamps;
   IncomingRadiance incoming;          ///< boundary source; empty: no light is incident
   std::array<Rgb, 6> faceAlbedo = {}; ///< albedo of this channel in all three components
-  UncollidedImage uncollided;         ///< of this channel, given by another solver
+  UncollidedImage uncollided;         ///< uncollided light of this channel, given by another solver
   OrdinatesGuess guess;
 };
 
@@ -112,7 +112,7 @@ private:
 struct FarLight
 {
   std::vector<Direction> directions;
-  std::vector<Rgb> radiance; ///< by direction, W / (length^2 sr)
+  std::vector<Rgb> radiance; ///< radiance of sky and environment by direction, W / (length^2 sr)
   std::vector<Light> peaks;  ///< peaks of the environment, represented by parallel beams
 };
 

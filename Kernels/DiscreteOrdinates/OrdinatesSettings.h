@@ -25,8 +25,9 @@ enum class OrdinatesScheme
 enum class OrdinatesScattering
 {
   Matrix = 0,         ///< every pair of directions: D x D multiplications per voxel
-  SingularValues = 1, ///< N + N multiplications per direction, as published
-  /// N + N multiplications per direction, with terms by degree: exact moments, no factorisation needed.
+  SingularValues = 1, ///< N terms by singular value decomposition, as published: N + N multiplications per direction
+  /// N terms by degree of spherical harmonics: N + N multiplications per direction, exact moments, no factorisation
+  /// needed.
   SphericalHarmonics = 2
 };
 
@@ -44,8 +45,8 @@ struct OrdinatesSettings
   /// Number of orders after which the remainder is extrapolated as a geometric series (conservative scheme); 0: off.
   int seriesAfter = 0;
   std::array<bool, 3> periodic = { false, false, false }; ///< light wraps around these axes
-  bool netFlux = false;                                   ///< also compute net_flux
-  bool leaveOut = true;                                   ///< skip work the scene does not need
+  bool netFlux = false;                                   ///< whether to compute net_flux
+  bool leaveOut = true;                                   ///< whether to skip work that the scene does not need
 };
 
 /// Checks the ranges of settings; numbers of directions are checked where the directions are made.
@@ -66,8 +67,8 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings);
 OrdinatesSettings AtQuality(
   const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
 
-/// "Name = value" of each setting that a quality level may choose and that has an effect: of spiralDirections, if set,
-/// in place of directionsPerFace; of terms, unless scattering is by the full matrix.
+/// "Name = value" of each setting that a quality level may choose and that has an effect: directionsPerFace is not
+/// listed if spiralDirections is set, nor terms if scattering is by the full matrix.
 std::vector<std::string> Words(const OrdinatesSettings& settings);
 /// "Name = value" of the settings that were used for `light`: slabs are solved with more directions (UnvaryingAxes.h).
 std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light);

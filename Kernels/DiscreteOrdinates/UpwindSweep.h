@@ -50,7 +50,7 @@ struct SweptFaces
   std::array<bool, 3> periodic = {};
   /// Axes with one voxel in the whole grid that are periodic: nothing varies along them, and no light is transported.
   std::array<bool, 3> unvarying = {};
-  const LightOfCells* reflecting = nullptr; ///< null: no face reflects
+  const LightOfCells* reflecting = nullptr; ///< light by cell of reflecting faces; null: no face reflects
   /// Bit mask of the faces -x, +x, ... +z of the block that are interior to the whole grid; their power is not counted.
   int inner = 0;
 

@@ -41,7 +41,7 @@ struct LatticeBox
   std::size_t Count() const { return this->own.VoxelCount(); }
   bool IsAll() const { return this->Count() == this->known.VoxelCount(); }
 
-  /// Index among the known voxels of an own voxel, given by its index among the own voxels.
+  /// Index, among the known voxels, of the own voxel with index `voxel` among the own voxels.
   std::size_t Known(std::size_t voxel) const
   {
     if (this->IsAll())
@@ -52,8 +52,8 @@ struct LatticeBox
     grid.size = this->own.size;
     return this->Known(grid.VoxelAt(voxel));
   }
-  /// Index among the known voxels of a voxel.
-  /// @param at  indices relative to the first own voxel; may be a ghost voxel
+  /// Index, among the known voxels, of the voxel at given indices along the axes.
+  /// @param at  indices relative to the first own voxel; may be those of a ghost voxel
   std::size_t Known(std::array<int, 3> at) const
   {
     for (int axis = 0; axis < 3; ++axis)

@@ -79,7 +79,7 @@ PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDe
   of.maximumOrders = settings.maximumSteps;
   of.netFlux = settings.netFlux;
   of.angularDegree = angularDegree;
-  of.source = PropagationSource::Constant; // with a constant source, voxels of slabs stay cubes
+  of.source = PropagationSource::Constant; // other sources may extend the voxels of slabs; the lattice needs cubes
   return of;
 }
 

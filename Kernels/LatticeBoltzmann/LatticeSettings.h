@@ -44,7 +44,7 @@ struct LatticeSettings
   /// If interleaved: whether photons and lattice run concurrently on the device; false: alternately.
   bool sideBySide = true;
   std::array<bool, 3> periodic = {};
-  bool netFlux = false; ///< also compute net_flux
+  bool netFlux = false; ///< whether to compute net_flux
 
   bool Solves() const
   {

@@ -24,7 +24,8 @@ constexpr double NextToAll = 1e-3;
 
 constexpr double ImbalanceAtMost = 1e-2; ///< imbalance, as fraction of the power, above which the solve fails
 constexpr double ImbalanceUnsaid = 1e-4; ///< imbalance, as fraction of the power, up to which there is no warning
-/// Smallest power, relative to the brightest channel, to which the imbalance of a channel is related.
+/// An imbalance is relative to the incoming power of its channel, or to this fraction of that of the brightest channel
+/// if the latter is larger.
 constexpr double FaintChannel = 1e-3;
 constexpr double OpaqueVoxel = 100.0; ///< approximate optical thickness beyond which floats lose light in a voxel
 

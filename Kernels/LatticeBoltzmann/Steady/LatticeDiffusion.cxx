@@ -60,7 +60,7 @@ LatticeDiffusion::Matrix LatticeDiffusion::MatrixOf(
       {
         loss += 1.0 / voxels.ResistanceOfFace(known, face, thin);
       }
-      else if (!isHigh || hasGhostAbove) // other high faces are low faces of own voxels
+      else if (!isHigh || hasGhostAbove) // high faces between own voxels are handled as low faces of the next voxel
       {
         matrix.conductance[axis][isHigh ? place + strides[axis] : place] =
           static_cast<float>(1.0 / voxels.ResistanceBetween(known, beyond, thin));

@@ -45,6 +45,6 @@ private:
   const Domain& TheDomain;
   const BlockWithGhosts Block;
   std::unique_ptr<MultigridSolver> Multigrid;
-  ExactValues Found; ///< by voxel with ghosts
+  ExactValues Found; ///< solution of Solve(), by voxel with ghosts
 };
 }

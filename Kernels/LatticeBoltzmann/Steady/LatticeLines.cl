@@ -385,9 +385,9 @@ __kernel void sweep_lines(LinePass pass, MEDIUM, __global exact* behind, __globa
 
 typedef struct
 {
-  Place place; // the first voxel
-  bool is_cut; // whether another piece precedes it
-  Link link;   // link to the preceding piece, if there is one
+  Place place; // first voxel of the piece
+  bool is_cut; // whether another piece precedes this piece
+  Link link;   // link to the preceding piece; not used if no piece precedes
   Border low;  // boundary condition at the grid's face, if no piece precedes it
 } Piece;
 

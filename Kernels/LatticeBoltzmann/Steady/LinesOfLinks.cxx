@@ -120,7 +120,8 @@ LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
   Pair pair;
   pair.range = pieces.Range(self);
   std::vector<PiecesOfLines::Line> lines;
-  std::vector<Shared> sent(this->TheDomain.Comm().Ranks()), received = sent; // by rank
+  // Pieces sent to and received from each rank.
+  std::vector<Shared> sent(this->TheDomain.Comm().Ranks()), received = sent;
   pieces.ForLines([&](int joining, const PiecesOfLines::Line& line) {
     for (const PiecesOfLines::Piece& piece : line.pieces)
     {
@@ -138,7 +139,7 @@ LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
       lines.push_back(line);
     }
   });
-  std::vector<std::size_t> next; // by rank: index, among all received pieces, of its next piece
+  std::vector<std::size_t> next; // for each rank: index, among all received pieces, of the next piece from it
   std::size_t all = 0;
   for (int rank = 0; rank < static_cast<int>(sent.size()); ++rank)
   {

@@ -92,7 +92,7 @@ private:
   const LatticeSettings& Settings;
   const LatticeVoxels& Voxels;
   const Lattice* Densities;
-  std::vector<Pair> Pairs; ///< empty if the block has no voxels
+  std::vector<Pair> Pairs; ///< lines of each pair of directions; empty if the block has no voxels
   std::vector<Slot> Slots;
   std::size_t MostPieces = 1;
   ExactValues Straight, Even, Arriving;

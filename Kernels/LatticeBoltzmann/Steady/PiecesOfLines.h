@@ -74,13 +74,14 @@ void PiecesOfLines::ForPieces(int rank, const Visit& visit) const
 }
 
 /// Linear response of a piece of a line of links to light at its ends (numerics.md, Eq. (L15)): x is sent up by the
-/// voxel before its first voxel, B arrives from above at its last voxel. The response depends on the medium alone.
+/// voxel before the first voxel of the piece, B arrives from above at the last voxel. The response depends on the
+/// medium alone.
 struct PieceOfLine
 {
-  double passes = 0.0;    ///< fraction of x that its last voxel sends up
-  double returns = 0.0;   ///< fraction of B that its last voxel sends up
-  double givesBack = 0.0; ///< fraction of x that its first voxel sends down
-  double comesDown = 0.0; ///< fraction of B that its first voxel sends down; 0: the piece ends at a face of the grid
+  double passes = 0.0;    ///< fraction of x that the last voxel sends up
+  double returns = 0.0;   ///< fraction of B that the last voxel sends up
+  double givesBack = 0.0; ///< fraction of x that the first voxel sends down
+  double comesDown = 0.0; ///< fraction of B that the first voxel sends down; 0: the piece ends at a face of the grid
   double up = 0.0;        ///< fraction of light that the link before the piece transmits upwards
   double down = 0.0;      ///< fraction of light that the link before the piece transmits downwards
 };

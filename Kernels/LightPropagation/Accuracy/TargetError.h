@@ -14,7 +14,7 @@ struct TargetLight
   bool met = false;             ///< whether the estimated error is at most the target
   bool divided = false;         ///< whether the light was solved with voxels of half the edge length
   int solves = 0;               ///< number of solves, including those on coarse grids
-  double seconds = 0.0;         ///< total time of these solves, s
+  double seconds = 0.0;         ///< total time of all solves, s
 };
 
 /// Solves a scene such that the estimated relative error of fluence (root mean square relative to that of fluence) is

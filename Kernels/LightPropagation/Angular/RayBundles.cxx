@@ -98,7 +98,7 @@ void Stagger(std::vector<Bundle>& bundles)
   double first = 0.5, second = 0.5;
   for (Bundle* bundle : inOrder)
   {
-    // same start along u and v, so that no axis has precedence
+    // If both tangents are equal, rays start at the same position along u and v, so that no axis has precedence.
     const bool diagonal = Same(bundle->tangentU, bundle->tangentV);
     bundle->startU = diagonal || bundle->tangentU < bundle->tangentV ? first : second;
     bundle->startV = diagonal || bundle->tangentU > bundle->tangentV ? first : second;

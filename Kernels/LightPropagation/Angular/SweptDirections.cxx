@@ -37,7 +37,7 @@ DirectionSymmetry::DirectionSymmetry(const Grid& grid, const std::array<bool, 3>
   {
     single[a] = periodic[a] && grid.size[a] == 1;
   }
-  // Class by exact components: mirror images in a quadrature agree to the last bit.
+  // Index of each class by its exact direction: mirror images in a quadrature agree to the last bit.
   std::map<std::array<double, 3>, int> numbers;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {

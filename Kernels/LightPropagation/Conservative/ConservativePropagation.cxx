@@ -313,7 +313,8 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
   const Illumination& illumination, const PropagationSettings& settings)
 {
   const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
-  // Blocks may be plane-parallel but differ from each other; the serial solve then uses voxels, too.
+  // Each block may be plane-parallel while the domain is not, if blocks differ; the serial solve would then use voxels,
+  // too.
   const bool varies = !domain.IsEmpty() && !IsPlaneParallel(medium, illumination, settings);
   if (problem.IsSlab() || !domain.Any(varies))
   {

@@ -22,8 +22,8 @@ OrderSweeps::OrderSweeps(
   : Parts(parts)
 {
   const PropagationSettings& settings = parts.Problem.Settings();
-  // With coarse-mesh DSA rays complete their laps around periodic axes in one sweep: its solution does not include the
-  // light of rays that wait for the next sweep.
+  // With coarse-mesh DSA rays complete their laps around periodic axes in one sweep: the coarse solution does not
+  // include the light of rays that wait for the next sweep.
   const bool wholeWay = settings.maximumOrders > 0 || byCells;
   SweepRequest request = { deposit, parts.AllRays(), {}, wholeWay ? MostPlanesAround : FewPlanes };
   request.octantSource = octantSource;

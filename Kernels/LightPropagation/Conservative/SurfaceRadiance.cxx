@@ -148,7 +148,7 @@ double Brought(const Medium& medium, const std::array<bool, 6>& faces, const std
   const Grid& grid = medium.grid;
   const double sigma = medium.TransportSigmaT(cell.voxel, channel);
   const std::array<int, 3> at = grid.VoxelAt(cell.voxel);
-  double expected = 0.0; // power per volume, W / length^3
+  double expected = 0.0; // expected deposit of lamp light per volume, W / length^3
   for (int face = 0; face < 6; ++face)
   {
     const int axis = face / 2;

@@ -23,8 +23,8 @@ VolumeLayout LayoutOf(const PropagationProblem& problem)
   return { problem.TheGrid(), problem.Channels(), shared };
 }
 
-/// Which arrays of the medium the device needs. Separate sigma_s is not needed without absorption, where it equals
-/// sigma_t, nor without scattering.
+/// Which arrays of the medium the device needs. It needs no separate sigma_s if the medium does not absorb, where
+/// sigma_s equals sigma_t, or does not scatter.
 MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLayout& layout, bool byBalance)
 {
   const MediumTraits& traits = problem.Traits();

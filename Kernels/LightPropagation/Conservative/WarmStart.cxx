@@ -143,8 +143,8 @@ KeptLight WarmStart::Leave(const std::vector<float>& base, const std::vector<flo
   left.kind = this->TheKind;
   for (int c = 0; c < layout.channels && this->Parts.Problem.Settings().maximumOrders == 0; ++c)
   {
-    // After a good guess the first changes decrease faster than the last orders of a solve from zero: the rate is not
-    // lowered.
+    // Keeps at least the rate of the previous solve: after a good guess the first changes decrease faster than the last
+    // orders of a solve from zero.
     left.rate[c] = std::max(std::min(rate[c], SlowestRate), this->Begins() ? this->Rate(c) : 0.0);
   }
   left.firstScattered = this->First;

@@ -11,7 +11,7 @@
 typedef struct
 {
   int at[3];
-  int across;  // axis of the receiving face; 3: no face, the voxel
+  int across;  // axis perpendicular to the receiving face; 3: the voxel receives, not a face
   int up;      // 1: the face at the upper end of axis `across`; 0: at the lower end
   bool inside; // whether the voxel lies in the emitting box
 } lit_voxel;

@@ -220,7 +220,7 @@ static bool goes_before(const EmissionInfo* s, const lit_voxel* voxel, const int
 static void find_ways(const EmissionInfo* s, const lit_voxel* voxel, ways_to_turn* ways)
 {
   const int all[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 } };
-  int distance[3]; // of the voxel from the emitting box's centre, half voxels
+  int distance[3]; // distance of the voxel from the emitting box's centre, half voxels
   ways->count = ways->turned = ways->either = 0;
   for (int a = 0; a < 3; ++a)
   {

@@ -33,7 +33,7 @@ public:
   PublishedModel(
     const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, int channels = 1);
 
-  /// 3 if medium or light is coloured or three were requested, else 1
+  /// Number of channels: 3 if medium or light is coloured or three were requested, else 1.
   int Channels() const { return this->ChannelCount; }
   const DirectionSet& Directions() const { return this->Set; }
 

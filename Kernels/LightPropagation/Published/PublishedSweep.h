@@ -63,7 +63,8 @@ public:
 
   int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
   int RayRow(const Batch& batch) const; ///< floats per row of a ray map
-  /// Floats stored per direction for the next order, all channels and sub-maps.
+  /// Number of floats per direction, over all channels and sub-maps, of the radiance that wraps around into the next
+  /// order.
   std::size_t CarriedStride(const Batch& batch) const;
 
   /// Makes the passes of a batch in order `order`. Rays that wrap around a periodic axis start at another position in

@@ -12,10 +12,11 @@ namespace tyndall
 {
 namespace
 {
-/// Optical thickness above which a voxel is thick; thinner voxels return at most 1% too little light.
+/// Optical thickness above which a voxel is thick. Without sources by octant, thinner voxels scatter at most 1% too
+/// little light back through the faces where it entered.
 constexpr double Thick = 0.2;
-/// Optical thickness above which a voxel is thick if the settings leave the choice open: thinner voxels return up to 2%
-/// too little light, and sources by octant multiply the time per order by two to three.
+/// Optical thickness above which a voxel is thick if the settings leave the choice open. Without sources by octant,
+/// thinner voxels scatter up to 2% too little light back; with them, an order takes two to three times as long.
 constexpr double ThickUnasked = 0.25;
 /// Minimum fraction of thick voxels among the scattering ones, if the settings leave the choice open: if fewer are
 /// thick, they are walls, and computing sources for all voxels costs too much.

@@ -58,8 +58,8 @@ public:
   const Buffer<float>& LampPath() const { return this->PathOfLamp; }
   /// First moments, as Deposit::firstMoments, to which one lamp adds its deposit before TakeLamp().
   const Buffer<float>& LampMoments() const { return this->MomentsOfLamp; }
-  /// Records the source near the faces of light first scattered from one lamp, adds LampPath() to `allPath`, and sets
-  /// LampPath() and LampMoments() to 0.
+  /// Records the sources by face of the light that is first scattered from one lamp, adds LampPath() to `allPath`, and
+  /// sets LampPath() and LampMoments() to 0.
   void TakeLamp(const Buffer<float>& allPath);
   /// Mean incident radiance at voxels' faces, W / (length^2 sr), [channel][face][stride], summed over the calls of
   /// TakeIncoming() since the last Find(). Find() needs that of the ghost cells around a subdomain.

@@ -45,7 +45,7 @@ private:
 
   const BlockWithGhosts& Block;
   MomentPlaces Own, Held;
-  Buffer<float> Array; ///< moments with ghost cells; empty if the block has none
+  Buffer<float> Array; ///< moments with ghost cells; empty if the block has no ghost cells
 };
 
 /// Arrays that sweeps and diffusion systems exchange (DiffusionSystem::Arrays): arrays of the block, which sweeps read

@@ -4,7 +4,7 @@
 #include "Numerics/FixedPoint.cl"
 
 #define INSIDE 0
-#define BEFORE 1 // outside the box, and approaching it
+#define BEFORE 1 // the voxel is outside the box, and the beam approaches the box
 #define AFTER 2
 
 // Position of voxel i of an axis relative to the box (INSIDE, BEFORE or AFTER), for a beam with this tangent along the

@@ -212,7 +212,7 @@ static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float
                                                                  : AMID;
 }
 
-// Attenuates a beam over one step, along its centre, where it illuminates no voxel.
+// Attenuates a beam over one step along its centre, where the beam illuminates no voxel.
 // @return whether the whole cross-section is in the box; if not, nothing is done
 static bool pass_through(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, float2 width, float length,
   const __global float* sigma, BeamOnItsWay* beam)

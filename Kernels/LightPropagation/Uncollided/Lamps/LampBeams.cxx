@@ -28,7 +28,7 @@ namespace
 /// Number of rows of beams per launch, such that a launch with rows of a thousand voxels takes well below a tenth of a
 /// second.
 constexpr int RowsPerLaunch = 256;
-constexpr int BeamsOfRow = 64;                  ///< number of beams in a row below which a launch has more rows
+constexpr int BeamsOfRow = 64; ///< number of beams in a row below which a launch has more than RowsPerLaunch rows
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they are traced in a block
 /// Width of the halo, voxels: a beam may extend one voxel beyond the block, and one more by rounding.
 constexpr int Reach = 2;

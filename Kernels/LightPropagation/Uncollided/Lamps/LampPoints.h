@@ -27,7 +27,7 @@ struct LampPoint
   /// The point illuminates voxels outside the sphere `part` and inside the sphere `whole`. Beyond `whole`, the larger
   /// part that was divided into this one illuminates voxels instead.
   Sphere part, whole = { glm::dvec3(0.0), std::numeric_limits<double>::infinity() };
-  double reach = std::numeric_limits<double>::infinity(); ///< length to which its beams are traced
+  double reach = std::numeric_limits<double>::infinity(); ///< length to which beams from this point are traced
 };
 
 /// Fraction of the box's edge: a lamp nearer to a face is taken to be on it, as for photons.

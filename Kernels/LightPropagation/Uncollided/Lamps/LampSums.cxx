@@ -13,7 +13,8 @@ namespace
 {
 constexpr std::size_t GainsPerLaunch = 1 << 16; ///< voxels per launch; keeps it below a tenth of a second
 
-/// Power that voxels with these sums of path integrals, times their gains, remove; as a fraction of the traced power.
+/// Power, as a fraction of the traced power, that the medium removes in voxels with the given sums of path integrals,
+/// times their gains.
 double Taken(
   const SweepVolume& volume, const LampOnGrid& lamp, const std::vector<cl_long>& sums, const std::vector<float>& gains)
 {

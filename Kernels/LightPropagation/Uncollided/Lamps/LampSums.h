@@ -49,7 +49,7 @@ public:
 private:
   Device& TheDevice;
   Buffer<cl_long> Fixed, OfCells;
-  Buffer<float> Gains; ///< factor for each voxel's path, FitToVacuum(); a single value if there are none
+  Buffer<float> Gains; ///< factor for each voxel's path, FitToVacuum(); a single value for lamps other than rectangles
   std::size_t TheStride;
 };
 
