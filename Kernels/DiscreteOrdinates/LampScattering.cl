@@ -56,7 +56,7 @@ inline float3 way_of(const LampInRays* lamp, const __global float* ways, ulong i
   return WAYS ? vload3(i, ways) : from_lamp(lamp, i);
 }
 
-//   Adds uncollided light to fluence and net flux. One work-item per voxel.
+// Adds uncollided light to fluence and net flux. One work-item per voxel.
 //   path     path integrals of the lamp, W length
 //   direct   uncollided fluence, W / length^2, added to, as are `fluence` and, if has_flux, `flux`, [x, y, z][voxel]
 __kernel void add_lamp(const __global float* path, __global float* fluence, __global float* direct,

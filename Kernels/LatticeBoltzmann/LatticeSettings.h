@@ -26,7 +26,8 @@ struct LatticeSettings
   /// Edge, 2 to 8 voxels, of blocks that take several steps between exchanges of light, as published; 0: all voxels
   /// step together.
   int blockSize = 0;
-  /// Number of steps in a block between exchanges of light, and of steps during a turn of photons.
+  /// Number of steps in a block between exchanges of light. If lattice and photons are interleaved, number of lattice
+  /// steps each time the photons have marched the next segments of their paths.
   int stepsPerExchange = 8;
   int maximumSteps = 0;    ///< number of steps; 0: step until the tolerance is met
   double tolerance = 1e-4; ///< estimated relative error of the fluence at which to stop

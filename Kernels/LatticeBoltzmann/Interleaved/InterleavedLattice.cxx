@@ -75,8 +75,8 @@ namespace
 /// Smallest overlap of photons and lattice, as a fraction of the shorter one's time, that counts as concurrent.
 constexpr double Overlap = 0.05;
 
-/// Number of lattice steps during the next turn of photons, after `done` steps. The last step is reserved for when all
-/// photons have ended.
+/// Number of lattice steps while the photons march the next segments of their paths, after `done` steps. The last step
+/// is reserved for when all photons have ended.
 int StepsOfTurn(const LatticeSettings& settings, int done)
 {
   const int most = settings.stepsPerExchange, asked = settings.maximumSteps;

@@ -67,8 +67,8 @@ SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& come
                                                                                  : SplitEmission();
 }
 
-/// Boundary source that is transported along the finer directions: radiance of faces and sky of the result. Its lamps
-/// and environment are not to be used.
+/// Boundary source that is transported along the finer directions, as an Illumination of which only the radiance of
+/// faces and sky is used.
 Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining)
 {
   Illumination part = finer.perFace > 0 ? shining : Illumination();

@@ -58,7 +58,7 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
     const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
     const double wanted = std::exchange(shares.onTheWay, 0.0);
     pass = pass.Next();
-    // Determines the power that the new beams have left where the pass begins
+    // Traces the new beams up to the layer where the pass begins, to find the power that they have left there.
     follow({ pass.begin, pass.end, true }, 1.0, {});
     const double found = std::exchange(shares.onTheWay, 0.0);
     if (!(found > 0.0))

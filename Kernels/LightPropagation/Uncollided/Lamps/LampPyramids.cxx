@@ -12,7 +12,7 @@ namespace
 {
 constexpr double RightAngle = 0.5 * Pi;
 constexpr int BeamsAcrossCone = 16; ///< minimum number of beams across a spot's cone
-/// Length of the first pass along a periodic axis, as a multiple of the box's longest edge in voxels
+/// Length of the first pass along a periodic axis, as a multiple of the box's longest edge in voxels.
 constexpr int FirstReach = 2;
 constexpr int Farther = 4;             ///< factor by which each further pass reaches farther
 constexpr int BeamsAtLeast = 16;       ///< minimum number of beams along an edge of a pyramid on a periodic axis
@@ -196,8 +196,8 @@ public:
     return row;
   }
 
-  /// Number of beams along the k-th axis after the pyramid's. Each is at most `width` voxels wide where it leaves the
-  /// box, or where a pass begins.
+  /// Number of beams along the k-th axis after the pyramid's. Each beam is at most `width` voxels wide where it leaves
+  /// the box, or where a pass begins.
   int Count(int k, const std::array<double, 2>& seen, const Light& light, const Pass& pass, double width) const
   {
     const int aside = (this->Axis + k) % 3, other = (this->Axis + 3 - k) % 3;
