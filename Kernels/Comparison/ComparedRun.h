@@ -15,7 +15,7 @@ namespace tyndall
 {
 enum class ComparedMethod
 {
-  /// The default: conservative light propagation maps; source and acceleration chosen for the scene.
+  /// Conservative light propagation maps with the source and the acceleration that suit the scene (the default method).
   LightPropagationMaps,
   /// Conservative light propagation maps with a constant source per voxel and without acceleration.
   ConstantSource,
@@ -33,25 +33,26 @@ const char* NameOf(ComparedMethod method);
 /// Whether a method traces photons.
 bool IsOfPhotons(ComparedMethod method);
 
-/// Whether a method computes uncollided light only, which is compared with `fluence_direct`.
+/// Whether a method computes uncollided light only, so that its errors are those of ReferenceLight::fluenceDirect.
 bool IsDirectOnly(ComparedMethod method);
 
 /// Conditions under which Monte Carlo photons are the reference for a constant refractive index.
 enum class MonteCarloReference
 {
   Never = 0,
-  Always = 1, ///< always; raises an error for scenes that photons cannot simulate
-  /// If the photons' standard error is forecast to be far below the error of the finest maps.
+  Always = 1, ///< always; scenes that photons cannot simulate are then an error
+  /// Only if the photons' standard error is forecast to be far below the error of the finest maps that are compared.
   WhereItCanBeat = 2
 };
 
-/// Smallest number of directions per face with which finer maps are compared.
+/// Smallest number of directions per face for which maps with more than one element per voxel face are tried.
 constexpr int FewestForFinerMaps = 25;
 
-/// Settings that a comparison tries. Propagation: all numbers of directions on all grids; finer maps from 25 directions
-/// on; limited orders with the number of directions nearest to 25. Photons: all counts with the first sampler, and the
-/// second largest count with the other samplers. Lattices: both lattices, on all grids with cubic voxels; with a
-/// varying refractive index on the scene's own grid, with uncollided light of all counts of photons.
+/// Settings that a comparison tries. Propagation: all numbers of directions on all grids; map resolutions above 1 on
+/// the scene's grid, from 25 directions on; limited numbers of orders with the number of directions nearest to 25.
+/// Photons: all counts with the first sampler, and the second largest count with the other samplers. Lattices: both
+/// lattices, on all grids with cubic voxels; with a varying refractive index on the scene's grid only, with uncollided
+/// light from each count of photons.
 struct ComparedSettings
 {
   std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };
@@ -62,11 +63,11 @@ struct ComparedSettings
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
   double tolerance = PropagationSettings().tolerance; ///< tolerance of propagation, PropagationSettings::tolerance
-  /// With a varying refractive index photons give the reference: whether they are followed through all collisions;
-  /// false: only their uncollided light is used.
+  /// Whether the photons that give the reference for a varying refractive index are followed through all collisions;
+  /// false: only up to the first one, which gives uncollided light.
   bool scattersReference = false;
-  /// Whether scattered photons are also the reference with a constant refractive index; the reference then shares no
-  /// solver with the compared methods.
+  /// Whether Monte Carlo photons are the reference for a constant refractive index; that reference shares no solver
+  /// with the compared propagation methods.
   MonteCarloReference monteCarloReference = MonteCarloReference::WhereItCanBeat;
 };
 

@@ -13,7 +13,8 @@ namespace tyndall
 {
 namespace
 {
-/// Settings of a converged run of light propagation maps. Ladder is ordered from the best to the cheapest.
+/// Settings of one candidate for the converged run of light propagation maps. Ladder lists the candidates from the most
+/// accurate to the cheapest.
 struct Rung
 {
   int refinement, directions, map;
@@ -74,8 +75,7 @@ ReferenceLight Climb(Device& device, const ComparedScene& scene, const Rung& run
   return reference;
 }
 
-/// Predicted run times of converged runs, by NominalSeconds and with the number of sweeps that a run with few
-/// directions needs.
+/// Predicted run times of converged runs: NominalSeconds with the number of sweeps that a run with few directions took.
 class Forecast
 {
 public:

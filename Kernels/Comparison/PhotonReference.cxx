@@ -26,9 +26,9 @@ constexpr int FewestToForecast = 4, MostToForecast = 64; ///< numbers of photon 
 constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000;
 /// largest number of photons per set; they use a hundred megabytes
 constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;
-/// Largest acceptable error of the photons as reference, over the error of the finest maps.
+/// Photons are the reference only if their error is at most this fraction of the error of the finest maps.
 constexpr double Beats = 1.0 / 3.0;
-/// Error that the photons as reference should have, over the error of the finest maps.
+/// Error to which the photons of the reference are to be reduced, as a fraction of the error of the finest maps.
 constexpr double Enough = 0.1;
 
 constexpr double TypicalSweeps = 20.0;
@@ -89,7 +89,8 @@ ForecastMaps FindMaps(
   return maps;
 }
 
-/// Run time per photon by NominalSeconds, seconds: the fluence is path length per volume.
+/// Run time per photon by NominalSeconds, seconds. The mean path length of a photon, from which it follows, is the
+/// volume integral of the fluence over the entered power.
 /// @param light  estimate of the light
 double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
 {

@@ -101,7 +101,8 @@ private:
 
   Grid SceneGrid;
   const ReferenceLight& Reference;
-  /// factors from the scene's grid to the reference's; set if the reference is at least as coarse
+  /// number of voxels of the scene's grid per voxel of the reference's along each axis; no value if the reference is
+  /// finer
   std::optional<Factors> ToReference;
   bool IsThere = false;
   std::vector<float> Fluence, FluenceDirect;
@@ -197,7 +198,8 @@ private:
     return this->TheDevice.Now() - start;
   }
 
-  /// Run times of repeats, seconds: of runs that did not compile kernels, unless the time allows the first run only.
+  /// Runs a setting repeatedly and returns its run times, seconds. A run that compiled kernels is left out, unless the
+  /// time allows no other.
   /// @param left  time that all repeats may take, seconds
   /// @param light  receives the light
   std::vector<double> TimesOf(const ComparedRun& run, double left, LightField& light, const Monitor& monitor)

@@ -58,9 +58,9 @@ public:
   std::size_t Size() const { return this->Count; }
   const cl::Buffer& Handle() const { return this->Memory.memory; }
 
-  /// Waits for the device, then copies all values of the array from or to the host.
+  /// Write copies the host's `values` to the array, and Read the array to `values`, after waiting for the device.
   void Write(const T* values) { this->Write(values, this->Count); }
-  void Write(const T* values, std::size_t count) ///< copies the first `count` values
+  void Write(const T* values, std::size_t count) ///< copies the first `count` values only
   {
     if (count > 0)
     {
@@ -102,7 +102,7 @@ public:
     this->Owner->Queue().enqueueCopyBuffer(other.Memory.memory, this->Memory.memory, begin, begin, count * sizeof(T));
   }
   void Read(T* values) const { this->Read(values, this->Count); }
-  void Read(T* values, std::size_t count) const ///< copies the first `count` values
+  void Read(T* values, std::size_t count) const ///< copies the first `count` values only
   {
     if (count > 0)
     {

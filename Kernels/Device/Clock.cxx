@@ -48,7 +48,8 @@ struct Compiling
 {
   std::mutex Guard;
   int Threads = 0;
-  /// Start time of the current period in which any thread compiles; seconds of all earlier periods.
+  /// `Since`: time at which the current period began in which any thread compiles. `Before`: total duration of earlier
+  /// such periods. Seconds.
   double Since = 0.0, Before = 0.0;
 };
 

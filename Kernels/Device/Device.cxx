@@ -366,7 +366,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
     try
     {
       Allocation allocation = this->Whole->Allocate(bytes, flags, what, residence);
-      if (allocation.onHost) // the parent device is a view and placed the buffer in host memory
+      if (allocation.onHost) // the parent device is a view itself and placed the buffer in host memory
       {
         this->Memory.GiveBack(bytes);
         this->OnHost.Take(bytes);

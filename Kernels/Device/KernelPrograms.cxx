@@ -133,7 +133,7 @@ cl::Program KernelPrograms::Build(const char* kernel, const std::string& text, c
   }
   const WhileCompiling compiling;
   const BuildMark mark(this->CacheFolder);
-  constexpr double ofCompiling = 0.1; // run time in seconds; a shorter build has read the program from the cache
+  constexpr double ofCompiling = 0.1; // seconds; a build that takes less has read the program from the cache
   const double begun = ClockSeconds();
   cl::Program program;
   bool tookLong = false;

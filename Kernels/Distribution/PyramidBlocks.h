@@ -18,8 +18,8 @@ public:
   /// @param domain  must outlive this object
   /// @param shared  index of the shared level
   /// @param margin  width of the margin, voxels
-  /// @param edge  voxels, a multiple of the edge of a cell of the shared level; boxes begin and, except at the grid's
-  ///   end, end at multiples of it
+  /// @param edge  number of voxels, a multiple of the edge of a cell of the shared level; boxes begin and, except at
+  ///   the grid's end, end at multiples of it
   PyramidBlocks(const Domain& domain, int shared, int margin, int edge);
 
   int Shared() const { return this->SharedLevel; }

@@ -7,7 +7,8 @@
 
 namespace tyndall
 {
-/// Texts of LightField::leftOut: parts of the computation that a scene did not need. All solvers use the same texts.
+/// Texts of LightField::leftOut, each of which names a part of the computation that a scene did not need; the comments
+/// below say when. All solvers use the same texts.
 namespace left_out
 {
 extern const char* const Grey;           ///< neither medium nor lights are coloured
@@ -35,10 +36,11 @@ extern const char* const
 extern const char* const NotByOctant;   ///< Source By octant was requested but cannot be used in this scene
 extern const char* const NotSideBySide; ///< the device does not run two queues concurrently
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
-/// Many directions carry no incident light; lit: fraction of the rays that carry incident light.
+/// Text that many directions carry no incident light.
+/// @param lit  fraction of the rays that carry incident light
 std::string DarkDirections(double lit);
 std::string MirrorImages(int classes, int directions);
-std::string TwoAxes(int polarNodes);          ///< the scene is uniform along two axes
-std::string DirectionsAlongSlab(int perFace); ///< the number of directions was changed to perFace, for a slab
+std::string TwoAxes(int polarNodes);          ///< text that the scene is uniform along two axes
+std::string DirectionsAlongSlab(int perFace); ///< text that the number of directions was changed to perFace, for a slab
 }
 }

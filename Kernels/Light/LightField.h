@@ -56,7 +56,8 @@ struct ConvergenceRow
 /// Report of a solve on its accuracy, convergence and settings, for the domain.
 struct SolveReport
 {
-  /// Estimated error of the fluence: its root mean square over that of the fluence. 0: not requested; NaN: not known.
+  /// Estimated root-mean-square error of the fluence, relative to the root mean square of the fluence. 0: not
+  /// requested; NaN: not known.
   double relativeError = 0.0;
   /// Half-range flux of the quadrature used for boundary sources (DirectionSet.h); 0: there is none.
   double halfRangeFlux = 0.0;

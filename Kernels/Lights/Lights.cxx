@@ -121,7 +121,7 @@ double AxialIntensity(const Light& lamp)
   const double sine = std::sin(0.5 * HalfAngle(lamp));
   switch (lamp.type)
   {
-    case LightType::Spot: return 1.0 / (4.0 * Pi * sine * sine); // instead of 1 - cos(angle), which would cancel
+    case LightType::Spot: return 1.0 / (4.0 * Pi * sine * sine); // 2 sin^2(angle / 2) instead of 1 - cos(angle)
     case LightType::Rectangle: return 1.0 / Pi;
     case LightType::Point: return 1.0 / (4.0 * Pi);
     case LightType::Directional: break;

@@ -20,10 +20,10 @@ struct BoxFaceCell
   /// Index among the cells of all faces: faces in the order -x, +x, -y, +y, -z, +z; within a face the lower axis varies
   /// fastest.
   std::size_t number;
-  /// Face of the box, and position of the cell in it; u runs along the lower of the two axes in the face.
+  /// `face`: index of the box's face. `u`, `v`: position of the cell in that face, u along the lower of its two axes.
   int face, u, v;
   std::size_t voxel;
-  std::size_t inward; ///< index of the next voxel inwards; `voxel` if there is none
+  std::size_t inward; ///< index of the next voxel inwards from `voxel`; `voxel` if there is none
 };
 
 /// Numbering of the cells of one face of the box among the cells of all faces: `first` is the index of its first cell.

@@ -16,6 +16,7 @@ class Coarsening
 public:
   /// Transfer to a coarse grid with half as many voxels per axis, rounded down, at least one.
   explicit Coarsening(const Grid& fine);
+  /// Transfer to a given coarse grid.
   /// @param coarse  grid over the same box as `fine`, along no axis finer
   Coarsening(const Grid& fine, const Grid& coarse);
 

@@ -19,9 +19,9 @@ std::int32_t BitsOf(float value)
   return bits;
 }
 
-/// Values of one field in a layer of bricks across z, which is contiguous in memory. Floats are compared as integers:
-/// non-negative floats have the order of their bits, all non-finite values compare larger, and integer operations need
-/// no branches.
+/// Values of one field in a layer of bricks normal to z, which is contiguous in memory. Floats are compared as
+/// integers: non-negative floats have the order of their bits, all non-finite values compare larger, and integer
+/// operations need no branches.
 class LayerOfBricks
 {
 public:
@@ -120,7 +120,7 @@ private:
   const Grid& TheGrid;
   const std::array<int, 3> BrickCount;
   const int Layer;
-  std::vector<std::int32_t> Bits; ///< [brick][lane]: bits of its values, combined by OR
+  std::vector<std::int32_t> Bits; ///< [brick][lane]: the bits of all values of a brick, combined by OR
 };
 static_assert(BrickEdge == 8, "a row of a brick is whole lanes");
 

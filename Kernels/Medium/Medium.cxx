@@ -100,7 +100,7 @@ void CheckExtinction(const Medium& medium, const FilledBricks& bricks)
     const double g = std::abs(medium.phase.MeanCosine(i, c));
     return medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
   };
-  // below it the sum is small enough, since 1 + g is at most 2
+  // If sigma_a and sigma_s are at most this, sigma_a + (1 + |g|) sigma_s is small enough, since 1 + |g| is at most 2.
   constexpr float little = static_cast<float>(LargestExtinction / 4.0);
   if (bricks.absorption.largest <= little && bricks.scattering.largest <= little)
   {

@@ -7,7 +7,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SameColour = 3e-7; ///< relative tolerance for multiples of one colour: rounding to float
+constexpr double SameColour = 3e-7; ///< relative rounding error of multiples of one colour
 
 bool Grey(const Rgb& rgb)
 {
@@ -84,7 +84,7 @@ CommonColour ColourOf(const Illumination& illumination)
 
 namespace
 {
-constexpr float SameExtinction = 2e-7f; ///< relative tolerance for equal sums: rounding to float
+constexpr float SameExtinction = 2e-7f; ///< relative rounding error of sums sigma_a + sigma_s
 
 /// The voxels of a row along x that lie in one brick.
 struct Row

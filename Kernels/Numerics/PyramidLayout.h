@@ -31,6 +31,6 @@ inline cl::NDRange PyramidGroup()
 {
   return cl::NDRange(32, 8, 1);
 }
-/// Global size of such a kernel for a level of `nodes` nodes, rounded up to work-groups.
+/// Global size, rounded up to work-groups, of a kernel over the `nodes` of one level of a pyramid.
 cl::NDRange PyramidRange(const std::array<int, 3>& nodes);
 }

@@ -22,11 +22,12 @@ public:
   /// Implicit conversion: one phase function for all voxels and channels.
   PhaseOfMedium(const PhaseFunction& ofAll);
   explicit PhaseOfMedium(const std::array<PhaseFunction, 3>& ofChannels);
+  /// One kind of function with a mean cosine by voxel.
   /// @param kind  a kind with one mean cosine (PhaseFunction::WithMeanCosine), else InvalidInput is thrown
   /// @param g  mean cosine by voxel, which replaces that of `kind`; not owned
   PhaseOfMedium(const PhaseFunction& kind, const Field& g);
 
-  /// Function of a channel; only if g does not vary by voxel.
+  /// Phase function of a channel. Requires that g does not vary by voxel.
   const PhaseFunction& OfChannel(int channel) const { return this->Functions[channel]; }
   const Field& G() const { return this->ByVoxel; } ///< mean cosine by voxel; has no values if g does not vary
   bool Varies() const { return this->ByVoxel.values != nullptr; }
@@ -61,6 +62,7 @@ struct MeanCosineRange
     this->least.fill(std::numeric_limits<double>::infinity());
     this->greatest.fill(-std::numeric_limits<double>::infinity());
   }
+  /// Computes the range of g over the voxels that scatter.
   /// @param g, sigma_s  fields over `voxels` voxels
   MeanCosineRange(const Field& g, const Field& sigma_s, std::size_t voxels)
     : MeanCosineRange()

@@ -219,8 +219,8 @@ Basis RepairedEigenvectors(
   return all;
 }
 
-/// Fraction of light in the forward peak that `terms` terms cannot represent, the moment of the next degree; 0 for
-/// backward peaks.
+/// Fraction of light in the forward peak that `terms` terms cannot represent: the Legendre moment of the degree after
+/// that of the last term; 0 if this moment is negative.
 double PeakBeyond(const std::vector<double>& moments, int terms)
 {
   return std::max(0.0, moments[DegreeOfTerm(terms - 1) + 1]);

@@ -57,8 +57,10 @@ struct SeparableErrors
 ///
 /// With singular values, the terms with the largest ones come first; if repaired, they are preceded by the four terms
 /// that carry power and mean cosine. With spherical harmonics, orthonormalised on the set degree by degree (J. E.
-/// Morel, Nucl. Sci. Eng. 101 (1989)), terms are ordered by degree: N = (L + 1)^2 completes a degree, other N prefer
-/// some axes. Terms with eigenvalue zero are omitted.
+/// Factorises a phase function on a set of directions.
+/// @param directions  a quadrature with positive weights; if repaired, it must integrate 1 and omega exactly
+/// @throws InvalidInput if there are no directions, more than 1024 with singular values, the number of terms is not
+///   from 1 to the number of directions, or a weight is not positive
 class SeparablePhaseFunction
 {
 public:
@@ -82,7 +84,8 @@ public:
   }
   double Value(int i, int j) const; ///< sum_k lambda_k u_k(i) u_k(j), without the peak, 1/sr
 
-  /// Singular values (absolute eigenvalues) of the phase matrix, largest first; with spherical harmonics, of its terms.
+  /// Absolute eigenvalues of the phase matrix (its singular values), largest first; with spherical harmonics, those of
+  /// the terms.
   const std::vector<double>& SingularValues() const { return this->Singular; }
   /// The full phase matrix, 1/sr, [i][j], including the peak; repaired if the settings request it.
   const std::vector<double>& Matrix() const { return this->Whole; }

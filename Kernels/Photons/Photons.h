@@ -71,6 +71,7 @@ struct MarchSettings
   Sums sums = Sums::Fitting;
 };
 
+/// Checks the settings of a march.
 /// @throws InvalidInput if the order is not 1, 2 or 4, the step size is not 0.05 to 1e4 voxels, maximumOrders is
 ///   negative, errorBatches is 1, outside 0 to MarchedBatchesAtMost or combined with counts or batches, or batches are
 ///   combined with maximumOrders other than 1

@@ -23,7 +23,8 @@ struct ConservativeLevel
   LightRows light;   ///< fields of the light: each batch, then the smoothed quantities
   LightRows results; ///< result of the level: smoothed quantities, source level, squared error
   LightRows gains;   ///< gains of the details of the next finer level, and their errors
-  /// Intermediate results for the gains: details by measure_details, and smoothed along y and z.
+  /// Intermediate results for the gains. `measured`: noise and light of the details, from measure_details. `across`:
+  /// the same, smoothed along y and z.
   LightRows measured, across;
 };
 

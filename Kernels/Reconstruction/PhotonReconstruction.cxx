@@ -332,6 +332,7 @@ void RequireArray(const float* values, Estimator estimator, const char* what, co
   }
 }
 
+/// Checks the settings.
 /// @throws InvalidInput if a setting is out of range
 void Check(const ReconstructionSettings& settings)
 {

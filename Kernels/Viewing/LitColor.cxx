@@ -21,7 +21,8 @@ constexpr int ColumnsOfView = 64;             ///< largest number of columns alo
 /// Smallest value of k sigma_t distance of the most opaque voxel (k, distance: LitColor.h), so that 8 bits resolve
 /// opacities.
 constexpr double ResolvedDepth = 2.0;
-/// Fraction of the largest radiance that a ray shows of a voxel at which its display value is matched as well.
+/// Fraction of the largest radiance that a ray shows of a voxel for which k is chosen so that blending gives the right
+/// display value: the 1/4 of numerics.md, Eq. (112d).
 constexpr double PartOfVeil = 0.25;
 constexpr double AsGoodAsOpaque = 0.95; ///< opacity from which on a voxel counts as opaque
 
@@ -116,8 +117,8 @@ SeenColumn LookAlong(const SourceFunction& source, double edge, std::size_t firs
   return seen;
 }
 
-/// Calls act(u, v) for the columns along an axis that a view shows, a regular subset of those of the grid, as far as
-/// they lie in a box.
+/// Calls act(u, v) for those columns of a view along an axis that lie in a box. A view shows a regular subset of the
+/// grid's columns.
 template <class Act>
 void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Act& act)
 {
@@ -137,8 +138,7 @@ void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Ac
   }
 }
 
-/// Radiance and transmittance of the columns of a view within this rank's block; for each column from below and from
-/// above.
+/// Radiance and transmittance, within this rank's block, of each column of a view, seen from below and from above.
 std::vector<SeenColumn> SeenInBlock(const Domain& domain, int axis, const SourceFunction& source)
 {
   const Grid grid = domain.OwnGrid();
@@ -172,7 +172,7 @@ SeenPixels BehindEachOther(
   std::sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b) { return partition.blocks[a].first[axis] < partition.blocks[b].first[axis]; });
   const std::size_t width = static_cast<std::size_t>(partition.whole.size[AcrossAxis(axis).u]);
-  // columns from below and from above, by position in the plane across the axis
+  // By position in the plane across the axis: the column seen from below and from above.
   std::map<std::size_t, std::array<SeenColumn, 2>> columns;
   for (int side = 0; side < 2; ++side)
   {

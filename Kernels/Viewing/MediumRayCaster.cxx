@@ -33,7 +33,8 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
     {
       const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
       const float* row = ior.values + grid.IndexOf({ 0, j, k });
-      // Rows inside a face in y and z touch the faces in x only, with their two ends.
+      // All voxels of a row on a y or z face are on the box's faces; of any other row, only its two ends, on the x
+      // faces.
       const int step = wholeRow ? 1 : std::max(size[0] - 1, 1);
       for (int i = 0; i < size[0]; i += step)
       {
@@ -256,7 +257,7 @@ void MediumRayCaster::FinishSources(const Camera& camera)
     this->Sources.SeeMoments(camera);
   }
   this->Samples.Pack(Packing::Scattered, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
-  this->Omitted = this->LeftOutNow(); // now that empty bricks are known
+  this->Omitted = this->LeftOutNow(); // not before, since empty bricks are known only now
   this->SourcesReady = true;
   if (this->Traits.PacksOnce())
   {

@@ -20,7 +20,8 @@ namespace
 constexpr std::size_t TrySamples = 4096;
 constexpr std::size_t ReportEvery = 100000;
 
-/// A light's photon source, with the sampler of its square of the importance map, if it has one.
+/// Photon source of a light, with a sampler of the light's square of the importance map; without one if the map has
+/// none for this light.
 struct SpreadSource
 {
   PhotonSource source;

@@ -29,8 +29,8 @@ struct EmissionSettings
   const ImportanceMap* map = nullptr;
   /// Upper limit of the photon density that the map may request, relative to uniform sampling; at least 1.
   double densestAtMost = 8.0;
-  /// Emit only part `part` (from 0) of `parts` of the photons. The photons of all parts, in the order of the parts,
-  /// are all photons in their order.
+  /// Number, from 0, of the part of the emission to compute, and number of parts. The photons of all parts, one part
+  /// after another, are those of an undivided emission, in the same order.
   int part = 0, parts = 1;
 };
 

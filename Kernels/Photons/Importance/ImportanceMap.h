@@ -22,6 +22,7 @@ struct ImportanceMap
   std::size_t Cells() const { return static_cast<std::size_t>(this->size) * static_cast<std::size_t>(this->size); }
 };
 
+/// Checks an importance map.
 /// @throws InvalidInput if a density is negative, 0 (light that starts in its cell would be missing) or not finite
 ///   (names light, column and row), or if there is not one density per cell
 void Check(const ImportanceMap& map);

@@ -21,9 +21,9 @@ constexpr double SteepPart = 0.2; ///< fraction of lit cells that count as steep
 constexpr double SteepAtLeast = 0.25;
 constexpr double DimBelow = 0.5;  ///< luminance threshold relative to the median luminance
 constexpr double FewCells = 0.01; ///< smallest fraction of lit cells that must be chosen to justify a map
-/// Threshold below which a map gains nothing, for the standard deviation of the map of chosen cells, of mean 1, times
-/// the fourth root of their fraction of the lit cells. Measured: fog alone, under a sun from any direction, a lamp
-/// above or in it, thin or thick, 0.2 to 0.46; glass in fog 0.53 to 1.
+/// A light needs no map if the standard deviation of the map of its chosen cells (mean 1), times the fourth root of the
+/// fraction of lit cells that are chosen, is below this. Measured values of this product: 0.2 to 0.46 for thin or thick
+/// fog under a sun from any direction, or a lamp above or in it; 0.53 to 1 for glass in fog.
 constexpr double EvenMap = 0.5;
 
 constexpr int LargestEdge = 1024; ///< maximum number of map cells along an edge
@@ -140,7 +140,8 @@ void ChooseThresholds(const std::vector<double>& luminance, Importance& importan
     }
   }
   const double median = Quantile(lit, 0.5);
-  // The luminance of cells with few photons fluctuates: by one photon for each row of photons that crosses a cell.
+  // Photons cross a cell in rows. Their number N fluctuates by about one per row, sqrt(N) in all, and the luminance by
+  // the fraction 1 / sqrt(N).
   const double chance = 1.0 / std::sqrt(std::max(Quantile(counts, 0.5), 1.0));
   importance.gradientThreshold =
     std::max(Quantile(steepness, 1.0 - SteepPart), std::max(SteepAtLeast, chance) * median);

@@ -28,7 +28,7 @@ public:
   {
   }
 
-  /// Collective.
+  /// Marches pilot photons and returns their light in the coarse cells. Collective.
   /// @param photons, origins  pilot photons and their columns and rows on the photon plane, the same on all ranks
   /// @param cells  number of coarse cells along each axis
   /// @return the light of the domain, on every rank
@@ -40,7 +40,7 @@ private:
   const MarchMedium* Through;
   const MarchTraits& Traits;
   const MarchSettings& Settings;
-  std::array<int, 3> Cells = {}; ///< numbers of cells along the axes for which CellOfVoxel was computed
+  std::array<int, 3> Cells = {}; ///< numbers of cells along each axis with which CellOfVoxel was computed
   Buffer<cl_int> CellOfVoxel;
 };
 }

@@ -212,7 +212,8 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& io
   }
   else if (this->IsBlock() && this->hasLevels)
   {
-    // Level 0 everywhere: OwnNodes only tests where the index varies. SetNodes then sets the nodes of the domain.
+    // SetNodes later sets the levels of a block of a larger domain. Until then, the level is 0 in all voxels: OwnNodes
+    // needs to know only where the index varies.
     const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0);
     this->PackVoxels(medium, ior, single.data());
   }

@@ -146,7 +146,7 @@ public:
   /// Number of records of extinction and of deposits: those of bricks, or the voxels of the padded grid.
   std::size_t Records() const { return this->bricks.AreThere() ? this->bricks.Records() : this->PaddedCount(); }
 
-  /// Creates a kernel of PhotonMarch.cl for photons with `channels` of power.
+  /// Creates a kernel of PhotonMarch.cl for photons with `channels` power channels.
   /// @param directions  whether directions are recorded
   /// @param options  definitions of macros that do not follow from the medium
   cl::Kernel MarchKernel(const char* name, int channels, bool directions, const std::string& options) const;

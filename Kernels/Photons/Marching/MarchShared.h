@@ -50,7 +50,8 @@ typedef struct
 typedef struct
 {
   ulong copyStride; ///< number of 64-bit numbers in one copy of the sums
-  /// Copies of the sums, and batches of photons, which are no more than copies; copy c belongs to batch c % batches.
+  /// `copies`: number of copies of the sums. `batches`: number of batches of photons, at most `copies`; copy c belongs
+  /// to batch c % batches.
   int copies, batches;
   int first, count; ///< first photon within each batch, and number of photons in each batch
   int resumes; ///< 1: photons that arrived from another block or continue from an earlier turn; 0: photons that start

@@ -24,8 +24,8 @@
 // State of a packet that changes within a step, kept in registers; photon_lanes has the complete state.
 typedef struct
 {
-  integer at, alive, crossings; // voxel (index of its extinction); -1 or 0; number of path segments
-  real wall[3], now;            // times since the step began: of the next walls, and now
+  integer at, alive, crossings; // at: index of the voxel's extinction; alive: -1, 0 once ended; crossings: segments
+  real wall[3], now;            // times since the step began: arrival at the next wall of each axis, and now
   real sigma;                   // optical thickness of the voxel's diagonal; sign bit set where the index varies
   real power[CHANNELS];         // remaining power in units
   real owed[CHANNELS];          // Kahan compensation: the exact power is `power + owed`

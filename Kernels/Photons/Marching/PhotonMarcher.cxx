@@ -85,6 +85,7 @@ public:
   Implementation(Device& device, const Domain& domain, const Medium& medium, const Field& ior,
     const MarchSettings& settings, const std::uint8_t* levels);
 
+  /// Marches this rank's photons. Collective.
   /// @param turns  callbacks for a march in turns; null: photons are marched to their ends at once
   PhotonLight March(const std::vector<Photon>& share, MarchTurns* turns, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const;

@@ -345,7 +345,9 @@ int BatchesOf(const std::vector<Photon>& photons)
 
 namespace
 {
-/// The first photon's colour on the first rank that has one; black if none has. Collective.
+/// Colour of the first photon that has power, on the lowest rank that has such a photon; black if there is none.
+/// Collective.
+/// @param own  colour of this rank's first photon that has power; black if it has none
 Rgb FirstOfAll(const Domain& domain, const Rgb& own)
 {
   std::vector<double> colours(3 * static_cast<std::size_t>(domain.Comm().Ranks()), 0.0);

@@ -323,7 +323,7 @@ static integer nodes_of(const march_arrays* arrays, integer mask, const integer*
   if (!NODE_BRICKS)
   {
     const MarchInfo* info = arrays->info;
-    // The padding for photons outside the mask.
+    // Lanes outside the mask read the padding.
     const integer at = mask & place_in(&info->known, info->knownFirst, 1, voxel);
     return to_integer(gather(uchar, arrays->nodes, at));
   }

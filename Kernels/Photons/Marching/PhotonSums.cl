@@ -114,8 +114,8 @@ static void store_taken(const taken_power* taken, __global long* to)
   }
 }
 
-// Optical thickness of a voxel's diagonal, at least 1, from the medium's extinction (1/length): the copy for photons
-// is limited to a finite range.
+// Optical thickness of a voxel's diagonal, at least 1, from sigma_a + sigma_s of the medium (`extinction`, 1/length);
+// the extinction packed for the photons is limited to a finite range.
 static float thickness_of(const LightSumsInfo* info, float extinction)
 {
   return fmax(info->diagonal * extinction, 1.0f);

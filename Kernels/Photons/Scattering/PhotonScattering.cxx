@@ -350,7 +350,7 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
   }
 }
 
-/// Factor of a run's light in each channel.
+/// Factors, by channel, by which the light of one run of photons is multiplied.
 /// @param oneRun  whether there is one run for all channels
 Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int run)
 {

@@ -53,8 +53,8 @@ struct PhotonScattering
   /// @param stepPart  fraction of MarchSettings::stepSize to use: ScatteringStepPart of the index in the domain
   PhotonScattering(const MarchMedium& through, const Medium& medium, double stepPart);
 
-  /// Ratio of the unit of power for scattered photons to the unit for uncollided light. A scattered photon may return
-  /// to a voxel: no sum of this many times the deposits of uncollided light can exceed 2^62.
+  /// Ratio of the unit of power for scattered photons to that for uncollided light. Scattered photons may return to a
+  /// voxel; in the larger unit its sum exceeds 2^62 only after this many times the deposits of uncollided light.
   static constexpr double DepositsPerEvent = 4096.0;
 
   const MarchMedium& through;

@@ -24,6 +24,7 @@ struct Material
   double g = 0.0;   ///< mean cosine of the phase function, in (-1, 1)
 };
 
+/// Checks the properties of a material.
 /// @param name  name of the object that consists of the material, for the message
 /// @throws InvalidInput if a value is out of range
 void Check(const Material& material, const std::string& name);
@@ -98,7 +99,7 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
 RefractiveMedium Voxelize(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
   const Monitor& monitor = {});
 
-/// Findings in a part of the box, or in all of it, that are complete only when combined over the box.
+/// Findings of the voxelisation of a part of the box, which must be combined with those of all other parts.
 struct VoxelFindings
 {
   std::vector<WindingNumbers> windings; ///< winding numbers of each solid's mesh at the samples

@@ -20,8 +20,8 @@ class SampleLattice
 public:
   using Point = std::array<cl_int, 3>;
 
-  /// @throws InvalidInput if a mesh is so large relative to the grid that the distance of samples would be below a
-  ///   unit
+  /// Chooses the unit of the lattice for a grid and all meshes that are voxelised on it.
+  /// @throws InvalidInput if a mesh is so large relative to the grid that the distance of samples would be below a unit
   SampleLattice(const Grid& grid, int samples, const std::vector<const TriangleMesh*>& meshes);
 
   /// The same lattice with its origin at the lower corner of a voxel, for voxelising a box of the grid: the box's
@@ -81,7 +81,7 @@ public:
   /// wait.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, int firstRow, int endRow) const;
 
-  /// Tiles of triangles for crossings in a box of samples, see above.
+  /// Tiles of triangles in which mark_crossings looks for crossings in a box of samples.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, const SampleBox& box) const;
 
 private:

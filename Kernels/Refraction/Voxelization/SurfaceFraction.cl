@@ -81,8 +81,8 @@ typedef struct
   int samples; // number of samples in a column
 } mesh_samples;
 
-// Correction of a voxel by one crossing: (index of the voxel in the slab, or -1 if it is outside; correction in UNITS
-// per sample).
+// Correction of a voxel by one crossing, returned as (index of the voxel in the slab, or -1 if it is outside;
+// correction in UNITS per sample).
 //   excess      `excess` of the sheet in this column, see sheet
 //   scale       UNITS of correction per distance
 //   turned      as in side_of

@@ -228,7 +228,8 @@ public:
     this->ClaimSamples = kernel("claim_samples", 0);
   }
 
-  /// Prepares for a slab; to be called before its last mesh, which is the first to be measured.
+  /// Prepares the measurement of a slab. Must be called before the slab's last mesh is measured, which is the first one
+  /// to be measured.
   void Begin()
   {
     if (this->Several)

@@ -23,7 +23,7 @@ struct WindingNumbers
   std::array<double, 3> firstOddSample = { 0, 0, 0 };
   std::array<int, 3> firstOddNumber = { 0, 0, 0 }; ///< index of the first odd sample along each axis of the domain
 
-  /// Adds the winding numbers at other samples, which were found with columns along x.
+  /// Adds the winding numbers of the mesh at other samples, which were found with columns along x.
   void Add(const WindingNumbers& others);
 };
 

@@ -107,8 +107,8 @@ inline face_place face_behind(real3 p, real3 direction, int4 size)
 
 // Reflecting faces of the box, seen from inside, such as matt ground or snow.
 
-// Radiance from behind the medium: that of a reflecting face for rays `leaves`, if they leave the box through one, else
-// `behind`.
+// Radiance from behind the medium: for rays of the mask `leaves` that leave the box through a reflecting face, the
+// radiance of that face; for all other rays, `behind`.
 //   p     a point, in voxels, from which the ray leaves the box in a straight line
 //   size  voxels of the box whose faces the table describes
 inline rgb ground_or_behind(

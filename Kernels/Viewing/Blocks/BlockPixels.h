@@ -48,7 +48,7 @@ struct BlockPixel
   /// Transmittance of the medium for unscattered light, averaged over the channels.
   float Left() const { return (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
 
-  /// Largest transmittance of a channel for unscattered light; MostThrough: for radiance.
+  /// Largest transmittance over the channels: MostLeft for unscattered light, MostThrough for radiance.
   float MostLeft() const { return std::max({ this->seen[0], this->seen[1], this->seen[2] }); }
   float MostThrough() const
   {
@@ -70,7 +70,7 @@ struct BlockPixel
     return all;
   }
 
-  /// Opacity for what is behind the pixel, including that of the background.
+  /// Opacity with which the pixel, including the background that it shows, hides what is behind it.
   float Hidden() const { return 1.0f - this->open * this->Left(); }
 
   /// Composites this pixel over `behind`, the contribution of the blocks behind to the same pixel.

@@ -26,7 +26,7 @@ typedef real spectrum;
 typedef struct
 {
   __global const float4*
-    samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see there
+    samples; // red, green, blue of q, W / (length^3 sr), and grey sigma_t, 1/length; with GREY see Sampling.cl
   __global const float4* extinctions; // sigma_t of red, green, blue, 1/length, with COLOURED
   __global const float4* flow;        // x, y, z of the light's mean direction, see FLOW
   __global const float4* glow;        // emission, W / (length^3 sr), with GLOW

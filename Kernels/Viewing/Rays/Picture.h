@@ -36,7 +36,8 @@ struct Picture
 /// that are not rendered again. Empty: there are no blocks in front.
 struct Starts
 {
-  /// Transmittances like Picture::transmittance and Picture::sceneTransmittance.
+  /// Transmittances of the blocks in front: `transmittance` for radiance (Picture::transmittance), `seen` for
+  /// unscattered light (Picture::sceneTransmittance).
   std::vector<float> transmittance, seen;
 
   bool IsEmpty() const { return this->seen.empty(); }

@@ -67,7 +67,7 @@ public:
   /// @param direct, diffuse  light from SeenSources; read if `what` is for camera rays
   void Pack(Packing what, const SceneOnDevice& scene, const Buffer<float>& direct, const Buffer<float>& diffuse);
 
-  // Contents after the last call of Pack.
+  // The following functions describe what the last call of Pack packed.
   Packing PackedFor() const { return this->For; }
   std::string ShownOptions() const; ///< compiler options that define SHOWN and BEAMS
   bool HasEmptyBricks() const { return this->EmptyBricks; }

@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Dilates a set of bricks by one brick in both directions along an axis.
+/// Dilates a set of bricks by one brick, up and down one axis.
 std::vector<unsigned char> Widened(const std::vector<unsigned char>& bricks, const std::array<int, 3>& count, int axis)
 {
   const std::size_t stride = axis == 0 ? 1
@@ -56,7 +56,8 @@ using Functions = std::array<PhaseFunction, 3>;
 
 /// Number of Legendre moments of phase functions without a formula; resolves 0.2 degrees.
 constexpr int MomentCount = 1024;
-/// Moments times the power of the anisotropy are dropped below this value.
+/// Terms of Eq. (108a) of numerics.md are dropped where a^l, a the length of the light's mean direction, falls below
+/// this.
 constexpr double NoMore = 1e-7;
 /// Fraction of the scattered light that the quadrature of the moments may miss.
 constexpr double Resolved = 1e-6;
