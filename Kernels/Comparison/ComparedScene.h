@@ -41,7 +41,7 @@ struct ComparedScene
   bool BendsLight() const; ///< whether the refractive index varies
   bool Emits() const;      ///< whether any voxel emits
   /// Reason why photons cannot simulate this scene; empty if they can.
-  /// @param all  whether scattered light is simulated as well
+  /// @param all  whether scattered light is wanted as well as uncollided light
   std::string WhyNotByPhotons(bool all) const;
 };
 }

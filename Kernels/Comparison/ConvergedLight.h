@@ -41,7 +41,8 @@ struct NominalSeconds
 /// Reference light with which the results of all methods are compared.
 struct ReferenceLight
 {
-  /// The scene's grid, or one finer or coarser by integer factors; errors are computed on the coarser of both.
+  /// Grid of the reference: the scene's, or one that is finer or coarser by integer factors. Errors are computed on the
+  /// coarser of the reference's and the scene's grid.
   Grid grid;
   int channels = 1;
   /// Fluence, W / length^2, `channels` per voxel; empty: unknown; NaN: unknown in this voxel.

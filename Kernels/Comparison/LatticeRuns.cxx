@@ -11,7 +11,7 @@ namespace
 {
 constexpr int Lattices[] = { 18, 6 }; ///< numbers of directions of the lattices
 
-/// Computes uncollided light by photons and scattered light by the lattice: the run time is that of both.
+/// Computes uncollided light by photons and scattered light by the lattice, so that the run time covers both.
 LightField SolveWithPhotons(
   Device& device, const ComparedScene& scene, int photons, const LatticeSettings& settings, const Monitor& monitor)
 {

@@ -21,7 +21,7 @@ std::size_t PlaceOf(std::size_t index, int has, int wanted)
 
 constexpr int FewestSets = 16, MostSets = 64;            ///< numbers of photon sets of the reference
 constexpr int FewestToForecast = 4, MostToForecast = 64; ///< numbers of photon sets of the pilot run
-/// Photons per set of the pilot run: this fraction (1 / PartToForecast) of the largest photon count, at least
+/// Photons per set of the pilot run: the largest photon count of the comparison over PartToForecast, but at least
 /// LeastToForecast.
 constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000;
 /// largest number of photons per set; they use a hundred megabytes

@@ -51,13 +51,13 @@ ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, co
 /// Forecast of whether Monte Carlo photons give a better reference than the compared methods within a given time.
 struct PhotonForecast
 {
-  static constexpr double PartOfTime = 0.5; ///< fraction of the time that the forecast may take
+  static constexpr double PartOfTime = 0.5; ///< fraction of the available time that the forecast may take
 
   bool beats = false;
   /// Photons per set, in sixteen sets, for a standard error of a tenth of the maps' error, or as many as the time
   /// allows.
   std::size_t photonsOfASet = 0;
-  std::string why; ///< explanation for the user, with both errors
+  std::string why; ///< explanation for the user, with the errors of photons and maps
   /// The finest maps that are compared; no value if they take too long or do not fit the device.
   std::optional<LightField> maps;
 };

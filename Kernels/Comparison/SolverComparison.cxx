@@ -137,7 +137,7 @@ struct Lane
 {
   std::vector<ComparedRun> runs;
   std::size_t next = 0;
-  double secondsOfCost = 0.0; ///< seconds per unit of cost, from the last run with all orders
+  double secondsOfCost = 0.0; ///< seconds per unit of ComparedRun::cost, by the last run with all orders
 
   bool Done() const { return this->next == this->runs.size(); }
 };

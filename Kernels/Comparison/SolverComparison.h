@@ -70,7 +70,7 @@ struct Comparison
   std::vector<ComparisonRow> rows;
   ReferenceLight reference;
   std::vector<std::string> leftOut;  ///< settings that were not compared, with the reasons
-  std::vector<std::string> warnings; ///< parts of the comparison that the time budget did not allow
+  std::vector<std::string> warnings; ///< warnings about runs that the time budget did not allow
   std::string device;
 };
 

@@ -49,7 +49,7 @@ public:
   CompilationListener(const CompilationListener&) = delete;
   CompilationListener& operator=(const CompilationListener&) = delete;
 
-  /// The latest listener of this thread, or null.
+  /// The listener that this thread created last and has not destroyed; null if there is none.
   static const CompilationListener* OfThisThread();
 
   /// Waits until isDone(duration), which waits for at most `duration`, returns true; calls the listener after each

@@ -100,9 +100,9 @@ public:
   /// Creates another in-order queue, with profiling events. Commands on both queues may run concurrently.
   cl::CommandQueue AnotherQueue() const { return { this->TheContext, this->TheDevice, CL_QUEUE_PROFILING_ENABLE }; }
   void Finish();
-  /// Must be called before any other wait for queued commands, e.g. a blocking read. PoCL completes the compilation of
-  /// a kernel at its first run: if a program was compiled since the last wait, this function waits for all queued
-  /// commands and notifies this thread's CompilationListener.
+  /// Waits for all queued commands and notifies this thread's CompilationListener, if a program was compiled since the
+  /// last wait: PoCL completes the compilation of a kernel at its first run. Must be called before any other wait for
+  /// queued commands, e.g. a blocking read.
   void AwaitFirstRuns();
 
   /// Calls tyndall::TakePages for the memory of a buffer of `bytes` bytes that will be written completely. Does nothing

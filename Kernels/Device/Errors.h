@@ -20,7 +20,7 @@ struct InvalidInput : std::invalid_argument
 };
 
 /// Checks a condition on the input.
-/// @throws InvalidInput with this text if `holds` is false
+/// @throws InvalidInput with the message `text` if `holds` is false
 inline void Require(bool holds, const std::string& text)
 {
   if (!holds)

@@ -33,8 +33,8 @@ public:
   HostMappedBuffer(const HostMappedBuffer&) = delete;
   HostMappedBuffer& operator=(const HostMappedBuffer&) = delete;
 
-  /// Waits for the device: after a failure, kernels queued before may still access the array, which then belongs to the
-  /// caller again.
+  /// Waits for the device. After a failure, kernels queued before may still access the caller's array, which the caller
+  /// may free once this object is destroyed.
   ~HostMappedBuffer()
   {
     if (this->Count > 0 && this->Copy.Size() == 0)
@@ -43,7 +43,7 @@ public:
       {
         this->Owner->Finish();
       }
-      catch (const cl::Error&) // the error will occur again in a later call, which can report it
+      catch (const cl::Error&) // ignored: the error occurs again in a later call, which reports it
       {
       }
     }

@@ -19,7 +19,7 @@ public:
   /// @param cacheFolder  as in Device's constructor
   KernelPrograms(const cl::Context& context, const cl::Device& device, std::string deviceName, std::string cacheFolder);
 
-  /// Creates a kernel; the same as Device::Kernel.
+  /// Implements Device::Kernel for the device and all of its views.
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options);
 
   /// Whether a program was compiled since the last call, in a build so slow that it notified a CompilationListener.
@@ -27,7 +27,7 @@ public:
   static bool HaveCompiled(); ///< whether this process has compiled a program rather than read it from a cache
 
 private:
-  /// A program, built by the first thread that needs it. Other threads wait only if they need the same program.
+  /// A program of the cache. The first thread that needs it builds it; threads that need other programs do not wait.
   struct KeptProgram
   {
     std::timed_mutex Building;

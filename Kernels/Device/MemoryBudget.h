@@ -22,7 +22,7 @@ struct MemoryBudget
 enum class Residence
 {
   AsBudgetSays,
-  /// on the device as long as there is room: for arrays that kernels access all the time
+  /// device memory as long as there is room, for arrays that kernels access all the time
   Device
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-/// The only inclusion of OpenCL's C++ binding, so that every file sees it with the same settings.
+/// The only file that includes OpenCL's C++ binding, so that all files include it with the same settings.
 #define CL_HPP_ENABLE_EXCEPTIONS
 #define CL_HPP_TARGET_OPENCL_VERSION 120
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120

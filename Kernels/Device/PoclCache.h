@@ -10,7 +10,7 @@ namespace tyndall
 /// device if it cannot create the folder, and ends the process if the disk is full or a file in the folder is damaged.
 struct PoclCache
 {
-  /// Free space that the folder must have, bytes; the kernels of a scene need a part of it.
+  /// Free space that the folder must have, bytes; the compiled kernels of a scene need less.
   static constexpr std::size_t Room = std::size_t(8) << 20;
   static constexpr const char* Damaged = ".damaged"; ///< text appended to the names of damaged files
 

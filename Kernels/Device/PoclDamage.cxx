@@ -82,7 +82,7 @@ std::optional<std::string> BytesOf(const fs::path& file)
   return stream.eof() && !stream.bad() ? std::optional<std::string>(std::move(bytes)) : std::nullopt;
 }
 
-/// Recorded state of a file or folder, by which changes are detected.
+/// Recorded state of a file or folder of PoCL's cache, by which later changes are detected.
 struct Note
 {
   std::uint64_t number = 0; ///< inode number
@@ -111,7 +111,7 @@ std::optional<Note> NoteOf(const std::string& path)
     nanoseconds(found.st_ctim), 0 };
 }
 
-// Checksum FNV-1a.
+// Checksum of the bytes by the hash function FNV-1a.
 std::uint64_t SumOf(const std::string& bytes)
 {
   std::uint64_t sum = 14695981039346656037u;
@@ -317,7 +317,7 @@ private:
     }
     // Whether the last change is more than a second ago: time stamps of file systems are coarse.
     const bool rests = found && std::time(nullptr) - found->changed / 1000000000 > 1;
-    if (sound && rests) // otherwise the next run inspects the folder again
+    if (sound && rests) // a folder that is not noted is inspected again by the next run
     {
       this->Known.Set(program, *found);
     }
@@ -497,6 +497,6 @@ void NoteChecksums(const std::string& folder)
 {
   CacheInspection(WithoutSlash(folder)).Run([](const std::string&, const std::string&) {
     return false;
-  }); // damaged files are left to the next process
+  }); // damaged files are not removed here, but by the next process
 }
 }

@@ -18,7 +18,7 @@ constexpr Integer RoundUp(Integer value, Integer step)
   return (value + step - 1) / step * step;
 }
 
-/// Number of parts of size `step` that make up `count`; the last one may be smaller.
+/// Number of parts of `step` elements into which `count` elements are divided; the last part may be smaller.
 template <class Integer>
 constexpr Integer PartsOf(Integer count, Integer step)
 {

@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-/// Divides a box into `parts` blocks, for the ranks from `first` on, by recursive bisection.
+/// Divides a box into `parts` blocks by recursive bisection, and stores them in `blocks` for the ranks from `first` on.
 void Cut(const VoxelBox& box, int parts, int first, std::vector<VoxelBox>& blocks)
 {
   const int axis = static_cast<int>(std::max_element(box.size.begin(), box.size.end()) - box.size.begin());

@@ -32,7 +32,7 @@ inline int EndOf(const VoxelBox& box, int axis)
   return box.first[axis] + box.size[axis];
 }
 
-/// Whether a box contains a voxel.
+/// Whether a box contains a voxel of the grid.
 /// @param voxel  three indices
 bool Holds(const VoxelBox& box, const int* voxel);
 

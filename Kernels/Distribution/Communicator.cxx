@@ -26,7 +26,7 @@ enum class Trouble : char
   Other
 };
 
-/// Result of a rank's work: the failure and its text, if there was one.
+/// Outcome of a rank's work: the class and the text of its failure, or none.
 struct Outcome
 {
   Trouble trouble = Trouble::None;
@@ -102,7 +102,7 @@ void Communicator::CountAndSend(int to, int tag, std::vector<char> bytes)
   this->Give(to, tag, std::move(bytes));
 }
 
-/// Removes and returns the oldest message with this tag that the rank sent to itself.
+/// Removes and returns the oldest of the messages with a tag that this rank has sent to itself.
 std::vector<char> Communicator::TakeOwn(int tag)
 {
   std::deque<std::vector<char>>& sent = this->ToItself[tag];
@@ -139,7 +139,7 @@ std::vector<double> Communicator::OverRanks(const std::vector<double>& values, c
   }
   if (least < most)
   {
-    all.assign(most + 1, 0.0); // a number of values that no rank expects, so that all ranks throw
+    all.assign(most + 1, 0.0); // one value more than any rank expects, so that all ranks throw
   }
   for (int rank = 1; rank < this->Ranks(); ++rank)
   {

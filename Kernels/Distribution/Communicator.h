@@ -144,10 +144,11 @@ private:
   std::map<int, std::deque<std::vector<char>>> ToItself; ///< messages from this rank to itself, by tag
 };
 
-/// Text of the lowest rank whose `own` is not empty, the same on every rank; empty if there is none. Collective.
+/// The text `own` of the lowest rank on which it is not empty; empty if it is empty on all ranks. The result is the
+/// same on every rank. Collective.
 std::string WordsOfAny(Communicator& communicator, const std::string& own);
 
-/// Whether `own` is true on any rank; the same on every rank. Collective.
+/// Whether `own` is true on at least one rank. The result is the same on every rank. Collective.
 bool OnAnyRank(Communicator& communicator, bool own);
 
 /// Communicator of a serial solve: a single rank.
@@ -177,7 +178,7 @@ struct MissingMessage : std::runtime_error
 /// messages, and throws the error at the end.
 struct HeldFailure
 {
-  /// Runs `work` and holds the error that it throws; does nothing after an earlier failure.
+  /// Runs `work` and holds the error that it throws. Does nothing if an error is already held.
   void Attempt(const std::function<void()>& work)
   {
     try
@@ -194,7 +195,8 @@ struct HeldFailure
     }
   }
 
-  /// Throws the held error, if there is one. Must be called at the end, within Communicator::Collective.
+  /// Throws the held error, or returns if there is none. Must be called at the end of the work, within
+  /// Communicator::Collective.
   void Throw() const
   {
     if (this->error)

@@ -22,9 +22,9 @@ public:
   /// @param communicator  must outlive the domain
   Domain(Communicator& communicator, BlockPartition partition);
 
-  /// A domain of the same blocks of voxels, with the origin and spacing of `whole`.
+  /// This domain with the origin and the spacing of the grid `whole`.
   Domain WithGrid(const Grid& whole) const;
-  /// A domain of another partition on the same ranks.
+  /// A domain with another partition of the grid, on the ranks of this domain.
   Domain WithBlocks(BlockPartition partition) const;
 
   const Grid& Whole() const { return this->Blocks.whole; }

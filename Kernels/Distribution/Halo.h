@@ -40,8 +40,8 @@ public:
     this->Fill(values.data(), 1, 0, static_cast<std::size_t>(components));
   }
 
-  /// Indices, in arrays over the box `held`, of the rank's own cells of which other ranks have copies, once for each of
-  /// these ranks.
+  /// Indices, in arrays over the box `held`, of this rank's own cells that are ghost cells of other ranks; a cell is
+  /// listed once for each of these ranks.
   std::vector<std::size_t> OwnedPlaces() const { return PlacesOf(this->Owned); }
   /// Indices, in arrays over the box `held`, of this rank's ghost cells.
   std::vector<std::size_t> CopiedPlaces() const { return PlacesOf(this->Copied); }
@@ -56,7 +56,7 @@ public:
   void AddToOwners(std::vector<Value>& values) const;
 
 private:
-  /// Cells that this rank exchanges with a rank, which may be this rank.
+  /// Cells whose values this rank exchanges with one rank, which may be itself.
   struct Shared
   {
     int rank;
@@ -106,7 +106,7 @@ private:
   std::optional<GhostCells> Ghosts;
 };
 
-/// The periodic axes along which a box spans the whole grid, so that it is its own neighbour.
+/// Periodic axes along which a block spans the whole grid, so that its neighbour across the ends is the block itself.
 std::array<bool, 3> GoesRoundAlone(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic);
 

@@ -60,7 +60,7 @@ public:
     for (bool left = true; left; ++round)
     {
       const std::vector<std::vector<OnItsWay>> parcels = this->Comm.Exchange<OnItsWay>(this->Neighbours, [&] {
-        // Estimated progress at the end of this round.
+        // Progress that is reported at the end of this round: half of the remaining work is assumed to be done in it.
         const double next = this->Neighbours.empty() ? 1.0 : 0.5 * (1.0 + done);
         const Monitor ofRound = OfPart(monitor, done, next);
         std::vector<std::vector<OnItsWay>> gone = this->Sorted(follow(round, std::move(arrived), ofRound));

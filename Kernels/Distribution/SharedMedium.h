@@ -21,7 +21,7 @@ namespace tyndall
 void RequireSame(Communicator& communicator, const char* what, bool has, std::vector<double> values);
 
 /// Checks that all ranks have the same grid and partition. Collective.
-/// @throws InvalidInput on all ranks, if they do not
+/// @throws InvalidInput on all ranks, if grids or partitions differ
 void RequireSame(Communicator& communicator, const BlockPartition& partition);
 
 /// Whether this rank is the lowest one that has voxels: the rank that counts a quantity which all ranks with voxels

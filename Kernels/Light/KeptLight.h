@@ -22,7 +22,8 @@ struct LightKind
   std::array<bool, 3> periodic = {};
   VoxelBox block = {}; ///< this rank's subdomain; empty in a serial solve
 
-  /// First difference from `last`, as a clause, e.g. "the grid has changed"; empty if there is none.
+  /// Clause that names the first property that differs from that of `last`, e.g. "the grid has changed"; empty if all
+  /// properties are equal.
   std::string WhatChangedSince(const LightKind& last) const;
 };
 

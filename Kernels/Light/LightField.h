@@ -42,11 +42,11 @@ struct ConvergenceRow
 {
   int iteration = 0;
   double seconds = 0.0; ///< time since the start of the solve, s
-  /// Estimate of the relative error if the solver stops here: scattered light not yet propagated over all scattered
-  /// light (numerics.md, Eqs. (43), (73)). 1 after the first row unless it is the last, since one order does not show
-  /// the rate of convergence.
+  /// Estimate of the relative error if the solver stops after this row: ratio of the scattered light not yet propagated
+  /// to all scattered light (numerics.md, Eqs. (43), (73)). 1 after the first row unless it is the last, since one
+  /// order does not show the rate of convergence.
   double residual = 0.0;
-  /// Relative change of the light by this iteration; a poor measure of the error if light is scattered very often.
+  /// Relative change of the light by this iteration. Much smaller than the error if light is scattered very often.
   double change = 0.0;
   double absorbed = 0.0; ///< power absorbed so far, W, summed over channels
   double escaped = 0.0;
@@ -62,9 +62,9 @@ struct SolveReport
   /// Half-range flux of the quadrature used for boundary sources (DirectionSet.h); 0: there is none.
   double halfRangeFlux = 0.0;
   std::vector<ConvergenceRow> convergence;
-  /// Number of sweeps that the initial guess saved, for each convergence row: the row at which the last solve without a
-  /// guess reached this residual, less this row's number; 0 if this solve had no guess. Empty if no warm start was
-  /// requested (KeptLight.h).
+  /// Number of sweeps that the initial guess saved, for each convergence row: the number of the row at which the last
+  /// solve without a guess reached the residual of this row, less the number of this row; 0 if this solve had no guess.
+  /// Empty if no warm start was requested (KeptLight.h).
   std::vector<int> sweepsSaved;
   bool converged = true; ///< whether the last residual is at most the tolerance, or all requested orders were computed
   std::vector<std::string> doubts; ///< warnings about the result, one sentence each

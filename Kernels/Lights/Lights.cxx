@@ -259,7 +259,7 @@ Environment Turned(const Environment& environment, int up, double degrees)
 
 namespace
 {
-/// End of an error message for a value that is no power or radiance: "1e+39; it must be ...".
+/// End of the error message for a number that cannot be a power or radiance: "1e+39; it must be ...".
 std::string Refusal(double value)
 {
   return Text("%.6g", value) + "; it must be finite and not negative, at most 3.40282e+38, as floats are.";

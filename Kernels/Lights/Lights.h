@@ -102,7 +102,8 @@ Environment Turned(const Environment& environment, int up, double degrees);
 /// @throws InvalidInput if `rotation` is not orthogonal
 Environment Turned(const Environment& environment, const Rotation& rotation);
 
-/// Whether any of the lights has a position, i.e. is no parallel beam; light decreases steeply next to such a light.
+/// Whether any of the lights is at a finite distance, i.e. not a parallel beam. The light field is steep next to such a
+/// light.
 bool AnyHasPosition(const std::vector<Light>& lights);
 
 /// Whether any light source has a power or radiance above 0.

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// One axis of both complete grids, in units of fine voxels.
+/// One axis of the complete fine and coarse grids, in units of fine voxels.
 struct CoarsenedAxis
 {
   CoarsenedAxis(int fineOfAll, int coarseOfAll)

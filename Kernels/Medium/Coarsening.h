@@ -63,7 +63,7 @@ private:
   void MixRows(const std::vector<float>& values, const Between& y, const Between& z, std::vector<float>& row) const;
 
   Grid FineGrid, CoarseGrid;
-  VoxelBox FinePart, CoarsePart;             ///< boxes of both grids to which the transfer is restricted
+  VoxelBox FinePart, CoarsePart;             ///< boxes of the fine and of the coarse grid that the transfer covers
   std::array<int, 3> FineOfAll, CoarseOfAll; ///< sizes of the complete grids, voxels
 };
 }

@@ -94,7 +94,7 @@ struct Row
   std::size_t first;
   int size;
 
-  /// Whether a field has a non-zero value in any of these voxels and components; fields are not negative.
+  /// Whether a field, whose values are not negative, has a component above 0 in any voxel of this row.
   bool Has(const Field& field) const
   {
     const float* begin = field.values + this->first * field.components;

@@ -20,7 +20,7 @@ struct VoxelBox
   }
 };
 
-/// The grid formed by a box of voxels of `whole`, at the same position in space.
+/// The voxels of a box of the grid `whole` as a grid, at the position of these voxels in space.
 inline Grid GridOfBox(const VoxelBox& box, const Grid& whole)
 {
   Grid grid = whole;

@@ -12,7 +12,8 @@ namespace tyndall
 {
 namespace
 {
-/// Smallest number of directions for which nine prescribed moments give no negative weight.
+/// Smallest number of directions whose weights are not negative when the nine moments 1, omega and omega omega are
+/// prescribed.
 constexpr int FewestForMoments = 16;
 constexpr int MostDirections = 65536;
 

@@ -65,7 +65,7 @@ inline float sum_of(real values)
 // so that there is no cancellation for small tau. PoCL's exp is scalar and takes five times as long.
 inline real extinguished(real tau, real* left)
 {
-  const real t = fmin(tau, (real)87.0f); // 2^-126 is the smallest normal number; beyond it the transmittance is 0
+  const real t = fmin(tau, (real)87.0f); // exp(-87) is about 2^-126, the smallest normal number
   const real n = nearest_whole(t * (real)-1.44269504f);
   const real r = multiply_add(n, (real)2.12194440e-4f, multiply_add(n, (real)-0.693359375f, -t));
   real p = multiply_add(r, (real)1.98412698e-4f, (real)1.38888889e-3f);

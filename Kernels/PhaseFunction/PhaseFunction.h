@@ -77,7 +77,7 @@ public:
   };
   const Table* TheTable() const { return this->Rows.get(); } ///< rows of a tabulated function; null for other kinds
 
-  /// Whether two functions are equal; isotropic ones are, whatever their kinds.
+  /// Whether two phase functions have equal values. Isotropic functions are equal, whatever their kinds.
   bool operator==(const PhaseFunction& other) const;
   bool operator!=(const PhaseFunction& other) const { return !(*this == other); }
 

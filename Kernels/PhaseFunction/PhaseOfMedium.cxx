@@ -16,7 +16,7 @@ PhaseOfMedium::PhaseOfMedium(const std::array<PhaseFunction, 3>& ofChannels)
 PhaseOfMedium::PhaseOfMedium(const PhaseFunction& kind, const Field& g)
   : PhaseOfMedium(kind)
 {
-  kind.WithMeanCosine(0.0); // throws if the kind has no single mean cosine
+  kind.WithMeanCosine(0.0); // throws InvalidInput unless functions of this kind are determined by g
   this->ByVoxel = g;
 }
 

@@ -40,7 +40,8 @@ public:
   }
   /// Phase function of a voxel in a channel.
   PhaseFunction At(std::size_t voxel, int channel) const;
-  /// Phase function of the same kind with other mean cosines by voxel, on another grid.
+  /// This phase function with other mean cosines by voxel, which may be on another grid. Requires that g varies by
+  /// voxel.
   PhaseOfMedium WithG(const Field& g) const { return PhaseOfMedium(this->Functions[0], g); }
   /// Phase function of `channel` in all channels, for a scene that is solved in one channel.
   PhaseOfMedium Seen(int channel) const;

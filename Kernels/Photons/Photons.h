@@ -19,8 +19,8 @@ struct Photon
   std::array<double, 3> position = {};
   std::array<float, 3> direction = { 0.0f, 0.0f, 1.0f }; ///< direction of travel, unit length
   std::array<float, 3> power = {};                       ///< power of each channel (RGB), W
-  /// Ratio of the photon's power to the power it would have if the photons of its light were spread evenly: large
-  /// where photons are sparse.
+  /// Ratio of the photon's power to its power if the photons of its light had uniform density: large where photons are
+  /// sparse.
   float weight = 1.0f;
   /// Index of the photon's batch, from 0. Batches are independent samples, each of which carries a part of the power.
   std::int32_t batch = 0;
@@ -95,7 +95,7 @@ struct PhotonLight
   /// once more, less the net power added by Russian roulette.
   LightField light;
   Rgb scattered = {};            ///< W, power scattered for the first time
-  std::uint64_t scatterings = 0; ///< number of scattering events of all photons, if there is more than one order
+  std::uint64_t scatterings = 0; ///< number of scatterings of all photons; 0 with a single scattering order
   Rgb exchanged = {};            ///< W, net power added by Russian roulette; its expected value is 0
   /// Mean direction of the light, three values per voxel: sum of power times direction over sum of power, of length
   /// at most 1. Empty if not requested. Coarse in voxels so dark that their sum is a few units of fixed point, some

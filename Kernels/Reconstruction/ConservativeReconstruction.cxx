@@ -58,12 +58,12 @@ public:
   void Build();                      ///< computes the light of all levels, from the voxels or from LightOf(first)
   void Begin();                      ///< computes the result of the top level
   void Refine(int from, int downTo); ///< computes results of levels `from` down to `downTo`, each from the level above
-  /// Copies the light of the voxels to the host, before it is scaled.
+  /// Copies the light of the voxels to the host. To be called before Finish scales it.
   void FetchFluence() const { this->Fluence.Fetch(); }
   /// Scales the light by a factor per channel, and computes the errors.
   void Finish(const std::array<float, 3>& factors);
 
-  /// Light of a level, to be read, or to be set instead of computed.
+  /// Light of a level. May be read, or set instead of being computed by Build.
   LightRows& LightOf(int level) { return this->At(level).light; }
   LightRows& ResultsOf(int level) { return this->At(level).results; } ///< result of a level, to be read or set
 

@@ -29,7 +29,7 @@ public:
   LightRows(Device& device, const std::array<int, 3>& size, int fields, int width, const char* what);
 
   const std::array<int, 3>& Cells() const { return this->Size; } ///< number of cells along x, y, z
-  /// Layout for kernels, as from LayoutOf.
+  /// Layout for kernels: numbers of cells along x, y, z, and number of floats per row.
   cl_int4 Layout() const { return { { this->Size[0], this->Size[1], this->Size[2], this->Stride } }; }
   int Fields() const { return this->FieldCount; }
   const Buffer<float>& Values() const { return this->Memory; }

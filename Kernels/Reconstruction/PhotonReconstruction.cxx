@@ -70,7 +70,7 @@ struct ArrayRange
 {
   bool fit = true;                  ///< whether every value lies within the required range
   float largest = 0.0f;             ///< largest value
-  std::array<double, 3> total = {}; ///< total of each component; only [0] if there is one
+  std::array<double, 3> total = {}; ///< sum of the values of each component; [0] only, for one component
 };
 
 /// Computes the summary of an array. Several sums are accumulated in parallel, because a single sum waits for each of
@@ -169,7 +169,7 @@ ArrayRange CheckedRange(const Domain& domain, const float* values, int width, in
   return range;
 }
 
-/// Total of each channel over a part of a box.
+/// Sum of the values of each channel over the box `part`, from an array over the box `box`.
 std::array<double, 3> TotalOf(const float* values, const VoxelBox& box, const VoxelBox& part, int channels)
 {
   Grid grid;

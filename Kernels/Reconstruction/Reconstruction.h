@@ -13,8 +13,8 @@ namespace tyndall
 bool NeedsCounts(ReconstructionSettings::Estimator estimator);  ///< whether the estimator needs photon counts
 bool NeedsWeights(ReconstructionSettings::Estimator estimator); ///< whether the estimator needs photon weights
 
-/// The validated light of this rank's box (its block and the halo, PyramidBlocks), and the settings of the
-/// reconstruction.
+/// Task of the reconstruction on one rank: the validated light of the rank's box (its block and the halo,
+/// PyramidBlocks), and the settings.
 class Reconstruction
 {
 public:

@@ -108,8 +108,8 @@ bool Shine(const std::vector<Light>& lamps)
   return std::any_of(lamps.begin(), lamps.end(), [](const Light& lamp) { return !IsBlack(lamp.power); });
 }
 
-/// The settings with shadow rays off without lamps, and on with angular moments, which do not include the first
-/// scattering of lamps.
+/// The caller's settings, with shadow rays switched off if there are no lamps, and on if angular moments are shown,
+/// since these do not include the first scattering of lamps.
 ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
 {
   asked.shadowRays = (asked.shadowRays || showsMoments) && lampsShine;

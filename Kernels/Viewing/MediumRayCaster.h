@@ -159,7 +159,7 @@ private:
 
   std::optional<BlockOfScene> Part; ///< the block, if the medium is one block of a larger grid
   bool LampsShine = false;
-  bool AskedForShadowRays = false; ///< the caller's setting shadowRays, even if there is no lamp
+  bool AskedForShadowRays = false; ///< setting shadowRays as the caller gave it, also if there is no lamp
   ViewSettings Settings;           ///< the caller's settings, with shadow rays as the scene needs them (Needed)
   ViewTraits Traits;
   SceneOnDevice Scene; ///< arrays that are not read again are freed once the samples are packed

@@ -70,8 +70,8 @@ double HeightAt(const std::vector<glm::dvec2>& chain, double x, bool fromLeft)
   return chain.back().y;
 }
 
-/// Returns the step of a cumulative table that contains the fraction u of the total; `part` is the position within
-/// it.
+/// Returns the step of a cumulative table that contains the fraction u of the total. `part` receives the position of
+/// that fraction within the step.
 std::size_t Choose(const std::vector<double>& cumulative, double u, double& part)
 {
   return static_cast<std::size_t>(FindStep(cumulative.data(), static_cast<int>(cumulative.size()) - 1, u, part));

@@ -66,7 +66,7 @@ public:
   double SolidAngleBy(const glm::dvec3& point) const;
 
 private:
-  /// Solid angle, sr, of the rectangle's area if all of it were at this distance from the eye.
+  /// Solid angle, sr, of the rectangle if all of its area were at a given distance from the eye.
   double AngleByArea(double distance) const;
 
   glm::dvec3 Eye, X, Y, Z; ///< position of the eye; axes of the rectangle, Z towards the eye

@@ -187,7 +187,7 @@ public:
   }
 
 private:
-  static constexpr int Parts = 7; ///< the six faces, and the part of the rectangle inside the volume
+  static constexpr int Parts = 7; ///< number of sets of sampled points: six faces, rectangle in the volume
 
   std::optional<Shot> ShootFrom(int part, const PhotonSample& u) const
   {
@@ -247,12 +247,12 @@ private:
     return corners;
   }
 
-  /// Divides samples among the faces and the part inside in proportion to their root mean square power, which
-  /// minimises the variance of the sum.
+  /// Divides the samples among the six faces and the part of the rectangle inside the volume, in proportion to the root
+  /// mean square power of their photons, which minimises the variance of the sum.
   void SetShares()
   {
     constexpr int samples = 512;
-    constexpr double least = 0.01; // share of faces that may contribute, although no sample did
+    constexpr double least = 0.01; // least share of a set of points that may contribute, even if no sample did
     std::array<double, Parts> shares = {};
     double sum = 0.0;
     for (int part = 0; part < Parts; ++part)
@@ -288,7 +288,8 @@ private:
   glm::dvec3 Middle, Normal, First, Second;
   double Area;
   std::optional<ConvexPolygon> Within; ///< part of the rectangle inside the volume, in fractions of its edges
-  /// Cumulative shares of samples of the six faces and the part inside, with a leading zero.
+  /// Cumulative shares of the samples: six faces, then the part of the rectangle inside the volume; with a leading
+  /// zero.
   std::array<double, Parts + 1> Shares = {};
 };
 

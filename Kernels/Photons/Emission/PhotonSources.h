@@ -28,7 +28,7 @@ struct PhotonSource
 {
   int light = 0; ///< number of the light, as in EmittedPhotons::lights
   std::function<std::optional<Shot>(const PhotonSample&)> shoot;
-  bool alike = false; ///< whether all photons of the light reach the volume with equal power
+  bool alike = false; ///< whether all photons of this light reach the volume with equal power
 };
 
 /// Returns the sources of all lights of the illumination, sampled as documented at EmitPhotons. Boundary sources

@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum number of iterations that redistribute the density above the cap; each leaves fewer cells above it.
+/// Maximum number of passes that redistribute the density above the cap; each pass leaves fewer cells above the cap.
 constexpr int RoundsOfSharing = 64;
 
 std::string LightName(int light)

@@ -115,7 +115,7 @@ std::vector<float> GradientOf(const std::vector<double>& luminance, const Grid& 
   return gradient;
 }
 
-/// Quantile of the values: the value below which the fraction `part` of them lies.
+/// Quantile: the value below which the fraction `part` of the values lies.
 double Quantile(std::vector<double> values, double part)
 {
   if (values.empty())
@@ -148,7 +148,8 @@ void ChooseThresholds(const std::vector<double>& luminance, Importance& importan
   importance.luminanceThreshold = DimBelow * median;
 }
 
-/// Chooses cells as in Listing B.1 of Pfeuti 2009. Returns the fraction of lit cells that are chosen.
+/// Chooses the cells that are to be sampled densely, as in Listing B.1 of Pfeuti 2009. Returns the fraction of the lit
+/// cells that are chosen.
 double ChooseCells(const std::vector<double>& luminance, Importance& importance)
 {
   std::size_t lit = 0, chosen = 0;

@@ -20,9 +20,9 @@ struct ImportanceSettings
   /// Whether both thresholds are computed from the statistics of the pilot photons' light, in proportion to it
   /// (numerics.md, Eq. (96)). If false, gradientThreshold and luminanceThreshold are used.
   bool automatic = true;
-  /// W / length^2: cells whose difference of fluence to their neighbours is at or above this value are chosen.
+  /// W / length^2: cells are chosen if their fluence differs from that of their neighbours by this value or more.
   double gradientThreshold = 0.0;
-  double luminanceThreshold = 0.0; ///< W / length^2: lit cells with luminance at or below this value are chosen
+  double luminanceThreshold = 0.0; ///< W / length^2: lit cells are chosen if their luminance is at most this value
   double background = 0.3;         ///< fraction of the photons that are distributed uniformly, (0, 1]
 };
 

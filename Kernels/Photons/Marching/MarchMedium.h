@@ -94,7 +94,7 @@ private:
   Buffer<cl_int> OnDevice;
 };
 
-/// The part of a grid through which one rank marches photons, and the voxels in which it knows the refractive index.
+/// The box through which one rank marches photons, and the larger box in which it has the refractive index.
 struct MarchedPart
 {
   Grid whole;   ///< the domain
@@ -168,7 +168,7 @@ public:
   int channels;              ///< number of extinction channels, 1 or 3
   bool bends, hasLevels;     ///< whether paths bend (n varies); whether there is an octree
   bool nodesOfWhole = false; ///< whether `nodes` covers the domain (SetNodes was called)
-  PhotonBricks bricks;       ///< layout of all arrays by bricks, if they use it
+  PhotonBricks bricks;       ///< layout of all arrays by bricks; without bricks, arrays are stored voxel by voxel
 
   Buffer<float> sigmaA, sigmaS; ///< 1/length, voxel by voxel or by records
   /// Optical thickness of voxel diagonals; layout: pack_extinction in PhotonMedium.cl, or PhotonBricks.

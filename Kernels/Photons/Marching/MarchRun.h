@@ -82,7 +82,8 @@ public:
   MarchKernel(const MarchMedium& medium, const MarchSums& target, int channels, const std::string& options = {},
     const char* name = "march_photons");
 
-  /// Sets the arguments that all variants of the kernel share. @return number of these arguments
+  /// Sets the arguments that all variants of the kernel share.
+  /// @return number of arguments that were set
   cl_uint Set(const PhotonsOnDevice& photons, MarchLaunch launch, const Buffer<cl_int>& counters);
   /// Global range of work-items for `photons` in each batch.
   cl::NDRange Range(std::size_t photons) const;
@@ -134,7 +135,7 @@ public:
   };
   /// Marches photons that start in this block.
   /// @param marks  mark for counting of each photon; empty if photons are not counted
-  /// @throws Aborted; the sums then hold only part of the photons' deposits
+  /// @throws Aborted; the sums then hold only a part of the photons' deposits
   Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
   /// Marches photons that arrived from other blocks to their ends or until they leave this block.
   /// @throws Aborted

@@ -102,7 +102,7 @@ typedef struct
 
 enum
 {
-  CountShift = 40 ///< bit position of photon counts, above the bits of weights
+  CountShift = 40 ///< lowest bit of a voxel's photon count, above the bits of its sum of weights
 };
 
 /// Parameters of the conversion of photons' sums to light.
@@ -151,6 +151,6 @@ typedef struct
   int scatterings;                         ///< number of scatterings of the photon
   float depth;                             ///< scattering optical depth to the next collision
   float dim;                               ///< power below which Russian roulette is played
-  float power, absorbedAtFirst, exchanged; ///< in units, as in ScatterEnd
+  float power, absorbedAtFirst, exchanged; ///< powers in units, see ScatterEnd
 } ScatteredOnItsWay;
 SHARED_END

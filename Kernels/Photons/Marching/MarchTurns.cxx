@@ -69,7 +69,7 @@ public:
   {
   }
 
-  /// Queues the march of one turn. Returns its event.
+  /// Queues the march of one turn, and returns the event of the kernel.
   /// @param first  whether photons start in this turn
   cl::Event Turn(const cl::CommandQueue& queue, bool first, const TurnSchedule& turn)
   {

@@ -29,7 +29,8 @@ struct MarchTurns
   /// @param photons  the packed photons
   /// @param channels  number of channels of the fluence that `take` receives
   std::function<void(const PackedPhotons& photons, int channels)> begin;
-  /// Queues the processing of the light of earlier turns, without waiting for it. Returns its first and last events.
+  /// Queues the processing of the light of earlier turns, without waiting for it. Returns the events of the first and
+  /// the last queued command.
   std::function<std::array<cl::Event, 2>(const cl::CommandQueue& queue)> meanwhile;
   /// Queues the transfer of the light accumulated since the march began.
   /// @param fluence  W / length^2, [voxel][channel]

@@ -352,7 +352,7 @@ void Widen(std::vector<double>& values)
 // of the light.
 PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
 {
-  std::mt19937 random; // default seed, so that every batch draws the same numbers
+  std::mt19937 random; // with its default seed, so that every batch draws the same numbers
   PhotonNumbers numbers;
   for (std::size_t row = 0; row < photons; row += batches)
   {

@@ -17,7 +17,7 @@ public:
   /// @param medium  referenced, not copied
   explicit MarchedLight(const MarchMedium& medium);
 
-  /// Zeroes the sums for these photons, and describes their layout.
+  /// Allocates the sums for packed photons, sets them to zero, and describes their layout.
   /// @throws DeviceError if the sums do not fit into the device's memory
   MarchSums Prepare(const PackedPhotons& packed);
   /// Chooses the number of copies as ShareSums does; the memory of existing sums counts as available.

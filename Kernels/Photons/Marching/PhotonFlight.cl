@@ -336,7 +336,8 @@ static real brightest(const photon_flight* flight)
 }
 
 #if BENDS
-// Mask of the photons that start a new step: their step has ended, or they have entered a region of varying index.
+// Mask of the photons that must start a new step, because their step has ended or they have entered a region of varying
+// index.
 static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
 {
   const real turn = VECTOR(lanes->turn);
@@ -345,7 +346,7 @@ static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
 }
 #endif
 
-// Mask of the photons that are to be terminated (outside, or dark) or start a new step.
+// Mask of the photons that end, because they are outside or dark, or that must start a new step.
 static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
   integer special = truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);

@@ -68,11 +68,11 @@ public:
   PhotonLight MarchByTurns(const std::vector<Photon>& photons, MarchTurns& turns, const Monitor& monitor = {});
 
   /// Light of pilot photons in coarse cells, and the mean origin of the photons in each cell (Pfeuti 2009, section
-  /// 3.2.2). Photons are marched along the same paths as in March, through the medium's own voxels. Voxel i of an
-  /// axis belongs to cell i * cells / voxels, rounded down.
+  /// 3.2.2). Photons follow the paths of March, through the medium's own voxels. Voxel i of an axis belongs to cell i *
+  /// cells / voxels, rounded down.
   /// @param photons  pilot photons, the same on all ranks
-  /// @param origins  column and row, 0 to 65535, of the photon-plane cell from which each photon was sampled; the
-  ///   same on all ranks
+  /// @param origins  column and row, 0 to 65535, of the photon-plane cell from which each photon was sampled; the same
+  ///   on all ranks
   /// @param cells    number of coarse cells along each axis, 1 to the number of voxels (larger values are reduced to
   ///   it)
   /// @return the light of the domain, on every rank

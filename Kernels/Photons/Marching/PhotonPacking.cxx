@@ -288,7 +288,7 @@ PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsA
   return packed;
 }
 
-/// Fills a packing with this rank's photons.
+/// Writes this rank's photons to a packing that PackingOf created.
 void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid)
 {
   const IncomingPhotons met = ClipToVolume(grid, photons);

@@ -15,7 +15,7 @@ namespace tyndall
 /// so that neighbours in space are neighbours in memory.
 struct PackedPhotons
 {
-  int channels = 1; ///< 1 if all photons have the same colour and one power channel suffices, else 3
+  int channels = 1; ///< power channels per photon: 1 if one channel suffices for photons of one colour, else 3
   bool grey = true; ///< whether the powers of all photons are grey
   /// Colour of the single channel, with mean 1; (1, 1, 1) for white photons and for three channels.
   Rgb colour = { 1.0, 1.0, 1.0 };

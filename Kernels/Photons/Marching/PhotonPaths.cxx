@@ -16,7 +16,7 @@ namespace
 /// A vertex of a path: the photon starts, changes direction or ends there.
 struct PathVertex
 {
-  cl_ulong photon = 0;  ///< mark of the photon, its index
+  cl_ulong photon = 0;  ///< index of the photon, which is its mark
   cl_ulong round = 0;   ///< round in which this part of the path was traced
   cl_float4 place = {}; ///< position in voxels, and remaining power
 
@@ -40,7 +40,8 @@ public:
   {
   }
 
-  /// Traces photons that start in this block. @return photons that continue in other blocks
+  /// Traces photons that start in this block.
+  /// @return photons that continue in other blocks
   std::vector<PhotonOnItsWay> Start(const PackedPhotons& photons)
   {
     const std::vector<cl_ulong> marks(photons.numbers.begin(), photons.numbers.end());
@@ -56,7 +57,7 @@ public:
     return this->Trace(PhotonsOnDevice(this->Medium.device, arrived, 1, this->Channels), marks);
   }
 
-  std::vector<PathVertex> vertices; ///< vertices of all paths so far, in order within each part of a path
+  std::vector<PathVertex> vertices; ///< vertices of all paths so far, in order along each section of a path
 
 private:
   std::vector<PhotonOnItsWay> Trace(const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks);

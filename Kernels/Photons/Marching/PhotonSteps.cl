@@ -39,7 +39,7 @@
 #define SLOWEST_PACE 1e-12f
 #define FASTEST_PACE 1e12f
 
-// Arguments of a marching kernel: the arrays that it reads and writes.
+// Arrays and parameters that a marching kernel passes to its functions.
 typedef struct
 {
   const MarchInfo* info;
@@ -66,7 +66,7 @@ typedef struct
 typedef struct
 {
   LANES(int, at);         // current voxel, as index into the padded grid
-  LANES(int, alive);      // -1: the photon has not ended; 0: it has
+  LANES(int, alive);      // -1 until the photon has ended, then 0
   LANES_3(int, stride);   // change of `at` from a voxel to the next along each axis
   LANES(int, ahead);      // change of `at` to the voxel that is prefetched
   LANES_3(float, wall);   // time at which the photon reaches the next wall along each axis

@@ -181,10 +181,10 @@ static void deposit(const PublishedMarchInfo* info, int3 voxel, float3 power, fl
   vstore3(vload3(0, photon->deposited) + power, 0, photon->deposited);
 }
 
-// Deposits light in the voxels whose centres, along the axis of largest change, lie between the ends a and b of a
-// step, in the order of the path, starting with number photon->done. For a photon that has just arrived, the first
-// voxel is `next`, even if this device rounds differently from the device that sent it. Returns false if the line
-// continues in another block; `next` is then its first voxel there.
+// Deposits light in the voxels whose centres, along the axis of largest change, lie between the ends a and b of a step,
+// in the order of the path, starting with voxel number photon->done of the step. For a photon that has just arrived,
+// the first voxel is `next`, even if this device rounds differently from the device that sent it. Returns false if the
+// line continues in another block; `next` is then its first voxel there.
 static bool rasterize(const PublishedMarchInfo* info, const published_photon* a, const published_photon* b,
   __global ulong* packed, __global PublishedPhoton* photon, bool arrives, int3* next)
 {

@@ -389,7 +389,7 @@ void ScatteredChannels::AddTo(
     double all = 0.0, direct = 0.0;
     for (std::size_t c = 0; c < channels; ++c)
     {
-      const double counts = channels == 1 ? 3.0 : 1.0; // a single channel stands for three
+      const double counts = channels == 1 ? 3.0 : 1.0; // one channel stands for red, green and blue
       all += counts * light.light.fluence[i / 3 * channels + c];
       direct += counts * light.light.fluenceDirect[i / 3 * channels + c];
     }

@@ -364,7 +364,7 @@ VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& setting
   return Grown(part, evenIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);
 }
 
-/// Crops the arrays of a medium from a box to a part of it.
+/// Crops the arrays of a medium over the box `box` to the box `part`.
 void Keep(const VoxelBox& part, const VoxelBox& box, RefractiveMedium& medium)
 {
   if (part.VoxelCount() == box.VoxelCount())

@@ -37,7 +37,7 @@ struct VoxelizationSettings
 
   /// Axis of the columns of samples, 0, 1 or 2. The result does not depend on it, to the last bit.
   int columnAxis = 0;
-  bool fromAbove = false; ///< whether a crossing toggles the samples after it instead of those before it; same result
+  bool fromAbove = false; ///< whether a crossing toggles the samples after it and not those before it; same result
 
   /// Maximum memory, in bytes, of the part of the fine grid (one bit per sample) that is held at a time: a slab of
   /// voxels, of at least one layer.

@@ -13,7 +13,8 @@
 
 namespace tyndall
 {
-/// Number of voxels per row and number of rows of a face of the box; axes are y and z, x and z, or x and y.
+/// Number of voxels per row, and number of rows, on a face of the box; the axes along a row and across the rows are y
+/// and z, x and z, or x and y.
 /// @param face  0 to 5: -x, +x, -y, +y, -z, +z
 std::array<int, 2> FaceSize(const Grid& grid, int face);
 

@@ -40,7 +40,7 @@ struct BlockPixel
   std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };
   std::array<float, 3> sharp = {};   ///< unscattered radiance, which blocks in front attenuate by their `seen`
   std::array<float, 3> missing = {}; ///< correction for light at the surface, as Picture::missing
-  float open = 1.0f; ///< transmittance of the background: 0 if the pixel includes it, which hides all behind it; else 1
+  float open = 1.0f;     ///< 0 if the pixel includes the background, which hides everything behind it; else 1
   float depth = FarAway; ///< depth as Picture::depth; FarAway or more: the transmittance stays above 1/2
 
   static constexpr float FarAway = 1e30f;
@@ -73,7 +73,7 @@ struct BlockPixel
   /// Opacity with which the pixel, including the background that it shows, hides what is behind it.
   float Hidden() const { return 1.0f - this->open * this->Left(); }
 
-  /// Composites this pixel over `behind`, the contribution of the blocks behind to the same pixel.
+  /// Composites this pixel over `behind`, the contribution to the same pixel of the blocks behind this one.
   void LayBefore(const BlockPixel& behind)
   {
     for (int c = 0; c < 3; ++c)

@@ -24,7 +24,7 @@ namespace tyndall
 class ShownBlock
 {
 public:
-  ShownBlock() = default; ///< empty: there is no block
+  ShownBlock() = default; ///< for a rank that shows no block
 
   /// Takes the contributions of all blocks from which Pixels computes the share of this block.
   /// @param frontToBack  pixels of all blocks within this block's rectangle

@@ -35,7 +35,7 @@ inline rgb table_light(const surroundings* s, __global const float4* backdrop, r
   return between_four(backdrop + s->v->backdrop.w, first, first + row, across, up);
 }
 
-// Returns which of the rays `left_box`, which leave the box, leave it through the table's face.
+// Mask of those rays of `left_box`, which leave the box, that leave it through the table's face.
 inline integer meet_table(const surroundings* s, const ray_packets* t, integer left_box)
 {
   const int axis = s->o->face.x;

@@ -263,7 +263,8 @@ std::size_t RayCasting::MostSplitOff() const
 std::size_t RayCasting::CountThatFits() const
 {
   const std::size_t limit = this->TheDevice.MemoryLimit(), taken = this->TheDevice.BytesInUse();
-  // Number of rays per pixel; each ray also has space for the rays that may be split off it.
+  // Largest number of rays per pixel. Each of them also needs space for the rays that may be split off it, hence the
+  // square below.
   const std::size_t kinds = 1 + this->MostSplitOff();
   return std::max<std::size_t>((limit - std::min(taken, limit)) / (4 * kinds * kinds * sizeof(RayOnItsWay)), 1);
 }

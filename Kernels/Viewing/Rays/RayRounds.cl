@@ -31,7 +31,7 @@ inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, flo
   ray->depth = far_depth;
 }
 
-// Store the components of one lane n of a real3 in an array member of a ray, and load them from it.
+// STORE_TRIPLE stores the components of lane n of a real3 in an array member of a ray; LOAD_TRIPLE loads them from it.
 #define STORE_TRIPLE(array, from, n) \
   ray->array[0] = LANE((from).x, n); \
   ray->array[1] = LANE((from).y, n); \

@@ -6,7 +6,7 @@
 
 #include "Refraction/Index/SquaredIndex.cl"
 
-// Gradients up to this fraction of n^2 are rounding errors of a constant index.
+// Gradients of n^2 up to this fraction of n^2 are rounding errors of a constant index.
 #define FLAT 2e-6f
 
 // Value and slope of a cubic B-spline at the middle of three adjacent coefficients.

@@ -36,8 +36,8 @@ private:
 /// empty.
 struct SceneOnDevice
 {
-  /// If samples are packed only once (ViewTraits::PacksOnce), no copies are made: medium and light must then outlive
-  /// the call of GiveBackWhatIsPacked.
+  /// Makes the arrays of medium and light available to kernels. If samples are packed only once
+  /// (ViewTraits::PacksOnce), no copies are made: medium and light must then outlive the call of GiveBackWhatIsPacked.
   /// @param block  position of the medium in a larger grid, with `ior` covering BlockOfScene::known; null: the medium
   ///   is the whole domain
   /// @throws DeviceError if the arrays do not fit the device

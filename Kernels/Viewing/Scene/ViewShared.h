@@ -135,7 +135,7 @@ typedef struct
   int steps; ///< number of steps since the ray's entry into the domain
   /// Indices of the voxel that contains the midpoint of the next step or, once the ray has left the box, its position.
   int where[3];
-  /// Nonzero: the ray has met the surface already, or is not to be split by it.
+  /// Nonzero if the ray has already met the surface, or must not be split by it.
   int met;
   float at[3], velocity[3];
   float left[3];     ///< transmittance from the eye to the current point
