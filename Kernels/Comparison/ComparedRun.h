@@ -20,7 +20,7 @@ enum class ComparedMethod
   /// Conservative light propagation maps with a constant source per voxel and without acceleration.
   ConstantSource,
   Published,           ///< light propagation maps as published, Algorithm 2
-  PublishedSequential, ///< light propagation maps as published, Algorithm 1: slow
+  PublishedSequential, ///< light propagation maps as published, Algorithm 1, which is slow
   DiscreteOrdinates,   ///< conservative discrete ordinates, anisotropic scattering by spherical harmonics
   LatticeBoltzmann,    ///< diffusion on lattices of 18 and of 6 directions, solved for its steady state
   Photons,             ///< evenly distributed photons, conservative marching and reconstruction
@@ -75,7 +75,7 @@ struct ComparedSettings
 struct ComparedRun
 {
   ComparedMethod method = ComparedMethod::LightPropagationMaps;
-  std::string setting; ///< the setting as text
+  std::string setting; ///< description of the setting, for the user
   Grid grid;           ///< grid of the resulting light
   double cost = 1.0;   ///< cost relative to other runs of the method: rays times voxels, or photons
   bool allOrders = true;

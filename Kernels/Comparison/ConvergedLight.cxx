@@ -122,7 +122,7 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
       }
     }
   }
-  return {}; // not reached
+  return {}; // never reached, since the last rung returns or throws
 }
 
 ReferenceLight ByPhotonsAlways(
@@ -146,7 +146,7 @@ ReferenceLight ByWhatIsBetter(
     reference.text += "; not photons: " + whyNot;
     return reference;
   }
-  constexpr double toForecast = 0.3; // fraction of the progress at which the forecast ends
+  constexpr double toForecast = 0.3; // progress that is reported when the forecast is complete, in [0, 1]
   const PhotonForecast forecast = ForecastOfPhotons(device, scene, settings, seconds, OfPart(monitor, 0.0, toForecast));
   const LightField* const maps = forecast.maps ? &*forecast.maps : nullptr;
   const Monitor rest = OfPart(monitor, toForecast, 1.0);

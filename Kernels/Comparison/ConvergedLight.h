@@ -32,10 +32,10 @@ inline Monitor PartUntil(const Device& device, double end, const Monitor& monito
 /// a clock, so that it does not depend on the machine's load; a clock only stops work that takes too long nevertheless.
 struct NominalSeconds
 {
-  static constexpr double OfRayVoxel = 5e-9;   ///< sweep of one ray through one voxel, per channel
-  static constexpr double OfPhoton = 3e-6;     ///< emission of one photon, without its path
-  static constexpr double OfCrossing = 1e-7;   ///< crossing of one voxel by a photon
-  static constexpr double OfScattering = 1e-6; ///< one scattering of a photon
+  static constexpr double OfRayVoxel = 5e-9;   ///< time to sweep one ray through one voxel, per channel
+  static constexpr double OfPhoton = 3e-6;     ///< time to emit one photon, without its path
+  static constexpr double OfCrossing = 1e-7;   ///< time for one photon to cross one voxel
+  static constexpr double OfScattering = 1e-6; ///< time to scatter one photon once
 };
 
 /// Reference light with which the results of all methods are compared.
@@ -47,7 +47,7 @@ struct ReferenceLight
   int channels = 1;
   /// Fluence, W / length^2, `channels` per voxel; empty: unknown; NaN: unknown in this voxel.
   std::vector<float> fluence;
-  std::vector<float> fluenceDirect; ///< fluence of uncollided light, otherwise as `fluence`
+  std::vector<float> fluenceDirect; ///< fluence of uncollided light, in the shape of `fluence`
   std::string text;                 ///< description of the reference for the user
 };
 

@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Lattices[] = { 18, 6 }; ///< numbers of directions of the lattices
+constexpr int Lattices[] = { 18, 6 }; ///< numbers of directions of the two lattices that are compared
 
 /// Computes uncollided light by photons and scattered light by the lattice, so that the run time covers both.
 LightField SolveWithPhotons(

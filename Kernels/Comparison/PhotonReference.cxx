@@ -19,8 +19,8 @@ std::size_t PlaceOf(std::size_t index, int has, int wanted)
   return has == wanted ? index : index / static_cast<std::size_t>(wanted);
 }
 
-constexpr int FewestSets = 16, MostSets = 64;            ///< numbers of photon sets of the reference
-constexpr int FewestToForecast = 4, MostToForecast = 64; ///< numbers of photon sets of the pilot run
+constexpr int FewestSets = 16, MostSets = 64;            ///< least and largest number of photon sets of the reference
+constexpr int FewestToForecast = 4, MostToForecast = 64; ///< least and largest number of photon sets of the pilot run
 /// Photons per set of the pilot run: the largest photon count of the comparison over PartToForecast, but at least
 /// LeastToForecast.
 constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000;
@@ -288,7 +288,7 @@ ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, co
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  const double part = 0.5 * PhotonForecast::PartOfTime * seconds; // seconds for the maps, and seconds for the pilot run
+  const double part = 0.5 * PhotonForecast::PartOfTime * seconds; // seconds for the maps; the pilot run has as many
   PhotonForecast forecast;
   ForecastMaps maps = FindMaps(device, scene, settings, part, OfPart(monitor, 0.0, 0.5));
   const int largest = *std::max_element(settings.photonCounts.begin(), settings.photonCounts.end());

@@ -424,7 +424,7 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   Check(scene.medium);
   Check(scene.illumination);
   const double end = device.Now() + settings.timeBudget;
-  const double begun = reference ? 0.0 : 0.4; // fraction of the progress at which the runs begin
+  const double begun = reference ? 0.0 : 0.4; // progress that is reported when the runs begin, in [0, 1]
   Comparison result;
   result.device = device.Name();
   ComparedSettings tried = settings.tried;

@@ -29,7 +29,7 @@ struct ComparisonRow
   /// Root mean square of the relative errors of the voxels in which the reference is above 0.
   double errorRelative = Unknown;
   double balance = Unknown; ///< relative error of the energy balance
-  int iterations = 0;       ///< number of sweeps or orders; 1 for photons
+  int iterations = 0;       ///< number of sweeps or scattering orders; 1 for photons
   /// The solver's own estimate of errorL2; unknown after one order (ErrorEstimate.h).
   double estimatedError = Unknown;
   /// Net escaped power through the faces -x, +x, -y, +y, -z, +z, summed over channels, W.
@@ -69,7 +69,7 @@ struct Comparison
 {
   std::vector<ComparisonRow> rows;
   ReferenceLight reference;
-  std::vector<std::string> leftOut;  ///< settings that were not compared, with the reasons
+  std::vector<std::string> leftOut;  ///< methods and settings that were not compared, with the reasons
   std::vector<std::string> warnings; ///< warnings about runs that the time budget did not allow
   std::string device;
 };

@@ -14,10 +14,10 @@ struct Batches
 {
   std::size_t count = 0; ///< number of items to compute
   std::size_t first = 1; ///< items in the first batch; its run time determines the size of the next batch
-  std::size_t whole = 1; ///< number of which all batch sizes are multiples
+  std::size_t whole = 1; ///< each batch has a multiple of this number of items
   double seconds = 0.05; ///< target run time of a batch, seconds
-  double growth = 4.0;   ///< largest ratio of the sizes of successive batches
-  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< largest size of a batch
+  double growth = 4.0;   ///< largest ratio of the size of a batch to that of the one before
+  std::size_t most = std::numeric_limits<std::size_t>::max(); ///< largest number of items in a batch
   double from = 0.0, to = 1.0; ///< progress that is reported at the start and at the end, in [0, 1]
 };
 

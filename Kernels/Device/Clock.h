@@ -42,7 +42,7 @@ public:
 class CompilationListener
 {
 public:
-  using Call = std::function<void()>; ///< function that must not throw
+  using Call = std::function<void()>; ///< function that the listener calls; must not throw
 
   explicit CompilationListener(Call call);
   ~CompilationListener();

@@ -68,9 +68,9 @@ public:
   /// environment variable TYNDALL_WITHOUT names `cache`.
   std::size_t CacheBytes() const;
   std::size_t HostBytes() const { return this->OnHost.InUse(); }    ///< bytes of buffers in host memory
-  std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest value of HostBytes so far
+  std::size_t PeakHostBytes() const { return this->OnHost.Peak(); } ///< largest value that HostBytes() has had
   std::size_t BytesInUse() const { return this->Memory.InUse(); }
-  std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest value of BytesInUse since ResetPeak
+  std::size_t PeakBytes() const { return this->Memory.Peak(); } ///< largest value of BytesInUse() since ResetPeak()
   void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program `source`. Programs are cached, so that a second call with the same source and options
@@ -131,8 +131,8 @@ private:
   int Units = 1;
   int VectorWidth = 1;
   std::size_t LargestAllocation = 0;
-  Device* Whole = nullptr; ///< device of which this is a view; null: this is not a view
-  MemoryBudget Budget;     ///< limits of this view; no limits for a device
+  Device* Whole = nullptr; ///< device of which this object is a view; null: it is no view
+  MemoryBudget Budget;     ///< limits of this view; unlimited if this is not a view
   MemoryCount Memory;
   MemoryCount OnHost;
   std::atomic<double> SecondsQueued{ 0.0 };

@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t ThreadsAtMost = 16; ///< largest number of threads; so many cores saturate any memory
+constexpr std::size_t ThreadsAtMost = 16; ///< largest number of threads; 16 cores use the full bandwidth of any memory
 }
 
 void InThreads(std::size_t count, std::size_t least, const std::function<void(std::size_t, std::size_t)>& work)

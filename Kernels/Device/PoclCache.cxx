@@ -180,7 +180,7 @@ const PoclCache& PreparePocl()
     }
     setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
     return cache;
-  }()); // never destroyed, since it is used when the process ends
+  }()); // the cache is never destroyed, since it is used when the process ends
   return prepared;
 }
 

@@ -45,14 +45,14 @@ struct DamagedFiles
 class BuildMark
 {
 public:
-  explicit BuildMark(const std::string& folder); ///< empty folder name: no file is created
+  explicit BuildMark(const std::string& folder); ///< creates the file; none if the name of the folder is empty
   ~BuildMark();
   BuildMark(const BuildMark&) = delete;
   BuildMark& operator=(const BuildMark&) = delete;
 
 private:
   std::string File;
-  int Descriptor = -1; ///< file descriptor, locked as long as the process lives
+  int Descriptor = -1; ///< descriptor of the file, which is locked as long as the process lives
 };
 
 /// Renames damaged files in PoCL's cache folder to *.damaged, so that PoCL compiles them again. Damaged are: bitcode

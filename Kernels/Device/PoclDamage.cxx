@@ -55,7 +55,7 @@ bool IsWholeLibrary(const std::string& bytes)
   std::memcpy(&header, bytes.data(), std::min(sizeof(header), bytes.size()));
   if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_ident[EI_CLASS] != ELFCLASS64)
   {
-    return header.e_ident[EI_CLASS] == ELFCLASS32; // headers of 32-bit libraries differ and are not checked
+    return header.e_ident[EI_CLASS] == ELFCLASS32; // 32-bit libraries have other headers, which are not checked
   }
   const auto lies = [&bytes](std::uint64_t from, std::uint64_t size) {
     return from <= bytes.size() && size <= bytes.size() - from;
@@ -388,7 +388,7 @@ const std::time_t Begun = std::time(nullptr);
 bool EndedWhileBuilding(const std::string& folder)
 {
   constexpr std::int64_t second = 1000000000, apart = 10 * second, old = 3600 * second;
-  std::vector<std::pair<std::string, int>> ended; // names of the marks of ended processes, with file descriptors
+  std::vector<std::pair<std::string, int>> ended; // names and file descriptors of the marks of ended processes
   std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = 0;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none))
@@ -477,7 +477,7 @@ DamagedFiles SetDamagedAside(const std::string& said)
     std::error_code error;
     fs::remove_all(place + Aside, error);
     fs::rename(place, place + Aside, error);
-    if (error && fs::exists(place)) // otherwise another process has renamed it
+    if (error && fs::exists(place)) // if it does not exist, another process has renamed it
     {
       all.trouble = "\"" + place + "\" " + how + ", and cannot be renamed";
     }

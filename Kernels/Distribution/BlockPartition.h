@@ -12,7 +12,7 @@ namespace tyndall
 struct BlockPartition
 {
   Grid whole;
-  std::vector<VoxelBox> blocks; ///< block of each rank, in voxels of the whole grid
+  std::vector<VoxelBox> blocks; ///< block of each rank, by rank, in voxels of the whole grid
 
   /// Checks the partition.
   /// @throws InvalidInput if a block reaches beyond the grid, two blocks overlap, or a voxel is in no block

@@ -7,7 +7,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::int32_t NotYet = 256; ///< number for a brick into which nothing has been stored
+constexpr std::int32_t NotYet = 256; ///< value of a brick of which no byte has been stored; no byte has this value
 constexpr std::uint32_t LongestRun = 1u << 24;
 
 /// Run-length encoding of bytes: each number holds a byte and, in the upper bits, its number of repetitions minus one.

@@ -18,7 +18,7 @@ namespace
 enum class Trouble : char
 {
   None,
-  OfOthers, ///< MissingMessage, a consequence of another rank's failure
+  OfOthers, ///< the rank misses a message (MissingMessage), because another rank has failed
   Stopped,  ///< the rank's work was aborted (Aborted)
   OfInput,  ///< the input is invalid (InvalidInput)
   OfDevice,

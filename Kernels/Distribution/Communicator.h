@@ -16,15 +16,15 @@ namespace tyndall
 /// below these tags.
 namespace MessageTag
 {
-constexpr int ColumnsOfSight = 29992; ///< pixels of views, LitColor.cxx
-constexpr int CornersOfPaths = 29995; ///< vertices of photon paths, PhotonPaths.cxx
-constexpr int RunsOfBytes = 29996;    ///< run-length encoded bytes, BrickedBytes.cxx
-constexpr int GhostCells = 29998;     ///< values of ghost cells, Halo.cxx
-constexpr int ValuesOfBoxes = 29999;  ///< values in boxes, BoxExchange.cxx
-constexpr int Sums = 30000;           ///< reductions, Communicator.cxx
-constexpr int Agreements = 30001;     ///< agreements about errors, Communicator.cxx
-constexpr int Parcels = 30002;        ///< parcels, Communicator.cxx
-constexpr int Count = 30010;          ///< upper limit, exclusive, of all tags
+constexpr int ColumnsOfSight = 29992; ///< for the pixels of views, LitColor.cxx
+constexpr int CornersOfPaths = 29995; ///< for vertices of photon paths, PhotonPaths.cxx
+constexpr int RunsOfBytes = 29996;    ///< for run-length encoded bytes, BrickedBytes.cxx
+constexpr int GhostCells = 29998;     ///< for values of ghost cells, Halo.cxx
+constexpr int ValuesOfBoxes = 29999;  ///< for values in boxes, BoxExchange.cxx
+constexpr int Sums = 30000;           ///< for reductions, Communicator.cxx
+constexpr int Agreements = 30001;     ///< for agreements about errors, Communicator.cxx
+constexpr int Parcels = 30002;        ///< for the parcels of Exchange, Communicator.cxx
+constexpr int Count = 30010;          ///< all tags are below this number
 }
 
 /// Message passing among the ranks of one solve. Each rank owns one Communicator and calls it from one thread. Messages

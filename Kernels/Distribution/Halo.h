@@ -65,8 +65,8 @@ private:
   static std::vector<std::size_t> PlacesOf(const std::vector<Shared>& shared);
 
   Communicator& Comm;
-  std::vector<Shared> Owned;  ///< own cells that are ghost cells of a rank, by that rank
-  std::vector<Shared> Copied; ///< ghost cells of this rank, by their owner
+  std::vector<Shared> Owned;  ///< by rank, the own cells that are ghost cells of that rank
+  std::vector<Shared> Copied; ///< by rank, the ghost cells of this rank that that rank owns
 };
 
 /// A rank's block with a halo of `layers` layers of ghost voxels, clipped at the ends of the grid, and the exchange of
@@ -101,7 +101,7 @@ public:
 
 private:
   Grid All;
-  std::array<bool, 3> Around; ///< periodic axes
+  std::array<bool, 3> Around; ///< whether each axis is periodic
   VoxelBox OwnBox, Box;
   std::optional<GhostCells> Ghosts;
 };

@@ -18,7 +18,7 @@ struct RoundsTraffic
 {
   /// Travellers sent by this rank; a traveller counts each time that it enters another rank's block.
   std::size_t handed = 0;
-  std::size_t bytes = 0; ///< bytes of the travellers sent by this rank
+  std::size_t bytes = 0; ///< size of the travellers sent by this rank, bytes
   int rounds = 0;        ///< number of rounds of tracing and exchange, until no traveller was left
 };
 

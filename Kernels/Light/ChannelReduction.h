@@ -30,7 +30,7 @@ struct OneChannelScene
 {
   OneChannelScene(const Medium& medium, const Illumination& illumination, const SceneChannels& channels);
 
-  Medium medium; ///< medium that refers to the arrays of the given one
+  Medium medium; ///< medium of one channel, which refers to the arrays of the given medium
   Illumination light;
 };
 

@@ -32,7 +32,7 @@ inline double EnergyBalance::RelativeError(int channels) const
     const double in = this->entered[c] + this->emitted[c];
     const double out = this->absorbed[c] + this->escaped[c] + this->leftOver[c];
     const double error = in > 0.0 ? std::abs(in - out) / in : std::abs(out);
-    worst = error <= worst || std::isnan(worst) ? worst : error; // a NaN of any channel is returned
+    worst = error <= worst || std::isnan(worst) ? worst : error; // returns NaN if any channel is NaN
   }
   return worst;
 }
@@ -89,13 +89,13 @@ struct LightField : SolveReport
 {
   int channels = 1;
   std::vector<float> fluence;       ///< fluence, W / length^2, `channels` per voxel
-  std::vector<float> fluenceDirect; ///< fluence of uncollided light, W / length^2
+  std::vector<float> fluenceDirect; ///< fluence of uncollided light, W / length^2, `channels` per voxel
   /// First moments of collisions of lamps' uncollided light (numerics.md, Eq. (37)), 6 * channels per voxel: for
   /// channels 0, 1, 2 one value per face -x, +x, ... +z. Each is the distance, 0 to 1/2 voxel, of the mean collision
   /// position from the voxel's centre towards the face, times the uncollided fluence, W / length^2. Empty: not
   /// requested.
   std::vector<float> firstMoments;
-  std::vector<float> fluenceError; ///< estimated standard error of the fluence, W / length^2
+  std::vector<float> fluenceError; ///< estimated standard error of the fluence, W / length^2, `channels` per voxel
   /// Net flux, W / length^2, 3 * channels per voxel: (x, y, z) of channel 0, 1, 2.
   std::vector<float> netFlux;
   /// In-scattered radiance, W / (length^2 sr), channels * storedDirections per voxel.

@@ -146,7 +146,7 @@ std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
     return { { { first.x, first.y, first.z }, { second.x, second.y, second.z } } };
   }
   return { { { light.size[0] * ex, light.size[0] * ey, 0.0 },
-    { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // the second edge is direction x first edge
+    { -s * z * ey, s * z * ex, s * (x * ey - y * ex) } } }; // second edge: direction x first edge
 }
 
 namespace
@@ -241,7 +241,7 @@ Environment Turned(const Environment& environment, const Rotation& rotation)
   Environment turned = environment;
   for (int row = 0; row < 3; ++row)
   {
-    turned.toPicture[row] = Product(rotation, environment.toPicture[row]); // the product with the transposed rotation
+    turned.toPicture[row] = Product(rotation, environment.toPicture[row]); // each row r of the matrix becomes R r
   }
   return turned;
 }
@@ -252,7 +252,7 @@ Environment Turned(const Environment& environment, int up, double degrees)
   {
     throw InvalidInput("An environment stands up along axis 0, 1 or 2 (x, y, z) and is turned by a finite angle.");
   }
-  Rotation stands = {}; // maps the picture's z to axis `up`
+  Rotation stands = {}; // rotation that maps the picture's +z to axis `up` of the scene
   stands[up][2] = stands[(up + 1) % 3][0] = stands[(up + 2) % 3][1] = 1.0;
   return Turned(Turned(environment, AboutZ(degrees)), stands);
 }

@@ -15,14 +15,14 @@ enum class LightType
   Directional = 0, ///< parallel beam from infinity that illuminates the complete box
   Point = 1,
   Spot = 2,      ///< point source that emits uniformly into a cone
-  Rectangle = 3, ///< Lambertian emitter, on one side
+  Rectangle = 3, ///< rectangle that emits as a Lambertian surface, on one side
 };
 
 /// One light source other than sky, faces and environment: a row of the LightRig's polydata.
 struct Light
 {
   LightType type = LightType::Directional;
-  std::array<double, 3> position = { 0.0, 0.0, 0.0 };   ///< position of the point, or centre of the rectangle
+  std::array<double, 3> position = { 0.0, 0.0, 0.0 };   ///< position of a point light or spot, or centre of a rectangle
   std::array<double, 3> direction = { 0.0, 0.0, -1.0 }; ///< direction in which the light travels; any length but 0
   /// power, W; of a directional light: irradiance of a plane normal to `direction`, W / length^2
   Rgb power = { 1.0, 1.0, 1.0 };

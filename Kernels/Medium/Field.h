@@ -7,7 +7,7 @@ namespace tyndall
 /// A non-owning view of one quantity on a grid: `components` floats per voxel (1, or 3 for interleaved RGB), x fastest.
 struct Field
 {
-  const float* values = nullptr; ///< null: the quantity is zero everywhere
+  const float* values = nullptr; ///< the values, not owned; null: the quantity is zero everywhere
   int components = 1;
   /// Index of the component (of three) that is used for every channel; -1: channel c uses component c.
   int standsForAll = -1;

@@ -56,7 +56,7 @@ public:
     }
     float value;
     std::memcpy(&value, &largest, sizeof(value));
-    all.sound = all.sound && signs >= 0 && value <= std::numeric_limits<float>::max(); // `sound` is false for NaN
+    all.sound = all.sound && signs >= 0 && value <= std::numeric_limits<float>::max(); // a comparison with NaN is false
     all.largest = std::max(all.largest, value);
   }
 

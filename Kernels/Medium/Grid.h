@@ -11,7 +11,7 @@ struct Grid
 {
   std::array<int, 3> size = { 1, 1, 1 };             ///< number of voxels per axis, at least 1
   std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< edge lengths of a voxel, > 0
-  std::array<double, 3> origin = { 0.0, 0.0, 0.0 };  ///< lower corner of the box
+  std::array<double, 3> origin = { 0.0, 0.0, 0.0 };  ///< position of the lower corner of the grid's box
 
   std::size_t VoxelCount() const
   {

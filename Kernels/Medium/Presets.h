@@ -10,7 +10,7 @@ namespace tyndall
 struct MediumPreset
 {
   const char* name;
-  const char* densityOne; ///< meaning of density 1, for users
+  const char* densityOne; ///< physical density that has the value 1, as text for users
   Rgb sigma_s;            ///< scattering coefficient, 1/mm
   Rgb sigma_a;            ///< absorption coefficient, 1/mm
   Rgb g; ///< mean cosine of the phase function; 0 if sigma_s is the reduced coefficient, sigma_s (1 - g)

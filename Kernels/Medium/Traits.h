@@ -21,14 +21,14 @@ public:
   {
     return this->One;
   }                      ///< whether all colours are multiples of one colour, to rounding (3e-7 per component)
-  bool IsGrey() const;   ///< whether all colours are exact multiples of white
+  bool IsGrey() const;   ///< whether all colours that were added are exact multiples of white
   int Brightest() const; ///< index of the brightest channel of the common colour
   Rgb Relative() const;  ///< the common colour, scaled so that its brightest channel is 1; white if all are black
-  bool IsBlack() const { return this->Sum == Rgb{}; } ///< whether all colours are black
+  bool IsBlack() const { return this->Sum == Rgb{}; } ///< whether all colours that were added are black
 
 private:
   bool One = true;
-  Rgb First = {}; ///< the first colour that is not black
+  Rgb First = {}; ///< first of the added colours that is not black
   Rgb Sum = {};
 };
 

@@ -19,8 +19,8 @@ static uint4 philox(uint4 counter, uint2 key)
 // State of the sequence of random numbers of one photon.
 typedef struct
 {
-  uint2 key;      // seed
-  ulong stream;   // index of the photon
+  uint2 key;      // seed of all sequences
+  ulong stream;   // index of the photon, which selects its sequence
   uint block;     // index of the next block of the sequence
   int left;       // number of unused values of the current block
   uint values[4]; // values of the current block

@@ -12,7 +12,7 @@ namespace tyndall
 /// voxels [2^l (i, j, k), 2^l (i+1, j+1, k+1)), clipped to the grid; x fastest.
 struct PyramidLayout
 {
-  explicit PyramidLayout(const std::array<int, 3>& size); ///< size of the grid, voxels
+  explicit PyramidLayout(const std::array<int, 3>& size); ///< computes the layout for a grid of `size` voxels
 
   /// Number of levels, 1 + ceil(log2(longest edge in voxels)).
   int LevelCount() const { return static_cast<int>(this->sizes.size()); }

@@ -207,7 +207,7 @@ double CosineOfTable(const PhaseFunction::Table& table, double u)
 std::vector<double> MomentsOfTable(const PhaseFunction::Table& table, int degree)
 {
   std::vector<double> moments(degree + 1, 0.0);
-  const GaussLegendre rule(degree / 2 + 2); // exact for P_l times a linear function
+  const GaussLegendre rule(degree / 2 + 2); // the rule is exact for P_l times a linear function
   for (std::size_t row = 0; row + 1 < table.cosines.size(); ++row)
   {
     const double low = table.cosines[row], width = table.cosines[row + 1] - low;
@@ -279,7 +279,7 @@ PhaseFunction PhaseFunction::Schlick(double g)
 {
   CheckMeanCosine(g);
   PhaseFunction function;
-  function.Which = Kind::Schlick; // even if g is 0, since WithMeanCosine() needs the kind
+  function.Which = Kind::Schlick; // also for g = 0, since WithMeanCosine() keeps the kind
   function.The.first = g == 0.0 ? 0.0 : KOfSchlick(g);
   return function;
 }

@@ -23,7 +23,7 @@ public:
     Tabulated
   };
 
-  PhaseFunction() = default; ///< isotropic scattering
+  PhaseFunction() = default; ///< creates an isotropic phase function
   /// Phase function of Henyey and Greenstein (1941).
   /// @param g  mean cosine in (-1, 1), else InvalidInput is thrown; 0: isotropic
   static PhaseFunction HenyeyGreenstein(double g);

@@ -18,7 +18,7 @@ namespace tyndall
 class PhaseOfMedium
 {
 public:
-  PhaseOfMedium() = default; ///< isotropic scattering
+  PhaseOfMedium() = default; ///< creates an isotropic phase function for all voxels and channels
   /// Implicit conversion: one phase function for all voxels and channels.
   PhaseOfMedium(const PhaseFunction& ofAll);
   explicit PhaseOfMedium(const std::array<PhaseFunction, 3>& ofChannels);

@@ -16,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostForSingularValues = 1024; ///< largest number of directions; the work grows with its cube
+constexpr int MostForSingularValues = 1024; ///< most directions with singular values, as the work grows with its cube
 /// A column is linearly dependent if less than this fraction of its length remains after projection.
 constexpr double Dependent = 1e-3;
 constexpr double Nothing = 1e-14; ///< eigenvalues below this, relative to the largest, count as zero (rounding)
@@ -243,7 +243,7 @@ Basis BasisOf(const PhaseFunction& function, const std::vector<Direction>& direc
 
 std::vector<double> CapMoments(double solidAngle, int degree)
 {
-  const double away = std::min(solidAngle / (2.0 * Pi), 2.0); // 1 - cosine of the cap's half angle
+  const double away = std::min(solidAngle / (2.0 * Pi), 2.0); // 1 - cosine of the half angle of the cap
   const std::vector<double> p = LegendrePolynomials(degree + 1, 1.0 - away);
   std::vector<double> moments(degree + 1, 1.0);
   for (int l = 1; l <= degree; ++l)

@@ -41,7 +41,7 @@ struct SeparableSettings
 struct SeparableErrors
 {
   double frobenius = 0.0;  ///< relative Frobenius norm of the difference, weighted by solid angles
-  double maximum = 0.0;    ///< largest difference, relative to the matrix' largest value
+  double maximum = 0.0;    ///< largest absolute difference, relative to the largest value of the matrix
   double rowSum = 0.0;     ///< largest deviation from 1 of the total power scattered from a direction
   double meanCosine = 0.0; ///< largest deviation of a direction's mean cosine from that of the phase function
   /// Smallest value of the sum, relative to the matrix' largest value; negative if there are too few terms.
@@ -77,8 +77,8 @@ public:
   const std::vector<Direction>& TheDirections() const { return this->Directions; }
   /// Fraction of scattered light treated as unscattered.
   double Peak() const { return this->PeakPart; }
-  double Eigenvalue(int term) const { return this->Eigenvalues[term]; } ///< lambda_k, in [-1, 1] if repaired
-  double Factor(int direction, int term) const                          ///< u_k(i), 1/sqrt(sr)
+  double Eigenvalue(int term) const { return this->Eigenvalues[term]; } ///< lambda_k of term k, in [-1, 1] if repaired
+  double Factor(int direction, int term) const ///< value u_k(i) of a term k in direction i, 1/sqrt(sr)
   {
     return this->Factors[static_cast<std::size_t>(term) * this->Directions.size() + direction];
   }

@@ -114,7 +114,7 @@ struct PhotonLight
   std::size_t missed = 0;   ///< number of photons whose lines miss the volume; their power does not count as entered
   std::size_t deposits = 0; ///< number of path segments deposited in voxels
   std::size_t steps = 0;    ///< number of steps of the integrator
-  double secondsMarching = 0.0; ///< time from sorted photons to sums on the device
+  double secondsMarching = 0.0; ///< duration of the march, from sorted photons to sums on the device, s
   double seconds = 0.0;         ///< total time from photons to light
 };
 

@@ -88,7 +88,7 @@ private:
   cl_int4 Voxels;
   BatchedLight Light;
   WholeRows Direction, Fluence, MeanDirection, MipLevel, Error;
-  int First, Top;  ///< level numbers of Levels.front() and Levels.back()
+  int First, Top;  ///< numbers of the lowest and the highest level that this object has
   bool FromVoxels; ///< whether level 1 is computed from the voxels
   std::vector<ConservativeLevel> Levels;
 };

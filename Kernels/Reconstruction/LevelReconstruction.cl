@@ -123,7 +123,7 @@ inline real populated(const __global float* counts, const rows_between* rows_of_
   const __global float* wanted, const rows_between* rows, int x, real* found)
 {
   real level = 0.0f;
-  integer open = -1; // mask of the voxels whose level is not found yet
+  integer open = -1; // mask of the voxels whose level is not yet found
 #pragma unroll
   for (int l = 0; l <= TOP; ++l)
   {

@@ -6,7 +6,7 @@
 SHARED_BEGIN
 enum
 {
-  LevelsAtMost = 8 ///< maximum number of levels above the grid
+  LevelsAtMost = 8 ///< maximum number of levels of a pyramid above the grid
 };
 
 /// Position and layout of a pyramid's levels in memory.

@@ -69,7 +69,7 @@ void Add(std::array<double, 3>& sum, const std::array<double, 3>& more)
 struct ArrayRange
 {
   bool fit = true;                  ///< whether every value lies within the required range
-  float largest = 0.0f;             ///< largest value
+  float largest = 0.0f;             ///< largest value of the array
   std::array<double, 3> total = {}; ///< sum of the values of each component; [0] only, for one component
 };
 

@@ -18,7 +18,7 @@ struct NoisyLight
   Grid grid;                            ///< grid of the arrays; Reconstruct uses the grid of its domain instead
   int channels = 1;                     ///< number of channels of the fluence: 1 or 3
   const float* fluence = nullptr;       ///< fluence, W / length^2; not read by the conservative estimator
-  const float* meanDirection = nullptr; ///< 3 values per voxel, length at most 1; optional
+  const float* meanDirection = nullptr; ///< mean direction of the light, 3 values per voxel, length at most 1; optional
   /// Number of photons that crossed each voxel; for the published and the nearest-photons estimator.
   const float* photonCount = nullptr;
   const float* photonWeight = nullptr; ///< mean Photon::weight of the counted photons; for the published estimator

@@ -16,7 +16,7 @@ struct LitColor
   std::vector<std::uint8_t> rgba; ///< red, green, blue, alpha per voxel; colours are not multiplied by alpha
   /// Path length for which alpha is the opacity of a voxel, length.
   double distance = 1.0;
-  double exposure = 1.0; ///< factor applied to radiance before tone mapping
+  double exposure = 1.0; ///< factor by which radiance was multiplied before tone mapping
 };
 
 /// Computes the colour of the light that each voxel scatters and emits, and the voxel's opacity (numerics.md, section

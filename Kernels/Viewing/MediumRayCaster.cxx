@@ -290,7 +290,7 @@ Picture MediumRayCaster::Render(
 {
   Require(!block || this->CastsBlocks(),
     "Rays that bend or meet a table cannot be cast through blocks of the medium one by one.");
-  this->Rays.PassOf(camera, block, false); // throws for an invalid camera
+  this->Rays.PassOf(camera, block, false); // called for its error if the camera is invalid
   Report(monitor, 0.0);
   const bool prepares = this->NeedsSources();
   if (prepares)

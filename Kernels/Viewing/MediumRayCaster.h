@@ -144,7 +144,7 @@ public:
   const std::vector<std::string>& Warnings() const { return this->Doubts; }
 
 private:
-  friend class PictureInBlocks; // calls the steps of Render together with other ranks
+  friend class PictureInBlocks; // performs the steps of Render together with other ranks
 
   MediumRayCaster(Device& device, const Medium& medium, const FilledBricks& filled, const SolvedLight& light,
     const Illumination& illumination, const ViewSettings& settings, const Field& ior, const BlockOfScene* block);
@@ -157,7 +157,7 @@ private:
   Picture Cast(const Camera& camera, const GridBlock* block, const std::vector<float>& ends, const Starts& starts,
     double from, const Monitor& monitor);
 
-  std::optional<BlockOfScene> Part; ///< the block, if the medium is one block of a larger grid
+  std::optional<BlockOfScene> Part; ///< the block that the medium is; no value if it is the whole domain
   bool LampsShine = false;
   bool AskedForShadowRays = false; ///< setting shadowRays as the caller gave it, also if there is no lamp
   ViewSettings Settings;           ///< the caller's settings, with shadow rays as the scene needs them (Needed)

@@ -98,8 +98,8 @@ void Check(const ToneMapping& settings)
 
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
-  constexpr float Parts = 16.0f; // counts per fully covered pixel
-  constexpr int Shift = 23 - 8;  // shift from the bits of a float to its leading bits
+  constexpr float Parts = 16.0f; // counts of a fully covered pixel
+  constexpr int Shift = 23 - 8;  // low bits of a float that do not enter the index of its class
   std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;
   InThreads(radiance.size() / 3, PixelsOfThread, [&](std::size_t begin, std::size_t end) {

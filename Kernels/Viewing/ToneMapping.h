@@ -18,7 +18,7 @@ struct ToneMapping
   /// Factor applied to radiance before the tone curve; 0: chosen such that the picture's logarithmic mean luminance
   /// becomes 0.18, the value of a photographer's grey card (Reinhard et al. 2002, "Photographic tone reproduction",
   /// equations 1 and 2).
-  double exposure = 0.0; ///< [0, 1e30]
+  double exposure = 0.0; ///< range [0, 1e30]
   ToneCurve curve = ToneCurve::Filmic;
 };
 

@@ -62,7 +62,7 @@ std::vector<SpreadSource> SpreadSources(std::vector<PhotonSource> sources, const
 /// Estimates of a light's properties from a few of its samples.
 struct Tried
 {
-  double power = 0.0; ///< W, power that reaches the volume, sum of channels
+  double power = 0.0; ///< W, power that the light sends into the volume, sum of channels
   double hits = 0.0;  ///< fraction of the samples whose photons reach the volume
 };
 
@@ -184,7 +184,7 @@ void Check(const EmissionSettings& settings)
 struct Tries
 {
   std::size_t all = 0;            ///< number of all samples of the light
-  std::size_t begin = 0, end = 0; ///< range of samples in this part
+  std::size_t begin = 0, end = 0; ///< range of the samples in the part of the emission that is computed
 };
 
 /// Returns the numbers of samples of each light.

@@ -192,7 +192,7 @@ SphericalRectangle::SphericalRectangle(const glm::dvec3& eye, const glm::dvec3& 
   this->B1 = n2.z;
   this->K = 2.0 * Pi - g2 - g3;
   this->Angle = g0 + g1 - this->K;
-  if (this->Angle < smallBelow) // the difference of large angles would cancel
+  if (this->Angle < smallBelow) // small angles have rounding errors, as differences of large angles
   {
     const glm::dvec3 middle(0.5 * (this->X0 + this->X1), 0.5 * (this->Y0 + this->Y1), this->Z0);
     const double distance = glm::length(middle);

@@ -116,7 +116,7 @@ int FindStep(const double* table, int count, double u, double& part)
 {
   const double wanted = u * table[count];
   int step = static_cast<int>(std::upper_bound(table + 1, table + count, wanted) - table) - 1;
-  while (step > 0 && table[step + 1] == table[step]) // rounding raised `wanted` to the total
+  while (step > 0 && table[step + 1] == table[step]) // if rounding raised `wanted` to the total
   {
     --step;
   }

@@ -10,9 +10,9 @@ namespace tyndall
 /// Method that distributes the samples of photons in the unit hypercube (Pfeuti 2009, section 4.1).
 enum class Sampler
 {
-  Hammersley = 0, ///< (i + 1/2) / count, and radical inverses of i to the bases 2, 3, 5
-  Halton = 1,     ///< radical inverses of i to the bases 2, 3, 5, 7
-  Jittered = 2,   ///< a random point in each cell of a square grid
+  Hammersley = 0, ///< coordinates of point i: (i + 1/2) / count, radical inverses of i to the bases 2, 3, 5
+  Halton = 1,     ///< coordinates of point i: radical inverses of i to the bases 2, 3, 5, 7
+  Jittered = 2,   ///< one random point in each cell of a square grid
   Grid = 3,       ///< the centre of each cell of a square grid
   Random = 4,
 };
@@ -41,7 +41,7 @@ private:
   std::uint64_t Seed;
   bool Turned; ///< whether dimensions 0 and 1 are exchanged
   std::size_t Rows;
-  std::size_t Stride; ///< step from one cell of the second grid to the next
+  std::size_t Stride; ///< step between the cells of the second grid that successive points use
   std::array<double, 4> Shift = {};
 };
 

@@ -44,7 +44,7 @@ public:
   };
   Place At(double u, double v) const;
 
-  double DensityOf(int column, int row) const; ///< probability density in a cell; its mean over cells is 1
+  double DensityOf(int column, int row) const; ///< probability density in a cell; its mean over the cells is 1
 
 private:
   int Size;

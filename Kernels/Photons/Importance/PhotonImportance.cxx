@@ -15,7 +15,7 @@ namespace tyndall
 namespace
 {
 // Constants of the automatic thresholds, which are in proportion to the pilot photons' light (numerics.md, Eq. (96)).
-constexpr double SteepPart = 0.2; ///< fraction of lit cells that count as steep
+constexpr double SteepPart = 0.2; ///< fraction of the lit cells whose gradient counts as steep
 /// Smallest difference between cells, relative to the median luminance, that counts as steep; smaller ones are noise,
 /// or extinction in fog.
 constexpr double SteepAtLeast = 0.25;

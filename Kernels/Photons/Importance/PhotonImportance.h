@@ -31,8 +31,8 @@ struct Importance
   ImportanceMap map;           ///< relative density of photon origins, mean 1 for each light
   PilotLight pilot;            ///< light of all lights; origins are those of the first light that reaches each cell
   std::vector<float> gradient; ///< W / length^2, difference of fluence between neighbouring cells, one value per cell
-  std::vector<float> chosen;   ///< 1 for cells to sample densely, else 0
-  double gradientThreshold = 0.0, luminanceThreshold = 0.0; ///< W / length^2, thresholds used
+  std::vector<float> chosen;   ///< by cell: 1 if it is to be sampled densely, else 0
+  double gradientThreshold = 0.0, luminanceThreshold = 0.0; ///< W / length^2, the thresholds that were used
   /// Whether the light is too even for importance sampling to help: the map is 1 everywhere, and photons should be
   /// distributed uniformly.
   bool even = false;

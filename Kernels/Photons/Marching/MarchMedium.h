@@ -26,7 +26,7 @@ struct MarchTraits : MediumTraits
   bool coloured = false; ///< whether sigma_a or sigma_s is given with three components
   IndexRange index;      ///< smallest and largest refractive index
 
-  int Channels(const MarchSettings& settings) const; ///< number of extinction channels, 1 or 3
+  int Channels(const MarchSettings& settings) const; ///< number of channels of sigma_t in the march, 1 or 3
   /// Number of channels of the light that packed photons deposit, 1 or 3.
   int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
 };
@@ -97,8 +97,8 @@ private:
 /// The box through which one rank marches photons, and the larger box in which it has the refractive index.
 struct MarchedPart
 {
-  Grid whole;   ///< the domain
-  VoxelBox own; ///< voxels of the rank's medium
+  Grid whole;   ///< grid of the domain
+  VoxelBox own; ///< box of the domain's voxels through which the rank marches photons
   /// Voxels in which the rank has the refractive index: `own` and a halo, on which paths in `own` depend.
   VoxelBox known;
 };
@@ -162,7 +162,7 @@ public:
 
   Device& device;
   Grid grid;
-  MarchedPart block; ///< position of `grid` in the domain
+  MarchedPart block; ///< position of this medium's grid in the domain
   MarchSettings settings;
   MarchTraits traits;
   int channels;              ///< number of extinction channels, 1 or 3

@@ -82,7 +82,7 @@ MarchShares ShareSums(const MarchMedium& medium, std::size_t records, int number
   const bool mayShare = medium.settings.sums == MarchSettings::Sums::Fitting && HasAtomics(device);
   if (mayShare && fitting() < static_cast<std::size_t>(std::max(device.ComputeUnits(), batches)))
   {
-    shares.atomics = true; // additions by atomics are slower, but all cores can be used
+    shares.atomics = true; // atomic additions are slower than private sums, but all cores can be used
   }
   const std::size_t fit = fitting();
   if (batches > 1 && fit < static_cast<std::size_t>(batches))

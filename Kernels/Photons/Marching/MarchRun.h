@@ -66,8 +66,8 @@ struct PhotonsOnDevice
   std::size_t LargestBatch() const; ///< number of photons in the largest batch
 
   bool resumes;                   ///< whether the photons arrived from other blocks
-  Buffer<float> starting;         ///< photons that start, as PackedPhotons::values
-  Buffer<PhotonOnItsWay> arrived; ///< photons that arrived
+  Buffer<float> starting;         ///< photons that start in this block, as PackedPhotons::values
+  Buffer<PhotonOnItsWay> arrived; ///< photons that arrived from other blocks
   std::vector<int> begins;        ///< index of the first photon of each batch, and one past the last photon
   Buffer<cl_int> batchBegin;
   Buffer<cl_ulong> marks;

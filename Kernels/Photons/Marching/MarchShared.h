@@ -41,7 +41,7 @@ typedef struct
   float spacing[3];  ///< edges of a voxel, in units of its diagonal
   float stepSize;    ///< length of a step, in voxels, where the octree has single voxels
   float slowest;     ///< lower bound of the speed, in voxels per time, from which the duration of a step is computed
-  float darkness;    ///< power, in units, below which a photon is terminated as dark
+  float darkness;    ///< power, in units of PackedPhotons::unit, below which a photon ends as dark
   int eventLimit;    ///< maximum number of path segments (walls and velocity changes) of a photon
   ulong copy;        ///< number of records of extinction: voxels of the padded grid, or records of bricks
 } MarchInfo;
@@ -57,7 +57,7 @@ typedef struct
   int resumes; ///< 1: photons that arrived from another block or continue from an earlier turn; 0: photons that start
   int events;  ///< maximum number of path segments per photon in this turn
   int last;    ///< 1: photons that have not ended after this turn are terminated
-  int writes;  ///< 1: vertices of paths are written; 0: they are counted
+  int writes;  ///< for paths, 1: their vertices are written; 0: vertices are counted
 } MarchLaunch;
 
 /// Final state of a photon. In kernels, the remaining power of each channel follows.
@@ -146,7 +146,7 @@ typedef struct
   ulong number; ///< index of the photon, which selects its sequence of random numbers
   WayOnward way;
   uint blocks; ///< number of blocks of random numbers that the photon has drawn
-  int drawn;   ///< number of unused random numbers in the last block
+  int drawn;   ///< number of unused random numbers in the last of these blocks
   int events;  ///< path segments since the last scattering; 0: the photon starts anew, in the direction `way.velocity`
   int scatterings;                         ///< number of scatterings of the photon
   float depth;                             ///< scattering optical depth to the next collision

@@ -13,7 +13,7 @@ namespace
 {
 struct Span
 {
-  double begin = 0.0, end = 0.0; ///< s, device time
+  double begin = 0.0, end = 0.0; ///< device times at which the work began and ended, s
 };
 
 Span SpanOf(const cl::Event& first, const cl::Event& last)
@@ -46,13 +46,13 @@ public:
     this->Before += this->stretches;
   }
 
-  int stretches = 0; ///< number of path segments in the current turn
+  int stretches = 0; ///< maximum number of path segments per photon in the current turn
   bool last = false; ///< whether the current turn is the last
 
 private:
   int Each, Limit;
   std::size_t All;
-  std::int64_t Before = 0; ///< path segments of all turns begun so far
+  std::int64_t Before = 0; ///< number of path segments per photon in all turns begun so far
 };
 
 /// State of the photons on the device between turns, and the kernel that marches them.

@@ -42,7 +42,7 @@ private:
     const PackedPhotons& packed, const MarchSums& target, PhotonLight& result, const Buffer<cl_long>& taken) const;
 
   const MarchMedium& Medium;
-  Buffer<cl_long> Sums; ///< buffer of the sums, zero between two marches
+  Buffer<cl_long> Sums; ///< sums of deposits in fixed point; all zero between two marches
 };
 
 /// Adds the final states of photons to the light's energy balance: the power that escaped through each face of the

@@ -6,7 +6,7 @@
 #include "Medium/BrickShared.h"
 #include "Photons/Marching/PhotonLanes.cl"
 
-#define NO_SLOPE 1e37f // time across a voxel along an axis with zero velocity
+#define NO_SLOPE 1e37f // stands for the infinite time to cross a voxel along an axis with zero velocity
 
 // Finds the records of voxels of the sums and the extinction.
 //   last  number of voxels along an edge of the region that a photon crosses in one segment, less one: BrickEdge - 1

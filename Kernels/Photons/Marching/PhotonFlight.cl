@@ -40,7 +40,7 @@ typedef struct
 // Deposit of one path segment of each photon.
 typedef struct
 {
-  integer at;            // index of the record of the sums
+  integer at;            // index, in the sums, of the voxel's record
   real amount[CHANNELS]; // power times path integral of transmittance, in units
 #if COUNTS || CELLS
   integer entered; // mask of the photons that entered the voxel or coarse cell in this segment
@@ -98,7 +98,7 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
       const real s = fabs(c == 0 ? flight->sigma : gather(float, arrays->sigma + c * arrays->info->copy, flight->at));
       const real tau = s * length;
       lost = extinguished(tau, &left);
-      const real mean = tau > (real)TINY ? lost / tau : (real)1.0f; // mean transmittance over the length
+      const real mean = tau > (real)TINY ? lost / tau : (real)1.0f; // mean transmittance over the path length
       factor = mean * length;
 #if !CELLS
       factor *= greater(s, (real)1.0f);

@@ -85,7 +85,7 @@ static bool follow(
     if (anywhere(special))
     {
 #if !PATHS
-      deposit_all(arrays, lanes, &gain); // before directions change, which the deposit records
+      deposit_all(arrays, lanes, &gain); // before any photon changes direction, since deposits record directions
       owed = false;
 #endif
       land(flight, lanes);

@@ -36,7 +36,7 @@ int ReachOfIndex(const MarchSettings& settings, bool octree)
   }
   const double steps = 0.5 * (settings.order == 2 ? LeapfrogLooksAhead : YoshidaLooksAhead) * settings.stepSize;
   const double ahead = octree && settings.order == 4 ? std::max(steps, 1.0 * (1 << YoshidaLevel)) : steps;
-  return OfSpline + 1 + static_cast<int>(ahead); // one more for positions on the upper wall of a voxel
+  return OfSpline + 1 + static_cast<int>(ahead); // one voxel more, for positions on the upper wall of a voxel
 }
 
 void RequireSame(const Domain& domain, const MarchSettings& settings)
@@ -58,7 +58,7 @@ bool IsDivided(const Domain& domain)
 
 void Check(const MarchSettings& settings)
 {
-  constexpr double ShortestStep = 0.05; // in voxels; with shorter steps, rounding of positions matters
+  constexpr double ShortestStep = 0.05; // voxels; positions have too few digits for shorter steps
   constexpr double LongestStep = 1e4;
   Require(settings.order == 1 || settings.order == 2 || settings.order == 4,
     "The integrator's order is " + std::to_string(settings.order) + "; there are 1, 2 and 4.");
@@ -351,7 +351,7 @@ void PhotonMarcher::Implementation::AddScattered(
   }
   else if (this->Settings.maximumOrders != 1)
   {
-    result.light.fluenceDirect = result.light.fluence; // nothing scatters
+    result.light.fluenceDirect = result.light.fluence; // all light is uncollided, since nothing scatters
   }
 }
 

@@ -468,7 +468,7 @@ void MarkForCounting(const std::vector<Photon>& share, float largest, std::size_
 {
   // A voxel counts photons in the upper bits of a 64-bit number, above the sum of their weights.
   constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
-  constexpr double WeightUnits = 65536.0; // units of weight in the largest weight
+  constexpr double WeightUnits = 65536.0; // the largest weight has this number of units
   Require(count <= CountedAtMost,
     "There are " + std::to_string(count) + " photons; voxels can count up to " + std::to_string(CountedAtMost) +
       ". March fewer at a time, or without counts.");
@@ -489,7 +489,7 @@ bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::arra
   for (int a = 0; a < 3; ++a)
   {
     const double size = grid.size[a];
-    const double slack = 1e-6 * size; // a position on a face may be rounded to the outside
+    const double slack = 1e-6 * size; // position of a photon on a face, which rounding may have moved outside
     if (direction[a] == 0.0)
     {
       if (position[a] < -slack || position[a] > size + slack)
@@ -577,7 +577,7 @@ StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon
   });
   if (domain.IsSerial())
   {
-    return starting; // all photons start on this rank
+    return starting; // on one rank all photons start in its block
   }
   Join(communicator.Exchange<SentPhoton>(
          EveryRank(communicator), [&] { return ByBlocks(domain.Partition(), starting.packed, starting.marks); }),

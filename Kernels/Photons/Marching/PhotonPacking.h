@@ -19,7 +19,7 @@ struct PackedPhotons
   bool grey = true; ///< whether the powers of all photons are grey
   /// Colour of the single channel, with mean 1; (1, 1, 1) for white photons and for three channels.
   Rgb colour = { 1.0, 1.0, 1.0 };
-  double unit = 1.0;                ///< W per unit of power, a power of two
+  double unit = 1.0;                ///< W per unit of the packed powers, a power of two
   std::vector<float> values;        ///< of each photon: position (voxels), unit direction, `channels` of power (units)
   std::vector<std::size_t> numbers; ///< index of each photon among the photons given to Pack
   std::vector<int> batchBegin;      ///< index of the first photon of each batch, and one past the last photon

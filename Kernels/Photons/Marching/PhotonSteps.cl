@@ -34,7 +34,7 @@
 
 #define NEVER 3e38f
 #define AHEAD 4        // prefetch distance, in voxels along the axis of fastest change
-#define OUTSIDE -3e38f // sigma of the padding around the grid
+#define OUTSIDE -3e38f // value of sigma in the padding around the grid
 // Minimum speed, in diagonals per time, of a photon; speed is n, but for rounding and steps across jumps of n.
 #define SLOWEST_PACE 1e-12f
 #define FASTEST_PACE 1e12f
@@ -76,14 +76,14 @@ typedef struct
   LANES(float, settled);  // time before which a varying index does not start a new step
   LANES(float, pace);     // speed, in diagonals per time
   LANES(float, step);     // duration of the current step
-  LANES(int, steps);      // number of steps of the integrator
-  LANES(int, crossings);  // number of path segments that were deposited
+  LANES(int, steps);      // number of steps of the integrator so far
+  LANES(int, crossings);  // number of path segments deposited so far
   // Remaining power of each channel, in units.
   float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
   LANES_3(float, start);        // position at which the step began
   LANES_3(float, velocity);     // velocity in the step, voxels per time
   LANES_3(float, momentum);     // T of Eq. (90); with order 1 v of Eq. (92), with order 2 equal to the velocity
-  float4 direction[REAL_WIDTH]; // 1, and the unit direction in space (y, z, w)
+  float4 direction[REAL_WIDTH]; // for sums of power (1) and of power times direction (unit vector): 1, x, y, z
 #if MARKS
   LANES(ulong, mark); // mark of the photon (PhotonMarch.cl)
 #endif
@@ -282,7 +282,7 @@ static real looked_ahead(const MarchInfo* info, real way)
 {
   if (LEVELS && ORDER == 2)
   {
-    return way; // at most to the wall of a node, and all nodes are known
+    return way; // not limited, since the step is at most to the wall of a node, and all nodes are known
   }
   const float steps = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
   const float most = LEVELS ? greater(steps, (float)(1 << YoshidaLevel)) : steps;

@@ -243,7 +243,7 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
         const size_t voxel = low + z * strideZ + y * strideY + x;
         const size_t record = first < 0 ? -first : first + (z * BrickEdge + y) * BrickEdge + x;
         long sum[RECORD];
-        if (!take_batch(&info, sums + record * RECORD, copyStride, 0, sum)) // most voxels are dark, as photons are few
+        if (!take_batch(&info, sums + record * RECORD, copyStride, 0, sum)) // false in most voxels, as photons are few
         {
           leave_dark(fluence, mean_direction, voxel);
           continue;

@@ -22,7 +22,7 @@ struct PublishedSettings
 struct PackingLoss
 {
   Rgb deposited = {};       ///< W, sum of all deposits
-  Rgb kept = {};            ///< W, sum of the voxels' light
+  Rgb kept = {};            ///< W, sum over the voxels of the light that they hold
   std::size_t deposits = 0; ///< number of deposits in voxels
   std::size_t givenUp = 0;  ///< number of deposits that were lost after all attempts
 

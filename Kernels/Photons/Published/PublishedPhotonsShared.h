@@ -26,7 +26,7 @@ enum
 /// State of a photon at one end of a step.
 typedef struct
 {
-  float position[3]; ///< voxels of the domain
+  float position[3]; ///< position in voxels of the domain
   float velocity[3]; ///< n times direction; the unit direction alone before the first step
   float power[3];    ///< power in units, by channel
 } PublishedPlace;
@@ -38,9 +38,9 @@ typedef struct
   int face;                ///< face through which the photon left, or PublishedGivenUp, PublishedElsewhere
   int steps;               ///< number of steps begun; 0: the photon has not started
   int done;                ///< number of voxels along the last step to which the photon has deposited
-  int deposits;            ///< number of deposits in voxels
+  int deposits;            ///< number of deposits of the photon in voxels
   int givenUp;             ///< number of deposits that were lost after all attempts
   PublishedPlace from, to; ///< ends of the last step
-  float deposited[3];      ///< power of all its deposits in units, by channel
+  float deposited[3];      ///< power of all deposits of the photon, by channel, in units
 } PublishedPhoton;
 SHARED_END

@@ -105,7 +105,7 @@ private:
 
   const PhotonScattering& In;
   PackedPhotons Packed;
-  int Numbers; ///< numbers in a record of the sums: 1, or 4 with the net flux
+  int Numbers; ///< 64-bit numbers in a record of the sums: 1, or 4 with the net flux
   MarchShares Shares;
   Buffer<float> Photons;
   Buffer<cl_ulong> Streams;

@@ -25,7 +25,7 @@
 // Scattering properties of the medium in one channel.
 typedef struct
 {
-  const __global float2* optical; // sigma_s and sigma_a times a voxel diagonal, [padded]
+  const __global float2* optical; // sigma_s and sigma_a times a voxel's diagonal, per voxel of the padded grid
   // Parameter of the phase function, one value or [voxel]; or table of cosines at equal steps of probability.
   const __global float* phase;
 #if BLOCKS
@@ -104,9 +104,9 @@ static bool moves(const photon_lanes* lanes)
 // State of a photon between two scatterings, in addition to its path.
 typedef struct
 {
-  ScatterEnd end; // final state of the photon, up to now
+  ScatterEnd end; // final state of the photon if it ended now
   random_numbers random;
-  float dim;   // power in units below which Russian roulette is played
+  float dim;   // power, in units, below which Russian roulette is played
   float depth; // scattering optical depth to the next scattering
   int events;  // number of path segments since the last scattering
 } scattered_flight;

@@ -103,7 +103,7 @@ RefractiveMedium Voxelize(Device& device, const std::vector<Solid>& solids, cons
 struct VoxelFindings
 {
   std::vector<WindingNumbers> windings; ///< winding numbers of each solid's mesh at the samples
-  bool empty = true;                    ///< whether no voxel contains any part of a solid
+  bool empty = true;                    ///< whether all voxels are entirely outside the solids
   double volume = 0.0;                  ///< volume inside solids, length^3
 };
 

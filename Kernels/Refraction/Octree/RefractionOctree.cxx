@@ -292,7 +292,7 @@ private:
   std::size_t NodeCount = 0;         ///< number of nodes of all levels above 0
   Buffer<cl_float2> Ranges;          ///< (min, max) of each node for the quantity that is processed
   Buffer<cl_uchar> Nodes, Levels;
-  bool Restricted = false; ///< whether `Levels` are set by an earlier quantity
+  bool Restricted = false; ///< whether `Levels` hold levels, from an earlier quantity
 };
 }
 
@@ -318,7 +318,7 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
   const int levels = PyramidLayout(domain.Whole().size).LevelCount();
   Octree octree;
   octree.topLevel = levels - 1;
-  std::shared_ptr<Device> found; // device, opened for the first quantity that is not constant
+  std::shared_ptr<Device> found; // the device, which is opened for the first quantity that is not constant
   std::optional<OctreePyramid> pyramid;
   /// Restricts the octree by one quantity.
   /// @return whether the quantity restricts nodes; false if it is constant, or the domain is one voxel

@@ -152,7 +152,7 @@ LatticeMesh::LatticeMesh(Device& device, const SampleLattice& lattice, const Tri
 std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int firstRow, int endRow) const
 {
   SampleBox rows;
-  rows.first[columns.axis] = 0; // crossings beyond the ends of columns count as at the ends
+  rows.first[columns.axis] = 0; // beyond the ends of the columns, crossings count as at the ends
   rows.end[columns.axis] = 0;
   rows.first[columns.across] = 0;
   rows.end[columns.across] = columns.count[0];

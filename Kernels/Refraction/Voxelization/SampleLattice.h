@@ -53,8 +53,8 @@ struct SampleColumns
 {
   SampleColumns(const Grid& grid, int axis, int samplesOfVoxel, int pitch);
 
-  int axis;                 ///< axis of the columns
-  int across, up;           ///< other axes: the lower one, the higher one
+  int axis;                 ///< axis along which the columns run
+  int across, up;           ///< the lower and the higher one of the other two axes
   int samplesOfVoxel;       ///< number of samples per edge of a voxel
   int samples;              ///< number of samples in a column
   std::array<int, 2> count; ///< number of columns per row, and number of rows

@@ -140,7 +140,7 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
   const mesh_samples mesh = { &rows, bits, claimed, taken, samples };
   const float scale = weight * (0.5f * UNITS) / (float)s.step;
   const int tileColumns = tile.w >> 16, tileRows = tile.w & 0xffff;
-  int2 sum = (int2)(-1, 0); // voxel of the last crossings, and its pending correction
+  int2 sum = (int2)(-1, 0); // index of the voxel of the last crossings, and its correction not yet added
   for (int j = 0; j < tileRows; ++j)
   {
     long v0 = s.e0.value, v1 = s.e1.value, v2 = s.e2.value, excess = s.excess;

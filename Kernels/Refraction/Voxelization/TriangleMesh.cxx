@@ -89,8 +89,8 @@ std::vector<int> MergedPoints(const std::vector<Point>& points)
 /// Use of an edge by one triangle; EdgeUses lists it with the end of the lower index.
 struct EdgeUse
 {
-  int higher;   ///< index of the edge's end with the higher index
-  bool upwards; ///< whether the triangle runs from the lower to the higher index
+  int higher;   ///< index of that end of the edge that has the higher index
+  bool upwards; ///< whether the triangle traverses the edge from its lower to its higher index
 };
 
 /// Uses of all edges, sorted by the lower index of their ends.

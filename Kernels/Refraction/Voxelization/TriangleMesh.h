@@ -33,10 +33,10 @@ struct MeshTopology
 
   /// Number of edges with an odd number of triangles; if it is not 0, the mesh has no inside.
   std::size_t boundaryEdges = 0;
-  Edge firstBoundaryEdge = {}; ///< boundary edge whose corners have the lowest indices
+  Edge firstBoundaryEdge = {}; ///< the boundary edge whose ends have the lowest point indices
   /// Number of edges whose two triangles disagree about which side of the mesh is outside.
   std::size_t disagreeingEdges = 0;
-  Edge firstDisagreeingEdge = {};          ///< disagreeing edge whose corners have the lowest indices
+  Edge firstDisagreeingEdge = {};          ///< the disagreeing edge whose ends have the lowest point indices
   std::size_t degenerateTriangles = 0;     ///< number of triangles without area
   std::size_t firstDegenerateTriangle = 0; ///< index of the first triangle without area
   /// Enclosed volume, length^3, negative if the corners run clockwise; meaningless if edges disagree.

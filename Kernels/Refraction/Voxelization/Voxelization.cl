@@ -39,7 +39,7 @@
 // Edge function of a triangle's edge, projected along the columns: >= 0 on the inner side.
 typedef struct
 {
-  long value, across, up; // value in a column, and its increments to the next column and to the next row
+  long value, across, up; // value of the edge function in a column; its increments to the next column and the next row
 } edge;
 
 inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
@@ -109,7 +109,7 @@ inline void mark_crossing(
 // along them. Coordinates are (along, across, up).
 typedef struct
 {
-  edge e0, e1, e2; // edge functions in the first column of a row
+  edge e0, e1, e2; // edge functions of the three edges, in the first column of a row
   long3 normal;    // normal of the plane, reversed if necessary to point along the columns
   int leaving;     // 1: a line along a column leaves the mesh at the triangle; -1: it enters
   long step;       // increment of `excess` from sample to sample

@@ -18,7 +18,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t CrossingGroup = 64; ///< size of work-groups
+constexpr std::size_t CrossingGroup = 64; ///< work-items per work-group of the kernels that process crossings
 constexpr int SamplesOfWord = 4;          ///< number of samples per word for winding numbers: one byte per sample
 /// Maximum bytes of crossings held at a time for winding numbers.
 constexpr std::size_t WindingBytes = std::size_t(16) << 20;

@@ -8,7 +8,7 @@ SHARED_BEGIN
 /// further one `stride` voxels later.
 typedef struct
 {
-  float4 corner, spacing;      ///< length; lower corner of the grid, and edges of a voxel
+  float4 corner, spacing;      ///< lower corner of the grid, and edges of a voxel, length
   ulong first, length, stride; ///< first voxel, voxels per run, distance of runs; in the box
   int nx, ny;                  ///< number of voxels of the box along x and y
   int x0, y0, z0;              ///< first voxel of the box in the grid
@@ -45,7 +45,7 @@ typedef struct
   int words;             ///< number of 32-bit words per column of samples
   int skipped;           ///< number of rows of samples in the buffer before those of the slab's voxels
   int claims;            ///< 1: samples that belong to later meshes are not counted
-  int units;             ///< units per sample, the factor of the counts
+  int units;             ///< number of units in which one sample is counted
   int along, across, up; ///< distances of the counts of neighbouring voxels along these axes of the columns
 } SampleCounts;
 SHARED_END

@@ -48,8 +48,8 @@ private:
   std::array<int, 2> Size = {}; ///< width and height of the environment, pixels
   Rotation Turn = {};           ///< rotation from world axes to the environment's axes
   int GroundBits = 0;           ///< bit mask of the reflecting faces that are shown
-  cl_int4 First = {};           ///< indices of the tables in Cells, ViewInfo::backdrop
-  int FirstSharp = 0;           ///< index in Cells of the environment's peaks
+  cl_int4 First = {};           ///< index in Cells of the first element of each table, ViewInfo::backdrop
+  int FirstSharp = 0;           ///< index in Cells of the table of the environment's peaks
   Buffer<cl_float4> Cells;
 };
 }

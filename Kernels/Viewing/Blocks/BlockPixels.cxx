@@ -144,7 +144,7 @@ std::vector<double> SaidByAll(Communicator& communicator, const std::vector<doub
 std::optional<SeenBlocks> ExchangePixels(
   const Domain& domain, const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera)
 {
-  constexpr std::size_t words = 8; // numbers per rank: corners of two rectangles
+  constexpr std::size_t words = 8; // numbers that each rank sends: corners of two rectangles
   if (domain.Any(failed))
   {
     return std::nullopt;

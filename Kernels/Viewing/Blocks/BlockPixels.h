@@ -35,7 +35,7 @@ PixelRect Overlap(const PixelRect& a, const PixelRect& b);
 struct BlockPixel
 {
   std::array<float, 3> radiance = {};                        ///< accumulated radiance, W / (length^2 sr)
-  std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< transmittance for radiance from behind
+  std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< transmittance of the block for radiance from behind it
   /// transmittance for light from behind that is not scattered at all, as Picture::sceneTransmittance
   std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };
   std::array<float, 3> sharp = {};   ///< unscattered radiance, which blocks in front attenuate by their `seen`
@@ -93,7 +93,7 @@ struct BlockPixel
 struct BlockPixels
 {
   PixelRect rect;
-  std::vector<BlockPixel> pixels; ///< row by row, from bottom to top
+  std::vector<BlockPixel> pixels; ///< pixels of the rectangle, row by row, from bottom to top
 
   /// The block's contribution to a pixel of the picture; an empty pixel outside the rectangle.
   BlockPixel At(int column, int row) const

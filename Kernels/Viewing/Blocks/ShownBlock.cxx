@@ -31,7 +31,7 @@ Shown ShownOf(const std::array<float, 3>& radiance, const ToneMapping& tones)
 struct Screen
 {
   Shown shown = {};
-  float open = 1.0f; ///< transmittance of the blocks so far for blocks behind them
+  float open = 1.0f; ///< transmittance of the blocks composited so far
 
   /// Adds a block behind the blocks so far.
   /// @param wanted    display value of all blocks up to and including this one

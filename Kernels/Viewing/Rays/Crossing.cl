@@ -46,7 +46,7 @@ typedef struct
   spectrum left;
   rgb radiance;
 #if MANY_STEPS
-  spectrum leftRest; // compensation of rounding errors, see add_to
+  spectrum leftRest; // Kahan compensation of `left`, see add_to
   rgb radianceRest;
 #endif
 #if BLOCK

@@ -35,7 +35,7 @@ typedef struct
 {
   integer met;       // whether the ray has met the surface already, or is not to be split by it
   real square;       // n^2 at the midpoint of the last bent step
-  real since;        // time t since that midpoint
+  real since;        // time t since the midpoint of the last bent step
   integer forgotten; // whether `square` is unknown, so that n^2 must be sampled first
   waiting reflected;
 } watch;

@@ -29,7 +29,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const real3 direction = { seen.d.x * (real)v.inverseSpacing.x, seen.d.y * (real)v.inverseSpacing.y,
     seen.d.z * (real)v.inverseSpacing.z };
   const real end = v.has.x ? ends_of(&v, limits, column, row) : (real)ENDLESS;
-  const integer open = end >= (real)ENDLESS; // no opaque surface ends the ray
+  const integer open = end >= (real)ENDLESS; // rays that no opaque surface ends
   real before;
 #if BLOCK
   integer enters, leaves;

@@ -110,6 +110,6 @@ private:
   Buffer<cl_char> Distances;
   Buffer<cl_uchar> Seen;       ///< flags of bricks that rays must sample, SeenBricks::seen
   Buffer<cl_uchar> SeenGroups; ///< for each work-group, whether it packs voxels that rays see (SampleLayout.cl)
-  Buffer<cl_int> First, BricksOfRecords; ///< first and bricks of InBricks
+  Buffer<cl_int> First, BricksOfRecords; ///< SampleBricks::first and SampleBricks::bricks of InBricks
 };
 }

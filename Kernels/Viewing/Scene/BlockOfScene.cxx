@@ -55,7 +55,7 @@ std::vector<float> HeldIndex(const Field& known, const BlockOfScene& block, cons
 
 VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& settings, bool moments, bool surface)
 {
-  constexpr int Between = 1; // ghost layers for interpolation at any point of the block
+  constexpr int Between = 1; // layers of ghost cells for interpolation at any point of the block
   // A layer of ghost cells reaches half a voxel beyond its centres.
   const int split = static_cast<int>(std::ceil(ReachOfSplit(settings) - 0.5));
   // With moments, a voxel that does not scatter shows the mean light of its neighbours.

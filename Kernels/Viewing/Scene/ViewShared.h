@@ -20,7 +20,7 @@ enum
 /// Parameters of a phase function, for red, green and blue.
 typedef struct
 {
-  float4 first;  ///< mean cosine g; for two lobes, that of the first
+  float4 first;  ///< mean cosine g of the phase function; for two lobes, of the first lobe
   float4 second; ///< mean cosine g of the second lobe
   float4 part;   ///< fraction of the light that is scattered in the first lobe
 } PhaseInfo;
@@ -29,7 +29,7 @@ typedef struct
 typedef struct
 {
   int absorption, scattering, emission, fluence, unscattered, meanCosines, straightOn;
-  int direct; ///< 6 if shadow rays computed the lamps' light, else 0
+  int direct; ///< values per voxel of the lamps' light: 6 if shadow rays computed it, else 0
 } ViewedComponents;
 
 /// Parameters of the kernels that pack samples.
@@ -117,12 +117,12 @@ enum
 {
   // States and kinds of a RayOnItsWay.
   RayGoesOn = 0,
-  RayIsOut = 1,  // has left the domain and has not yet received the background
-  RayMisses = 2, // misses the domain, and has not yet received the background
+  RayIsOut = 1,  // the ray has left the domain and has not yet received the background
+  RayMisses = 2, // the ray misses the domain, and has not yet received the background
   RayHasEnded = 3,
   RayIsPrimary = 0,
-  RayIsReflected = 1, // reflected by the surface
-  RayIsMirrored = 2   // mirrored by the table
+  RayIsReflected = 1, // the ray was reflected by the surface
+  RayIsMirrored = 2   // the ray was mirrored by the table
 };
 
 /// Complete state of a ray that travels from one block to another, or has ended. Positions are in voxels of the whole
@@ -130,8 +130,8 @@ enum
 typedef struct
 {
   int pixel; ///< index of the pixel in the picture; -1: no ray
-  int kind;  ///< kind: RayIsPrimary, RayIsReflected or RayIsMirrored
-  int state; ///< state: RayGoesOn, RayIsOut, RayMisses or RayHasEnded
+  int kind;  ///< RayIsPrimary, RayIsReflected or RayIsMirrored
+  int state; ///< RayGoesOn, RayIsOut, RayMisses or RayHasEnded
   int steps; ///< number of steps since the ray's entry into the domain
   /// Indices of the voxel that contains the midpoint of the next step or, once the ray has left the box, its position.
   int where[3];

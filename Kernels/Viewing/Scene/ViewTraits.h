@@ -20,8 +20,8 @@ namespace tyndall
 struct SeenBricks
 {
   std::array<int, 3> count = { 0, 0, 0 };
-  std::vector<unsigned char> seen; ///< flag of each brick, 1 or 0, x fastest
-  bool all = true;                 ///< whether all bricks are seen
+  std::vector<unsigned char> seen; ///< flag of each brick, x fastest: 1 if rays must sample it, else 0
+  bool all = true;                 ///< whether rays must sample all bricks
 };
 
 /// Finds the bricks that rays must sample.
@@ -32,7 +32,7 @@ SeenBricks SeenBricksOf(const FilledBricks& filled, bool everywhere);
 /// that is spread about its mean direction, else by a table.
 struct ViewedPhase
 {
-  enum Formula ///< values of the kernels' macro PHASE
+  enum Formula ///< formulas, with the values of the kernels' macro PHASE
   {
     Even = 0,
     HenyeyGreenstein = 1,
@@ -56,7 +56,7 @@ std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase)
 /// The light's angular moments as the picture uses them.
 struct ShownMoments
 {
-  int degree = -1; ///< degree of the moments; -1: moments are not shown
+  int degree = -1; ///< degree of the angular moments; -1: moments are not shown
   int channels = 0, straightOnChannels = 0;
   /// Channels of the tables of repeated forward scattering (AureoleTable); 0: none.
   int aureoleChannels = 0;

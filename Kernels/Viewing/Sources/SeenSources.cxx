@@ -24,7 +24,7 @@ namespace
 struct RectangleSample
 {
   glm::dvec3 place; ///< position relative to the grid's lower corner, length
-  double share;     ///< fraction of the light's power
+  double share;     ///< fraction of the light's power that the sample stands for
 };
 
 /// Appends samples of a rectangular light: `perEdge` along each edge, at the centres of equal parts. A rectangle longer

@@ -66,7 +66,7 @@ inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, ra
   const real3 strides = strides_per_voxel(packet.direction, stride);
   const int steps = (int)ceil(most_lanes(way->arriving > (real)0.0f ? packet.length / stride : (real)0.0f));
   rgb depths = { (real)0.0f, (real)0.0f, (real)0.0f };
-  rgb rests = depths; // compensation of rounding errors, see add_to
+  rgb rests = depths; // Kahan compensation of the optical lengths, see add_to
   for (int m = 0; m < steps;)
   {
     const real so_far = stride * (real)(float)m;
