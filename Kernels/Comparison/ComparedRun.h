@@ -57,7 +57,8 @@ struct ComparedSettings
 {
   std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };
   std::vector<int> mapResolutions = { 1, 2 };
-  /// Edges of voxels, in edges of the scene's voxels; factors that do not divide the grid are left out.
+  /// Edges of the voxels of the compared grids, in edges of the scene's voxels. Values that do not divide the scene's
+  /// grid are left out.
   std::vector<int> coarsenings = { 1, 2, 4 };
   std::vector<int> orders = { 1, 3, 10 }; ///< limits of the number of scattering orders, in addition to all orders
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };

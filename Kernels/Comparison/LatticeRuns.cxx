@@ -56,7 +56,7 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     {
       continue;
     }
-    // On coarser grids the refractive index is constant.
+    // The refractive index varies on the scene's own grid only; on coarser grids it is constant.
     const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination,
       coarse ? Field() : scene.ior };
     const auto scaled = coarse ? std::make_shared<CoarseScene>(given, grid) : nullptr;

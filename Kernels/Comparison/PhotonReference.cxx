@@ -24,7 +24,7 @@ constexpr int FewestToForecast = 4, MostToForecast = 64; ///< least and largest 
 /// Photons per set of the pilot run: the largest photon count of the comparison over PartToForecast, but at least
 /// LeastToForecast.
 constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000;
-/// largest number of photons per set; they use a hundred megabytes
+/// Largest number of photons per set; these photons take a hundred megabytes.
 constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;
 /// Photons are the reference only if their error is at most this fraction of the error of the finest maps.
 constexpr double Beats = 1.0 / 3.0;

@@ -13,7 +13,7 @@
   {
 #define SHARED_END }
 
-// In angle brackets, so that EmbedKernels.cmake does not expand the include.
+// The file is in angle brackets so that EmbedKernels.cmake does not expand this include.
 #include <Device/OpenCL.h>
 
 namespace tyndall

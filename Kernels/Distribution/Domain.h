@@ -30,7 +30,7 @@ public:
   const Grid& Whole() const { return this->Blocks.whole; }
   const BlockPartition& Partition() const { return this->Blocks; }
   int Rank() const { return this->Ranks->Rank(); }
-  /// This rank's block, in voxels of the whole grid; OwnGrid: the block's grid.
+  /// Own: this rank's block, a box of voxels of the whole grid. OwnGrid: this block as a grid.
   const VoxelBox& Own() const { return this->Blocks.blocks[this->Rank()]; }
   Grid OwnGrid() const { return this->Blocks.OwnGrid(this->Rank()); }
   bool IsEmpty() const { return this->Own().VoxelCount() == 0; }

@@ -110,8 +110,9 @@ private:
 std::array<bool, 3> GoesRoundAlone(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic);
 
-/// The boxes of cells, one cell thick, beyond the faces of a box: within the grid, and across the ends of periodic axes
-/// unless the box is its own neighbour there. None for an empty box.
+/// Layers of cells, one cell thick, beyond the faces of a block, each as a box. Beyond the ends of a periodic axis, a
+/// layer wraps around, unless the block spans the whole grid along this axis; beyond other ends of the grid there is
+/// none. Nothing for an empty block.
 std::vector<VoxelBox> LayersBeside(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic = {});
 

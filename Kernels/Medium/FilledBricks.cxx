@@ -130,7 +130,7 @@ void Widen(FilledBricks::Values& all, const FilledBricks::Values& part)
   all.sound = all.sound && part.sound;
 }
 
-/// Marks the bricks of a layer across z in which one field has a non-zero value.
+/// Marks the bricks of a layer normal to z in which one field has a non-zero value.
 void MarkLayer(const Field& field, const Grid& grid, int layer, FilledBricks& bricks, FilledBricks::Values& values)
 {
   if (field.values)

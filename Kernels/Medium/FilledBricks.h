@@ -35,7 +35,7 @@ struct FilledBricks
     return this->filled.empty() ? 0.0
                                 : static_cast<double>(this->filledCount) / static_cast<double>(this->filled.size());
   }
-  /// Elements of `filled` of the bricks along the row of voxels at (y, z) along x.
+  /// Elements of `filled` for the row of bricks along x that contains the voxels at (y, z).
   const unsigned char* RowOf(int y, int z) const
   {
     const auto row = static_cast<std::size_t>(z / BrickEdge * this->count[1] + y / BrickEdge);

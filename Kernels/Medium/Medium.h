@@ -27,7 +27,7 @@ struct Medium
   {
     return static_cast<float>(this->sigma_s.At(voxel, channel) * (1.0 - this->phase.MeanCosine(voxel, channel)));
   }
-  /// Extinction coefficient of that isotropic medium, 1/length.
+  /// Extinction coefficient of the isotropic medium to which TransportSigmaS belongs, 1/length.
   float TransportSigmaT(std::size_t voxel, int channel) const
   {
     return this->sigma_a.At(voxel, channel) + this->TransportSigmaS(voxel, channel);

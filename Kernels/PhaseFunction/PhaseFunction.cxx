@@ -181,7 +181,7 @@ double ValueOfTable(const PhaseFunction::Table& table, double cosine)
   return table.values[row] + std::clamp(part, 0.0, 1.0) * (table.values[row + 1] - table.values[row]);
 }
 
-/// Cumulative distribution of a table: a parabola between two rows.
+/// Cumulative distribution of a tabulated phase function: a parabola between two rows.
 double BelowOfTable(const PhaseFunction::Table& table, double cosine)
 {
   const auto after = std::upper_bound(table.cosines.begin(), table.cosines.end(), cosine);
@@ -462,7 +462,8 @@ DeltaM::DeltaM(const std::vector<double>& all)
 {
   if (this->moments.size() > 1)
   {
-    // Only a forward peak is treated as unscattered, and the remaining moments must be valid, i.e. in [-1, 1].
+    // The fraction is not negative, as only a forward peak counts as unscattered; and it is so small that the remaining
+    // moments are in [-1, 1].
     this->forward = std::max(this->forward, 0.0);
     for (double moment : this->moments)
     {

@@ -72,7 +72,8 @@ public:
   /// Rows of a tabulated function.
   struct Table
   {
-    /// Ascending cosines; values, 1/sr; cumulative distribution at each cosine.
+    /// `cosines`: ascending. `values`: of the phase function at these cosines, 1/sr. `below`: of the cumulative
+    /// distribution.
     std::vector<double> cosines, values, below;
   };
   const Table* TheTable() const { return this->Rows.get(); } ///< rows of a tabulated function; null for other kinds
@@ -96,6 +97,7 @@ struct DeltaM
   std::vector<double> moments; ///< Legendre moments 0 to degree of the remainder; the first is 1
 
   DeltaM() = default;
+  /// Truncates a phase function at a degree.
   /// @param moments  Legendre moments 0 to degree + 1 of the phase function
   explicit DeltaM(const std::vector<double>& moments);
 };

@@ -43,7 +43,7 @@ public:
   /// This phase function with other mean cosines by voxel, which may be on another grid. Requires that g varies by
   /// voxel.
   PhaseOfMedium WithG(const Field& g) const { return PhaseOfMedium(this->Functions[0], g); }
-  /// Phase function of `channel` in all channels, for a scene that is solved in one channel.
+  /// This phase function with that of `channel` in all channels, for a scene that is solved in one channel.
   PhaseOfMedium Seen(int channel) const;
 
 private:

@@ -71,7 +71,7 @@ double Cosine(const Direction& a, const Direction& b)
   return std::clamp(a.omega[0] * b.omega[0] + a.omega[1] * b.omega[1] + a.omega[2] * b.omega[2], -1.0, 1.0);
 }
 
-/// Degree beyond which the cap moments of the smallest cells are below 1e-4.
+/// Degree beyond which the cap moments (CapMoments) of the smallest of the directions' cells are below 1e-4.
 int DegreeOfMeans(const std::vector<Direction>& directions)
 {
   double least = 4.0 * Pi;

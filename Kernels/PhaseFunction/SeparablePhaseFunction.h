@@ -57,13 +57,12 @@ struct SeparableErrors
 ///
 /// With singular values, the terms with the largest ones come first; if repaired, they are preceded by the four terms
 /// that carry power and mean cosine. With spherical harmonics, orthonormalised on the set degree by degree (J. E.
-/// Factorises a phase function on a set of directions.
-/// @param directions  a quadrature with positive weights; if repaired, it must integrate 1 and omega exactly
-/// @throws InvalidInput if there are no directions, more than 1024 with singular values, the number of terms is not
-///   from 1 to the number of directions, or a weight is not positive
+/// Morel, Nucl. Sci. Eng. 101 (1989)), terms are ordered by degree: N = (L + 1)^2 completes a degree, other N prefer
+/// some axes. Terms with eigenvalue zero are omitted.
 class SeparablePhaseFunction
 {
 public:
+  /// Factorises a phase function on a set of directions.
   /// @param directions  a quadrature with positive weights; if repaired, it must integrate 1 and omega exactly
   /// @throws InvalidInput if there are no directions, more than 1024 with singular values, the number of terms is not
   ///   from 1 to the number of directions, or a weight is not positive

@@ -14,7 +14,7 @@
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
-// Fields of a result: the smoothed quantities, the source level, and the squared error.
+// Indices of the fields of a result that follow its CARRIED smoothed quantities: source level, squared error.
 #define BLENDED CARRIED
 #define SQUARED (BLENDED + 1)
 #define RESULTS (CARRIED + BesideResults)
@@ -25,7 +25,7 @@ typedef struct
   pair carried[CARRIED];
 } light_pair;
 
-// Loads the light of both batches for two vectors of voxels, stored as [voxel][batch][channel].
+// Loads the light of two voxel vectors in both batches, from an array [voxel][batch][channel].
 #if WOVEN && CHANNELS == 1
 inline void load_batches(const __global float* batches, size_t voxel, pair* light)
 {

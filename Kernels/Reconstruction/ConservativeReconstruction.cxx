@@ -17,7 +17,7 @@ namespace tyndall
 {
 namespace
 {
-/// Device memory of one pyramid level, for levels from 1 on.
+/// Buffers of one pyramid level on the device, for levels from 1 on.
 struct ConservativeLevel
 {
   LightRows light;   ///< fields of the light: each batch, then the smoothed quantities
@@ -48,7 +48,7 @@ private:
 class ConservativePasses
 {
 public:
-  /// All arguments are referenced and must outlive this object.
+  /// Allocates the levels. All arguments are referenced and must outlive this object.
   /// @param light   light of the box; without arrays for the levels of the domain, of which it has the grid
   /// @param result  arrays must have the size of the light's
   /// @param first, top  lowest and highest level of this object
@@ -93,7 +93,8 @@ private:
   std::vector<ConservativeLevel> Levels;
 };
 
-/// Fraction of the removed light that counts as error (0.4 in numerics.md, Eq. (104), where its fit is described).
+/// Fraction of the removed light that counts as error: the factor 0.4 of numerics.md, Eq. (104), where its fit is
+/// described.
 constexpr float Honesty = 0.4f;
 
 /// Number of voxels in the first launch, until its run time is known.

@@ -46,7 +46,7 @@ inline real between(real low, real high, real part)
   return multiply_add(part, high - low, low);
 }
 
-// Interpolates REAL_WIDTH cells of a level, from x on, along y and z.
+// Interpolates a level along y and z, for REAL_WIDTH cells of a row from x on.
 inline real cells_across(const __global float* values, const rows_between* rows, int x)
 {
   const real low = between(load_real(x, values + rows->at[0]), load_real(x, values + rows->at[1]), (real)rows->y);

@@ -20,7 +20,7 @@ using Estimator = ReconstructionSettings::Estimator;
 // Number of voxels in the first launch, until its run time is known.
 constexpr std::size_t FirstPart = std::size_t(1) << 18;
 
-/// Method by which each pyramid is built: of light, of photon counts, of photon weights.
+/// Methods by which the pyramids are built: of light, of photon counts, of photon weights.
 constexpr LightPyramid::Down Downs[] = { LightPyramid::Down::Gauss, LightPyramid::Down::Sum,
   LightPyramid::Down::MeanOfLit };
 
@@ -29,6 +29,7 @@ constexpr LightPyramid::Down Downs[] = { LightPyramid::Down::Gauss, LightPyramid
 class LevelPasses
 {
 public:
+  /// Allocates the pyramids.
   /// @param task, result  referenced; the result's arrays must have the size of the box
   LevelPasses(const Reconstruction& task, ReconstructedLight& result);
 
@@ -51,7 +52,7 @@ private:
   const std::array<int, 3>& Size;
   RowKernels Kernels;
   const PartOfPyramid Part;
-  /// Pyramids of light, photon counts and photon weights, as many as FieldsOfPyramids.
+  /// Pyramids of light, photon counts and photon weights, as many as FieldsOfPyramids has elements.
   std::vector<LightPyramid> Pyramids;
 };
 

@@ -82,10 +82,11 @@ private:
 class WholeRows
 {
 public:
-  /// Array that kernels read: values of a grid of `size` voxels, x fastest, `components` per voxel. Null: no array.
+  /// Provides an array that kernels read: values of a grid of `size` voxels, x fastest, `components` per voxel. Null:
+  /// no array.
   WholeRows(
     const RowKernels& kernels, const float* values, const std::array<int, 3>& size, int components, const char* what);
-  /// Array that kernels write, and that Fetch copies back to `values`; may be empty.
+  /// Provides an array that kernels write, and that Fetch copies back to `values`; may be empty.
   WholeRows(const RowKernels& kernels, std::vector<float>& values, const std::array<int, 3>& size, int components,
     const char* what);
 
@@ -134,6 +135,7 @@ public:
     MeanOfLit, ///< mean of the nonzero cells among 2x2x2 cells (listing B.2)
   };
 
+  /// Allocates the pyramid of a grid.
   /// @param fields  number of quantities per cell
   /// @param levels  number of levels above the grid, at most LevelsAtMost
   /// @param part    position of the grid, a block, in the domain

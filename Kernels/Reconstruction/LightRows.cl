@@ -54,9 +54,9 @@ typedef struct
 } pair_of_three;
 
 #if REAL_WIDTH == 8
-// Selects lanes 0, 3, 6 of the first, 1, 4, 7 of the second, and 2, 5 of the third vector. In three vectors of
-// interleaved voxels each component occupies every lane once, so this selection and one permutation separate the
-// components; written as a single shuffle, they compile to sixteen moves.
+// Selects lanes 0, 3, 6 of a, 1, 4, 7 of b, and 2, 5 of c. In three vectors of interleaved voxels each component
+// occupies every lane once, so this selection and one permutation separate the components; written as a single shuffle,
+// they compile to sixteen moves.
 inline float8 lanes_of(float8 a, float8 b, float8 c)
 {
   const int8 second = (int8)(0, -1, 0, 0, -1, 0, 0, -1), third = (int8)(0, 0, -1, 0, 0, -1, 0, 0);

@@ -38,8 +38,8 @@ int MarginOf(Estimator estimator)
   return estimator == Estimator::Conservative ? 32 : 16;
 }
 
-/// Alignment of boxes: they begin at multiples of this number of voxels. For estimators other than the conservative
-/// one it is 8, the width of a vector.
+/// Number of voxels at whose multiples the boxes of ranks begin. For estimators other than the conservative one it is
+/// 8, the width of a vector.
 int EdgeOf(Estimator estimator, int shared)
 {
   return estimator == Estimator::Conservative ? 1 << shared : 8;

@@ -18,7 +18,8 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t PixelsOfThread = 32768; ///< smallest number of pixels per thread
-/// Products of radiance with it may overflow a float to infinity, but never become NaN.
+/// Largest exposure that is accepted. Products of radiance and exposure may overflow a float to infinity, but never
+/// become NaN.
 constexpr double LargestExposure = 1e30;
 
 double EncodeSrgb(double linear)

@@ -9,7 +9,8 @@ namespace tyndall
 enum class ToneCurve
 {
   Linear = 0, ///< radiance times exposure, cut at 1: displayed values can be compared as numbers
-  /// K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015: fit to the reference transform of the Academy (AMPAS).
+  /// Curve fitted to the reference transform of the Academy (AMPAS): K. Narkowicz, "ACES Filmic Tone Mapping Curve",
+  /// 2015.
   Filmic = 1,
 };
 
@@ -42,7 +43,7 @@ constexpr float ThinnestPart = 0.2f;
 /// @param radiance, alpha  as in AutomaticExposure
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha);
 
-/// AutomaticExposure from a histogram by LuminanceCounts.
+/// Exposure that AutomaticExposure chooses, computed from a histogram by LuminanceCounts.
 double ExposureOfCounts(const std::vector<int>& luminanceCounts);
 
 /// Exposed radiance (radiance times exposure) that is displayed as `shown`: inverse of the tone curve.

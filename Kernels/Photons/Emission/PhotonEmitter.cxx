@@ -187,7 +187,7 @@ struct Tries
   std::size_t begin = 0, end = 0; ///< range of the samples in the part of the emission that is computed
 };
 
-/// Returns the numbers of samples of each light.
+/// Returns, for each light, the number of its samples and the range of them that is used.
 std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettings& settings)
 {
   const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);
@@ -197,7 +197,8 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
   {
     if (shares[s] > 0)
     {
-      // Every batch needs photons of every light; otherwise its light would not have the expected value of all light.
+      // Every batch needs photons of every light, since the expected value of its light must be the light of all
+      // lights.
       tries[s].all = std::max(
         static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits)), static_cast<std::size_t>(settings.batches));
     }

@@ -135,8 +135,8 @@ glm::dvec2 ConvexPolygon::At(double u, double v) const
   const Slice& slice = this->Slices[Choose(this->Below, u, part)];
   const double w0 = slice.high0 - slice.low0;
   const double w1 = slice.high1 - slice.low1;
-  // Inverse of the area of the slice up to fraction t of its width: w0 t + (w1 - w0) t^2 / 2 = part (w0 + w1) / 2,
-  // solved for t without cancellation.
+  // t is the fraction of the slice's width at which the area is the fraction `part`: w0 t + (w1 - w0) t^2 / 2 = part
+  // (w0 + w1) / 2, solved without cancellation.
   const double wanted = part * (w0 + w1);
   const double root = std::sqrt(std::max(w0 * w0 + (w1 - w0) * wanted, 0.0));
   const double t = w0 + root > 0.0 ? std::min(wanted / (w0 + root), 1.0) : part;
@@ -292,8 +292,8 @@ glm::dvec3 LampView::Direction(double u, double v) const
   {
     return glm::normalize(this->Faces->At(u, v) - this->Place);
   }
-  // Direction by polar angle from the normal of a face that the lamp is on, and azimuth from the normal of a second
-  // such face; from coordinate axes if there is none.
+  // The polar angle is measured from the normal of a face that the lamp is on, and the azimuth from the normal of a
+  // second such face; from coordinate axes if there is none.
   std::array<int, 3> axes = { 2, 0, 1 };
   std::stable_partition(axes.begin(), axes.end(), [this](int axis) { return this->Inwards[axis] != 0; });
   const auto& [pole, first, second] = axes;

@@ -52,6 +52,7 @@ private:
 class SphericalRectangle
 {
 public:
+  /// Prepares the map for a rectangle seen from `eye`.
   /// @param corner                one corner of the rectangle
   /// @param firstEdge,secondEdge  edge vectors from that corner, at right angles
   /// @param smallBelow            solid angle, sr, below which the map preserves area instead

@@ -83,7 +83,7 @@ struct Moments
   double mean = 0.0, square = 0.0;
 };
 
-/// Estimates the moments of a light's photons.
+/// Estimates the Moments of a light's photons from `samples` samples.
 /// @param power  W, power of the light
 /// @param shoot  maps a sample to a photon, or to none
 template <class Shoot>

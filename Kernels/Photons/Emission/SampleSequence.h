@@ -57,6 +57,7 @@ int FindStep(const double* table, int count, double u, double& part);
 class DensityTable
 {
 public:
+  /// Builds the cumulative table of an image.
   /// @param weights  width * height non-negative weights of the cells, columns fastest
   DensityTable(int width, int height, const std::vector<double>& weights);
 

@@ -32,6 +32,7 @@ void Check(const ImportanceMap& map);
 class ImportanceSampler
 {
 public:
+  /// Builds the sampler of one square of the map.
   /// @param density  size*size relative densities, not all zero
   /// @param most     upper limit of the density relative to uniform sampling, at least 1: the excess of a cell is
   ///   distributed among the other cells in proportion to their densities

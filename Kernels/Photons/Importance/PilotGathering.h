@@ -16,7 +16,7 @@ namespace tyndall
 class PilotGathering
 {
 public:
-  /// Keeps references to all arguments.
+  /// Prepares the gathering; keeps references to all arguments.
   /// @param through  the medium of this rank's subdomain; null if it has no voxels
   /// @param traits   traits of the medium in the domain
   PilotGathering(

@@ -25,7 +25,8 @@ constexpr float DarkUnits = 1e-3f; ///< power, in units, too small to show in an
 /// Maximum fraction of filled bricks for a layout by bricks; with more filled bricks, it saves little.
 constexpr double FilledAtMost = 0.25;
 
-// Values of sigma in PhotonMedium.cl: outside the grid, and the upper limit inside.
+// Values of `sigma`, the optical thickness of a voxel's diagonal, in PhotonMedium.cl: outside the grid, and upper limit
+// inside.
 constexpr float OutsideOfGrid = -3e38f;
 constexpr float ThickestVoxel = 1e30f;
 

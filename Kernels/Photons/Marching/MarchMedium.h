@@ -30,7 +30,8 @@ struct MarchTraits : MediumTraits
   /// Number of channels of the light that packed photons deposit, 1 or 3.
   int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
 };
-// Checks of the medium through which photons are marched; each rank has one block (subdomain) of it.
+// The following functions check the medium through which photons are marched; each rank has one block (subdomain) of
+// it.
 
 /// Checks the medium of this rank's block; a rank without voxels checks nothing.
 /// @param levels  octree levels of the block's voxels; null if there is no octree
@@ -136,7 +137,7 @@ public:
   /// @param weightUnit  photon weight per unit of the voxels' sums (StartingPhotons::weightUnit), if photons are
   ///   counted
   LightSumsInfo DescribeSums(const PackedPhotons& packed, const MarchShares& shares, float weightUnit = 0.0f) const;
-  /// MarchEventLimit in the domain.
+  /// Maximum number of path segments of a photon in the domain (tyndall::MarchEventLimit).
   int EventLimit() const { return MarchEventLimit(this->block.whole, this->settings); }
   double Diagonal() const; ///< length of a voxel's diagonal
   /// Whether this medium covers a block of a larger domain.

@@ -17,8 +17,8 @@ namespace
 constexpr int PrivateSumsAtMost = 8;
 /// Number of consecutive photons that a work-item fetches at a time; they are neighbours in space.
 constexpr int MarchBlock = 512;
-/// Number of path segments in the first launch with straight rays; two cores follow them in less time than a launch
-/// takes.
+/// Number of path segments in the first launch with straight rays; two cores need less time for them than the target
+/// time of a launch.
 constexpr double EventsPerLaunch = 4e7;
 constexpr double FirstBent = 16384; ///< number of photons in the first launch with curved rays
 /// Maximum number of photons per launch in a block of the domain: the buffer for photons that leave it has 30 MiB.

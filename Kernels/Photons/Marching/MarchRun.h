@@ -58,6 +58,7 @@ inline const int* WhereIs(const PhotonOnItsWay& photon)
 /// Photons on a device, ordered by batch: photons that start, or photons that arrived from other blocks.
 struct PhotonsOnDevice
 {
+  /// Uploads photons that start.
   /// @param marks  mark for counting of each packed photon (PhotonMarch.cl); empty if photons are not counted
   PhotonsOnDevice(Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marks = {});
   PhotonsOnDevice(Device& device, std::vector<PhotonOnItsWay> arrived, int batches, int channels);
@@ -78,6 +79,7 @@ struct PhotonsOnDevice
 class MarchKernel
 {
 public:
+  /// Builds the kernel `name` of PhotonMarch.cl.
   /// @param options  definitions of macros that do not follow from the medium and the sums
   MarchKernel(const MarchMedium& medium, const MarchSums& target, int channels, const std::string& options = {},
     const char* name = "march_photons");
@@ -117,6 +119,7 @@ void AppendPhotons(const Buffer<OnItsWay>& photons, int count, std::vector<OnIts
 class MarchRun
 {
 public:
+  /// Compiles the kernel for photons of `channels` power channels.
   /// @param medium, target  referenced, not copied
   /// @param channels  number of power channels of the photons
   MarchRun(const MarchMedium& medium, const MarchSums& target, int channels)

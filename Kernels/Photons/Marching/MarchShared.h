@@ -60,7 +60,8 @@ typedef struct
   int writes;  ///< for paths, 1: their vertices are written; 0: vertices are counted
 } MarchLaunch;
 
-/// Final state of a photon. In kernels, the remaining power of each channel follows.
+/// Final state of a photon that was followed without scattering. In kernels, the remaining power of each channel
+/// follows.
 typedef struct
 {
   int face;      ///< face through which the photon left, -x, +x, ... +z; or StillGoing, Dark, Elsewhere

@@ -26,6 +26,7 @@ Span SpanOf(const cl::Event& first, const cl::Event& last)
 class TurnSchedule
 {
 public:
+  /// Creates the schedule; Next begins the first turn.
   /// @param each   path segments per turn, MarchTurns::stretches
   /// @param limit  maximum number of path segments of a photon
   /// @param all    number of photons

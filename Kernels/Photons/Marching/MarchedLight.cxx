@@ -431,7 +431,8 @@ PhotonLight MarchedBatches::Sum() &&
   const double count = this->Count;
   for (std::size_t i = 0; i < this->Fluence.size(); ++i)
   {
-    // Each batch carries a part of the power: the variance of the sum is that of `count` independent parts.
+    // The sum is over `count` independent batches, each with a part of the power; its variance follows from their
+    // scatter.
     const double scatter = this->Squares[i] - this->Fluence[i] * this->Fluence[i] / count;
     light.fluenceError.push_back(static_cast<float>(std::sqrt(std::max(scatter, 0.0) * count / (count - 1.0))));
   }

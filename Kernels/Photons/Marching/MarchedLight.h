@@ -14,13 +14,14 @@ namespace tyndall
 class MarchedLight
 {
 public:
+  /// Creates an object without sums; Prepare allocates them.
   /// @param medium  referenced, not copied
   explicit MarchedLight(const MarchMedium& medium);
 
   /// Allocates the sums for packed photons, sets them to zero, and describes their layout.
   /// @throws DeviceError if the sums do not fit into the device's memory
   MarchSums Prepare(const PackedPhotons& packed);
-  /// Chooses the number of copies as ShareSums does; the memory of existing sums counts as available.
+  /// Number of copies of the sums, by ShareSums; the memory of existing sums counts as available.
   MarchShares Share(int numbers, int batches) const;
   /// Discards the sums after an aborted march, which leaves them nonzero.
   void Forget() { this->Sums = Buffer<cl_long>(); }

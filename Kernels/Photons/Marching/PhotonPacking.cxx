@@ -64,7 +64,7 @@ void CheckPhotons(const std::vector<Photon>& photons, bool batches)
   }
 }
 
-/// A photon's line inside the grid: position and direction in voxels.
+/// Line of a photon inside the grid: start and direction in voxels, and the tile by which it is sorted.
 struct Ray
 {
   std::array<float, 3> position, direction;
@@ -305,7 +305,8 @@ void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, cons
   FillInOrder(packed, photons, met, order);
 }
 
-/// Base in which an integer is split into two doubles, a high and a low half, for a sum over ranks without rounding.
+/// Base by which an integer is split into a high and a low half, two doubles that are summed over ranks without
+/// rounding.
 constexpr double Half = 0x1p31;
 
 }

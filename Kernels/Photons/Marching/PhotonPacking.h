@@ -80,8 +80,8 @@ std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vect
 /// Photons that start in this rank's block.
 struct StartingPhotons
 {
-  /// Packed photons of this rank. `numbers` are indices among all photons; `entered` and `missed` are totals over all
-  /// ranks.
+  /// Packed photons that start on this rank. `numbers` are indices among the photons of all ranks; `entered` and
+  /// `missed` are totals over all ranks.
   PackedPhotons packed;
   /// Mark of each photon, if photons are counted: the number that is added to the voxels on its path
   /// (PhotonMarch.cl).

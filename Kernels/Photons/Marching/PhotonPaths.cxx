@@ -30,6 +30,7 @@ struct PathVertex
 class PathRun
 {
 public:
+  /// Compiles the kernel trace_paths.
   /// @param medium  medium of the block, referenced, not copied
   PathRun(const MarchMedium& medium, int channels)
     : Medium(medium)

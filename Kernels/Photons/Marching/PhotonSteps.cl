@@ -46,8 +46,8 @@ typedef struct
   // Optical thickness of a voxel diagonal, [MEDIUM_CHANNELS][copy]; sign bit set: the index varies in the voxel.
   const __global float* sigma;
   const __global float* coefficients; // coefficients of the spline of n^2
-  // [padded known] 0: the index is constant in the voxel; 1: it varies, single voxel; 1 + k: it varies, octree node
-  // of 2^k voxels per edge. With NODE_BRICKS: table of bricks, then bricks.
+  // Octree nodes of the voxels of the padded region `known`. 0: the index is constant in the voxel; 1: it varies,
+  // single voxel; 1 + k: it varies, octree node of 2^k voxels per edge. With NODE_BRICKS: table of bricks, then bricks.
   const __global uchar* nodes;
   __global long* sums;       // sums of deposits, [copy][RECORD] in fixed point
   __global PhotonEnd* ends;  // final states of photons
@@ -233,7 +233,7 @@ static void begin_steps(const MarchInfo* info, photon_lanes* lanes, integer mask
 }
 
 #if BENDS
-// Index of a voxel's spline coefficient.
+// Index, in the array of spline coefficients of n^2, of the coefficient at a voxel of the domain.
 static integer coefficient_of(const MarchInfo* info, const integer* voxel)
 {
   return place_in(&info->known, info->knownFirst, 2, voxel);

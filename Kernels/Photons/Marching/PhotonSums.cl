@@ -104,7 +104,7 @@ static taken_power nothing_taken()
   return taken;
 }
 
-// Stores absorbed and scattered powers: [absorbed, scattered][CHANNELS] units.
+// Stores the absorbed and scattered powers of a work-item, in units, as [absorbed, scattered][CHANNELS].
 static void store_taken(const taken_power* taken, __global long* to)
 {
   for (int c = 0; c < 2 * CHANNELS; ++c)

@@ -35,7 +35,8 @@ constexpr int VoxelsPassed = 2;
 
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;
 
-/// Settings for packing the photons: three channels, and the step limit of steps of one voxel.
+/// Settings of the march with which photons are packed: always three power channels, and steps of one voxel for the
+/// limit of steps.
 MarchSettings PackingSettings()
 {
   MarchSettings settings;

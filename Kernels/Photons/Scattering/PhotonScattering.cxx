@@ -43,7 +43,7 @@ PhaseSampling PhaseOf(const Medium& medium)
   }
 }
 
-/// Parameter of the phase function, one value or one per voxel; or its table of cosines.
+/// Values of SampledPhase: parameter of the phase function, one value or one per voxel; or table of cosines.
 std::vector<float> PhaseValues(const Medium& medium)
 {
   const PhaseSampling phase = PhaseOf(medium);
@@ -61,7 +61,8 @@ std::vector<float> PhaseValues(const Medium& medium)
   return values;
 }
 
-/// sigma_s and sigma_a times the voxel diagonal, two values per voxel of the padded grid; 0 in the padding.
+/// Values of PhotonScattering::optical: sigma_s and sigma_a times the voxel diagonal, two values per voxel of the
+/// padded grid; 0 in the padding.
 std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 {
   const std::array<int, 3>& size = medium.grid.size;
@@ -213,7 +214,7 @@ ScatteredPhotons ScatteringRun::Finish()
   return std::move(this->Found);
 }
 
-/// Converts the sums of deposits to fluence and net flux in `Found`.
+/// Converts the sums of deposits to the fluence and the net flux of the result, `Found`.
 void ScatteringRun::TakeLight()
 {
   const MarchMedium& through = this->In.through;

@@ -33,6 +33,7 @@ struct ScatteredPhotons
 /// functions from a table of the inverse cumulative distribution at 65536 equal steps of probability.
 struct SampledPhase
 {
+  /// Prepares the sampling for the phase function of a medium.
   /// @param medium  a medium of one channel, with the phase function
   SampledPhase(Device& device, const Medium& medium);
 
@@ -48,6 +49,7 @@ struct SampledPhase
 /// gives the same light, bit for bit, for any number of threads and any division of the photons into runs.
 struct PhotonScattering
 {
+  /// Uploads the scattering properties of a medium.
   /// @param through   the medium in the layout for marching, of one channel; referenced, not copied
   /// @param medium    the same medium as arrays, read in the constructor only
   /// @param stepPart  fraction of MarchSettings::stepSize to use: ScatteringStepPart of the index in the domain
@@ -77,9 +79,10 @@ inline const int* WhereIs(const ScatteredOnItsWay& photon)
 class ScatteringRun
 {
 public:
+  /// Allocates the sums, and uploads the photons.
   /// @param in  medium and phase function, referenced, not copied
-  /// @param photons  photons of one channel that start in this block; their unit of power is DepositsPerEvent times
-  ///   the unit for uncollided light
+  /// @param photons  photons of one channel that start in this block; their unit of power is DepositsPerEvent times the
+  ///   unit for uncollided light
   /// @throws DeviceError if the sums do not fit into the device's memory
   ScatteringRun(const PhotonScattering& in, PackedPhotons photons);
 

@@ -18,15 +18,15 @@
 #define RECORD (1 + 3 * GATHERS)
 #define PHOTON_FLOATS 7
 #define TINY 1e-20f
-// Fraction of a photon's initial power below which Russian roulette is played: the power becomes twice this
-// threshold, or 0.
+// Russian roulette is played when the power of a photon falls below this fraction of its initial power; the power then
+// becomes twice this threshold, or 0.
 #define DIM 0.05f
 
 // Scattering properties of the medium in one channel.
 typedef struct
 {
   const __global float2* optical; // sigma_s and sigma_a times a voxel's diagonal, per voxel of the padded grid
-  // Parameter of the phase function, one value or [voxel]; or table of cosines at equal steps of probability.
+  // Parameter of the phase function, one value or one per voxel; or table of cosines at equal steps of probability.
   const __global float* phase;
 #if BLOCKS
   __global ScatteredOnItsWay* gone; // photons that entered other blocks, in any order
@@ -290,7 +290,7 @@ static void go_on(const march_arrays* arrays, const scattering* medium, const Sc
   }
 }
 
-// Starts a photon with the given index `number`, which selects its sequence of random numbers.
+// Starts a photon. Its index `number` selects its sequence of random numbers.
 static void set_out(const march_arrays* arrays, const ScatterInfo* how, const __global float* photon, ulong number,
   photon_lanes* lanes, scattered_flight* flight)
 {

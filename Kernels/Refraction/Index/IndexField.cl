@@ -22,8 +22,8 @@ inline float smoothed(__global const float* n, int place, int length, long strid
   return here + sum;
 }
 
-// As `smoothed`, for a vector of neighbouring voxels along x; if the axis is x, the filter must not reach beyond the
-// grid.
+// Mean of n as by `smoothed`, for each voxel of a vector of neighbouring voxels along x; if the axis is x, the filter
+// must not reach beyond the grid.
 inline real smoothed_together(
   __global const float* n, int place, int length, long stride, __constant const float* weights)
 {

@@ -233,7 +233,7 @@ constexpr std::size_t WorkGroup = 256; ///< size of work-groups of the kernels o
 class MaterialMixer
 {
 public:
-  /// Keeps references to all arguments except `box`.
+  /// Allocates the arrays of `result`, and sets `index` to 0. Keeps references to all arguments except `box`.
   /// @param variedG  whether the scattering materials differ in their mean cosines
   /// @param index    output: n in the box's voxels, before smoothing
   /// @param result   output: occupancy, coefficients and g of the box's voxels
@@ -357,8 +357,8 @@ private:
   cl::Kernel AddObject, AddOutside;
 };
 
-/// A part of the grid with the halo on which its values depend: the reach of the filter, one voxel for the gradient,
-/// and one because counts in the outermost voxels of a box are not exact.
+/// The box `part` with the halo on which its values depend: the reach of the filter, one voxel for the gradient, and
+/// one because counts in the outermost voxels of a box are not exact.
 VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& settings, bool evenIndex)
 {
   return Grown(part, evenIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);

@@ -75,8 +75,8 @@ __kernel void squared_index_coefficients(IndexGrid grid, const __global float* s
   coefficients[(z * (grid.size[1] + 4) + y) * (grid.size[0] + 4) + x] = held;
 }
 
-// Computes the least and largest of the coefficients within two of each coefficient along one axis, except near the
-// array's ends. `stride` is the distance of coefficients along the axis.
+// For each coefficient, computes the least and the largest of the five coefficients around it along one axis; not exact
+// near the array's ends. `stride` is the distance of coefficients along the axis.
 __kernel void widen_range(
   int stride, const __global float* low, const __global float* high, __global float* low_out, __global float* high_out)
 {
@@ -104,7 +104,7 @@ static float4 spline_slopes(float f)
 
 typedef float4 __attribute__((aligned(4))) float4_anywhere;
 
-// Sums of the components of a, of b, of c and of d.
+// Four sums: of the components of a, of those of b, of c, and of d.
 static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
 {
   const float4 ab = (float4)(a.x, b.x, a.y, b.y) + (float4)(a.z, b.z, a.w, b.w);

@@ -138,6 +138,7 @@ bool IsConstant(const Domain& domain, const float* values)
 class OctreePyramid
 {
 public:
+  /// Creates the levels of the pyramid, without values.
   /// @param domain  domain of more than one voxel
   OctreePyramid(Device& device, const Domain& domain)
     : TheDevice(device)
@@ -192,8 +193,8 @@ public:
   }
 
 private:
-  /// The nodes of one level of the pyramid. Up to the shared level they are those of this rank's box; then follow,
-  /// from the shared level on, those of the domain.
+  /// Nodes of one level. In `Pyramid`, the levels up to the shared level have the nodes of this rank's box; they are
+  /// followed by the levels from the shared level on with the nodes of the domain.
   struct NodesOfLevel
   {
     int level;               ///< number of the level, 0 for voxels

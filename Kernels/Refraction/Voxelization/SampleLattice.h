@@ -24,7 +24,7 @@ public:
   /// @throws InvalidInput if a mesh is so large relative to the grid that the distance of samples would be below a unit
   SampleLattice(const Grid& grid, int samples, const std::vector<const TriangleMesh*>& meshes);
 
-  /// The same lattice with its origin at the lower corner of a voxel, for voxelising a box of the grid: the box's
+  /// This lattice with its origin moved to the lower corner of a voxel, for voxelising a box of the grid: the box's
   /// voxels are bitwise equal to those of the entire grid.
   SampleLattice From(const std::array<int, 3>& voxel) const;
 

@@ -70,8 +70,8 @@ inline int side_of(
   return inBefore == inAfter ? turned : inBefore ? 1 : -1;
 }
 
-// Samples of a mesh in a slab: `bits` inside this mesh, `claimed` inside later meshes; `taken` as in refine_counts.
-// claimed and taken are read only if there are several meshes.
+// Samples of a slab. `bits`: inside the mesh that is measured; `claimed`: inside later meshes; `taken`: as in
+// refine_counts. claimed and taken are read only if there are several meshes.
 typedef struct
 {
   const SampleRows* rows;

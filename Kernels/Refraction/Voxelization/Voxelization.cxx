@@ -58,6 +58,7 @@ private:
 class CrossingMarker
 {
 public:
+  /// Compiles the kernel mark_crossings.
   /// @param words      number of 32-bit words per column
   /// @param fromAbove  whether a crossing toggles the samples after it instead of those before it
   CrossingMarker(Device& device, const SampleColumns& columns, int words, bool fromAbove, const std::string& options)
@@ -200,6 +201,7 @@ SampleColumns Along(int axis, const Grid& grid, const SampleColumns& like)
 class SurfaceFraction
 {
 public:
+  /// Compiles the kernels and allocates the corrections of a slab.
   /// @param columns  columns of the samples' bits, of `words` 32-bit words each
   /// @param voxels   maximum number of voxels in a slab, which take 4 bytes each, and 4 more if there are several
   ///   meshes

@@ -33,7 +33,7 @@ struct Screen
   Shown shown = {};
   float open = 1.0f; ///< transmittance of the blocks composited so far
 
-  /// Adds a block behind the blocks so far.
+  /// Composites one more block behind those composited so far.
   /// @param wanted    display value of all blocks up to and including this one
   /// @param openThen  transmittance of all blocks up to and including this one
   /// @return RGBA that the block must contribute

@@ -30,7 +30,7 @@ typedef struct
   spectrum left;
 } waiting;
 
-// Values of n^2 along primary rays, with which the surface is detected; and the rays reflected by the surface.
+// Detection of the surface: values of n^2 along primary rays, and the rays that the surface has reflected.
 typedef struct
 {
   integer met;       // whether the ray has met the surface already, or is not to be split by it

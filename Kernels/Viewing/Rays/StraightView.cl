@@ -41,7 +41,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const integer sees_behind = open;
 #endif
 
-  // March of the packet through the medium.
+  // Marches the packet through the medium.
   const real step = step_length(direction, v.marching.x);
 #if !BRICKED
   const real soon = step_length(direction, 5.0f);
@@ -93,7 +93,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
     }
   }
 
-  // Background, and output to the picture.
+  // Adds the background, and writes the picture.
   const real left = mean_left(l);
   if (v.has.z)
   {

@@ -53,12 +53,12 @@ ViewedPhase ViewedPhaseOf(const PhaseOfMedium& phase);
 /// Tables of the phase function for the formulas Schlick and Rows; empty for others.
 std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase);
 
-/// The light's angular moments as the picture uses them.
+/// Angular moments of the light as the picture uses them.
 struct ShownMoments
 {
   int degree = -1; ///< degree of the angular moments; -1: moments are not shown
   int channels = 0, straightOnChannels = 0;
-  /// Channels of the tables of repeated forward scattering (AureoleTable); 0: none.
+  /// Number of channels of the tables of repeated forward scattering (AureoleTable); 0: none.
   int aureoleChannels = 0;
   /// Per channel, smallest fraction of scattering that the solver treats as unscattered.
   std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
