@@ -33,7 +33,7 @@ const char* NameOf(ComparedMethod method);
 /// Whether a method traces photons.
 bool IsOfPhotons(ComparedMethod method);
 
-/// Whether a method computes uncollided light only, so that its errors are those of ReferenceLight::fluenceDirect.
+/// Whether a method computes uncollided light only, so that it is compared with ReferenceLight::fluenceDirect.
 bool IsDirectOnly(ComparedMethod method);
 
 /// Conditions under which Monte Carlo photons are the reference for a constant refractive index.
@@ -67,8 +67,8 @@ struct ComparedSettings
   /// Whether the photons that give the reference for a varying refractive index are followed through all collisions;
   /// false: only up to the first one, which gives uncollided light.
   bool scattersReference = false;
-  /// Whether Monte Carlo photons are the reference for a constant refractive index; that reference shares no solver
-  /// with the compared propagation methods.
+  /// When Monte Carlo photons are the reference for a constant refractive index; that reference shares no solver with
+  /// the compared propagation methods.
   MonteCarloReference monteCarloReference = MonteCarloReference::WhereItCanBeat;
 };
 

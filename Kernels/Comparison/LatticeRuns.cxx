@@ -56,7 +56,7 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     {
       continue;
     }
-    // The refractive index varies on the scene's own grid only; on coarser grids it is constant.
+    // The index is constant here (AddBent adds the runs with a varying one); coarse runs need none.
     const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination,
       coarse ? Field() : scene.ior };
     const auto scaled = coarse ? std::make_shared<CoarseScene>(given, grid) : nullptr;

@@ -66,7 +66,7 @@ private:
 
   Communicator& Comm;
   std::vector<Shared> Owned;  ///< by rank, the own cells that are ghost cells of that rank
-  std::vector<Shared> Copied; ///< by rank, the ghost cells of this rank that that rank owns
+  std::vector<Shared> Copied; ///< by rank, the ghost cells of this rank whose owner is that rank
 };
 
 /// A rank's block with a halo of `layers` layers of ghost voxels, clipped at the ends of the grid, and the exchange of

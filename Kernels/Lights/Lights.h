@@ -67,7 +67,7 @@ struct Illumination
   UncollidedImage uncollided; ///< uncollided light computed by another solver, in addition to the other sources
 };
 
-/// Unit vector along which a light
+/// Unit vector along which a light travels; 0 if Light::direction is 0.
 std::array<double, 3> DirectionOf(const Light& light);
 
 /// Sets the fineness of rectangular lights to the value for a quality.

@@ -7,7 +7,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SameColour = 3e-7; ///< relative rounding error of multiples of one colour
+constexpr double SameColour = 3e-7; ///< relative tolerance for rounding of multiples of one colour
 
 bool Grey(const Rgb& rgb)
 {
@@ -84,7 +84,7 @@ CommonColour ColourOf(const Illumination& illumination)
 
 namespace
 {
-constexpr float SameExtinction = 2e-7f; ///< relative rounding error of sums sigma_a + sigma_s
+constexpr float SameExtinction = 2e-7f; ///< relative tolerance for rounding of sigma_a + sigma_s
 
 /// The voxels of a row along x that lie in one brick.
 struct Row

@@ -40,10 +40,9 @@ public:
   }
   /// Phase function of a voxel in a channel.
   PhaseFunction At(std::size_t voxel, int channel) const;
-  /// This phase function with other mean cosines by voxel, which may be on another grid. Requires that g varies by
-  /// voxel.
+  /// Phase function of this kind with the mean cosines `g` by voxel, which may be on another grid.
   PhaseOfMedium WithG(const Field& g) const { return PhaseOfMedium(this->Functions[0], g); }
-  /// This phase function with that of `channel` in all channels, for a scene that is solved in one channel.
+  /// Phase function that has the function of `channel` in all channels, for a scene that is solved in one channel.
   PhaseOfMedium Seen(int channel) const;
 
 private:

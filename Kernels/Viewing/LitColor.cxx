@@ -21,8 +21,8 @@ constexpr int ColumnsOfView = 64;             ///< largest number of columns alo
 /// Smallest value of k sigma_t distance of the most opaque voxel (k, distance: LitColor.h), so that 8 bits resolve
 /// opacities.
 constexpr double ResolvedDepth = 2.0;
-/// Fraction of the largest radiance that a ray shows of a voxel for which k is chosen so that blending gives the right
-/// display value: the 1/4 of numerics.md, Eq. (112d).
+/// k is chosen so that blending gives the right display value for this fraction of the largest radiance that a ray
+/// shows of a voxel: the 1/4 of numerics.md, Eq. (112d).
 constexpr double PartOfVeil = 0.25;
 constexpr double AsGoodAsOpaque = 0.95; ///< opacity from which on a voxel counts as opaque
 

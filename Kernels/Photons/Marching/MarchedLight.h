@@ -18,7 +18,7 @@ public:
   /// @param medium  referenced, not copied
   explicit MarchedLight(const MarchMedium& medium);
 
-  /// Allocates the sums for packed photons, sets them to zero, and describes their layout.
+  /// Provides the sums for packed photons, all zero, and describes their layout.
   /// @throws DeviceError if the sums do not fit into the device's memory
   MarchSums Prepare(const PackedPhotons& packed);
   /// Number of copies of the sums, by ShareSums; the memory of existing sums counts as available.

@@ -490,7 +490,7 @@ bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::arra
   for (int a = 0; a < 3; ++a)
   {
     const double size = grid.size[a];
-    const double slack = 1e-6 * size; // position of a photon on a face, which rounding may have moved outside
+    const double slack = 1e-6 * size; // tolerance for a photon on a face, which rounding may have moved outside
     if (direction[a] == 0.0)
     {
       if (position[a] < -slack || position[a] > size + slack)

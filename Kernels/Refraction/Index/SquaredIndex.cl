@@ -75,8 +75,8 @@ __kernel void squared_index_coefficients(IndexGrid grid, const __global float* s
   coefficients[(z * (grid.size[1] + 4) + y) * (grid.size[0] + 4) + x] = held;
 }
 
-// For each coefficient, computes the least and the largest of the five coefficients around it along one axis; not exact
-// near the array's ends. `stride` is the distance of coefficients along the axis.
+// For each coefficient, except near the array's ends, computes the least and the largest of the five coefficients
+// around it along one axis. `stride` is the distance of coefficients along the axis.
 __kernel void widen_range(
   int stride, const __global float* low, const __global float* high, __global float* low_out, __global float* high_out)
 {

@@ -93,7 +93,7 @@ __kernel void min_max_of_nodes(__global float2* nodes, ulong below, int4 childre
 //   ranges        (min, max) of the nodes of all levels
 //   first, size   index of the first node of the level that is computed, and number of its nodes along each axis
 //   above, above_size  index of the first node, and number of nodes along each axis, of the level from which nodes
-//                 inherit; not used at the top
+//                      inherit; not used at the top
 //   from, shift   node (i, j, k) inherits from node (from + (i, j, k)) >> shift
 //   tolerance     a node stays undivided if max - min is at most this value
 __kernel void levels_of_nodes(const __global float2* ranges, __global uchar* levels, ulong first, int4 size,

@@ -18,7 +18,7 @@ namespace tyndall
 struct WindingNumbers
 {
   std::size_t oddSamples = 0;  ///< number of odd samples
-  int lowest = 0, highest = 1; ///< least and largest winding number of all samples; 0 and 1 always count
+  int lowest = 0, highest = 1; ///< least and largest of 0, 1 and the winding numbers of all samples
   /// Position of the first odd sample, in the order z, y, x (x fastest) for columns along x.
   std::array<double, 3> firstOddSample = { 0, 0, 0 };
   std::array<int, 3> firstOddNumber = { 0, 0, 0 }; ///< index of the first odd sample along each axis of the domain
