@@ -8,33 +8,33 @@
 namespace tyndall
 {
 /// Texts of LightField::leftOut, each of which names a part of the computation that a scene did not need; the comments
-/// below say when. All solvers use the same texts.
+/// below say for which scenes. All solvers use the same texts.
 namespace left_out
 {
-extern const char* const Grey;           ///< neither medium nor lights are coloured
-extern const char* const OneColour;      ///< the medium is grey, and all lights have the same colour
-extern const char* const GreyExtinction; ///< all channels have the same sigma_t, hence one transmittance
+extern const char* const Grey;           ///< text if neither medium nor lights are coloured
+extern const char* const OneColour;      ///< text if the medium is grey and all lights have the same colour
+extern const char* const GreyExtinction; ///< text if all channels have the same sigma_t, hence one transmittance
 extern const char* const NoScattering;
 extern const char* const NoAbsorption;
 extern const char* const NoEmission;
 extern const char* const
-  OneOrder; ///< there is only one scattering order: no light is scattered, though the medium could scatter
+  OneOrder; ///< text if there is only one scattering order: no light is scattered, though the medium could scatter
 extern const char* const NetFlux;
-extern const char* const MomentsForPictures; ///< angular moments of scattered light were not requested
+extern const char* const MomentsForPictures; ///< text if angular moments of scattered light were not requested
 extern const char* const Isotropic;
 extern const char* const ConstantIndex;
 extern const char* const EmptyBricks;
 extern const char* const NoLights;
-extern const char* const OwnUncollided;   ///< uncollided light is given by another solver
-extern const char* const NoEmissionPeaks; ///< there is no localised emission that needs separate rays
-extern const char* const BlackFaces;      ///< no face of the box reflects
-extern const char* const DefaultSky;      ///< no light was given: the filter used its default sky
-extern const char* const DarkOutside;     ///< neither environment nor sky nor faces emit light
-extern const char* const EvenOutside;     ///< boundary light is isotropic: it needs no separate quadrature
+extern const char* const OwnUncollided;   ///< text if uncollided light is given by another solver
+extern const char* const NoEmissionPeaks; ///< text if there is no localised emission that needs separate rays
+extern const char* const BlackFaces;      ///< text if no face of the box reflects
+extern const char* const DefaultSky;      ///< text if no light was given, so that the filter used its default sky
+extern const char* const DarkOutside;     ///< text if neither environment nor sky nor faces emit light
+extern const char* const EvenOutside; ///< text if boundary light is isotropic, so that it needs no separate quadrature
 extern const char* const
-  ThinVoxels; ///< all voxels are optically thin: the position of scattering within a voxel does not matter
-extern const char* const NotByOctant;   ///< Source By octant was requested but cannot be used in this scene
-extern const char* const NotSideBySide; ///< the device does not run two queues concurrently
+  ThinVoxels; ///< text if all voxels are optically thin: the position of scattering within a voxel does not matter
+extern const char* const NotByOctant;   ///< text if Source By octant was requested but cannot be used in this scene
+extern const char* const NotSideBySide; ///< text if the device does not run two queues concurrently
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 /// Text that many directions carry no incident light.
 /// @param lit  fraction of the rays that carry incident light
