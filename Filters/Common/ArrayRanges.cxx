@@ -22,11 +22,12 @@ namespace tyndall
 {
 namespace
 {
-/// Number of values in a block. A block stays in the cache while its values are tested for being finite and their
-/// extremes and norms are found.
+/// Number of values in a block. A thread processes the values of an array block by block, so that a block is still in
+/// the processor's cache when, after the test for infinity and NaN, its extremes and norms are computed.
 constexpr std::size_t BlockValues = 8192;
 constexpr std::size_t ThreadValues = 65536; ///< minimum number of values per thread
-/// Minimum number of lanes, that is of extremes computed in parallel: enough for vector units of any width.
+/// Minimum number of lanes: extremes that are computed independently of each other, enough for vector units of any
+/// width.
 constexpr std::size_t Lanes = 32;
 
 /// Whether any floating-point number is infinite or NaN: all bits of its exponent (mask `exponent`) are 1. The loop is
@@ -80,7 +81,7 @@ public:
   {
     const std::size_t components = this->Lowest.size();
     this->FindExtremesOfLanes(values, count);
-    double least = 0.0, most = 0.0; // bounds of the squared norm; rounding preserves order
+    double least = 0.0, most = 0.0; // bounds of the tuples' squared norms; rounding preserves order
     for (std::size_t c = 0; c < components; ++c)
     {
       T low = this->LaneLowest[c], high = this->LaneHighest[c];

@@ -15,7 +15,6 @@ namespace tyndall
 double AvailableMemory();
 
 // Converts the filters' property MemoryBudget to the kernels' MemoryBudget.
-
 /// @param mebibytes  limit of device memory, MiB; 0: only the device's own limit
 /// @param spills  true: data beyond the limit are kept in host memory; false: exceeding it is an error
 inline MemoryBudget BudgetOf(int mebibytes, bool spills)
@@ -29,7 +28,8 @@ inline MemoryBudget BudgetOf(int mebibytes, bool spills)
   return budget;
 }
 
-/// Finds the device for a filter that keeps buffers on it between updates. Exceeding the memory budget is an error.
+/// Finds the OpenCL device `name` for a filter that keeps buffers on it between updates. The filter may use `mebibytes`
+/// MiB of device memory (0: no limit); more is an error.
 /// @param kept  member of the filter that caches the returned device; reused while name and budget are unchanged
 inline std::shared_ptr<Device> FindWithin(std::shared_ptr<Device>& kept, const std::string& name, int mebibytes)
 {

@@ -60,7 +60,8 @@ vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
     return given;
   }
   auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  // Array types that are converted in parallel: VTK's own filters often produce doubles; levels of an octree are bytes.
+  // Array types that are converted in parallel because they are frequent: doubles of VTK's filters, bytes of octree
+  // levels.
   if (!ConvertInThreads<vtkDoubleArray>(array, floats) && !ConvertInThreads<vtkUnsignedCharArray>(array, floats))
   {
     floats->DeepCopy(array);
@@ -124,7 +125,8 @@ struct Found
   bool ofPoints = false;
 };
 
-/// Returns the array `ofCells`, or, if the image has hidden cells, a copy in which these have the value `empty`.
+/// Returns the array `ofCells`, or, if the image has hidden cells, a copy in which the hidden cells have the value
+/// `empty`.
 vtkSmartPointer<vtkFloatArray> WithoutHidden(
   vtkImageData* image, const vtkSmartPointer<vtkFloatArray>& ofCells, float empty)
 {
@@ -146,7 +148,9 @@ vtkSmartPointer<vtkFloatArray> WithoutHidden(
   return visible;
 }
 
+/// Converts a cell or point array to floats, one value per cell and component; point arrays are averaged to cells.
 /// @param empty  value of hidden cells
+/// @throws InvalidInput as CheckShape
 FloatField ToField(vtkImageData* image, const Found& found, const std::string& name, Components components, float empty)
 {
   CheckShape(found.array, name, found.ofPoints ? image->GetNumberOfPoints() : image->GetNumberOfCells(), components);
@@ -160,13 +164,14 @@ struct Choice
   std::string name;   ///< name of the array; empty: selected by attribute
   int attribute = -1; ///< attribute type, e.g. SCALARS; -1: selected by name
   bool pointsFirst = false;
-  bool made = false; ///< selected by the user: neither VTK's default nor the name of the default array
+  bool made = false; ///< whether the user selected an array other than the default array
 };
 
 /// The name that ParaView's panel passes if the input has no array of the default name (none_string of the proxies).
 const char* const NothingChosen = "(by name)";
 
-/// Second text in field data `..._array` (NoteChoices) if the point array takes precedence over the cell array.
+/// Text that NoteChoices records after an array's name if the point array of that name takes precedence over the cell
+/// array.
 const char* const OfPoints = "points";
 
 std::string ChoiceFact(const std::string& quantity)
@@ -174,8 +179,8 @@ std::string ChoiceFact(const std::string& quantity)
   return quantity + "_array";
 }
 
-/// Changes the choice to the array that the filter upstream used for the quantity, if it recorded one that still
-/// exists.
+/// Replaces the default array of a quantity, `choice`, by the array that the filter upstream used for the quantity, if
+/// that filter recorded it (NoteChoices) and the image still has it.
 void FollowFilterBefore(vtkImageData* image, Choice& choice)
 {
   auto* const said =
@@ -189,7 +194,9 @@ void FollowFilterBefore(vtkImageData* image, Choice& choice)
   }
 }
 
-/// @param image  the filter's input; null: records of the filter upstream are ignored
+/// The array that is selected under the number `index`; if none is, the array that the filter upstream used for the
+/// quantity, or else the default array `otherwise`.
+/// @param image  the filter's input; null: the array of the filter upstream is not looked up
 Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
 {
   vtkInformation* information = filter->GetInputArrayInformation(index);
@@ -225,7 +232,8 @@ vtkDataArray* ArrayChosenIn(vtkDataSetAttributes* attributes, const Choice& choi
   return choice.attribute >= 0 ? attributes->GetAttribute(choice.attribute) : attributes->GetArray(choice.name.c_str());
 }
 
-/// @throws InvalidInput if the array is not numeric
+/// Checks that the chosen array, if there is one, is numeric.
+/// @throws InvalidInput if it is not
 void CheckNumeric(vtkDataSetAttributes* attributes, const Choice& choice)
 {
   vtkAbstractArray* array = attributes->GetAbstractArray(choice.name.c_str());
@@ -455,7 +463,7 @@ std::string Described(const Grid& grid)
 
 bool AreSameVoxels(const Grid& a, const Grid& b)
 {
-  constexpr double part = 1e-3; // tolerance as a fraction of a voxel
+  constexpr double part = 1e-3; // largest distance of corresponding corners, in voxels
   bool agree = a.size == b.size;
   for (int axis = 0; axis < 3; ++axis)
   {

@@ -62,6 +62,7 @@ std::string NamesOf(vtkDataSetAttributes* attributes);
 /// Allowed numbers of components of an array; empty: any.
 using Components = std::initializer_list<int>;
 
+/// Checks the shape of an array.
 /// @throws InvalidInput, naming the array, unless it has `tuples` tuples and one of the allowed numbers of components
 void CheckShape(vtkDataArray* array, const std::string& name, vtkIdType tuples, Components components);
 
@@ -91,8 +92,8 @@ struct ArraysRead
 };
 ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image);
 
-/// Whether any arrays are selected by SetInputArrayToProcess, or announced as active in the input's information, and
-/// all of them are point arrays.
+/// Whether a filter's selected arrays are all point arrays, and there is at least one. Selected are the arrays of
+/// SetInputArrayToProcess, and the active arrays that the input's information announces.
 /// @param chosen  default names of the selectable arrays, by index (VoxelArrays::chosen)
 bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& chosen, vtkInformation* input);
 
@@ -120,7 +121,8 @@ double ReadFact(vtkDataObject* data, const char* name, double missing);
 /// Whether the voxels of a grid have the same corners as those of the medium, up to rounding.
 bool AreSameVoxels(const Grid& grid, const Grid& medium);
 
+/// Checks that the voxels of a grid have the same corners as those of the medium, up to rounding.
 /// @param whose, remedy  beginning and end of the message, e.g. "The octree", "Make the octree of the same medium."
-/// @throws InvalidInput unless the voxels of the grid have the same corners as those of the medium, up to rounding
+/// @throws InvalidInput if the corners differ
 void CheckSameVoxels(const Grid& grid, const Grid& medium, const std::string& whose, const std::string& remedy);
 }

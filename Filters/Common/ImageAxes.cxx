@@ -41,9 +41,9 @@ vtkInformationDoubleVectorKey* AxesOfFilter()
   return key;
 }
 
-constexpr double Aslant = 1e-6; ///< an axis is oblique if its direction deviates from all world axes by more than this
+constexpr double Aslant = 1e-6; ///< tolerance of direction cosines: an axis is oblique unless they are 0, 1 or -1
 
-/// Indices of an image's values (cells or points) in the order of the aligned image.
+/// Indices, in an image, of its values (cells or points), listed in the order of the aligned image.
 /// @param count  number of values along each image axis
 vtkSmartPointer<vtkIdList> OrderOf(const AxisWays& ways, const std::array<vtkIdType, 3>& count)
 {
@@ -226,7 +226,7 @@ Rotation NextRotation(Rotation matrix)
   return matrix;
 }
 
-/// Direction matrix of an image after the signs of negative spacings have moved to it.
+/// Direction matrix of an image for positive spacings: columns of axes with a negative spacing change their sign.
 Rotation DirectionOf(vtkImageData* image)
 {
   Rotation direction;
@@ -265,7 +265,7 @@ vtkSmartPointer<vtkDataArray> NewLike(vtkDataArray* array)
   return made;
 }
 
-/// Transforms components `first` to `last` - 1 of each tuple, three at a time, as vectors.
+/// Applies `turn` to the vectors that components `first` to `last` - 1 of each tuple contain, three components each.
 void TurnComponents(vtkDataArray* from, int first, int last, const Turn& turn, vtkDataArray* to)
 {
   auto* const floats = vtkArrayDownCast<vtkFloatArray>(from);
@@ -322,8 +322,9 @@ bool IsOfVectors(vtkDataArray* array)
   return array && array->GetName() && array->GetNumberOfComponents() % 3 == 0;
 }
 
-/// Rotates directions in an image's field data, and transforms positions and directions of its lamps (LampsApartFact).
-/// @param note  whether to record the times of the originals in the copies (TimeBeforeTurning)
+/// Transforms the vectors in an image's field data: directions by `way`, positions of lamps (LampsApartFact) by
+/// `place`.
+/// @param note  whether the copies record the modification times of the original arrays (TimeBeforeTurning)
 void TurnFacts(vtkImageData* image, const Turn& place, const Turn& way, bool note)
 {
   vtkNew<vtkFieldData> own;

@@ -235,7 +235,8 @@ int CountBlocks(vtkCompositeDataSet* composite, vtkInformation* port)
   return count;
 }
 
-/// Text that explains what it means that the filter runs for each block of an input, and what to do about it.
+/// Text for the warning that a filter runs separately for each block of an input: the consequence, and a filter of
+/// ParaView that avoids it.
 std::string AboutBlocks(vtkInformation* port)
 {
   if (IsForImagesOfScene(port))
@@ -352,7 +353,8 @@ VoxelArrays VoxelArraysOf(vtkInformation* port)
 
 namespace
 {
-/// Whether an image at another port has the same number of points as the medium at port 0, which is read by its cells.
+/// Whether the medium at port 0 is read by its cells, and has the same number of points along each axis as `image`, the
+/// image at another port.
 bool MediumHasCellsBetween(vtkAlgorithm* filter, vtkImageData* image)
 {
   const bool any = filter->GetNumberOfInputConnections(0) > 0;
@@ -456,7 +458,7 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
   vtkInformation* const input = inputs->GetInformationObject(0);
   if (!input || IsTakenByBlocks(filter, port, vtkDataObject::GetData(input)))
   {
-    return; // not announced: each block has its own voxels
+    return; // no extent is announced for composite data: each block has its own voxels
   }
   std::array<int, 6> told = { 0, 1, 0, 1, 0, 1 };
   const bool isKnown = input->Has(Pipeline::WHOLE_EXTENT()) != 0;
@@ -514,7 +516,7 @@ bool Any(vtkUnsignedCharArray* flags, unsigned char flag)
     std::any_of(values, values + flags->GetNumberOfTuples(), [=](unsigned char value) { return (value & flag) != 0; });
 }
 
-/// Flags as hidden the cells that share a point.
+/// Flags as hidden all cells of which `point` is a corner.
 void HideAround(vtkImageData* image, vtkIdType point, std::vector<unsigned char>& hidden)
 {
   int points[3];

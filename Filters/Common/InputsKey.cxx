@@ -91,7 +91,9 @@ void AddCellArray(Digest& digest, vtkCellArray* cells)
   }
 }
 
-/// @param kinds  attribute types of the arrays to include: vtkDataObject::POINT, CELL, FIELD
+/// Hash of a dataset: its class, grid, points, cells and arrays.
+/// @param data  null: no dataset
+/// @param kinds  attribute types of the arrays to include: vtkDataObject::POINT, CELL, FIELD, ROW
 std::uint64_t KeyOf(vtkDataObject* data, const std::vector<int>& kinds)
 {
   Digest digest;

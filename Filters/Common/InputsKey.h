@@ -70,8 +70,8 @@ std::uint64_t ContentKey(vtkDataObject* data);
 /// different field data about the medium if one of them has no piece of it.
 std::uint64_t ContentKeyButFacts(vtkDataObject* data);
 
-/// Key of a result computed on a device from a filter's inputs: two keys are equal if nothing has changed in between,
-/// since VTK never gives two objects the same modification time.
+/// Cache key of a result that a filter computed on a device from its inputs. Equal keys mean that device, arrays and
+/// settings are unchanged: VTK never gives two objects the same modification time.
 struct InputsKey
 {
   std::shared_ptr<Device> device;

@@ -53,7 +53,7 @@ inline std::array<double, 3> Triple(const double* values)
 
 /// Relative density of fog inside a level set as a function of the signed distance from its surface, negative inside: 1
 /// in the interior, falling linearly to 0 at the surface within the last voxel, 0 outside. Equals OpenVDB's
-/// sdfToFogVolume with that cutoff.
+/// sdfToFogVolume with a cutoff of one voxel.
 template <typename Value>
 Value FogInside(Value distance, double voxel)
 {

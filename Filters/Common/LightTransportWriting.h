@@ -58,9 +58,9 @@ constexpr const char* IgnoredFact = "ignored";
 constexpr const char* FacePowerFact = "face_power";
 constexpr const char* FaceAlbedoFact = "face_albedo";
 
-/// Names of cell arrays: angular moments of the scattered light (LightField::scatteredMoments, straightOn). Name of
-/// field data: the lamps whose first-collision source these moments exclude; one tuple for each lamp: type, position,
-/// direction, power, size, angle.
+/// MomentsArray, StraightOnArray: names of cell arrays, angular moments of the scattered light
+/// (LightField::scatteredMoments, straightOn). LampsApartFact: name of field data, the lamps whose first-collision
+/// source these moments exclude; one tuple for each lamp: type, position, direction, power, size, angle.
 constexpr const char* MomentsArray = "scattered_moments";
 constexpr const char* StraightOnArray = "straight_on";
 constexpr const char* LampsApartFact = "lamps_apart";
@@ -68,10 +68,12 @@ constexpr int LampComponents = 13;
 
 // Names of arrays and field data that vtkLPMPropagate writes and vtkLPMCollect reads.
 
-/// Names of the cell arrays with T, by the face towards which light travels.
+/// Names of the cell arrays with the temporary buffers T (Gruson et al. 2012, Eq. 6), one for each face, -x to +z,
+/// towards which light travels.
 constexpr const char* const NamesOfT[6] = { "T_xmin", "T_xmax", "T_ymin", "T_ymax", "T_zmin", "T_zmax" };
 
-/// Names of field data: settings of the propagation by vtkLPMPropagate.
+/// Names of field data, all set by vtkLPMPropagate: rays per voxel edge, number of stored directions, number of the
+/// scattering order.
 constexpr const char* const MapResolutionFact = "map_resolution";
 constexpr const char* const StoredDirectionsFact = "stored_directions_count";
 constexpr const char* const OrderFact = "scattering_order";

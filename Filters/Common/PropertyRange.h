@@ -52,7 +52,8 @@ PointDataKind PointDataOf(vtkAlgorithm* filter);
 /// @throws InvalidInput that names every property out of its range, with its value and range
 void CheckProperties(vtkAlgorithm* filter);
 
-/// Implements the setters of the macros below: stores the values, and records whether they are in [low, high].
+/// Implements the setters of the macros tyndallSet...Macro: stores the values, and records whether they are in [low,
+/// high].
 /// @return whether the property has changed
 template <class Type>
 bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, std::initializer_list<Type> values,
