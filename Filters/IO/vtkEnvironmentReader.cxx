@@ -111,14 +111,14 @@ void Expose(RadiancePicture& picture, double exposure, double maximum)
   }
 }
 
-/// Overlap of two divisions of [0, 1] into `from` old and `to` new intervals of equal length: new interval k is the
-/// mean of old intervals from First[k] on with weights Weights[k], which sum to 1.
+/// Weights of an average from `from` equal intervals of [0, 1] to `to` equal intervals: new interval k is the mean of
+/// the old intervals from First[k] on with the weights Weights[k], which sum to 1.
 struct Overlaps
 {
   std::vector<std::size_t> First;
   std::vector<std::vector<double>> Weights;
 
-  /// @param measure  increasing function on [0, 1] whose differences weight the mean
+  /// @param measure  increasing function on [0, 1]; an interval [a, b] has the weight measure(b) - measure(a)
   template <typename Measure>
   Overlaps(int from, int to, Measure&& measure)
   {

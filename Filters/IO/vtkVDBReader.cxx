@@ -84,7 +84,7 @@ std::string Summary(const VDBFile& file)
   return lines;
 }
 
-/// Fraction of an image's voxels that is active, in the grid in which it is largest.
+/// Largest fraction of an image's voxels that are active in one of the grids.
 double ActivePart(const std::vector<const VDBGrid*>& grids, const std::array<std::int64_t, 6>& extent)
 {
   double most = 0.0;
@@ -95,9 +95,9 @@ double ActivePart(const std::vector<const VDBGrid*>& grids, const std::array<std
   return most;
 }
 
-/// Default limit of an image's memory, unless the file notes that it was an image of that size: the larger of
-/// SmallImage (bytes) and MostOfFile bytes per byte of the file. Clouds with a sparse outline need 10 to 300 bytes per
-/// byte of their file; a single changed bit in a small file can demand terabytes.
+/// Default limit of an image's memory, bytes: the larger of SmallImage and MostOfFile times the length of the file. It
+/// does not apply if the file notes that it was made from an image of that size. Clouds with a sparse outline need 10
+/// to 300 bytes per byte of their file; a single changed bit in a small file can demand terabytes.
 constexpr double SmallImage = 1073741824.0, MostOfFile = 1000.0;
 
 openvdb::CoordBBox CellsIn(const int* extent)

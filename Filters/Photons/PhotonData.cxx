@@ -107,7 +107,7 @@ std::array<float, 3> Turned(const std::array<float, 3>& direction, const Turn& t
   return { static_cast<float>(way[0]), static_cast<float>(way[1]), static_cast<float>(way[2]) };
 }
 
-/// vtkPoints whose bounds FindBounds sets from the array's cached ranges; VTK would compute them on one core.
+/// Points whose bounds FindBounds computes in parallel (LeaveRanges); VTK would compute them on one core.
 class BoundedPoints : public vtkPoints
 {
 public:

@@ -24,8 +24,8 @@ struct RefractiveInput
 };
 
 /// Reads the medium of an image (see ReadMedium), its refractive index from cell array `ior` (1 component, optional) or
-/// the array chosen as number RefractiveIndex, and the optional cell array `octree_level` of `octree` or, if that is
-/// null, of the medium.
+/// the array that SetInputArrayToProcess(RefractiveIndex, ...) selects, and the optional cell array `octree_level` of
+/// `octree` or, if that is null, of the medium.
 /// @throws InvalidInput as ReadMedium, and if the voxels of `octree` differ from the medium's or `octree` has no levels
 RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree = nullptr);
 /// Reads the medium, refractive index and octree of this rank's block of a domain. Collective.
@@ -43,7 +43,7 @@ public:
   {
     InputsKey key; ///< cache key of `marcher`: medium, octree, settings, device; keeps the device alive
     std::unique_ptr<PhotonMarcher> marcher;
-    bool kept = false; ///< whether the cached marcher was still valid
+    bool kept = false; ///< whether `marcher` is the cached one, prepared by an earlier update
   };
 
   /// Returns the marcher for these settings: the cached one if it is valid and the domain is serial, else a new one.

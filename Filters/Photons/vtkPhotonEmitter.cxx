@@ -63,8 +63,8 @@ int vtkPhotonEmitter::FillOutputPortInformation(int, vtkInformation* information
   return 1;
 }
 
-/// Requests only this rank's piece of the medium if each rank is asked for its own piece: the domain's box follows from
-/// all pieces.
+/// Requests only this rank's piece of the medium if each rank is asked for its own piece; RequestData then finds the
+/// box of the whole medium from the pieces of all ranks.
 int vtkPhotonEmitter::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -75,9 +75,9 @@ int vtkPhotonEmitter::RequestUpdateExtent(
 
 namespace
 {
-/// Grid of the complete medium, of all ranks. Collective.
-/// @param ranks  null on one rank
-/// @param inputs  gathered on this rank if the pieces do not tile one grid
+/// Grid of the whole medium, from the pieces of all ranks. Collective.
+/// @param ranks  ranks that run the filter together; null: one rank
+/// @param inputs  inputs of this rank; the medium is gathered on every rank if the pieces do not tile one grid
 tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs)
 {
   const int port = vtkPhotonEmitter::MEDIUM;
@@ -94,8 +94,9 @@ tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, 
   return tyndall::GridOf(vtkImageData::GetData(inputs.Vectors()[port]));
 }
 
-/// Sets which part of the photons to emit: that of the requested piece. If any rank is asked for all photons, every
-/// rank emits all photons, because parts in addition to a complete set would have too much power. Collective.
+/// Sets which part of the photons this rank emits: the part that corresponds to the requested piece. If any rank is
+/// asked for all photons, every rank emits all photons, because parts in addition to a complete set would have too much
+/// power. Collective.
 /// @param others  the ranks that run the update together; null on one rank
 void TellPart(vtkInformation* asking, tyndall::Communicator* others, tyndall::EmissionSettings& settings)
 {

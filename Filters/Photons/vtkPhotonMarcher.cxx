@@ -40,8 +40,8 @@ enum InputPort
   InputPortCount
 };
 
-/// Whether light in empty space is to be stored by bricks, as EmptySpace selects. The medium's field data `active_part`
-/// may be out of date: it selects the storage of light, not its values.
+/// Whether EmptySpace selects storage of light by bricks. The medium's field data `active_part` may be out of date, but
+/// affects only how light is stored, not its values.
 bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
 {
   constexpr double mostActive = 0.25;

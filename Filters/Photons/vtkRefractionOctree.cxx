@@ -42,9 +42,9 @@ namespace tyndall
 {
 namespace
 {
-/// Root cells of the vtkHyperTreeGrid of an octree: cubes of 2^level voxels per edge, where `level` is the larger of
-/// the octree's largest level and the third level below its top, so that roots extend little beyond the grid. Each rank
-/// builds the trees of the roots whose first voxel is in its block.
+/// Root cells of the vtkHyperTreeGrid of an octree: cubes of 2^level voxels per edge. `level` is that of the largest
+/// node or, if that is larger, three less than that of the cube that contains the grid, so that roots extend little
+/// beyond the grid. Each rank builds the trees of the roots whose first voxel is in its block.
 struct OctreeRoots
 {
   /// @param whole  the grid of the domain
@@ -109,7 +109,7 @@ struct Tree
 {
   std::vector<unsigned char> levels;  ///< octree level of each vertex
   std::vector<unsigned char> outside; ///< whether each vertex is outside the grid
-  std::vector<unsigned char> refined; ///< whether each vertex is refined; without the deepest level, which never is
+  std::vector<unsigned char> refined; ///< whether each vertex is refined; without the deepest level, where none is
   vtkIdType nodes = 0;
 };
 

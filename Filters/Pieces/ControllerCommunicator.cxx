@@ -28,7 +28,7 @@ namespace tyndall
 {
 double SecondsToWait()
 {
-  // Default and longest timeout, seconds; clocks overflow after centuries.
+  // Default and longest timeout, seconds. Three years, the longest, are still within the range of the clock.
   constexpr double usual = 600.0, longest = 1e8;
   const char* const said = std::getenv("TYNDALL_RANKS_WAIT");
   const double seconds = NumberIn(said ? said : "").value_or(0.0);
@@ -174,7 +174,9 @@ std::vector<std::vector<char>> ControllerCommunicator::Swap(
 
 namespace
 {
-constexpr int Conversations = 64, Works = 16; ///< numbers before tags are reused; tags of frames follow tags of work
+/// Number of communicators per call of WorkOnAllRanks, and number of such calls, after which tags are reused. The tags of
+/// frames follow those of WorkOnAllRanks.
+constexpr int Conversations = 64, Works = 16;
 int Work = 0, Conversation = 0, Frame = 0;
 
 std::unique_ptr<Communicator> Make(vtkMultiProcessController* ranks, [[maybe_unused]] std::function<bool()> stopped,

@@ -189,8 +189,8 @@ void EmptyWithout(vtkInformationVector* outputs)
   }
 }
 
-/// Whether a rank is known not to reach this filter: it was missing here and nothing has changed since, or at a filter
-/// upstream.
+/// Whether it is known that a rank will not reach this filter: the rank was missing here at the last run and nothing
+/// has changed since, or it was missing at a filter upstream.
 bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
 {
   bool known = last.Was(LastFailure::Missing) && last.StillHolds();
@@ -205,8 +205,8 @@ bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
   return known;
 }
 
-/// Reports a rank that did not arrive or is at another filter, and records the failure so that no rank waits for that
-/// rank again.
+/// Reports the missing rank as an error, empties the outputs, and records the failure, so that later updates do not
+/// wait for that rank.
 void FailWithout(const MissingRank& missing, vtkAlgorithm* filter, vtkInformationVector* outputs, LastFailure& last)
 {
   EmptyWithout(outputs);

@@ -83,7 +83,8 @@ Piece PieceOf(vtkInformation* asked, vtkImageData* image, int rank, int ranks)
   return piece;
 }
 
-/// Converts a piece to numbers in an array for all ranks: at the position of this rank; 0 elsewhere.
+/// Array for the extents, origins and spacings of the pieces of all ranks, in which only this rank's entries are set.
+/// The other entries are 0, so that the sum of the ranks' arrays describes all pieces.
 std::vector<double> WordsOf(const Piece& piece, int rank, int ranks)
 {
   std::vector<double> words(WordsOfPiece * static_cast<std::size_t>(ranks), 0.0);

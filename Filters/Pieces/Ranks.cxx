@@ -83,7 +83,8 @@ int Asking(vtkInformation* request, vtkInformationVector* outputs)
   return asking ? std::max(PiecesAsked(request, outputs), asking->Get(Collective())) : 1;
 }
 
-/// Makes the outcome of the work on one rank the outcome on all: throws the same on each. Collective.
+/// Throws the same error on all ranks if the work of any rank failed. Collective.
+/// @param own  outcome of the work on this rank
 void EndTogether(Communicator& communicator, const Ending& own)
 {
   try

@@ -150,8 +150,8 @@ bool IsStoppedByOthers(vtkAlgorithm* filter);
 /// A rank that did not reach the barrier of FindMissingRank.
 struct MissingRank
 {
-  /// Number of the first such rank; -1: none. A rank that arrives after the time-out gets no answer; it reports
-  /// rank 0.
+  /// Number of the first rank that did not reach the barrier; -1: all ranks reached it. A rank that arrives after the
+  /// timeout gets no answer from rank 0, and reports rank 0 as missing.
   int rank = -1;
   bool elsewhere = false; ///< whether that rank reached another filter than the first rank
 };

@@ -134,7 +134,8 @@ Extent PartOfRank(vtkInformation* information, int rank)
   return extent;
 }
 
-/// Flags cells of this rank's output as duplicates if a lower rank is asked for them, too (NotePartsOfRanks).
+/// Flags cells of this rank's output as duplicates if a rank with a lower number is asked for the same cells
+/// (NotePartsOfRanks).
 void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
 {
   const int rank = information->Get(PartsOfRanks())[0];
@@ -159,13 +160,13 @@ struct Part
 {
   bool isOfRank = false; ///< whether the part is one recorded by NotePartsOfRanks
   bool divided = false;
-  AskedPiece piece; ///< the requested extents; empty: nothing is requested; if not divided: the complete output
+  AskedPiece piece; ///< requested extents. Empty: nothing is requested if `divided`, else the complete output
 };
 
-/// Determines the requested part of an output. A request for a complete announced extent means the complete `image`,
-/// which may differ from it because its file belongs to another time step, or because it was not known that voxels are
-/// around points. Likewise, a piece of such an extent means a piece of `image`, if `image` contains the extent (if not,
-/// perhaps only the piece was made).
+/// Determines the requested part of an output. A request for a whole extent that was announced (AsksForAll) means all
+/// of `image`, although the two may differ: the announced extent may be that of another time step, or may have been
+/// announced before it was known that voxels are around points. Likewise a piece of an announced extent means a piece
+/// of `image`, unless `image` does not contain the announced extent, for example because only the piece was made.
 /// @param image  the extent of the output as it was made
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {

@@ -153,17 +153,17 @@ private:
 /// Extent to which KeepWhatIsAskedFor will crop an image in RequestData; inverted if the extent is empty.
 std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);
 
-/// Crops an output to the requested extent or piece. Called in RequestData. Ghost cells are flagged (vtkGhostType), so
-/// that sums over pieces count each cell once.
+/// Crops an output to the requested extent or piece, and flags its ghost cells (vtkGhostType), so that sums over pieces
+/// count each cell once. Called in RequestData.
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output);
-/// Crops an output to the requested extent or piece, as the function above does, if this rank has only that part of it.
+/// Crops an output to the requested extent or piece, for a rank that made only this part of the complete output.
 /// @param image  extent of the complete output
 void KeepWhatIsAskedFor(vtkInformation* information, vtkImageData* output, const std::array<int, 6>& image);
 
-/// Announces the extent of an output if this becomes known only in RequestData, when the output is made. Otherwise the
-/// pipeline would run the filter again for that part of the extent it assumed which lies beyond this extent. Pieces of
-/// the output are those of VTK's extent translator.
-/// @param asking  information of the output port that the request came from: VTK assumes that all ports then have its
-///   piece
+/// Announces the extent of an output that becomes known only when the output is made, in RequestData. If the pipeline
+/// assumed a larger extent, it would otherwise run the filter again for the missing part. Pieces of the output are
+/// those of VTK's extent translator.
+/// @param asking  information of the output port that the request came from; VTK assumes that all ports then have the
+///   piece of this port
 void TellExtent(vtkInformation* asking, vtkInformation* information, const int extent[6]);
 }

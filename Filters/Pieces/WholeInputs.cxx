@@ -466,7 +466,7 @@ void NoteParts(const std::vector<RankSummary>& all, int rank, vtkInformationVect
       parts.push_back(of.asked[static_cast<std::size_t>(port)]);
       const InputSummary medium = of.inputs.empty() ? InputSummary() : of.inputs.front();
       if (medium.aroundPoints &&
-        parts.back() == medium.whole) // was announced before it was known that voxels are around points
+        parts.back() == medium.whole) // `whole` was announced before it was known that voxels are around points
       {
         parts.back() = Around(parts.back());
       }

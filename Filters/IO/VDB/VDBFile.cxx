@@ -152,7 +152,7 @@ void VDBFile::ShareTree(VDBGrid& grid, const VDBGrid& with)
 {
   VDBBytes bytes(this->FilePath, this->FileSize);
   bytes.Seek(static_cast<std::uint64_t>(grid.Place.Topology), "a grid");
-  bytes.Skip(sizeof(std::uint32_t), "a grid"); // compression of the grid
+  bytes.Skip(sizeof(std::uint32_t), "a grid"); // skips the compression flags of the grid
   grid.Metadata = ReadMetadata(bytes);
   ReadTransform(bytes, grid);
   grid.Unusable = grid.Unusable.empty() ? with.Unusable : grid.Unusable;

@@ -20,7 +20,7 @@ namespace tyndall
 /// Whether metadata of this name are a note on the geometry of an image.
 bool IsGeometry(const std::string& key);
 
-/// Geometry of a grid, or of several grids, as a VTK image has it.
+/// Geometry of the VTK image that one or several grids become: extent, origin, spacing, direction matrix.
 struct VDBGeometry
 {
   /// Extent of points, which may exceed the range of VTK's extents.
@@ -56,7 +56,7 @@ VDBGeometry GeometryOf(const std::vector<const VDBGrid*>& grids);
 /// edge of their voxels.
 VDBGeometry BoxAround(const std::vector<const VDBGrid*>& grids);
 
-/// Geometry of a VTK image, as an OpenVDB grid has it.
+/// Geometry of the OpenVDB grid that a VTK image becomes: voxels, transform, and notes on the image (IsGeometry).
 struct VDBPlacement
 {
   openvdb::CoordBBox Voxels;

@@ -96,7 +96,8 @@ bool InsertIfOfKind(K, MetaMap& map, const std::string& key, vtkAbstractArray* f
   return true;
 }
 
-/// Inserts a VTK array that holds one 64-bit integer, of whatever VTK type.
+/// Adds metadata `key` from a VTK array, if the array holds one 64-bit integer of any VTK type.
+/// @return whether it does
 bool InsertIfLong(MetaMap& map, const std::string& key, vtkAbstractArray* found)
 {
   auto* array = vtkDataArray::SafeDownCast(found);

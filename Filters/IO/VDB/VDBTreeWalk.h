@@ -22,7 +22,7 @@ struct VDBValueType
     Numbers,
     Bool,
     Mask
-  } Leaves; ///< what a leaf stores besides its active mask
+  } Leaves; ///< data of a leaf in addition to its active mask: numbers, bits of bools, or none
 
   bool IsReal() const { return this->HalfSize < this->Size; }
   /// OpenVDB's name of the grid type.
