@@ -52,7 +52,8 @@ void ReadResults(vtkObject* caller, unsigned long, void*, void*)
   }
 }
 
-/// Reads the exposures (property UsedExposure) with which a view's visible representations rendered a frame.
+/// Reads the exposures (property UsedExposure) with which a view's visible representations rendered a frame, unless the
+/// view moves (interactive rendering).
 void ReadExposures(vtkObject* view, unsigned long, void*, void* isInteractive)
 {
   const vtkSMPropertyHelper representations(vtkSMProxy::SafeDownCast(view), "Representations", true);

@@ -91,7 +91,7 @@ void WatchBar(vtkSMProxy* bar)
 void FitColors(vtkSMProxy* colors, vtkPVArrayInformation* array)
 {
   double range[2];
-  // Component -1: the range of the magnitude.
+  // Component -1 stands for the magnitude of a vector.
   array->GetComponentRange(array->GetNumberOfComponents() > 1 ? -1 : 0, range);
   const bool spansDecades = range[1] > 0.0 && range[1] >= LogarithmicFrom * range[0];
   if (spansDecades && range[0] <= 0.0)
@@ -171,8 +171,8 @@ void MakeEmptyChartsLogarithmic(vtkSMSessionProxyManager* manager, const std::ve
   }
 }
 
-/// Sets a property of a chart representation to `value` for the given series. Its elements are name, value, name,
-/// value, ...
+/// Sets a property of a chart representation to `value` for the given series. The elements of such a property are name,
+/// value, name, value, ...
 void SetSeries(
   vtkSMProxy* representation, const char* property, const std::vector<std::string>& series, const char* value)
 {

@@ -56,7 +56,8 @@ public:
   }
 
 private:
-  /// Watches the algorithm of a new proxy, if it runs in this process and stops on abort or has results for the panel.
+  /// Observes the algorithm of a newly registered proxy, if it runs in this process and the proxy has the hint
+  /// <StopsOnAbort/> or <FreshResults/>.
   void Watch(vtkObject*, unsigned long, void* data)
   {
     const auto* registered = static_cast<vtkSMProxyManager::RegisteredProxyInformation*>(data);

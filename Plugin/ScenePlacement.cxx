@@ -60,8 +60,8 @@ vtkBoundingBox BoxOfScene(vtkSMSessionProxyManager* manager)
   return box;
 }
 
-/// Rounds a number for display on a panel, to digits that are counted from the first digit of `size`.
-/// @param digits  number of digits to keep after the first digit of `size`
+/// Rounds `value`, for display on a panel, to a multiple of 10^(k - digits), where 10^k is the largest power of ten not
+/// above `size`.
 double Rounded(double value, double size, int digits)
 {
   const double unit = std::pow(10.0, digits - std::floor(std::log10(size)));

@@ -15,7 +15,7 @@
 
 namespace
 {
-/// One control point each: value, opacity, midpoint, sharpness.
+/// Control points of the opacity function, four numbers each: value, opacity, midpoint, sharpness.
 constexpr double Opacity[] = { 0.0, 0.0, 0.5, 0.0, 255.0, 1.0, 0.5, 0.0 };
 constexpr int NeverRescaled = -1;
 
@@ -147,7 +147,7 @@ void FollowProperty(vtkObject* caller, unsigned long, void*, void* data)
   }
   if (IsChangeOf(data, "Representation") && IsVolume(representation) && HasColors(representation))
   {
-    // Before the unit distance is set: the representation must already show the volume.
+    // Makes the representation show the volume, before ShowColors sets the volume's unit distance.
     representation->UpdateVTKObjects();
     ShowColors(representation);
   }

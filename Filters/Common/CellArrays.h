@@ -100,9 +100,9 @@ bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& cho
 /// Indices for SetInputArrayToProcess, each with the name of its default array.
 using Quantities = std::vector<std::pair<int, std::string>>;
 
-/// Records in the output's field data which array the filter used for each of these quantities, so that filters
-/// downstream use the same arrays: `sigma_a_array` and so on, a text with the array's name, followed by "points" if the
-/// point array takes precedence over a cell array of that name. Nothing is recorded for a default array.
+/// Records in the output's field data which arrays the filter used for `quantities`, so that filters downstream use the
+/// same arrays: `sigma_a_array` and so on, a text with the array's name, followed by "points" if the point array takes
+/// precedence over a cell array of that name. Nothing is recorded for a default array.
 /// @param input  the filter's input; its arrays are also in the output
 void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
 

@@ -24,7 +24,7 @@ struct Ending
   {
     Done,
     Aborted,     ///< stopped on request, without an error; the outputs are empty
-    InputFailed, ///< the filter upstream failed and has reported it
+    InputFailed, ///< the filter upstream failed and has reported the error
     Empty,       ///< the input has no data, without an error
     Failed,
   };
@@ -36,7 +36,8 @@ struct Ending
 /// Runs `work`, catches any exception and returns it as an outcome.
 Ending EndingOf(const std::function<void()>& work);
 
-/// Throws the exception that EndingOf turns into this outcome; for Failed, InvalidInput.
+/// Throws the exception that EndingOf turns into this outcome, for Failed always InvalidInput; nothing if the work
+/// succeeded.
 void Throw(const Ending& ending);
 
 /// Names of field data that inform filters downstream: the outputs are empty because the filter was aborted, or because

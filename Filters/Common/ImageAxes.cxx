@@ -34,7 +34,7 @@ namespace tyndall
 {
 namespace
 {
-/// Key in a filter's information: the medium axes in which the filter works (NoteOwnAxes).
+/// Key in a filter's information: the medium axes (OwnAxes) in which the filter works, set by NoteOwnAxes.
 vtkInformationDoubleVectorKey* AxesOfFilter()
 {
   static auto* const key = vtkInformationDoubleVectorKey::MakeKey("OWN_AXES", "Tyndall");

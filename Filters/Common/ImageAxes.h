@@ -49,7 +49,7 @@ struct OwnAxes
 {
   using Vec = std::array<double, 3>;
 
-  Vec origin = { 0.0, 0.0, 0.0 }; ///< image's origin; its coordinates are the same in both systems
+  Vec origin = { 0.0, 0.0, 0.0 }; ///< the image's origin, whose coordinates are the same in medium and scene axes
   /// Unit vectors of the medium axes in scene coordinates, one per row.
   Rotation axes = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } } };
   /// Direction matrix of the image, for positive spacings.

@@ -138,7 +138,7 @@ MomentsInput ReadMoments(vtkImageData* image);
 /// without polydata or points.
 std::vector<Light> ReadLights(vtkPolyData* lights);
 
-/// Transforms lights, or illumination with its environment, from the scene axes to the medium axes.
+/// Transforms lights, or illumination with its environment, from the scene axes to the medium axes (OwnAxes).
 std::vector<Light> InOwnAxes(std::vector<Light> lights, const OwnAxes& axes);
 Illumination InOwnAxes(Illumination illumination, const OwnAxes& axes);
 

@@ -83,7 +83,8 @@ void AlignedInputs::AlignGiven(vtkInformationVector** given)
   }
 }
 
-/// Determines the medium axes from the image at port 0, on any rank whose image has points. Collective.
+/// Determines the medium axes (OwnAxes), those of the image at port 0, from any rank whose image has points.
+/// Collective.
 void AlignedInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
 {
   const bool reads =

@@ -33,7 +33,7 @@ public:
   /// @throws InvalidInput, the same on all ranks, if pieces of an image have different axes
   AlignedInputs(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector** given);
 
-  /// Rotates output images from the medium axes back to the scene axes.
+  /// Rotates output images from the medium axes (OwnAxes), in which the filter has worked, back to the scene axes.
   void PutIntoScene(vtkInformationVector* outputs);
 
   std::vector<vtkSmartPointer<vtkInformationVector>> ports;
@@ -46,6 +46,6 @@ private:
 
   vtkAlgorithm* Filter;
   OwnAxes Axes;                          ///< axes of the image at port 0
-  vtkSmartPointer<vtkDataObject> Medium; ///< image at port 0 in scene axes; null: none
+  vtkSmartPointer<vtkDataObject> Medium; ///< image at port 0 before its transformation to Axes; null: none
 };
 }

@@ -254,7 +254,7 @@ void WorkOnAllRanks(vtkMultiProcessController* controller, vtkAlgorithm* filter,
   }
   StopMessages messages(controller);
   BeginConversations();
-  // Controller of an enclosing call of WorkOnAllRanks.
+  // Controller that an enclosing call of WorkOnAllRanks has set; it is restored after the work.
   vtkObjectBase* const before = filter->GetInformation()->Get(WorkingRanks());
   filter->GetInformation()->Set(WorkingRanks(), controller);
   const Ending own = EndingOf(work);

@@ -50,7 +50,7 @@ public:
   /// The inputs by port, in the form that RequestData receives them.
   vtkInformationVector** Vectors() { return this->Ports.data(); }
 
-  /// Rotates output images from the medium axes back to the scene axes.
+  /// Rotates output images from the medium axes (OwnAxes), in which the filter has worked, back to the scene axes.
   void PutIntoScene(vtkInformationVector* outputs) { this->Aligned.PutIntoScene(outputs); }
 
   /// Replaces the data at the port `inPieces` of the constructor, until MakeWhole.

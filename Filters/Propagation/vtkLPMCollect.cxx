@@ -54,8 +54,8 @@ int ReadCount(vtkImageData* image, const char* name)
   return static_cast<int>(value);
 }
 
-/// Settings of the vtkLPMPropagate that wrote an image, from its field data, and the number of channels of the arrays
-/// T.
+/// Settings with which vtkLPMPropagate made an image, read from the image's field data, and number of channels of the
+/// image's arrays T.
 struct Told
 {
   tyndall::PropagationSettings settings;
@@ -106,7 +106,8 @@ void CollectAll(tyndall::ParallelPropagation& propagation, const Buffers& buffer
   propagation.FinishOrder();
 }
 
-/// Adds to `values` the sum of the previous orders, a cell array of the image; does nothing without that array.
+/// Adds the light of the previous scattering orders, cell array `name` of the image, to `values`, the light of this
+/// order; does nothing if the image does not have that array.
 void AddBefore(std::vector<float>& values, vtkImageData* image, const char* name, std::size_t voxels)
 {
   const int components = static_cast<int>(values.size() / voxels);

@@ -32,8 +32,9 @@ tyndall::PropagationSettings SettingsOf(vtkLPMPropagate* filter)
   return settings;
 }
 
-/// Number of channels of the array `unscattered`: its components over 6, or over `storedDirections` if that is not 1.
-/// @throws InvalidInput if that is not 1 or 3
+/// Number of channels of the array `unscattered`: its number of components over its number of directions, which is 6 if
+/// `storedDirections` is 1, else `storedDirections`.
+/// @throws InvalidInput if the number of channels is not 1 or 3
 int ChannelsOf(const tyndall::FloatField& unscattered, int storedDirections)
 {
   const int sources = storedDirections == 1 ? 6 : storedDirections;

@@ -134,7 +134,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
 std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
   const bool both = inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 &&
-    inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0; // inputs 3 and 4 together are an error on one rank, too
+    inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0; // both inputs together are an error on one rank as well
   return both ? "Photons beside UncollidedLight" : tyndall::NotInBlocks(this->Settings());
 }
 

@@ -110,8 +110,8 @@ tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Dev
 
 /// Solver function for the filter's Scheme and Algorithm.
 /// @param device  null for the sequential algorithm
-/// @param ofGrid  the medium on its original grid: only its solution is kept, not those on coarser or divided grids
-/// @param last  storage of the solution that is kept for WarmStart; null if it is off
+/// @param ofGrid  the medium on its original grid; solutions on coarser or divided grids are not kept for WarmStart
+/// @param last  storage of the solution that is kept for WarmStart; null if WarmStart is off
 tyndall::PropagationSolver SolverOf(vtkLightPropagationMaps* filter, const std::shared_ptr<tyndall::Device>& device,
   const tyndall::Medium* ofGrid, tyndall::KeptLight* last)
 {

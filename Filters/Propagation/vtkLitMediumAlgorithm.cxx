@@ -46,7 +46,7 @@ int vtkLitMediumAlgorithm::FillInputPortInformation(int port, vtkInformation* in
   }
   else
   {
-    if (port > ENVIRONMENT) // port of a subclass for light of another filter
+    if (port > ENVIRONMENT) // input port that a subclass adds for light of another filter
     {
       tyndall::ReadsVoxels(information, {}, { "fluence", "fluence_direct", "mean_direction" });
     }

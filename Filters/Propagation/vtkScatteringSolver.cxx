@@ -55,9 +55,9 @@ void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light
   spread(light.fluenceError, light.channels);
   spread(light.netFlux, 3 * light.channels);
   spread(light.scatteredRadiance, light.channels * stored);
-  const std::vector<double> ofMoments =
-    pieces.GetDomain().Max({ static_cast<double>(light.scatteredMoments.size() / voxels),
-      static_cast<double>(light.straightOn.size() / voxels) }); // components, unknown on ranks without voxels
+  const std::vector<double> ofMoments = pieces.GetDomain().Max({ static_cast<double>(
+                                                                   light.scatteredMoments.size() / voxels),
+    static_cast<double>(light.straightOn.size() / voxels) }); // numbers of components, unknown on ranks without voxels
   spread(light.scatteredMoments, static_cast<int>(ofMoments[0]));
   spread(light.straightOn, static_cast<int>(ofMoments[1]));
 }
@@ -200,8 +200,8 @@ bool vtkScatteringSolver::WantsPieces(
                                                         : this->Decomposition == BLOCKS;
 }
 
-/// Reason, for field data `left_out`, why automatic decomposition chose a serial solve although each rank requests its
-/// own piece.
+/// Reason why the first rank solves the whole domain although Decomposition is automatic and each rank requests its own
+/// piece; for field data `left_out`.
 std::string vtkScatteringSolver::ReasonNotToAgree(vtkInformationVector** inputs) const
 {
   const std::string refused = this->NotByBlocks(inputs);
@@ -237,9 +237,9 @@ bool vtkScatteringSolver::IgnoresIndexOf(vtkImageData* medium)
     tyndall::IsUnusual(this, tyndall::RefractiveIndex, medium, "ior", 1.0f);
 }
 
-/// Reads the light sources of the subdomain into `scene`, unless something rules out the decomposition.
-/// @return what rules out the decomposition; empty if nothing does
-/// @throws InvalidInput if Decomposition is BLOCKS and something rules it out
+/// Reads the light sources of the subdomain into `scene`, unless a property or an input rules out the decomposition.
+/// @return the property or input that rules it out, as text; empty if none does
+/// @throws InvalidInput if Decomposition is BLOCKS and a property or an input rules it out
 std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
   const bool split = scene.pieces.IsDecomposed(), mustSplit = this->Decomposition == BLOCKS;

@@ -44,8 +44,8 @@ Light SunLight(double elevation, double azimuth, const double power[3])
   return sun;
 }
 
-/// Name, number of arguments and names of the arguments of a type of light, in the order of AddDirectionalLight,
-/// AddPointLight, ...; used by the one-number-at-a-time methods and their messages.
+/// A type of light: its name, and number and names of the arguments of the method that adds it, such as AddPointLight.
+/// Used by the methods that add a light one number at a time, and by their messages.
 struct NumbersOfLight
 {
   const char* Kind;

@@ -120,8 +120,8 @@ private:
   std::vector<int> NewNumbers;
 };
 
-/// Checks the cell array of material numbers, if the mesh has it, before triangulation changes cell numbers, which
-/// messages name. Vertices and lines are ignored.
+/// Checks the cell array of material numbers, if the mesh has it. To be called before triangulation, which renumbers
+/// the cells that messages name. Vertices and lines are ignored.
 /// @param name  name of the mesh, for messages
 /// @throws InvalidInput that names the array and the error
 void CheckNumbers(vtkPolyData* mesh, const std::string& name, const std::string& array)
@@ -461,7 +461,7 @@ int vtkMeshVoxelizer::FillInputPortInformation(int, vtkInformation* information)
 
 int vtkMeshVoxelizer::RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector* outputs)
 {
-  tyndall::Grid grid; // default values without ModelBounds: the box then depends on the meshes
+  tyndall::Grid grid; // default grid without ModelBounds: the meshes, which then determine the box, are not known yet
   tyndall::GuardedInformation(this, [&] {
     if (IsOn(this->ModelBounds))
     {

@@ -259,8 +259,8 @@ struct Signs
   static constexpr double AnyValue = std::numeric_limits<double>::max();
 };
 
-/// Extreme values of an array.
-/// @param box  voxels of the array, in voxels of the complete grid
+/// Extreme values of an array, in the image and on the border of the complete grid.
+/// @param box  voxels of the complete grid that the array covers
 Signs SignsOf(const float* values, const tyndall::VoxelBox& box, const tyndall::Grid& whole)
 {
   Signs signs;
@@ -470,11 +470,11 @@ void vtkParticipatingMedium::NoteSize(const tyndall::Grid& grid, const tyndall::
 }
 
 /// Warns if the density looks like a level set. Collective.
-/// @param box  voxels of the image, in voxels of the complete grid
+/// @param box  voxels of the complete grid that the image covers
 void vtkParticipatingMedium::DoubtLevelSet(
   const tyndall::Domain& domain, vtkImageData* image, const tyndall::VoxelBox& box)
 {
-  constexpr double small = 0.01; // relative to the largest value; negative values below this are noise about 0
+  constexpr double small = 0.01; // negative values down to minus this fraction of the largest value are noise about 0
   if (this->LevelSet)
   {
     return;

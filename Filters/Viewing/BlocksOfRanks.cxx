@@ -101,7 +101,7 @@ bool FitTogether(const BlocksOfRanks& blocks, bool able, std::vector<double> pro
 
 double ExposureOfParts(const Domain& domain, const Picture& part, const PixelRect& counted, bool background)
 {
-  Picture own = part; // cropped to the pixels that this rank counts
+  Picture own = part; // copy, cropped below to the pixels that this rank counts
   own = PartOf(std::move(own), counted);
   const std::vector<int> here = LuminanceCounts(own.radiance, background ? std::vector<float>() : own.alpha);
   const std::vector<double> all = domain.Sum(std::vector<double>(here.begin(), here.end()));
@@ -116,7 +116,7 @@ PixelRect RectOf(const std::array<int, 6>& extent)
 PixelRect OwnPixels(const Communicator& communicator, const std::array<int, 6>& all)
 {
   std::array<int, 6> own = PartOfExtent(all, communicator.Rank(), communicator.Ranks());
-  for (int last : { 1, 3 }) // extents of neighbouring ranks share border pixels: drops the last column or row
+  for (int last : { 1, 3 }) // extents of neighbouring ranks share border pixels, so the last column or row is dropped
   {
     own[last] -= own[last] < all[last] ? 1 : 0;
   }
@@ -142,7 +142,7 @@ std::vector<std::string> OnAllLists(Communicator& communicator, const std::vecto
 {
   std::vector<int> ranks(static_cast<std::size_t>(communicator.Ranks()));
   std::iota(ranks.begin(), ranks.end(), 0);
-  std::vector<char> said; // lines, each ended by a line feed, after a "+" if this rank has a list
+  std::vector<char> said; // message of this rank: "+" if it has a list, then the lines, each ended by a line feed
   for (const std::string& line : own)
   {
     said.insert(said.end(), line.begin(), line.end());

@@ -36,14 +36,15 @@ public:
   const GridBlock& Own() const { return this->OwnBlock; }
   const OwnAxes& Axes() const { return this->AxesOfAll; }
 
-  // The following methods are valid only if MakeUpTheWhole. Boxes are in voxels of the whole grid, in Axes.
+  // The following methods are valid only if MakeUpTheWhole(). Boxes are in voxels of the whole grid, along Axes().
   const Domain& Over() const { return this->Pieces.GetDomain(); }
   const Grid& Whole() const { return this->Over().Whole(); }
   /// Voxels of the input image of each rank, ghost cells included, by rank.
   const std::vector<VoxelBox>& Given() const { return this->Pieces.HeldByRanks(); }
-  /// Whether the boxes `held`, by rank, equal Given.
+  /// Whether the boxes `held`, by rank, equal the boxes Given().
   bool AreGiven(const std::vector<VoxelBox>& held) const;
-  /// Voxels that each rank needs to render its block (HeldBox), by rank; Given if each rank's input contains them.
+  /// Voxels that each rank needs to render its block (HeldBox), by rank; Given() if the input image of each rank
+  /// contains these voxels.
   /// @param moments, surface  whether the light has angular moments, or radiance at the faces
   std::vector<VoxelBox> HeldFor(const ViewSettings& settings, bool moments, bool surface) const;
 

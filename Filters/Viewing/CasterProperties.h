@@ -27,7 +27,7 @@ ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure);
 Camera InOwnAxes(const Camera& inScene, const OwnAxes& axes);
 Camera InScene(const Camera& camera, const OwnAxes& axes);
 
-/// Camera of the filter, in the medium's own axes.
+/// Camera of the filter, in the medium's own axes (OwnAxes).
 /// @param grid  grid of the whole medium, which the camera frames if CameraPosition equals CameraFocalPoint
 Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid);
 

@@ -26,10 +26,10 @@ namespace tyndall
 {
 namespace
 {
-/// Reads field data of a solver on light at the faces of the box.
+/// Reads a solver's field data about light at the faces of the box.
 /// @param name  name of the array
 /// @param tuples  required number of tuples
-/// @param parts  number of components per channel
+/// @param parts  required number of components per channel
 /// @return the values; empty if there is no such array, or its shape differs
 FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, int parts)
 {
@@ -124,7 +124,7 @@ double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
 
 namespace
 {
-/// Crops values on the boundary faces of the whole grid to the faces of a block's arrays.
+/// Selects, from values on the boundary faces of the whole grid, the values on the faces of a block.
 /// @param size  number of voxels of the block's arrays along x, y and z
 void KeepFacesOf(const GridBlock& block, const std::array<int, 3>& size, ViewedInputs& inputs)
 {

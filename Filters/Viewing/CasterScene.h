@@ -81,7 +81,8 @@ struct SceneSource
   vtkImageData* image; ///< this rank's piece, or the complete image
   ViewSettings settings;
   const BlocksOfRanks& blocks;
-  const GridBlock* alone = nullptr; ///< the block that the image is, if it is rendered alone; else null
+  /// Block of a larger grid that `image` is, if it is rendered without the other blocks; else null.
+  const GridBlock* alone = nullptr;
 
   const Domain& Over() const { return this->blocks.Over(); }
   /// Block of the domain that the image is; null if the image is the complete grid.

@@ -17,7 +17,7 @@ namespace tyndall
 namespace
 {
 constexpr double AlikeScales = 1e-6;       ///< relative tolerance for uniform scaling without shear
-constexpr double SmallestDistance = 1e-15; ///< distance camera to focal point, over distance camera to origin
+constexpr double SmallestDistance = 1e-15; ///< minimum distance of camera and focal point, over camera to origin
 
 using Vec = std::array<double, 3>;
 
@@ -86,8 +86,8 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   const auto element = [projection](int row, int column) { return projection->GetElement(row, column); };
   this->Depth = { element(2, 2), element(2, 3), element(3, 2), element(3, 3) };
 
-  // Origin and direction of the central ray, in eye coordinates; a column of fromEye is a unit vector of the eye's
-  // axes, times one world length, in the volume's coordinates.
+  // Origin and direction of the central ray, in eye coordinates. Column i of fromEye is axis i of the eye, one world
+  // length long, in the volume's coordinates.
   Vec origin = { 0.0, 0.0, 0.0 }, forward = { 0.0, 0.0, -1.0 };
   this->Seen.parallelProjection = camera->GetParallelProjection() != 0;
   this->Seen.aspect = element(1, 1) / element(0, 0);

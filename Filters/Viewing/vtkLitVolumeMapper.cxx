@@ -34,10 +34,10 @@
 
 namespace
 {
-constexpr double StillTime = 1.0;         ///< allowed seconds per frame from which on the view counts as still
+constexpr double StillTime = 1.0;         ///< the view counts as still if a frame may take this time or longer, seconds
 constexpr double CoarsestRays = 8.0;      ///< largest distance between neighbouring rays, pixels
-constexpr double StepsOfCoarseness = 4.0; ///< number of values of the ray distance per pixel, so that it rarely changes
-constexpr double FarAway = 1e4; ///< margin of the bounds of a piece that draws the background, in its diagonals
+constexpr double StepsOfCoarseness = 4.0; ///< the ray distance is a multiple of 1/4 pixel, so that it rarely changes
+constexpr double FarAway = 1e4; ///< extension of the bounds of a piece that draws the background, in its diagonals
 constexpr int ExposedSize[2] = { 64, 48 };
 
 /// Viewing directions for the automatic exposure: the corners of a tetrahedron.
@@ -266,8 +266,8 @@ double vtkLitVolumeMapper::EstimateExposure()
   return tyndall::AutomaticExposure(radiance, alpha);
 }
 
-/// Appends the pixels of a picture to the samples for the automatic exposure; alpha only if the background does not
-/// count.
+/// Appends a picture's pixels to the samples for the automatic exposure: radiance, and alpha if the background does not
+/// count (SeesRadianceBehind).
 void vtkLitVolumeMapper::AddSeen(
   const tyndall::Picture& picture, std::vector<float>& radiance, std::vector<float>& alpha)
 {
@@ -433,7 +433,8 @@ void vtkLitVolumeMapper::SeePieces(tyndall::Communicator& others, vtkRenderer* r
 {
   const double start = tyndall::ClockSeconds();
   this->Spread->view.reset();
-  // Is reset first, so that a frame that fails on one rank does not count as rendered together on other ranks.
+  // `together` is reset first, so that a frame that fails on one rank does not count as rendered together on other
+  // ranks.
   const bool together = std::exchange(this->Spread->together, false);
   if (together && this->IsExposureOld(others))
   {
@@ -512,7 +513,7 @@ void vtkLitVolumeMapper::Render(vtkRenderer* renderer, vtkVolume* volume)
   const auto size = tyndall::DrawnSize(renderer);
   if (renderer->GetSelector() || size[0] <= 0 || size[1] <= 0)
   {
-    return; // no picking: the medium fills its box
+    return; // the medium cannot be picked: it fills its whole box
   }
   if (this->DrawPiece(renderer, volume))
   {
