@@ -109,7 +109,7 @@ std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
   return Numbers(view, moves ? property + "Info" : property);
 }
 
-/// Values for the source's property that a <Property> of the hint names.
+/// Values for a property of the source, taken from the view's camera as an element <Property> of the hint requests.
 std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
 {
   std::vector<double> numbers = OfView(view, property->GetAttributeOrEmpty("of"));

@@ -187,7 +187,7 @@ void FollowVolumeColors(vtkSMProxy* representation)
   Follow(representation);
   if (HasColors(representation))
   {
-    // The observer FollowProperty then sets the colours.
+    // This change calls the observer FollowProperty, which sets the colours.
     vtkSMPropertyHelper(representation, "Representation").Set("Volume");
     representation->UpdateVTKObjects();
   }

@@ -212,7 +212,7 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std:
     choice.attribute = information->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
   }
   const bool nothing = choice.name == NothingChosen ||
-    (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS); // VTK's default, not a selection
+    (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS); // SCALARS by default, not by selection
   choice.made = !nothing && choice.name != otherwise;
   if (nothing)
   {

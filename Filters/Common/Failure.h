@@ -23,7 +23,7 @@ struct Ending
   enum Kind
   {
     Done,
-    Aborted,     ///< stopped on request, without an error; the outputs are empty
+    Aborted,     ///< the work was stopped on request, without an error; the outputs are empty
     InputFailed, ///< the filter upstream failed and has reported the error
     Empty,       ///< the input has no data, without an error
     Failed,

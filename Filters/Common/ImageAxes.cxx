@@ -48,7 +48,7 @@ constexpr double Aslant = 1e-6; ///< tolerance of direction cosines: an axis is 
 vtkSmartPointer<vtkIdList> OrderOf(const AxisWays& ways, const std::array<vtkIdType, 3>& count)
 {
   const std::array<vtkIdType, 3> stride = { 1, count[0], count[0] * count[1] };
-  std::array<vtkIdType, 3> counts, first, step; // along each world axis
+  std::array<vtkIdType, 3> counts, first, step; // numbers of values, first index and stride along each world axis
   for (int axis = 0; axis < 3; ++axis)
   {
     const int world = ways.world[axis];

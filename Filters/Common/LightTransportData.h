@@ -70,7 +70,7 @@ enum MediumArray
 /// Index for SetInputArrayToProcess of the refractive index, in filters that use it.
 constexpr int RefractiveIndex = 3;
 
-Quantities QuantitiesOfMedium(); ///< indices of MediumArray, and RefractiveIndex, with default names
+Quantities QuantitiesOfMedium(); ///< indices of MediumArray, and RefractiveIndex, each with the default array's name
 
 /// Texts for field data `ignored` (IgnoredFact): IgnoredIndex for a filter that ignores refraction, IgnoredEmission for
 /// one that ignores the medium's emission because its photons start from lights only. Empty if nothing is ignored.

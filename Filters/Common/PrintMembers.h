@@ -31,6 +31,7 @@ void PrintValue(std::ostream& os, const std::vector<Value>& values)
   std::for_each(values.begin(), values.end(), [&](const Value& value) { PrintValue(os, value); });
 }
 
+/// Prints one line "name: value" for each value.
 /// @param names  names of the values, separated by commas
 template <class... Values>
 void PrintMembers(std::ostream& os, vtkIndent indent, const std::string& names, const Values&... values)

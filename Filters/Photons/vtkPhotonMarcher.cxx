@@ -497,7 +497,7 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =
     tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
-  if (trapped > 0.01 && this->MaximumOrders < 2) // with more orders, left-over power is that of omitted orders
+  if (trapped > 0.01 && this->MaximumOrders < 2) // above order 1, left-over power is that of omitted orders
   {
     vtkWarningMacro(
       << std::lround(100.0 * trapped)

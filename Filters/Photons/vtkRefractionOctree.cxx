@@ -442,7 +442,7 @@ int vtkRefractionOctree::RequestData(
   work.wantsPieces = [&](vtkInformationVector**) { return tyndall::EachAsksForItsPiece(request, outputs); };
   work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
     this->Build(pieces, vtkImageData::GetData(inputs[0]), outputs);
-    if (isAlone && !tyndall::IsFirstPiece(request, outputs)) // the first piece has all trees
+    if (isAlone && !tyndall::IsFirstPiece(request, outputs)) // all trees are in the first piece
     {
       nodes->Initialize();
       this->NodeCount = 0;

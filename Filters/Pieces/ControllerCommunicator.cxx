@@ -39,7 +39,7 @@ double SecondsToWait()
 namespace
 {
 constexpr int FirstOfAll = 1000000; ///< first message tag, above the tags of VTK and of Ranks.cxx
-constexpr double Grace = 1.0;       ///< how long to wait, after a stop, for messages that were sent before it, seconds
+constexpr double Grace = 1.0;       ///< time for which messages sent before a stop are still received, seconds
 
 /// Keeps messages whose sends are not complete when an error occurs: MPI may read their memory until the process ends.
 template <class Messages>

@@ -122,7 +122,7 @@ public:
     (void)controller;
   }
 
-  /// Whether a request to stop is waiting for this rank.
+  /// Whether a message has arrived that asks this rank to stop.
   bool Waits() const
   {
     int waits = 0;
@@ -235,7 +235,7 @@ void OnAllRanks(vtkMultiProcessController* controller, const std::function<void(
 
 void OnFirstRank(vtkMultiProcessController* controller, const std::function<void()>& work)
 {
-  constexpr double endless = 1e8; // timeout that never ends, seconds
+  constexpr double endless = 1e8; // timeout of three years, in effect none, seconds
   const bool isOne = IsOne(controller);
   const auto stopped = [controller] { return StopMessages(controller).Waits(); };
   Ending ending = isOne || controller->GetLocalProcessId() == 0 ? EndingOf(work) : Ending();
@@ -288,7 +288,7 @@ namespace
 #ifdef TYNDALL_HAS_MPI
 constexpr int Nobody = -1;
 constexpr int ArriveTag = 745203, AnswerTag = 745204; ///< tags of messages to the first rank, and from the first rank
-constexpr double Slack = 5.0; ///< additional timeout of other ranks, seconds: the first rank decides
+constexpr double Slack = 5.0; ///< time by which other ranks wait longer than the first, which decides, seconds
 
 bool IsPast(const std::chrono::steady_clock::time_point& start, double seconds)
 {

@@ -153,7 +153,7 @@ struct MissingRank
   /// Number of the first rank that did not reach the barrier; -1: all ranks reached it. A rank that arrives after the
   /// timeout gets no answer from rank 0, and reports rank 0 as missing.
   int rank = -1;
-  bool elsewhere = false; ///< whether that rank reached another filter than the first rank
+  bool elsewhere = false; ///< whether `rank` reached the barrier in another filter than the first rank
 };
 
 /// Waits, up to a timeout (SecondsToWait), until all ranks reach this barrier, and returns the first rank that did not.

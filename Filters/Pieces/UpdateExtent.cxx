@@ -251,7 +251,7 @@ UpdateRequest::UpdateRequest(vtkInformation* information)
   : Information(information)
   , All(!information->Has(Pipeline::UPDATE_EXTENT()) || AsksForAll(information))
 {
-  NoteExtentTold(information); // filters downstream that were not informed will request this extent again
+  NoteExtentTold(information); // filters downstream that do not know the new extent will request this one again
   for (vtkInformationKey* key : Keys())
   {
     this->Before->CopyEntry(information, key);

@@ -67,7 +67,7 @@ private:
   void Change(int port, const ChangeOfData& change);
 
   AlignedInputs Aligned;
-  std::unique_ptr<Seen> AllSeen; ///< null: this process is alone
+  std::unique_ptr<Seen> AllSeen; ///< summaries of the inputs on all ranks; null: this process is alone
   std::vector<vtkSmartPointer<vtkInformationVector>> Kept;
   std::vector<vtkInformationVector*> Ports;
 };

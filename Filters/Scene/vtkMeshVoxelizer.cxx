@@ -284,7 +284,7 @@ double LongestEdge(const tyndall::Grid& grid)
 Rgb OutsideScattering(const double asked[3], const tyndall::Grid& grid)
 {
   const bool automatic = std::all_of(asked, asked + 3, [](double value) { return value < 0.0; });
-  const double edge = LongestEdge(grid); // 0 without voxels, an error of the voxelizer
+  const double edge = LongestEdge(grid); // 0 for a grid without voxels, for which the voxelizer throws
   const double suiting = edge > 0.0 ? 0.5 / edge : 0.0;
   return automatic ? Rgb{ suiting, suiting, suiting } : Triple(asked);
 }

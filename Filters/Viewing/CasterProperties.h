@@ -41,6 +41,6 @@ struct AskedView
   std::array<int, 2> size = {};   ///< columns and rows of pixels; replaces ImageSize
   std::vector<float> ends;        ///< length at which each ray ends (MediumRayCaster::Render)
   double exposure = 0.0;          ///< exposure by which BackgroundColor is converted to radiance; 0: not known yet
-  std::optional<GridBlock> block; ///< block of a larger grid, if the medium is only that (MediumRayCaster::Render)
+  std::optional<GridBlock> block; ///< block of a larger grid that the medium is (MediumRayCaster::Render); or none
 };
 }

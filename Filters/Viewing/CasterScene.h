@@ -74,7 +74,7 @@ struct CasterScene
   std::unique_ptr<MediumRayCaster> caster;
 };
 
-/// Input of MakeScene.
+/// Input of MakeScene: the image to render, the view settings, and the blocks of all ranks.
 struct SceneSource
 {
   vtkMediumRayCaster* filter;

@@ -81,7 +81,7 @@ bool PrepareScene(int number)
   }
   medium->SetInputDataObject(Density(scene.length, scene.around));
   medium->SetPreset(scene.preset);
-  medium->SetMillimetresPerUnit(1e4); // unit of length of the presets, mm, with which a cloud is optically thick
+  medium->SetMillimetresPerUnit(1e4); // unit of length 10 m, with which the preset CLOUD is optically thick
   light->SetInputConnection(medium->GetOutputPort());
   picture->SetInputConnection(light->GetOutputPort());
   picture->Update();

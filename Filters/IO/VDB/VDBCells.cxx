@@ -380,7 +380,9 @@ public:
   {
   }
 
+  /// Interpolates the grid at a position.
   /// @param at  position in index space, where voxel centres have whole numbers
+  /// @param value  set to the numbers of the interpolated value
   void Sample(const openvdb::Vec3d& at, Number* value) const
   {
     if constexpr (std::is_integral<Number>::value)

@@ -87,7 +87,7 @@ void VDBFile::ReadHeader()
     throw InvalidInput("\"" + this->FilePath +
       "\" was written as a stream, without the places of its grids. Write it again with OpenVDB's io::File.");
   }
-  bytes.Skip(36, "the header"); // the UUID of the file
+  bytes.Skip(36, "the header"); // skips the UUID of the file
   this->FileMetadata = ReadMetadata(bytes);
   this->FirstDescriptor = bytes.Position();
 }
@@ -287,7 +287,7 @@ bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)
       grid.Axes[axis][axis] = scale[axis];
     }
   };
-  if (type == "AffineMap" || type == "UnitaryMap") // 4 x 4 matrix that multiplies row vectors from the right
+  if (type == "AffineMap" || type == "UnitaryMap") // the 4 x 4 matrix multiplies row vectors from the right
   {
     for (int row = 0; row < 4; ++row)
     {
@@ -295,7 +295,7 @@ bool ReadLinearMap(VDBBytes& bytes, const std::string& type, VDBGrid& grid)
       bytes.Skip(sizeof(double), "the transform");
     }
   }
-  else if (type == "ScaleMap" || type == "UniformScaleMap") // the other numbers are derived from the scale
+  else if (type == "ScaleMap" || type == "UniformScaleMap") // the scale, then four vectors that follow from it
   {
     diagonal(vector());
     bytes.Skip(4 * 3 * sizeof(double), "the transform");

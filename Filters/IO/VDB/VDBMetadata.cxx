@@ -165,7 +165,7 @@ std::vector<double> NumbersOf(const std::string& text)
   std::istringstream words(text);
   for (std::string word; words >> word;)
   {
-    numbers.push_back(NumberIn(word).value_or(0.0)); // 0 in place of an invalid number makes the table invalid
+    numbers.push_back(NumberIn(word).value_or(0.0)); // an invalid number becomes 0
   }
   return numbers;
 }

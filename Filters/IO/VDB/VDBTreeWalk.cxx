@@ -66,7 +66,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   const bool half = this->Half && this->Type.IsReal();
   if (half && count == 0)
   {
-    return; // for no 16-bit values OpenVDB stores nothing, not even a length
+    return; // OpenVDB stores nothing for a block of no 16-bit values, not even its length
   }
   const std::uint64_t expected = count * (half ? this->Type.HalfSize : this->Type.Size);
   if (!(this->Compression & (COMPRESS_BLOSC | COMPRESS_ZIP)))
@@ -76,7 +76,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   }
   const std::uint64_t start = bytes.Position();
   const auto length = bytes.Value<std::int64_t>(NodesValues);
-  if (length <= 0) // the values are stored uncompressed
+  if (length <= 0) // the values are stored uncompressed, in -length bytes
   {
     if (length != -static_cast<std::int64_t>(expected))
     {
