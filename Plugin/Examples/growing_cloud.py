@@ -35,7 +35,7 @@ def light_of(series, view):
     """The chain from files to light in the view. @return light, its representation"""
     cloud = ParticipatingMedium(Input=series, DensityArray=["CELLS", "density"], MillimetresPerUnit=10000,
                                 Preset="Cloud (1 g/m^3 of water, 10 um droplets)")
-    cloud.MaximumDensity = 2.0  # set after creation, so that it holds at all times: 0.5 g/m^3 at relative density 1
+    cloud.MaximumDensity = 2.0  # set after creation, so that it holds at all times: density 1 is 0.5 g/m^3
     sun = LightRig(SunElevation=30, SunAzimuth=200, SunPower=[4, 3.7, 3.2])
     light = LightPropagationMaps(Input=cloud, Lights=sun, SkyColor=[0.05, 0.09, 0.16], Tolerance=5e-3, WarmStart=1)
     shown = Show(light, view, "UniformGridRepresentation")
