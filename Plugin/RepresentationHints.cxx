@@ -131,8 +131,8 @@ vtkCallbackCommand* FirstChange()
   return command;
 }
 
-/// Colours by the array of hint <ColoredBy> a representation that opened as Lit Volume, when its type is first changed:
-/// Lit Volume does not use the color map, whose colour bar would mislead.
+/// Colours a representation that opened as Lit Volume by the array of the hint <ColoredBy>, when its type is first
+/// changed. Not before, because Lit Volume does not use the colour map, whose colour bar would mislead.
 void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
 {
   auto* const representation = vtkSMProxy::SafeDownCast(caller);

@@ -89,9 +89,10 @@ struct MediumInput
 };
 
 /// Reads the medium of an image and checks it. Cell arrays `sigma_a` and `sigma_s` (1 or 3 components, 1/length) and
-/// `emission` (optional, 1 or 3 components), or the arrays selected instead by MediumArray. Phase function: cell array
-/// `g` (optional, 1 or 3 components) if the mean cosine varies by voxel, otherwise field data `g` (1 or 3 numbers;
-/// default 0); field data `phase_function` and the parameters in PhaseFunctionData.h (default Henyey-Greenstein).
+/// `emission` (optional, 1 or 3 components), or the arrays selected instead by SetInputArrayToProcess (MediumArray).
+/// Phase function: cell array `g` (optional, 1 or 3 components) if the mean cosine varies by voxel, otherwise field
+/// data `g` (1 or 3 numbers; default 0); field data `phase_function` and the parameters in PhaseFunctionData.h (default
+/// Henyey-Greenstein).
 MediumInput ReadMedium(vtkAlgorithm* filter, vtkImageData* image);
 /// Reads and checks the medium of this rank's block: the arrays and field data that ReadMedium(filter, image) reads.
 /// Collective.

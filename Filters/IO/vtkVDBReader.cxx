@@ -658,7 +658,7 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     std::array<int, 6> extent = this->ExtentToRead(info);
     if (!internal.NoImageYet.empty())
     {
-      // Thrown here, not when the file is listed: Resample may be set after that.
+      // This error is not thrown when the file is listed, because Resample may be set after that.
       throw InvalidInput(internal.NoImageYet);
     }
     if (internal.IsSeries())

@@ -63,7 +63,7 @@ public:
 
   enum Schemes
   {
-    PUBLISHED = 0,       ///< the lower of two levels: by centre-surround differences, and by photon weight
+    PUBLISHED = 0,       ///< the lower of two levels, by centre-surround differences and by photon weight
     CONSERVATIVE = 1,    ///< weights each level's detail by how well batches agree on it; estimates the error
     CONSTANT_RADIUS = 2, ///< the level Level in all voxels
     NEAREST_PHOTONS = 3  ///< the lowest level whose cell contains at least NearestPhotons photons

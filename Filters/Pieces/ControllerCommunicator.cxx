@@ -174,8 +174,8 @@ std::vector<std::vector<char>> ControllerCommunicator::Swap(
 
 namespace
 {
-/// Number of communicators per call of WorkOnAllRanks, and number of such calls, after which tags are reused. The tags of
-/// frames follow those of WorkOnAllRanks.
+/// Number of communicators per call of WorkOnAllRanks, and number of such calls, after which tags are reused. The tags
+/// of frames follow those of WorkOnAllRanks.
 constexpr int Conversations = 64, Works = 16;
 int Work = 0, Conversation = 0, Frame = 0;
 
@@ -264,7 +264,7 @@ private:
   std::thread Watch; // last member: the thread uses the other members
 };
 
-/// Content of a rank's DIY block: first the parcels to send, later the received ones.
+/// Parcels in a rank's DIY block: before the exchange the parcels to send, afterwards the received parcels.
 struct Parcels
 {
   std::vector<std::vector<char>> ofRanks;

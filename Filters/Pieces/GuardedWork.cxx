@@ -153,7 +153,8 @@ void EmptyOutputs(vtkInformationVector* outputs, const char* why)
   }
 }
 
-/// Resets the abort flags: newer versions of VTK leave both set and would run the filter again on every update.
+/// Resets a filter's two abort flags: newer versions of VTK leave them set and would run the filter again on every
+/// update.
 void ForgetAbort(vtkAlgorithm* filter)
 {
   filter->AbortExecute = 0;

@@ -91,7 +91,7 @@ public:
   ///@}
 
   ///@{
-  /// Name, meaning of density 1, and source of a preset; empty for CUSTOM.
+  /// Name, meaning of relative density 1, and source of a preset; empty for CUSTOM.
   static const char* GetPresetName(int preset);
   static const char* GetPresetDensity(int preset);
   static const char* GetPresetSource(int preset);

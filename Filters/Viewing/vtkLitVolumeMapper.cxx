@@ -58,8 +58,8 @@ std::vector<std::uint8_t> PixelsOf(
   return pixels;
 }
 
-/// Pixels to blend over objects that cover part of a pixel, such as a line thinner than a pixel, but that the ray of
-/// the pixel missed: the medium attenuates the object, and the object hides the background.
+/// Pixels to blend over objects that cover only part of a pixel and that the pixel's ray missed, such as a line thinner
+/// than a pixel: the medium attenuates the object, and the object hides the background.
 /// @param pixels  pixels of PixelsOf with background
 std::vector<std::uint8_t> PixelsBeforeObjects(
   std::vector<std::uint8_t> pixels, const tyndall::Picture& picture, const std::vector<float>& ends)
