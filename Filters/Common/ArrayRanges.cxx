@@ -25,9 +25,9 @@ namespace
 /// Number of values in a block. A thread processes the values of an array block by block, so that a block is still in
 /// the processor's cache when, after the test for infinity and NaN, its extremes and norms are computed.
 constexpr std::size_t BlockValues = 8192;
-constexpr std::size_t ThreadValues = 65536; ///< minimum number of values per thread
-/// Minimum number of lanes: extremes that are computed independently of each other, enough for vector units of any
-/// width.
+constexpr std::size_t ThreadValues = 65536; ///< minimum number of values that one thread processes
+/// Minimum number of lanes. Each lane holds the smallest and largest of every Width-th value of a block, so that the
+/// loop over lanes has no dependences and is vectorised; 32 lanes suffice for vector units of any width.
 constexpr std::size_t Lanes = 32;
 
 /// Whether any floating-point number is infinite or NaN: all bits of its exponent (mask `exponent`) are 1. The loop is
@@ -62,7 +62,8 @@ bool HasNotFinite(const Integer*, std::size_t)
   return false;
 }
 
-/// Extremes, by component and of the tuples' norm, of the values that one thread has processed.
+/// Smallest and largest value of each component, and of the tuples' norm, among the values that one thread has
+/// processed.
 template <class T>
 class SeenValues
 {
@@ -82,7 +83,9 @@ public:
   {
     const std::size_t components = this->Lowest.size();
     this->FindExtremesOfLanes(values, count);
-    double least = 0.0, most = 0.0; // bounds of the tuples' squared norms; rounding preserves order
+    // Bounds of the tuples' squared norms, from the extremes of the components. Rounding is monotonic, so they hold for
+    // the rounded norms as well.
+    double least = 0.0, most = 0.0;
     for (std::size_t c = 0; c < components; ++c)
     {
       T low = this->LaneLowest[c], high = this->LaneHighest[c];
@@ -171,9 +174,9 @@ private:
     this->LargestSquare = largest;
   }
 
-  std::vector<T> Lowest, Highest; ///< extremes of each component
+  std::vector<T> Lowest, Highest; ///< smallest and largest value of each component
   double LeastSquare = std::numeric_limits<double>::max(), LargestSquare = 0.0;
-  std::size_t Width; ///< number of lanes, a multiple of the number of components
+  std::size_t Width; ///< number of lanes (see Lanes), a multiple of the number of components
   std::vector<T> LaneLowest, LaneHighest;
 };
 

@@ -211,8 +211,9 @@ Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std:
   {
     choice.attribute = information->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
   }
-  const bool nothing = choice.name == NothingChosen ||
-    (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS); // SCALARS by default, not by selection
+  // The attribute SCALARS is VTK's default: the user selected nothing.
+  const bool nothing =
+    choice.name == NothingChosen || (choice.name.empty() && choice.attribute <= vtkDataSetAttributes::SCALARS);
   choice.made = !nothing && choice.name != otherwise;
   if (nothing)
   {
@@ -256,7 +257,7 @@ Found Find(vtkImageData* image, const Choice& choice)
 
 FloatField Read(vtkImageData* image, const Choice& choice, Need need, Components components, float empty = 0.0f)
 {
-  GridOf(image); // throws the specific error for an image without cells
+  GridOf(image); // throws a specific error if the image has no cells
   const Found found = Find(image, choice);
   if (found.array)
   {
@@ -463,7 +464,7 @@ std::string Described(const Grid& grid)
 
 bool AreSameVoxels(const Grid& a, const Grid& b)
 {
-  constexpr double part = 1e-3; // largest distance of corresponding corners, in voxels
+  constexpr double part = 1e-3; // largest accepted distance between corresponding corners, in voxel edges
   bool agree = a.size == b.size;
   for (int axis = 0; axis < 3; ++axis)
   {

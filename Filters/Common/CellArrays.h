@@ -56,7 +56,7 @@ enum class Need
   Optional, ///< a missing array is an empty FloatField, unless the user chose that array
 };
 
-/// Lists the names of all arrays for a message: 'a', 'b'; or none.
+/// Lists the names of all arrays for a message, such as 'a', 'b'; "none" if there are no arrays.
 std::string NamesOf(vtkDataSetAttributes* attributes);
 
 /// Allowed numbers of components of an array; empty: any.
@@ -74,10 +74,11 @@ void CheckShape(vtkDataArray* array, const std::string& name, vtkIdType tuples, 
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 
 /// Calls ReadCells for the array that the user selected by SetInputArrayToProcess, under the number `index`, by name or
-/// by attribute. If a point array was selected, it takes precedence over a cell array of the same name. If
-/// nothing was selected (SCALARS in VTK, "" in ParaView before it knows the input), or the name `otherwise`, the
-/// function reads the array that the filter upstream used for this quantity (NoteChoices), or else the array
-/// `otherwise`, where "" stands for the active scalars. An array selected by another name is never optional.
+/// by attribute. If a point array was selected, it takes precedence over a cell array of the same name. If nothing was
+/// selected (SCALARS in VTK, "" in ParaView before it knows the input), or an array of the name `otherwise`, the
+/// function reads the array that the filter upstream used for this quantity (NoteChoices). If that filter recorded
+/// none, it reads the array `otherwise`; "" means the active scalars. An array selected by another name is never
+/// optional.
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 
@@ -92,8 +93,9 @@ struct ArraysRead
 };
 ArraysRead FindArrays(vtkAlgorithm* filter, const VoxelArrays& arrays, vtkImageData* image);
 
-/// Whether a filter's selected arrays are all point arrays, and there is at least one. Selected are the arrays of
-/// SetInputArrayToProcess, and the active arrays that the input's information announces.
+/// Whether all arrays that a filter selects are point arrays, and it selects at least one. The filter selects arrays by
+/// SetInputArrayToProcess; if it selects the active array of an attribute type, the array must be announced by the
+/// input's information.
 /// @param chosen  default names of the selectable arrays, by index (VoxelArrays::chosen)
 bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& chosen, vtkInformation* input);
 
@@ -101,8 +103,8 @@ bool ChoosesOnlyPoints(vtkAlgorithm* filter, const std::vector<std::string>& cho
 using Quantities = std::vector<std::pair<int, std::string>>;
 
 /// Records in the output's field data which arrays the filter used for `quantities`, so that filters downstream use the
-/// same arrays: `sigma_a_array` and so on, a text with the array's name, followed by "points" if the point array takes
-/// precedence over a cell array of that name. Nothing is recorded for a default array.
+/// same arrays: one text per quantity, named `sigma_a_array` and so on, with the array's name, followed by "points" if
+/// the point array takes precedence over a cell array of that name. Nothing is recorded for a default array.
 /// @param input  the filter's input; its arrays are also in the output
 void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
 
@@ -111,17 +113,17 @@ void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageDat
 void ForgetChoices(vtkImageData* output);
 
 /// Whether the array that ReadChosenCells would read exists and differs from the value `usual` in a cell that is not
-/// hidden. For filters that ignore this array; type and shape are not checked.
+/// hidden. Filters that ignore this array warn if it is so. Type and shape are not checked.
 bool IsUnusual(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& name, float usual);
 
 /// Reads one number from field data `name`; returns `missing` if there is no such field data.
 /// @throws InvalidInput if the field data array does not hold exactly one number
 double ReadFact(vtkDataObject* data, const char* name, double missing);
 
-/// Whether the voxels of a grid have the same corners as those of the medium, up to rounding.
+/// Whether the voxels of a grid have the same corners as those of the medium, to a thousandth of a voxel edge.
 bool AreSameVoxels(const Grid& grid, const Grid& medium);
 
-/// Checks that the voxels of a grid have the same corners as those of the medium, up to rounding.
+/// Checks that the voxels of a grid have the same corners as those of the medium, to a thousandth of a voxel edge.
 /// @param whose, remedy  beginning and end of the message, e.g. "The octree", "Make the octree of the same medium."
 /// @throws InvalidInput if the corners differ
 void CheckSameVoxels(const Grid& grid, const Grid& medium, const std::string& whose, const std::string& remedy);

@@ -36,8 +36,8 @@ struct Ending
 /// Runs `work`, catches any exception and returns it as an outcome.
 Ending EndingOf(const std::function<void()>& work);
 
-/// Throws the exception that EndingOf turns into this outcome, for Failed always InvalidInput; nothing if the work
-/// succeeded.
+/// Throws the exception that belongs to an outcome of EndingOf: for Failed always InvalidInput, whatever the work
+/// threw; nothing if the work succeeded.
 void Throw(const Ending& ending);
 
 /// Names of field data that inform filters downstream: the outputs are empty because the filter was aborted, or because

@@ -43,7 +43,8 @@ vtkInformationDoubleVectorKey* AxesOfFilter()
 
 constexpr double Aslant = 1e-6; ///< tolerance of direction cosines: an axis is oblique unless they are 0, 1 or -1
 
-/// Indices, in an image, of its values (cells or points), listed in the order of the aligned image.
+/// Order in which Aligned() lists an image's values (cells or points): for each value of the image whose axes are the
+/// world axes, its index in the given image.
 /// @param count  number of values along each image axis
 vtkSmartPointer<vtkIdList> OrderOf(const AxisWays& ways, const std::array<vtkIdType, 3>& count)
 {
@@ -265,7 +266,8 @@ vtkSmartPointer<vtkDataArray> NewLike(vtkDataArray* array)
   return made;
 }
 
-/// Applies `turn` to the vectors that components `first` to `last` - 1 of each tuple contain, three components each.
+/// Applies `turn` to the vectors of each tuple, which lie in components `first` to `last` - 1, three components per
+/// vector.
 void TurnComponents(vtkDataArray* from, int first, int last, const Turn& turn, vtkDataArray* to)
 {
   auto* const floats = vtkArrayDownCast<vtkFloatArray>(from);

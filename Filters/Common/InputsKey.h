@@ -113,9 +113,9 @@ struct InputsKey
   }
 };
 
-/// Whether filters upstream of an input port have run since `time`, or will run. The modification time of the input
-/// data is no substitute: ParaView's internal filters create a new data object, with the same arrays, on every access,
-/// and values may change without Modified() of their array.
+/// Whether filters upstream of an input port have run since `time`, or will run in this update. The modification time
+/// of the input data is no substitute: ParaView's internal filters create a new data object, with the same arrays, on
+/// every access, and values may change without Modified() of their array.
 inline bool RanSince(vtkAlgorithm* filter, int port, vtkMTimeType time)
 {
   bool ran = false;

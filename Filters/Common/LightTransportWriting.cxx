@@ -297,7 +297,7 @@ void WriteLitColor(LitColor&& lit, vtkImageData* output)
 
 void WriteConvergence(const std::vector<ConvergenceRow>& rows, const std::vector<int>& sweepsSaved, vtkTable* table)
 {
-  table->Initialize(); // ParaView keeps old rows on a rank without voxels
+  table->Initialize(); // without this, ParaView would keep the rows of an earlier update on a rank without voxels
   vtkNew<vtkIntArray> iteration;
   iteration->SetName("iteration");
   for (const ConvergenceRow& row : rows)

@@ -47,20 +47,21 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::strin
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors);
 
 /// Name of field data: radiance that leaves optically thick voxels at the domain's faces, see
-/// LightField::surfaceRadiance; one tuple for each cell of BoxFaces.h.
+/// LightField::surfaceRadiance; one tuple for each face of a boundary voxel, in the order of BoxFaces.h.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
 /// Name of field data: arrays of the medium that the solver ignores, and filters that use them; one text for each
 /// array.
 constexpr const char* IgnoredFact = "ignored";
 /// Names of field data. FacePowerFact: outgoing partial current LightField::facePower, W / length^2, one tuple for each
-/// cell of BoxFaces.h. FaceAlbedoFact: fraction of that current which a face reflects, red, green, blue for each face,
-/// -x to +z.
+/// face of a boundary voxel, in the order of BoxFaces.h. FaceAlbedoFact: fraction of that current which a face
+/// reflects, red, green, blue for each face, -x to +z.
 constexpr const char* FacePowerFact = "face_power";
 constexpr const char* FaceAlbedoFact = "face_albedo";
 
-/// MomentsArray, StraightOnArray: names of cell arrays, angular moments of the scattered light
-/// (LightField::scatteredMoments, straightOn). LampsApartFact: name of field data, the lamps whose first-collision
-/// source these moments exclude; one tuple for each lamp: type, position, direction, power, size, angle.
+/// Names of cell arrays with scattered light. MomentsArray: its angular moments (LightField::scatteredMoments).
+/// StraightOnArray: fraction of scattering that the solver treats as unscattered (LightField::straightOn).
+/// LampsApartFact: name of field data, the lamps whose first-collision source the moments exclude; one tuple for each
+/// lamp: type, position, direction, power, size, angle.
 constexpr const char* MomentsArray = "scattered_moments";
 constexpr const char* StraightOnArray = "straight_on";
 constexpr const char* LampsApartFact = "lamps_apart";
@@ -73,7 +74,7 @@ constexpr int LampComponents = 13;
 constexpr const char* const NamesOfT[6] = { "T_xmin", "T_xmax", "T_ymin", "T_ymax", "T_zmin", "T_zmax" };
 
 /// Names of field data, all set by vtkLPMPropagate: rays per voxel edge, number of stored directions, number of the
-/// scattering order.
+/// propagated scattering order.
 constexpr const char* const MapResolutionFact = "map_resolution";
 constexpr const char* const StoredDirectionsFact = "stored_directions_count";
 constexpr const char* const OrderFact = "scattering_order";
@@ -89,8 +90,9 @@ std::string Lines(const std::vector<std::string>& texts);
 /// removed.
 void WriteLight(LightField&& light, vtkImageData* output);
 
-/// Names of a lit colour's data. Cell array: LitColor::rgba, unsigned char, 4 components. Field data: the colour's unit
-/// distance, in units of length, and its exposure.
+/// Names of the data of a lit colour, the display colour of each voxel. Cell array: LitColor::rgba, unsigned char, 4
+/// components. Field data: the length to which the opacities refer (VTK's scalar opacity unit distance), and the
+/// exposure, a factor of radiance.
 constexpr const char* LitColorArray = "lit_color";
 constexpr const char* LitColorDistanceFact = "lit_color_distance";
 constexpr const char* LitColorExposureFact = "lit_color_exposure";

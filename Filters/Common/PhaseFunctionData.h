@@ -38,7 +38,7 @@ struct PhaseDescription
   Rgb secondG = {};
   Rgb firstPart = { 1.0, 1.0, 1.0 };
   std::vector<double> cosines, values;
-  bool gByVoxel = false; ///< the cell array `g` takes precedence: field data `g` is not written
+  bool gByVoxel = false; ///< whether the cell array `g` takes precedence; field data `g` is then not written
 
   /// Phase functions of the red, green and blue channel.
   /// @throws InvalidInput naming the channel whose number, or the row of the table, is out of range

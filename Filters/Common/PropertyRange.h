@@ -28,7 +28,7 @@ constexpr double AnyHigh = std::numeric_limits<double>::max();
 constexpr double AnyLow = -AnyHigh;
 constexpr double AboveZero = std::numeric_limits<double>::min(); ///< lower bound of values that must be positive
 constexpr double LargestFloat =
-  std::numeric_limits<float>::max(); ///< upper bound of light and coefficients, which are floats
+  std::numeric_limits<float>::max(); ///< upper bound of radiances, powers and optical coefficients, which are floats
 
 /// Records for CheckProperties whether a property's `count` values are in [low, high].
 TYNDALL_EXPORT void NoteProperty(

@@ -21,8 +21,8 @@ struct PictureSize
 
 /// Reads the size, or the pixels, of a Radiance picture in RGBE or XYZE (.hdr, .pic). All orders of axes, and flat, old
 /// and new run-length encodings are supported. Values are divided by the product of the EXPOSURE lines; XYZE is
-/// converted to linear sRGB. vtkHDRReader of VTK 9.2 uses the last EXPOSURE only, and reads columns (+X first), old
-/// runs and truncated files as noise (see TestEnvironmentReader).
+/// converted to linear sRGB. vtkHDRReader of VTK 9.2 uses the last EXPOSURE only, and returns noise for pictures stored
+/// by columns (+X first), for old run-length encoding and for truncated files (see TestEnvironmentReader).
 /// @throws InvalidInput naming the file, the error and its position
 PictureSize SizeOfHdr(const std::string& path);
 RadiancePicture ReadHdr(const std::string& path);

@@ -146,12 +146,12 @@ void TellTimes(vtkInformation* info, int files)
 
 struct vtkVDBReader::Internals
 {
-  /// The file that was listed last, and its path.
+  /// The file whose grids were listed last, and its path.
   std::unique_ptr<VDBFile> File;
   std::string Path;
   std::string Summary;
   std::vector<std::string> Files; ///< paths of the files, in order of time for a series
-  int ListedFile = -1;            ///< index of the listed file in Files; -1: none
+  int ListedFile = -1;            ///< index in Files of the file whose grids are listed; -1: none
   std::set<std::string> Listed;   ///< names of grids that were added to the selection because a file has them
   std::string OnlyGrid;           ///< name passed to SetGridName, not applied yet; empty: none
 

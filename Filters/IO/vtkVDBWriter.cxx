@@ -223,7 +223,7 @@ void vtkVDBWriter::WriteData()
         throw InvalidInput("No file: set FileName.");
       }
     });
-    this->SetErrorCode(vtkErrorCode::FileFormatError); // error code until the file is written
+    this->SetErrorCode(vtkErrorCode::FileFormatError); // error code that remains if the file is not written
     vtkSmartPointer<vtkImageData> voxels;
     std::vector<vtkSmartPointer<vtkDataArray>> arrays;
     tyndall::OnAllRanks(this->Controller, [&] {

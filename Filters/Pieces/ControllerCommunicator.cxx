@@ -38,7 +38,7 @@ double SecondsToWait()
 #ifdef TYNDALL_HAS_MPI
 namespace
 {
-constexpr int FirstOfAll = 1000000; ///< first message tag, above the tags of VTK and of Ranks.cxx
+constexpr int FirstOfAll = 1000000; ///< first message tag of communicators, above the tags of VTK and of Ranks.cxx
 constexpr double Grace = 1.0;       ///< time for which messages sent before a stop are still received, seconds
 
 /// Keeps messages whose sends are not complete when an error occurs: MPI may read their memory until the process ends.
@@ -163,7 +163,7 @@ std::vector<char> ControllerCommunicator::Take(int from, int tag)
 std::vector<std::vector<char>> ControllerCommunicator::Swap(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
-  if (this->Stopped && this->Stopped()) // a rank has stopped, and DIY would wait for it without limit
+  if (this->Stopped && this->Stopped()) // another rank has requested a stop; DIY would wait for it without limit
   {
     throw Aborted();
   }
@@ -174,8 +174,8 @@ std::vector<std::vector<char>> ControllerCommunicator::Swap(
 
 namespace
 {
-/// Number of communicators per call of WorkOnAllRanks, and number of such calls, after which tags are reused. The tags
-/// of frames follow those of WorkOnAllRanks.
+/// Number of communicators per call of WorkOnAllRanks, and number of such calls, after which message tags are reused.
+/// The tags of CommunicatorOfFrame follow those of WorkOnAllRanks.
 constexpr int Conversations = 64, Works = 16;
 int Work = 0, Conversation = 0, Frame = 0;
 
@@ -298,7 +298,7 @@ diy::Master& MasterOf(vtkMPIController* controller)
 std::vector<std::vector<char>> Exchange(
   diy::Master& master, const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {
-  auto* const link = new diy::Link; // owned by the master
+  auto* const link = new diy::Link; // the master takes ownership and deletes it
   for (const int rank : with)
   {
     link->add_neighbor({ rank, rank });

@@ -30,7 +30,7 @@ constexpr int NoPiece = -1;
 struct PieceValues
 {
   ValueBox values;
-  std::vector<unsigned char> flags; ///< vtkGhostType of each value; empty: no flags
+  std::vector<unsigned char> flags; ///< vtkGhostType of each cell or point; empty: no flags
 };
 
 /// Assigns each value (cell or point) of an image to one of its pieces, which may overlap: to the first piece in which

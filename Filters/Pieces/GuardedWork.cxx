@@ -333,7 +333,8 @@ int GuardedWithInputs(vtkAlgorithm* filter, vtkInformation* request, vtkInformat
       RequireImages(filter);
       RequireWholeArrays(filter);
       CheckProperties(filter);
-      if (!ranks) // with several ranks WholeInputs counts each cell once
+      // with several ranks, WholeInputs takes each cell from the rank that owns it, so that duplicates do no harm
+      if (!ranks)
       {
         CheckDuplicates(filter, outputs);
       }
@@ -533,7 +534,7 @@ bool GuardedInformation(vtkAlgorithm* filter, const std::function<void()>& work)
   LastFailure last(filter);
   try
   {
-    if (filter->GetNumberOfInputPorts() == 0) // Guarded checks the properties of filters with inputs
+    if (filter->GetNumberOfInputPorts() == 0) // if there are inputs, Guarded checks the properties
     {
       CheckProperties(filter);
     }

@@ -73,7 +73,7 @@ private:
   std::array<int, 6> ExtentOf(const VoxelBox& box) const;
 
   std::shared_ptr<Domain> OfRanks;
-  std::vector<VoxelBox> OfOutputs; ///< Held() of each rank
+  std::vector<VoxelBox> OfOutputs; ///< voxels of each rank's output, ghost cells included (Held), by rank
   std::array<int, 3> Base = {};    ///< VTK index of the grid's first voxel
   bool Tiled = false, GivenAll = false;
 };

@@ -59,7 +59,7 @@ public:
 
 vtkInformationIntegerKey* Collective()
 {
-  static auto* const key = new TogetherKey; // VTK deletes the key
+  static auto* const key = new TogetherKey; // VTK deletes information keys when the process ends
   return key;
 }
 
@@ -235,7 +235,7 @@ void OnAllRanks(vtkMultiProcessController* controller, const std::function<void(
 
 void OnFirstRank(vtkMultiProcessController* controller, const std::function<void()>& work)
 {
-  constexpr double endless = 1e8; // timeout of three years, in effect none, seconds
+  constexpr double endless = 1e8; // timeout, seconds: three years, in effect none
   const bool isOne = IsOne(controller);
   const auto stopped = [controller] { return StopMessages(controller).Waits(); };
   Ending ending = isOne || controller->GetLocalProcessId() == 0 ? EndingOf(work) : Ending();
@@ -288,7 +288,8 @@ namespace
 #ifdef TYNDALL_HAS_MPI
 constexpr int Nobody = -1;
 constexpr int ArriveTag = 745203, AnswerTag = 745204; ///< tags of messages to the first rank, and from the first rank
-constexpr double Slack = 5.0; ///< time by which other ranks wait longer than the first, which decides, seconds
+/// Time by which other ranks wait longer than the first rank, which decides whether a rank is missing, seconds.
+constexpr double Slack = 5.0;
 
 bool IsPast(const std::chrono::steady_clock::time_point& start, double seconds)
 {

@@ -137,7 +137,7 @@ std::vector<Struct> AllGather(vtkMultiProcessController* ranks, Struct own)
 
 double OfFirstRank(Communicator& ranks, double own);
 std::string OfFirstRank(Communicator& ranks, const std::string& own);
-/// Replaces the values, numbers and texts, by the values on the first rank. Collective.
+/// Replaces values (numbers, texts) by those on the first rank. Collective.
 template <class... Values>
 void TakeFromFirstRank(Communicator& ranks, Values&... values)
 {

@@ -160,7 +160,8 @@ struct Part
 {
   bool isOfRank = false; ///< whether the part is one recorded by NotePartsOfRanks
   bool divided = false;
-  AskedPiece piece; ///< requested extents. Empty: nothing is requested if `divided`, else the complete output
+  /// Requested extents. If they are empty: nothing is requested if `divided`, else the complete output.
+  AskedPiece piece;
 };
 
 /// Determines the requested part of an output. A request for a whole extent that was announced (AsksForAll) means all

@@ -143,7 +143,7 @@ public:
   void Restore() const;
 
 private:
-  static std::array<vtkInformationKey*, 4> Keys(); ///< keys of a request; that of the extent is last
+  static std::array<vtkInformationKey*, 4> Keys(); ///< information keys of an update request; the extent's is last
 
   vtkInformation* Information;
   vtkNew<vtkInformation> Before;

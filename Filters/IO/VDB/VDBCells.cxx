@@ -80,7 +80,7 @@ struct GridKind
   static constexpr int Count = N;
 };
 
-/// Calls `act` with the GridKind for the type of values that has this name in FindValueType.
+/// Calls `act` with the GridKind (types of grid and array) of the value type `type`, a name that FindValueType accepts.
 template <typename Do>
 void WithKind(const std::string& type, const Do& act)
 {
@@ -165,8 +165,8 @@ private:
   Number (*ReadOne)(const void*, vtkIdType, vtkIdType) = nullptr;
 };
 
-/// Makes the value of a voxel from its numbers.
-/// @param number  returns the number of a component
+/// Makes the value of a voxel, a scalar or a vector, from the numbers of its components.
+/// @param number  returns the number of the component with a given index
 template <typename Value, typename Get>
 Value VoxelFrom(const Get& number)
 {
@@ -283,7 +283,8 @@ void FillTree(
   }
 }
 
-/// Finds field data `key` about an array; null if missing or of a type other than ArrayT.
+/// Finds the field data array `key` that belongs to the cell array `array`; null if missing or of a type other than
+/// ArrayT.
 template <typename ArrayT>
 ArrayT* FactOf(vtkFieldData* field, const std::string& array, const char* key)
 {

@@ -16,9 +16,10 @@ class VDBBytes;
 /// Position of a tree in its file, and its storage format.
 struct VDBPlace
 {
-  std::int64_t Topology = 0, Leaves = 0, End = 0; ///< offsets in the file, bytes
-  std::uint32_t Compression = 0;                  ///< OpenVDB's compression flags
-  bool Half = false;                              ///< whether numbers are stored in 16 bits
+  /// Offsets in the file of the tree's topology, of its leaves and of its end, bytes.
+  std::int64_t Topology = 0, Leaves = 0, End = 0;
+  std::uint32_t Compression = 0; ///< OpenVDB's compression flags
+  bool Half = false;             ///< whether numbers are stored in 16 bits
 };
 
 /// Description of one grid of a file: everything that is known without its voxel values.

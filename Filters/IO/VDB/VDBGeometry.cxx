@@ -39,7 +39,7 @@ double LengthOf(const std::array<double, 3>& vector)
 
 /// One world coordinate of the centre of voxel 0 of an image.
 /// @param origin  the same coordinate of the image's origin, which is a corner of voxel 0
-/// @param half    0.5; -0.5 to compute the origin from the centre
+/// @param half    0.5, half a voxel edge; with -0.5 the function is inverted: from the centre to the origin
 double CentreOfFirstVoxel(double origin, const Steps& steps, int axis, double half = 0.5)
 {
   return origin + half * (steps[0][axis] + steps[1][axis] + steps[2][axis]);
@@ -67,7 +67,7 @@ std::array<std::int64_t, 6> ExtentOfAll(const std::vector<const VDBGrid*>& grids
   return all.Extent;
 }
 
-/// Sets origin and spacing of an image to the values noted in the grid's metadata, exact to the last bit, unless the
+/// Sets origin and spacing of an image to the values recorded in the grid's metadata, exact to the last bit, unless the
 /// grid's transform has changed since.
 void ApplyNotes(VDBGeometry& geometry, const VDBGrid& grid, bool aligned)
 {
@@ -234,7 +234,7 @@ VDBPlacement PlacementOf(vtkImageData* image)
   const double* spacing = image->GetSpacing();
   vtkMatrix3x3* direction = image->GetDirectionMatrix();
   Steps steps;
-  openvdb::Mat4d matrix = openvdb::Mat4d::identity(); // multiplies row vectors from the right
+  openvdb::Mat4d matrix = openvdb::Mat4d::identity(); // OpenVDB multiplies row vectors by the matrix
   bool aligned = true;
   for (int axis = 0; axis < 3; ++axis)
   {

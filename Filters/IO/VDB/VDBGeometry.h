@@ -11,13 +11,13 @@ class vtkImageData;
 
 /// Converts between the geometry of VTK images and the transforms of OpenVDB grids.
 ///
-/// A voxel has the index of its cell: voxel i is the cell that covers [i - 1/2, i + 1/2] in index space. A grid made
-/// from an image has notes in its metadata on properties that the grid itself does not express: the extent of points
-/// (border voxels may be background) with the number of cells, and origin and spacing to the last bit (OpenVDB computes
-/// the scale of a transform as the difference of two positions).
+/// A voxel has the index of its cell: voxel i is the cell that covers [i - 1/2, i + 1/2] in index space. The metadata
+/// of a grid made from an image record properties that the grid itself does not express: the extent of points (border
+/// voxels may be background) with the number of cells, and origin and spacing to the last bit (OpenVDB computes the
+/// scale of a transform as the difference of two positions).
 namespace tyndall
 {
-/// Whether metadata of this name are a note on the geometry of an image.
+/// Whether metadata of this name record the geometry of the image from which the grid was made.
 bool IsGeometry(const std::string& key);
 
 /// Geometry of the VTK image that one or several grids become: extent, origin, spacing, direction matrix.
@@ -38,12 +38,12 @@ VDBBox VoxelsOf(const std::array<std::int64_t, 6>& extent);
 /// Number of cells of an extent of points; 0 for an empty extent.
 double CellsOf(const std::array<std::int64_t, 6>& extent);
 
-/// The extent of points that a grid covers: the noted extent if it still contains every active voxel, otherwise the
-/// extent of the active voxels.
+/// The extent of points that a grid covers: the extent recorded in its metadata if that still contains every active
+/// voxel, otherwise the extent of the active voxels.
 std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid);
 
-/// Whether a grid's metadata note that the grid was an image of this extent with this number of cells. If so, the
-/// extent does not result from a corrupt file, however few voxels are active.
+/// Whether a grid's metadata record that it was made from an image of this extent, with all of the extent's cells. If
+/// so, the extent does not result from a corrupt file, however few voxels are active.
 bool NotesExtent(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent);
 
 /// Whether the voxels of two grids coincide, up to rounding of their transforms.
@@ -56,7 +56,8 @@ VDBGeometry GeometryOf(const std::vector<const VDBGrid*>& grids);
 /// edge of their voxels.
 VDBGeometry BoxAround(const std::vector<const VDBGrid*>& grids);
 
-/// Geometry of the OpenVDB grid that a VTK image becomes: voxels, transform, and notes on the image (IsGeometry).
+/// Geometry of the OpenVDB grid that a VTK image becomes: voxels, transform, and metadata that record the image's
+/// geometry (IsGeometry).
 struct VDBPlacement
 {
   openvdb::CoordBBox Voxels;

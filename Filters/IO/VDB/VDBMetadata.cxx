@@ -46,7 +46,7 @@ constexpr std::tuple<ValueKind<bool, vtkUnsignedCharArray>, ValueKind<Int32, vtk
   ValueKind<Mat4s, vtkFloatArray, 16>, ValueKind<Mat4d, vtkDoubleArray, 16>>
   Kinds;
 
-/// Calls `act` with each ValueKind until it returns true.
+/// Calls `act` with one ValueKind after the other until `act` returns true.
 template <typename Do>
 void ForKinds(const Do& act)
 {

@@ -66,7 +66,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   const bool half = this->Half && this->Type.IsReal();
   if (half && count == 0)
   {
-    return; // OpenVDB stores nothing for a block of no 16-bit values, not even its length
+    return; // OpenVDB stores nothing, not even a length, for a block without values in 16 bits
   }
   const std::uint64_t expected = count * (half ? this->Type.HalfSize : this->Type.Size);
   if (!(this->Compression & (COMPRESS_BLOSC | COMPRESS_ZIP)))
