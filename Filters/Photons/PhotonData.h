@@ -16,7 +16,7 @@ namespace tyndall
 class Communicator;
 
 /// Writes photons as polydata: points (double), with one vertex each, point data `direction` (3, unit), `power` (3,
-/// RGB, W), `weight` (1: the photon's power over its power if the photons of its light were evenly distributed),
+/// RGB, W), `weight` (1: ratio of the photon's power to its power if the photons of its light were evenly distributed),
 /// `light` (1: number of the photon's light, -1 the environment or sky) and `batch` (1: number of the photon's
 /// independent set). `direction` is the active vectors, so that glyphs point along it. Field data `photon_box`: bounds
 /// of the box that the photons were made for, in the axes of the box.

@@ -33,7 +33,7 @@ class vtkPolyData;
  * |-------------|------------|------|-------------------------------------------------------------------|
  * | `direction` | 3 | 1 | direction of travel; the active vectors |
  * | `power`     | 3          | W    | power of the photon, red, green, blue                             |
- * | `weight` | 1 | 1 | power of the photon over its power if photons were evenly distributed |
+ * | `weight` | 1 | 1 | ratio of the photon's power to its power if photons were evenly distributed |
  * | `light`     | 1          | 1    | number of the photon's light; -1: the environment or SkyColor     |
  * | `batch` | 1 | 1 | number of the photon's independent set (see Batches), from 0 |
  *

@@ -136,7 +136,8 @@ int vtkPhotonImportance::RequestUpdateExtent(
 {
   this->Kept->ForgetIfRan(this, { MEDIUM });
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  tyndall::AskForPiece(request, inputs[MEDIUM], outputs); // independent of the map's requested extent
+  // The requested piece of the medium does not depend on the requested extent of the map.
+  tyndall::AskForPiece(request, inputs[MEDIUM], outputs);
   return done;
 }
 

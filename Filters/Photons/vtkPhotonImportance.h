@@ -79,14 +79,14 @@ public:
   };
 
   ///@{
-  /// Number of pilot photons per light, rounded down to a square number. Default 1024, valid [1, 2^20]; smaller values
-  /// are an error.
+  /// Number of pilot photons per light, rounded down to a square number. Default 1024, valid [1, 2^20]; a smaller value
+  /// is an error, a larger one counts as 2^20.
   tyndallRangeMacro(PilotCount, int, 1, VTK_INT_MAX);
   ///@}
 
   ///@{
-  /// Number of coarse cells along x, y and z. Default (16, 16, 16), valid from 1 on; cut to the medium's numbers of
-  /// voxels.
+  /// Number of coarse cells along x, y and z. Default (16, 16, 16), valid from 1 on; at most the medium's numbers of
+  /// voxels are used.
   tyndallSetRange3Macro(PilotDimensions, int, 1, VTK_INT_MAX);
   vtkGetVector3Macro(PilotDimensions, int);
   ///@}
@@ -128,8 +128,9 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: whether the light is even, the thresholds used (W/length^2), run time in seconds, the
-  /// device's name, and the computations that the scene did not need, one per line.
+  /// Results of the last update: whether the light is even, so that a map would not reduce the noise; the thresholds
+  /// used (W/length^2), run time in seconds, the device's name, and the computations that the scene did not need, one
+  /// per line.
   vtkGetMacro(Even, bool);
   vtkGetMacro(UsedGradientThreshold, double);
   vtkGetMacro(UsedLuminanceThreshold, double);
@@ -174,7 +175,7 @@ private:
 
   int MemoryBudget = 0;
 
-  std::shared_ptr<tyndall::Device> Within; ///< device limited by MemoryBudget, or null; outlives Kept
+  std::shared_ptr<tyndall::Device> Within; ///< device limited by MemoryBudget; null if that is 0; outlives Kept
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   bool Even = false;

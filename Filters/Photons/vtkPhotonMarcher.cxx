@@ -51,7 +51,7 @@ bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
 }
 
 /// Memory, bytes per voxel, of a rank that marches photons through the whole medium: the medium's arrays, the spline of
-/// the refractive index, and the sums and arrays of fluence.
+/// the refractive index, the fixed-point sums of fluence, and the arrays of fluence.
 constexpr double BytesOfVoxel = 96.0;
 
 bool IsOfLaterBatch(const tyndall::Photon& photon)
@@ -497,7 +497,7 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =
     tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
-  if (trapped > 0.01 && this->MaximumOrders < 2) // above order 1, left-over power is that of omitted orders
+  if (trapped > 0.01 && this->MaximumOrders < 2) // with more orders, left-over power is that of the omitted orders
   {
     vtkWarningMacro(
       << std::lround(100.0 * trapped)

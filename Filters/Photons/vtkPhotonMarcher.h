@@ -299,7 +299,7 @@ private:
   int MemoryBudget = 0;
   std::string Device;
 
-  std::shared_ptr<tyndall::Device> Within; ///< device limited by MemoryBudget, or null; outlives Kept
+  std::shared_ptr<tyndall::Device> Within; ///< device limited by MemoryBudget; null if that is 0; outlives Kept
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   vtkIdType Deposits = 0;

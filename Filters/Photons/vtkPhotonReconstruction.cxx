@@ -69,7 +69,7 @@ std::vector<float> DarkBatches(const FloatField& light, std::size_t voxels, int 
   return std::vector<float>(dark ? count * static_cast<std::size_t>(batches) : 0, 0.0f);
 }
 
-/// Number of batches in an array `fluence_batches`: number of components over number of channels.
+/// Number of batches in an array `fluence_batches`: number of components divided by number of channels.
 int BatchesOf(const FloatField& light, int channels)
 {
   const int components = light.Components();

@@ -35,8 +35,8 @@ class vtkImageData;
  *
  * or the arrays chosen by SetInputArrayToProcess 0 to 4.
  *
- * Output: the input with `fluence`, `fluence_direct` (equal to `fluence`) and `mean_direction` replaced by smooth
- * arrays, without `fluence_batches`, and with
+ * Output: the input without `fluence_batches`, with `fluence` and `mean_direction` replaced by smooth arrays, and
+ * `fluence_direct` by the smooth `fluence` unless photons were scattered; and with the cell arrays
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
@@ -63,9 +63,9 @@ public:
 
   enum Schemes
   {
-    PUBLISHED = 0,       ///< the lower of two levels, by centre-surround differences and by photon weight
+    PUBLISHED = 0,       ///< the lower of two levels: one by centre-surround differences, one by photon weight
     CONSERVATIVE = 1,    ///< weights each level's detail by how well batches agree on it; estimates the error
-    CONSTANT_RADIUS = 2, ///< the level Level in all voxels
+    CONSTANT_RADIUS = 2, ///< pyramid level Level in all voxels
     NEAREST_PHOTONS = 3  ///< the lowest level whose cell contains at least NearestPhotons photons
   };
 
@@ -88,8 +88,8 @@ public:
   ///@}
 
   ///@{
-  /// With Scheme PUBLISHED: step of the photon weight from one level to the next, dimensionless. Default 0: 0.999 times
-  /// the mean weight of lit voxels; valid [0, infinity).
+  /// With Scheme PUBLISHED: photon weight per pyramid level, dimensionless: the level of a voxel is at most its mean
+  /// photon weight divided by WeightStep. Default 0: 0.999 times the mean weight of lit voxels; valid [0, infinity).
   tyndallRangeMacro(WeightStep, double, 0.0, tyndall::AnyHigh);
   ///@}
 
@@ -125,9 +125,9 @@ public:
   tyndallDeviceMacro();
 
   ///@{
-  /// Results of the last update: `fluence_bias`; for the conservative scheme the root mean square of `fluence_error`
-  /// over that of `fluence` (0 for other schemes); run time in seconds, the device's name, and the computations that
-  /// were not needed, one per line.
+  /// Results of the last update: `fluence_bias`; for the conservative scheme the ratio of the root mean squares of
+  /// `fluence_error` and `fluence` (0 for other schemes); run time in seconds, the device's name, and the computations
+  /// that were not needed, one per line.
   vtkGetMacro(Bias, double);
   vtkGetMacro(MeanError, double);
   vtkGetMacro(Seconds, double);

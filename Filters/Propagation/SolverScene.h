@@ -16,7 +16,7 @@ namespace tyndall
 /// Input of a solver: the medium of this rank's subdomain and its light sources.
 struct SolverScene
 {
-  /// Reads the medium of this rank's subdomain; the caller sets `shining` afterwards. Collective.
+  /// Reads the medium of this rank's subdomain; the caller sets the light sources (`shining`) afterwards. Collective.
   /// @param given  the filter's input image on this rank, ghost cells included
   /// @throws InvalidInput, the same on all ranks, if ReadMedium throws on any
   SolverScene(const PieceBlocks& pieces, vtkAlgorithm* filter, vtkImageData* given);

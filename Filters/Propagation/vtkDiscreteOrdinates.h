@@ -98,8 +98,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved
-  /// with more.
+  /// Number of directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs (two
+  /// periodic axes of one voxel each) are solved with more.
   tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 
@@ -141,10 +141,10 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: number of scattering orders; number of additional orders that the last cold update
-  /// needed to reach the same residual (0 if this update was cold); half-range flux of the quadrature for isotropic
-  /// radiance through a face, over the exact value. Residual of vtkScatteringSolver is the error due to the omitted
-  /// orders.
+  /// Results of the last update: number of scattering orders; number of additional orders that the last update with
+  /// zero initial guess needed to reach the same residual (0 if this was such an update); half-range flux of the
+  /// quadrature for isotropic radiance through a face, as a fraction of the exact value. Residual of
+  /// vtkScatteringSolver is the error due to the omitted orders.
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);
   vtkGetMacro(HalfRangeFlux, double);

@@ -24,7 +24,7 @@
  * | array | components | unit | meaning |
  * |---|---|---|---|
  * | `unscattered` | 6, or stored directions, x 1 or 3 | W/(length^3 sr) | U: source of the next order |
- * | `scattered_radiance` | stored directions x 1 or 3 | W/(length^2 sr) | I, sum of all orders so far, over sigma_s |
+ * | `scattered_radiance` | stored directions x 1 or 3 | W/(length^2 sr) | I / sigma_s, sum of all orders so far |
  * | `fluence` | 1 or 3 | W/length^2 | fluence, sum of all orders so far |
  * | `fluence_direct` | 1 or 3 | W/length^2 | fluence of order 0 |
  *

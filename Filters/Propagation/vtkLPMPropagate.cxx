@@ -32,8 +32,8 @@ tyndall::PropagationSettings SettingsOf(vtkLPMPropagate* filter)
   return settings;
 }
 
-/// Number of channels of the array `unscattered`: its number of components over its number of directions, which is 6 if
-/// `storedDirections` is 1, else `storedDirections`.
+/// Number of channels of the array `unscattered`: its number of components divided by its number of directions, which
+/// is 6 if `storedDirections` is 1, else `storedDirections`.
 /// @throws InvalidInput if the number of channels is not 1 or 3
 int ChannelsOf(const tyndall::FloatField& unscattered, int storedDirections)
 {

@@ -32,7 +32,7 @@
  *
  * | array | components | unit | meaning |
  * |---|---|---|---|
- * | `T_xmin`, `T_xmax`, ..., `T_zmax` | DirectionsPerFace x 1 or 3 | W/(length sr) | T over sigma_s |
+ * | `T_xmin`, `T_xmax`, ..., `T_zmax` | DirectionsPerFace x 1 or 3 | W/(length sr) | T / sigma_s |
  *
  * with channels varying fastest: for grey light, component k belongs to direction k of the face; for coloured light,
  * components 3 k to 3 k + 2 are red, green and blue of direction k. T of Eq. (6) is sigma_s times these arrays; without

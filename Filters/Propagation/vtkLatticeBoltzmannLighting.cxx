@@ -133,8 +133,9 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
 
 std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
-  const bool both = inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 &&
-    inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0; // both inputs together are an error on one rank as well
+  // Both inputs are an error on one rank as well: photons and UncollidedLight are the same light in two forms.
+  const bool both =
+    inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 && inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0;
   return both ? "Photons beside UncollidedLight" : tyndall::NotInBlocks(this->Settings());
 }
 

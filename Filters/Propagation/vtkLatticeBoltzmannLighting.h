@@ -114,7 +114,7 @@ public:
   ///@{
   /// Whether the march of photons (input 4) alternates with diffusion, as published (Bernabei et al.): VoxelsPerTurn
   /// voxels of each photon's path, then StepsPerExchange diffusion steps, and so on; steps continue until Tolerance is
-  /// met. Default off: diffusion starts when all photons have ended.
+  /// met. Default off: diffusion starts when the paths of all photons are complete.
   tyndallFlagMacro(Interleaved);
   ///@}
 

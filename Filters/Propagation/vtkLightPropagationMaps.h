@@ -90,10 +90,13 @@ public:
 
   enum Sources
   {
-    CONSTANT = 0,         ///< source constant in each voxel, as published
-    LINEAR = 1,           ///< source linear between voxel centres: accurate for voxels of any optical thickness
-    AUTOMATIC_SOURCE = 2, ///< LINEAR if iteration is accelerated, OCTANTS if many voxels are thick, else CONSTANT
-    OCTANTS = 3 ///< one source per octant in thick voxels, accurate if they absorb much; LINEAR if accelerated
+    CONSTANT = 0, ///< source constant in each voxel, as published
+    LINEAR = 1,   ///< source linear between voxel centres: accurate for voxels of any optical thickness
+    /// LINEAR if source iteration is accelerated, OCTANTS if many voxels are optically thick, else CONSTANT
+    AUTOMATIC_SOURCE = 2,
+    /// One source per octant of directions in optically thick voxels, accurate if they absorb much; LINEAR if source
+    /// iteration is accelerated.
+    OCTANTS = 3
   };
 
   enum Accelerations
@@ -132,8 +135,8 @@ public:
   ///@}
 
   ///@{
-  /// Number of directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs are solved
-  /// with more (GridAxes.h).
+  /// Number of directions per face of a cube. Default 25, valid square numbers: 1, 4, 9, 16, 25, ... Slabs (two
+  /// periodic axes of one voxel each) are solved with more (GridAxes.h).
   tyndallRangeMacro(DirectionsPerFace, int, 1, VTK_INT_MAX);
   ///@}
 
@@ -155,24 +158,25 @@ public:
 
   ///@{
   /// Degree of the angular moments (spherical harmonics) of the scattering source (conservative scheme): higher degrees
-  /// resolve a forward peak better, and take longer. -1 (default): 3, in thin media 6, in slabs 9, or less if phase
-  /// function and Tolerance do not require that degree or memory does not allow it; 0: scattering is isotropic with
-  /// sigma_s (1 - g), the similarity relation. Valid [-1, 15]; a quadrature of n x n DirectionsPerFace resolves degrees
-  /// up to 2 n - 1, higher ones are not used.
+  /// resolve a forward peak better, and take longer. -1 (default): 3, in thin media 6, in slabs (two periodic axes of
+  /// one voxel each) 9, or less if phase function and Tolerance do not require that degree or memory does not allow it;
+  /// 0: scattering is isotropic with sigma_s (1 - g), the similarity relation. Valid [-1, 15]; a quadrature of n x n
+  /// DirectionsPerFace resolves degrees up to 2 n - 1, higher ones are not used.
   tyndallRangeMacro(AngularDegree, int, -1, 15);
   ///@}
 
   ///@{
-  /// Whether to write the angular moments of the scattering source (cells `scattered_moments`, `straight_on`, field
-  /// data `lamps_apart`), if the solve uses moments: vtkMediumRayCaster renders from these moments. Memory: 4 (degree +
-  /// 1)^2 bytes per voxel and channel, a gigabyte at most. Default on.
+  /// Whether to write the angular moments of the scattering source (cells `scattered_moments`; cells `straight_on`, the
+  /// fraction of scattering that is treated as unscattered; field data `lamps_apart`, the lamps whose first-collision
+  /// source the moments exclude), if the solve uses moments: vtkMediumRayCaster renders from these moments. Memory: 4
+  /// (degree + 1)^2 bytes per voxel and channel, a gigabyte at most. Default on.
   tyndallFlagMacro(StoreMoments);
   ///@}
 
   ///@{
-  /// Whether the rays of each direction have a different offset within the voxels (conservative scheme); offsets are
-  /// always used with more than 100 UncollidedDirections. With 144 directions per face or more, offsets can halve the
-  /// error; with fewer they can double it. Default off.
+  /// Whether the rays of each direction have a different offset within the voxels (conservative scheme); the uncollided
+  /// flux along more than 100 UncollidedDirections always uses offsets if source iteration is not accelerated. With 144
+  /// directions per face or more, offsets can halve the error; with fewer they can double it. Default off.
   tyndallFlagMacro(StaggeredRays);
   ///@}
 
@@ -187,7 +191,7 @@ public:
   ///@}
 
   ///@{
-  /// Target for the relative error of fluence (root mean square of the error over that of the fluence), as the solver
+  /// Target for the relative error of fluence (ratio of the root mean squares of error and fluence), as the solver
   /// estimates it (conservative scheme). To meet the target the solver chooses directions and tolerance if they have
   /// their default values, and divides voxels that are too coarse; it warns if the estimate stays above the target.
   /// With a target, Quality is not read. Default 0: no target; valid [0, 0.5].
@@ -222,11 +226,11 @@ public:
 
   ///@{
   /// Results of the last update: number of solves (more than one with TargetError); number of scattering orders; number
-  /// of additional orders that the last cold update needed to reach the same residual (0 if this update was cold);
-  /// estimated total relative error of fluence (0 without EstimateError or TargetError; NaN, unknown, after one order);
-  /// half-range flux of the quadrature for isotropic radiance through a face, over the exact value (0.99992 with 25
-  /// directions per face: the incident power from faces and sky has the same relative error). Residual of
-  /// vtkScatteringSolver is the error due to the omitted orders.
+  /// of additional orders that the last update with zero initial guess needed to reach the same residual (0 if this
+  /// was such an update); estimated total relative error of fluence (0 without EstimateError or TargetError; NaN,
+  /// unknown, after one order); half-range flux of the quadrature for isotropic radiance through a face, as a fraction
+  /// of the exact value (0.99992 with 25 directions per face: the incident power from faces and sky has the same
+  /// relative error). Residual of vtkScatteringSolver is the error due to the omitted orders.
   vtkGetMacro(Solves, int);
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);

@@ -55,9 +55,10 @@ void SpreadToHeld(const tyndall::PieceBlocks& pieces, tyndall::LightField& light
   spread(light.fluenceError, light.channels);
   spread(light.netFlux, 3 * light.channels);
   spread(light.scatteredRadiance, light.channels * stored);
-  const std::vector<double> ofMoments = pieces.GetDomain().Max({ static_cast<double>(
-                                                                   light.scatteredMoments.size() / voxels),
-    static_cast<double>(light.straightOn.size() / voxels) }); // numbers of components, unknown on ranks without voxels
+  // Numbers of components of scatteredMoments and straightOn, unknown on ranks without voxels.
+  const std::vector<double> ofMoments =
+    pieces.GetDomain().Max({ static_cast<double>(light.scatteredMoments.size() / voxels),
+      static_cast<double>(light.straightOn.size() / voxels) });
   spread(light.scatteredMoments, static_cast<int>(ofMoments[0]));
   spread(light.straightOn, static_cast<int>(ofMoments[1]));
 }
@@ -259,7 +260,8 @@ std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene
   return refused;
 }
 
-/// Reads the light sources of the subdomain into `scene`, and sets WholeFor. Collective.
+/// Reads the light sources of the subdomain into `scene`, and sets WholeFor, the reason if the first rank is to solve
+/// the whole domain. Collective.
 /// @return false, on all ranks, if the first rank is to solve the whole domain
 bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {
@@ -357,7 +359,7 @@ void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::Lig
     pieces.KeepHeld(output);
     if (pieces.Held().VoxelCount() > 0)
     {
-      tyndall::WriteLight(std::move(light), output); // throws if a value is not finite, before any warning
+      tyndall::WriteLight(std::move(light), output); // before any warning, because it throws if a value is not finite
       tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), medium, output);
       if (!this->Ignored.empty())
       {

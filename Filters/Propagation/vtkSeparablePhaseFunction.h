@@ -31,10 +31,10 @@
  * | `error` | double | 1 | relative error of the sum of N terms: root of the sum of squares, weighted by solid angle |
  * | `error_singular_values`, `error_spherical_harmonics` | double | 1 | `error` of N terms of either Factorisation |
  * | `error_theory` | double | 1 | `error` predicted from the phase function's Legendre moments |
- * | `error_max` | double | 1 | largest error of an entry of the matrix, over the largest entry |
+ * | `error_max` | double | 1 | largest error of an entry of the matrix, divided by the largest entry |
  * | `row_sum_error` | double | 1 | largest difference from 1 of the total scattered power |
  * | `mean_cosine_error` | double | 1 | largest error of the mean cosine over all directions |
- * | `least_value` | double | 1 | smallest over largest entry of the sum; negative if there are too few terms |
+ * | `least_value` | double | 1 | smallest entry of the sum divided by the largest; negative if terms are too few |
  *
  * A value is NaN if fewer than N terms are nonzero.
  *
@@ -60,9 +60,9 @@ public:
 
   enum DirectionSets
   {
-    CUBE = 0,            ///< DirectionsPerFace per face of a cube, weighted by the solid angle of their cells
-    SPIRAL = 1,          ///< SpiralDirections on a spiral, with weights for which angular moments are exact
-    PUBLISHED_SPIRAL = 2 ///< SpiralDirections on the same spiral, all with the same weight
+    CUBE = 0,   ///< DirectionsPerFace directions per face of a cube, weighted by the solid angle of their cells
+    SPIRAL = 1, ///< SpiralDirections directions on a spiral, with weights for which angular moments are exact
+    PUBLISHED_SPIRAL = 2 ///< SpiralDirections directions on the same spiral, all with the same weight
   };
 
   enum Factorisations
@@ -73,8 +73,8 @@ public:
 
   enum Samplings
   {
-    POINT_VALUES = 0, ///< values for pairs of directions, as published
-    CELL_MEANS = 1    ///< means over the solid-angle cells of both directions
+    POINT_VALUES = 0, ///< phase function at pairs of quadrature directions, as published
+    CELL_MEANS = 1    ///< means of the phase function over the solid-angle cells of both directions
   };
 
   ///@{

@@ -334,7 +334,7 @@ void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationV
 /// Warns, also in field data, if the medium's refractive index is not 1 everywhere and a compared method ignores it.
 void vtkSolverComparison::TellOfIgnored(const tyndall::Comparison& comparison, vtkImageData* medium)
 {
-  // Methods up to DiscreteOrdinates, light propagation maps included, ignore the refractive index.
+  // Light propagation maps and discrete ordinates, the methods up to DiscreteOrdinates, ignore the refractive index.
   const bool ofMaps = std::any_of(comparison.rows.begin(), comparison.rows.end(),
     [](const auto& row) { return row.method <= tyndall::ComparedMethod::DiscreteOrdinates; });
   const std::vector<std::string> ignored =

@@ -45,8 +45,8 @@ struct ComparisonSettings;
  * | `grid` | | size in voxels, for example 64x64x64 |
  * | `seconds` | s | median of Repeats runs, from input arrays to output arrays, without compilation of kernels |
  * | `peak_bytes` | byte | peak device memory; NaN for a method on the host |
- * | `error_l2` | 1 | 2-norm of the difference over voxels and channels, over the 2-norm of the reference |
- * | `error_max` | 1 | largest difference in a voxel, over the largest fluence of the reference |
+ * | `error_l2` | 1 | 2-norm of the difference over voxels and channels, divided by the 2-norm of the reference |
+ * | `error_max` | 1 | largest difference in a voxel, divided by the largest fluence of the reference |
  * | `error_relative` | 1 | root mean square of the voxels' relative errors, where the reference is above 0 |
  * | `balance` | 1 | relative error of the energy balance |
  * | `iterations` | 1 | scattering orders or sweeps; 1 for photons |

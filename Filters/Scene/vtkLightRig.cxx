@@ -44,8 +44,8 @@ Light SunLight(double elevation, double azimuth, const double power[3])
   return sun;
 }
 
-/// A type of light: its name, and number and names of the arguments of the method that adds it, such as AddPointLight.
-/// Used by the methods that add a light one number at a time, and by their messages.
+/// A type of light: its name, and count and names of the arguments of the method that adds it, such as AddPointLight.
+/// Used by the methods that take one argument per call (AddPointLightNumber), and by their messages.
 struct NumbersOfLight
 {
   const char* Kind;
@@ -60,7 +60,7 @@ constexpr NumbersOfLight NumbersOfLights[] = {
   { "rectangle", 11, "x, y, z, dx, dy, dz, red, green, blue, width, height" },
 };
 
-/// Light of a type, from its numbers.
+/// Makes a light of a type from the arguments of the method that adds it.
 /// @param type  one of LightTypes
 /// @param numbers  arguments in the order of NumbersOfLights
 Light LightOf(int type, const double* numbers)
@@ -92,9 +92,9 @@ Light LightOf(int type, const double* numbers)
 struct vtkLightRig::AddedLights
 {
   std::array<std::vector<Light>, 4> Lights;   ///< complete lights by type
-  std::array<std::vector<double>, 4> Numbers; ///< numbers of an incomplete light, by type
+  std::array<std::vector<double>, 4> Numbers; ///< arguments given so far of an incomplete light, by type
 
-  /// Adds a number of a light of this type; with the last number, adds the light.
+  /// Takes the next argument of a light of this type; the last argument completes the light.
   void Add(int type, double number)
   {
     std::vector<double>& numbers = this->Numbers[type];
@@ -107,7 +107,7 @@ struct vtkLightRig::AddedLights
   }
 
   /// Checks that no light is incomplete.
-  /// @throws InvalidInput if a light lacks numbers
+  /// @throws InvalidInput if a light lacks arguments
   void CheckNumbers() const
   {
     for (std::size_t type = 0; type < this->Numbers.size(); ++type)

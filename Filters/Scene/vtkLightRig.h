@@ -117,9 +117,9 @@ public:
   void RemoveAllLights();
 
   ///@{
-  /// Adds a light one number at a time, in the order of the arguments of AddDirectionalLight, AddPointLight, ...; the
-  /// last number adds the light. An incomplete light is an error that says how many numbers it needs. Removing the
-  /// lights of a type also removes its pending numbers.
+  /// Adds a light one number per call: the arguments of AddDirectionalLight, AddPointLight, ... in order; the last one
+  /// completes the light. An incomplete light is an error that says how many numbers it needs. Removing the lights of a
+  /// type also removes the numbers of an incomplete one.
   void AddDirectionalLightNumber(double number);
   void AddPointLightNumber(double number);
   void AddSpotLightNumber(double number);

@@ -360,7 +360,8 @@ void Pack(const tyndall::RefractiveMediumSettings& settings, const tyndall::Voxe
   const bool constant = medium.ior.empty();
   if (constant)
   {
-    medium.ior.assign(box.VoxelCount(), static_cast<float>(settings.outside.n)); // for filters that require `ior`
+    // the constant index, for filters that require the array `ior`
+    medium.ior.assign(box.VoxelCount(), static_cast<float>(settings.outside.n));
   }
   tyndall::AddCells(output, "ior", std::move(medium.ior), 1);
   if (!constant)
@@ -386,7 +387,7 @@ void Pack(const tyndall::RefractiveMediumSettings& settings, const tyndall::Voxe
 struct vtkMeshVoxelizer::AddedMaterials
 {
   std::vector<std::pair<double, Material>> InOrder; ///< materials with their numbers, in the order of addition
-  std::vector<double> Numbers;                      ///< pending numbers of an incomplete material
+  std::vector<double> Numbers;                      ///< arguments given so far of an incomplete material
 
   /// Checks all materials.
   /// @throws InvalidInput if a material is incomplete or invalid

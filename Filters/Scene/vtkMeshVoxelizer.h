@@ -95,7 +95,7 @@ public:
   ///@}
 
   ///@{
-  /// Refractive index n inside the meshes and outside. Default 1.5 (glass) and 1, valid (0, infinity).
+  /// Refractive index n inside the meshes and outside. Default 1.5 (glass) and 1, valid (0, 1e6].
   tyndallRangeMacro(InsideIndex, double, tyndall::AboveZero, 1e6);
   tyndallRangeMacro(OutsideIndex, double, tyndall::AboveZero, 1e6);
   ///@}
