@@ -37,10 +37,11 @@ std::vector<double> PropertiesAsNumbers(vtkMediumRayCaster* filter);
 /// Request of vtkLitVolumeMapper to its vtkMediumRayCaster for one picture.
 struct AskedView
 {
-  Camera camera;                  ///< camera in the scene's coordinates; replaces the filter's camera
-  std::array<int, 2> size = {};   ///< columns and rows of pixels; replaces ImageSize
-  std::vector<float> ends;        ///< length at which each ray ends (MediumRayCaster::Render)
-  double exposure = 0.0;          ///< exposure by which BackgroundColor is converted to radiance; 0: not known yet
-  std::optional<GridBlock> block; ///< block of a larger grid that the medium is (MediumRayCaster::Render); or none
+  Camera camera;                ///< camera in the scene's coordinates; replaces the filter's camera
+  std::array<int, 2> size = {}; ///< columns and rows of pixels; replaces ImageSize
+  std::vector<float> ends;      ///< length at which each ray ends (MediumRayCaster::Render)
+  double exposure = 0.0;        ///< exposure by which BackgroundColor is converted to radiance; 0: not known yet
+  /// Block that the medium is of a larger grid (MediumRayCaster::Render); none: the medium is a whole grid.
+  std::optional<GridBlock> block;
 };
 }

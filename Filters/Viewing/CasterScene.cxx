@@ -185,7 +185,7 @@ ViewedInputs SpreadTo(
       medium.medium.sigma_a = medium.sigma_a;
       medium.medium.sigma_s = medium.sigma_s;
       medium.medium.emission = medium.emission;
-      vtkNew<vtkImageData> asLarge; // an image of the size of the gathered arrays
+      vtkNew<vtkImageData> asLarge; // image of the size of the gathered arrays, which ReadPhase requires
       asLarge->SetDimensions(box.size[0] + 1, box.size[1] + 1, box.size[2] + 1);
       asLarge->SetFieldData(image->GetFieldData());
       medium.medium.phase = ReadPhase(asLarge, medium.g, medium.sigma_s);

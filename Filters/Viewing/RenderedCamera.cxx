@@ -16,8 +16,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double AlikeScales = 1e-6;       ///< relative tolerance for uniform scaling without shear
-constexpr double SmallestDistance = 1e-15; ///< minimum distance of camera and focal point, over camera to origin
+constexpr double AlikeScales = 1e-6; ///< relative tolerance for uniform scaling without shear
+/// Minimum distance from the camera to its focal point, as a fraction of the distance from the origin to the camera.
+constexpr double SmallestDistance = 1e-15;
 
 using Vec = std::array<double, 3>;
 
@@ -81,13 +82,13 @@ RenderedCamera::RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place)
   this->Scale = ScaleOf(toEye);
   vtkNew<vtkMatrix4x4> fromEye;
   vtkMatrix4x4::Invert(toEye, fromEye);
-  vtkMatrix4x4* const projection =
-    camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0); // as passed to OpenGL
+  // the projection matrix that VTK passes to OpenGL
+  vtkMatrix4x4* const projection = camera->GetProjectionTransformMatrix(renderer->GetTiledAspectRatio(), -1.0, 1.0);
   const auto element = [projection](int row, int column) { return projection->GetElement(row, column); };
   this->Depth = { element(2, 2), element(2, 3), element(3, 2), element(3, 3) };
 
-  // Origin and direction of the central ray, in eye coordinates. Column i of fromEye is axis i of the eye, one world
-  // length long, in the volume's coordinates.
+  // Origin and direction of the central ray, in eye coordinates. Column i of fromEye is axis i of the eye, one unit of
+  // world length long, in the volume's coordinates.
   Vec origin = { 0.0, 0.0, 0.0 }, forward = { 0.0, 0.0, -1.0 };
   this->Seen.parallelProjection = camera->GetParallelProjection() != 0;
   this->Seen.aspect = element(1, 1) / element(0, 0);

@@ -33,6 +33,6 @@ public:
 private:
   Camera Seen;
   std::array<double, 4> Depth = {}; ///< elements (2, 2), (2, 3), (3, 2), (3, 3) of the projection matrix
-  double Scale = 1.0; ///< scale factor from the volume's to eye coordinates: world length over volume length
+  double Scale = 1.0; ///< scale factor from the volume's to eye coordinates: world length per volume length
 };
 }

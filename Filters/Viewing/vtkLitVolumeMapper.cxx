@@ -37,7 +37,8 @@ namespace
 constexpr double StillTime = 1.0;         ///< the view counts as still if a frame may take this time or longer, seconds
 constexpr double CoarsestRays = 8.0;      ///< largest distance between neighbouring rays, pixels
 constexpr double StepsOfCoarseness = 4.0; ///< the ray distance is a multiple of 1/4 pixel, so that it rarely changes
-constexpr double FarAway = 1e4; ///< extension of the bounds of a piece that draws the background, in its diagonals
+/// Distance by which the bounds of a piece that draws the background are extended, in diagonals of the piece.
+constexpr double FarAway = 1e4;
 constexpr int ExposedSize[2] = { 64, 48 };
 
 /// Viewing directions for the automatic exposure: the corners of a tetrahedron.

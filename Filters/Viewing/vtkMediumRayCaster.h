@@ -285,8 +285,8 @@ public:
   };
 
   ///@{
-  /// Picture from which the exposure is computed if Exposure is 0: EACH_PICTURE (default), or the FIRST_PICTURE after
-  /// FIRST_PICTURE was set, whose exposure is used for all later pictures, so that an animation does not flicker.
+  /// Picture from which the exposure is computed if Exposure is 0: EACH_PICTURE (default), or FIRST_PICTURE, the first
+  /// one after this value was set: its exposure is used for all later pictures, so that an animation does not flicker.
   tyndallRangeMacro(AutoExposure, int, EACH_PICTURE, FIRST_PICTURE);
   ///@}
 
@@ -377,7 +377,7 @@ private:
   bool LeaveOut;
   int MemoryBudget = 0;
 
-  std::shared_ptr<tyndall::Device> Within;    ///< device limited by MemoryBudget, or null; outlives Kept
+  std::shared_ptr<tyndall::Device> Within;    ///< device limited by MemoryBudget; null if that is 0; outlives Kept
   std::unique_ptr<tyndall::CasterScene> Kept; ///< cached scene of the last picture; null after an error
 
   double Seconds = 0.0;

@@ -26,7 +26,7 @@ enum class ComparedMethod
   Photons,             ///< evenly distributed photons, conservative marching and reconstruction
   AdaptivePhotons,     ///< photons distributed by an importance map, conservative marching and reconstruction
   PublishedPhotons,    ///< photons with marching and Gauss filter as published
-  MonteCarlo,          ///< photons scattered until they end, without a filter: unbiased but noisy
+  MonteCarlo,          ///< photons scattered until they are absorbed or leave, without a filter: unbiased but noisy
 };
 const char* NameOf(ComparedMethod method);
 
@@ -36,39 +36,42 @@ bool IsOfPhotons(ComparedMethod method);
 /// Whether a method computes uncollided light only, so that it is compared with ReferenceLight::fluenceDirect.
 bool IsDirectOnly(ComparedMethod method);
 
-/// Conditions under which Monte Carlo photons are the reference for a constant refractive index.
+/// When Monte Carlo photons are the reference of a comparison whose refractive index is constant.
 enum class MonteCarloReference
 {
   Never = 0,
   Always = 1, ///< always; scenes that photons cannot simulate are then an error
-  /// Only if the photons' standard error is forecast to be far below the error of the finest maps that are compared.
+  /// Only if the photons' standard error is forecast to be far below the error of the finest light propagation maps
+  /// that are compared.
   WhereItCanBeat = 2
 };
 
-/// Smallest number of directions per face for which maps with more than one element per voxel face are tried.
+/// Smallest number of directions per face for which light propagation maps with more than one ray per voxel edge and
+/// direction are tried.
 constexpr int FewestForFinerMaps = 25;
 
-/// Settings that a comparison tries. Propagation: all numbers of directions on all grids; map resolutions above 1 on
-/// the scene's grid, from 25 directions on; limited numbers of orders with the number of directions nearest to 25.
-/// Photons: all counts with the first sampler, and the second largest count with the other samplers. Lattices: both
-/// lattices, on all grids with cubic voxels; with a varying refractive index on the scene's grid only, with uncollided
-/// light from each count of photons.
+/// Settings that a comparison tries. Propagation: all numbers of directions on all grids; map resolutions (rays per
+/// voxel edge and direction) above 1 on the scene's grid, from 25 directions per face on; limits on the number of
+/// scattering orders with the number of directions nearest to 25. Photons: all counts with the first of `samplers`, and
+/// the second largest count with the others. Lattices: both lattices, on all grids with cubic voxels; with a varying
+/// refractive index on the scene's grid only, with uncollided light from each count of photons.
 struct ComparedSettings
 {
   std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };
   std::vector<int> mapResolutions = { 1, 2 };
-  /// Edges of the voxels of the compared grids, in edges of the scene's voxels. Values that do not divide the scene's
-  /// grid are left out.
+  /// Factors by which the voxel edges of the compared grids exceed those of the scene's grid. Factors that do not
+  /// divide the scene's grid are left out.
   std::vector<int> coarsenings = { 1, 2, 4 };
-  std::vector<int> orders = { 1, 3, 10 }; ///< limits of the number of scattering orders, in addition to all orders
+  /// Limits on the number of scattering orders that are tried, in addition to a run without limit.
+  std::vector<int> orders = { 1, 3, 10 };
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
   double tolerance = PropagationSettings().tolerance; ///< tolerance of propagation, PropagationSettings::tolerance
   /// Whether the photons that give the reference for a varying refractive index are followed through all collisions;
   /// false: only up to the first one, which gives uncollided light.
   bool scattersReference = false;
-  /// When Monte Carlo photons are the reference for a constant refractive index; that reference shares no solver with
-  /// the compared propagation methods.
+  /// When Monte Carlo photons are the reference if the refractive index is constant; that reference shares no solver
+  /// with the compared propagation methods.
   MonteCarloReference monteCarloReference = MonteCarloReference::WhereItCanBeat;
 };
 

@@ -75,7 +75,8 @@ ReferenceLight Climb(Device& device, const ComparedScene& scene, const Rung& run
   return reference;
 }
 
-/// Predicted run times of converged runs: NominalSeconds with the number of sweeps that a run with few directions took.
+/// Predicts run times of converged runs from NominalSeconds and from the number of sweeps that a run with few
+/// directions took.
 class Forecast
 {
 public:

@@ -56,7 +56,8 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     {
       continue;
     }
-    // The index is constant here (AddBent adds the runs with a varying one); coarse runs need none.
+    // The refractive index is constant here (AddBent adds the runs with a varying one), so that coarse grids need no
+    // array of it.
     const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination,
       coarse ? Field() : scene.ior };
     const auto scaled = coarse ? std::make_shared<CoarseScene>(given, grid) : nullptr;

@@ -21,14 +21,16 @@ std::size_t PlaceOf(std::size_t index, int has, int wanted)
 
 constexpr int FewestSets = 16, MostSets = 64;            ///< least and largest number of photon sets of the reference
 constexpr int FewestToForecast = 4, MostToForecast = 64; ///< least and largest number of photon sets of the pilot run
-/// Photons per set of the pilot run: the largest photon count of the comparison over PartToForecast, but at least
+/// Photons per set of the pilot run: the largest photon count of the comparison divided by PartToForecast, but at least
 /// LeastToForecast.
 constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000;
 /// Largest number of photons per set; these photons take a hundred megabytes.
 constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;
-/// Photons are the reference only if their error is at most this fraction of the error of the finest maps.
+/// Photons are the reference only if their error is at most this fraction of the error of the finest light propagation
+/// maps.
 constexpr double Beats = 1.0 / 3.0;
-/// Error to which the photons of the reference are to be reduced, as a fraction of the error of the finest maps.
+/// Error to which the photons of the reference are to be reduced, as a fraction of the error of the finest light
+/// propagation maps.
 constexpr double Enough = 0.1;
 
 constexpr double TypicalSweeps = 20.0;
@@ -89,8 +91,8 @@ ForecastMaps FindMaps(
   return maps;
 }
 
-/// Run time per photon by NominalSeconds, seconds. The mean path length of a photon, from which it follows, is the
-/// volume integral of the fluence over the entered power.
+/// Run time per photon by NominalSeconds, seconds. It follows from the mean path length of a photon: the volume
+/// integral of the fluence, divided by the entered power.
 /// @param light  estimate of the light
 double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
 {
@@ -288,7 +290,8 @@ ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, co
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  const double part = 0.5 * PhotonForecast::PartOfTime * seconds; // seconds for the maps; the pilot run has as many
+  // Seconds for the light propagation maps; the pilot run of photons may take as long.
+  const double part = 0.5 * PhotonForecast::PartOfTime * seconds;
   PhotonForecast forecast;
   ForecastMaps maps = FindMaps(device, scene, settings, part, OfPart(monitor, 0.0, 0.5));
   const int largest = *std::max_element(settings.photonCounts.begin(), settings.photonCounts.end());

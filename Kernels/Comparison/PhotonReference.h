@@ -24,7 +24,7 @@ public:
   /// Sum of the squared standard errors of the means; needs at least two sets.
   double Variance() const;
   double SumOfSquares() const; ///< sum of the squared means over voxels and channels
-  /// Relative standard error: root mean square of the standard errors, over that of the means.
+  /// Relative standard error: ratio of the root mean squares of the standard errors and of the means.
   double RelativeError() const;
 
   /// Lower estimate of the squared error of other light on the same voxels: its squared distance from the means, minus
@@ -39,8 +39,8 @@ private:
 };
 
 /// Reference by photons without a filter, in sixteen to sixty-four independent sets; ReferenceLight::text states the
-/// standard error. Photons are scattered until they end if ComparedSettings::scattersReference is set. At least four
-/// sets are used if `monitor` throws TimeIsUp.
+/// standard error. Photons are scattered until they are absorbed or leave if ComparedSettings::scattersReference is
+/// set. If `monitor` throws TimeIsUp after four sets or more, these sets are the result.
 /// @param set  photons per set
 /// @param seconds  time that sets beyond sixteen may take, by NominalSeconds
 /// @param maps  light propagation maps whose uncollided light is used if it does not differ significantly from that of
@@ -54,18 +54,19 @@ struct PhotonForecast
   static constexpr double PartOfTime = 0.5; ///< fraction of the available time that the forecast may take
 
   bool beats = false;
-  /// Photons per set, in sixteen sets, for a standard error of a tenth of the maps' error, or as many as the time
-  /// allows.
+  /// Photons per set, in sixteen sets, for a standard error of a tenth of the error of the light propagation maps, or
+  /// as many as the time allows.
   std::size_t photonsOfASet = 0;
   std::string why; ///< explanation for the user, with the errors of photons and maps
-  /// The finest maps that are compared; no value if they take too long or do not fit the device.
+  /// The finest light propagation maps that are compared; no value if they take too long or do not fit the device.
   std::optional<LightField> maps;
 };
 
-/// Compares a few photons with the finest maps on the scene's own grid. The mean square of their difference, minus the
-/// photons' variance and twice its standard deviation, is taken as the maps' squared error. Photons are forecast to be
-/// better if the standard error of as many photons as the time allows is at most a third of the maps' error, or if even
-/// maps of few directions take more than a quarter of the time. All times are NominalSeconds.
+/// Compares a few photons with the finest light propagation maps on the scene's own grid. The mean square of their
+/// difference, minus the photons' variance and twice its standard deviation, is taken as the maps' squared error.
+/// Photons are forecast to be better if the standard error of as many photons as the time allows is at most a third of
+/// the maps' error, or if even maps of few directions take more than a quarter of the time. All times are
+/// NominalSeconds.
 /// @param seconds  time for forecast and reference together
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor);

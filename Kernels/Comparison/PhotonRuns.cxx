@@ -35,7 +35,7 @@ double RootOfSquares(const std::vector<float>& values)
   return std::sqrt(sum);
 }
 
-/// Light by Monte Carlo: photons are scattered until they end.
+/// Light by Monte Carlo: photons are scattered until they are absorbed or leave.
 LightField TraceAllOrders(
   Device& device, const ComparedScene& scene, const EmissionSettings& emission, bool estimate, const Monitor& monitor)
 {

@@ -72,7 +72,7 @@ OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
 }
 
 /// The solver of a method.
-/// @param device, scene  must outlive the solver
+/// @param device  must outlive the solver
 PropagationSolver SolverOf(ComparedMethod method, Device& device)
 {
   return [method, &device](const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor) {

@@ -12,7 +12,7 @@ namespace tyndall
 /// and can be aborted about ten times a second.
 struct Batches
 {
-  std::size_t count = 0; ///< number of items to compute
+  std::size_t count = 0; ///< number of items (photons, pixels, voxels) that the computation processes
   std::size_t first = 1; ///< items in the first batch; its run time determines the size of the next batch
   std::size_t whole = 1; ///< each batch has a multiple of this number of items
   double seconds = 0.05; ///< target run time of a batch, seconds

@@ -149,7 +149,7 @@ private:
     void GiveBack() { this->owner.Queue().enqueueUnmapMemObject(this->memory, std::exchange(this->values, nullptr)); }
     ~Mapping()
     {
-      if (this->values) // an exception was thrown, which already reports the failure
+      if (this->values) // after an exception, which already reports the failure: errors of unmapping are ignored
       {
         clEnqueueUnmapMemObject(this->owner.Queue()(), this->memory(), this->values, 0, nullptr, nullptr);
       }

@@ -89,7 +89,7 @@ std::optional<std::size_t> LimitOfMemory()
   return limited ? std::optional<std::size_t>(limit.rlim_cur >> 20) : std::nullopt;
 }
 
-/// Sentence for an error message: OpenCL drivers, which include a compiler, need memory, and how to provide it.
+/// Sentence for an error message: OpenCL drivers need memory for their compiler, and how to provide it.
 std::string NeedsMemory()
 {
   const std::optional<std::size_t> limit = LimitOfMemory();
@@ -366,7 +366,8 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
     try
     {
       Allocation allocation = this->Whole->Allocate(bytes, flags, what, residence);
-      if (allocation.onHost) // the parent device is a view itself and placed the buffer in host memory
+      // the device `Whole` is itself a view and placed the buffer in host memory
+      if (allocation.onHost)
       {
         this->Memory.GiveBack(bytes);
         this->OnHost.Take(bytes);
@@ -399,8 +400,8 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   }
 }
 
-/// Allocates a buffer of a view in host memory. If kernels use host memory in place, the bytes count towards the memory
-/// of the device.
+/// Allocates a buffer in host memory. Only for views (devices with a solve's memory budget). If kernels use host memory
+/// in place, the bytes count towards the memory of the device.
 Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags, const char* what)
 {
   constexpr const char* Advice = "a coarser grid or fewer directions";

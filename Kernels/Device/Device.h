@@ -131,7 +131,7 @@ private:
   int Units = 1;
   int VectorWidth = 1;
   std::size_t LargestAllocation = 0;
-  Device* Whole = nullptr; ///< device of which this object is a view; null: it is no view
+  Device* Whole = nullptr; ///< device of which this object is a view, with a budget; null: it is no view
   MemoryBudget Budget;     ///< limits of this view; unlimited if this is not a view
   MemoryCount Memory;
   MemoryCount OnHost;
