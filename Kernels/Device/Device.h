@@ -179,13 +179,14 @@ inline int SummingGroup(const Device& device)
   return device.IsCpu() ? 1 : 128;
 }
 
-/// Compiler option that defines GROUP, the work-group size, for kernels that compute sums.
+/// Compiler option that defines GROUP, the number of work-items in a work-group, for kernels whose work-groups sum over
+/// their work-items.
 inline std::string SummingOption(const Device& device)
 {
   return Define("GROUP", SummingGroup(device));
 }
 
-/// Queues a kernel that computes sums, with `groups` work-groups per channel.
+/// Queues a kernel whose work-groups sum over their work-items, with `groups` work-groups per channel.
 inline void RunSummingGroups(Device& device, const cl::Kernel& kernel, std::size_t groups, std::size_t channels = 1)
 {
   const auto items = static_cast<std::size_t>(SummingGroup(device));

@@ -140,7 +140,7 @@ private:
     void operator()(T* pages) const { std::free(pages); }
   };
   std::unique_ptr<T, Free> Pages;
-  std::unique_ptr<HostMappedBuffer<T>> Mapped; // must be destroyed before Pages
+  std::unique_ptr<HostMappedBuffer<T>> Mapped; // declared after Pages, since it must be destroyed before them
   Buffer<T> Whole;
 };
 }

@@ -38,7 +38,7 @@ void InThreads(std::size_t count, std::size_t least, const std::function<void(st
     {
       others.emplace_back(run, part);
     }
-    catch (const std::system_error&) // no thread can be created: this thread runs the part
+    catch (const std::system_error&) // no thread can be created: the calling thread processes this range
     {
       run(part);
     }

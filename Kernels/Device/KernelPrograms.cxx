@@ -18,7 +18,7 @@ const char* const WideVectors = "#ifdef __clang__\n#pragma clang diagnostic igno
 
 std::atomic<bool> AnyCompiled{ false };
 
-/// Advice to the user for failures without a reported reason; empty if the platform's cache folder is not known.
+/// Advice for the message of a failure that states no reason; empty if the platform's cache folder is not known.
 std::string AdviceOnCache(const std::string& folder)
 {
   return folder.empty()
@@ -40,8 +40,8 @@ std::unique_lock<std::timed_mutex> LockHeard(std::timed_mutex& mutex)
   return lock;
 }
 
-/// Calls `build` and notifies this thread's CompilationListener while it runs.
-/// @return whether it ran longer than reading from a cache takes; false without a listener
+/// Calls `build`; while it runs, this thread's CompilationListener (a progress callback, if there is one) is called.
+/// @return whether the call took longer than reading a program from a cache; false without a listener
 bool CallHeard(const std::function<void()>& build)
 {
   const CompilationListener* listener = CompilationListener::OfThisThread();

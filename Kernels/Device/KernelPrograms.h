@@ -11,7 +11,8 @@
 
 namespace tyndall
 {
-/// Programs built for one device, shared by all of its views. Thread-safe.
+/// Cache of the programs built for one device. The device shares it with its views, the objects by which several solves
+/// use one device, each with a memory budget of its own. Thread-safe.
 class KernelPrograms
 {
 public:
@@ -19,7 +20,7 @@ public:
   /// @param cacheFolder  as in Device's constructor
   KernelPrograms(const cl::Context& context, const cl::Device& device, std::string deviceName, std::string cacheFolder);
 
-  /// Implements Device::Kernel for the device and all of its views.
+  /// Returns a kernel, and builds its program if necessary: Device::Kernel of the device and of its views.
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options);
 
   /// Whether a program was compiled since the last call, in a build so slow that it notified a CompilationListener.
@@ -27,7 +28,7 @@ public:
   static bool HaveCompiled(); ///< whether this process has compiled a program rather than read it from a cache
 
 private:
-  /// A program of the cache. The first thread that needs it builds it; threads that need other programs do not wait.
+  /// A cached program. The first thread that needs it builds it; threads that need other programs do not wait.
   struct KeptProgram
   {
     std::timed_mutex Building;

@@ -37,7 +37,7 @@ std::string Advice()
 struct FolderChoice
 {
   std::string folder;
-  std::string chosenBy; ///< name of the environment variable, or of the program, that determines PoCL's choice
+  std::string chosenBy; ///< name of the environment variable, or of the program, that chose this folder
 };
 
 /// The cache folder that PoCL chooses by its environment variables.
@@ -72,7 +72,8 @@ std::string Told(const DamagedFiles& damaged, const std::string& folder)
       " and can be deleted.";
 }
 
-/// A folder that only the user can write, since the files in it are executed.
+/// A folder below the temporary directory that only the user can write, since files in it are executed.
+/// @param trouble  receives the reason why the folder cannot be used; empty if it can
 std::string PrivateFolder(std::string& trouble)
 {
   std::error_code error;
@@ -120,7 +121,8 @@ std::string WhyNotWritable(const std::string& folder, std::size_t bytes)
     return error.message();
   }
   int failed = 0;
-  // Several files, since the system may limit file sizes; PoCL's files are far smaller.
+  // The space is reserved in several files of `Piece` bytes, since the system may limit the size of a file; PoCL's own
+  // files are far smaller.
   std::vector<int> files;
   for (std::size_t reserved = 0; reserved < bytes && failed == 0; reserved += Piece)
   {

@@ -45,7 +45,7 @@ struct DamagedFiles
 class BuildMark
 {
 public:
-  explicit BuildMark(const std::string& folder); ///< creates the file; none if the name of the folder is empty
+  explicit BuildMark(const std::string& folder); ///< creates the file; does nothing if `folder` is empty
   ~BuildMark();
   BuildMark(const BuildMark&) = delete;
   BuildMark& operator=(const BuildMark&) = delete;
@@ -55,12 +55,15 @@ private:
   int Descriptor = -1; ///< descriptor of the file, which is locked as long as the process lives
 };
 
-/// Renames damaged files in PoCL's cache folder to *.damaged, so that PoCL compiles them again. Damaged are: bitcode
-/// and libraries that are truncated, overwritten or unreadable; files that were changed since an earlier call noted
-/// their checksums in the folder; and all programs, if two runs that started within the last hour, at least ten seconds
-/// apart, ended while they were building one (BuildMark). Files that are unchanged since their checksums were noted are
-/// not read. Other processes may call this function, and PoCL may write, at the same time: PoCL writes files under
-/// another name and then renames them, so that none is incomplete.
+/// Renames damaged files in PoCL's cache folder to *.damaged, so that PoCL compiles their programs again. Files count
+/// as damaged if
+///  - they are bitcode or libraries that are truncated, overwritten or unreadable;
+///  - their contents changed since an earlier call recorded their checksums in the folder;
+///  - two processes that started within the last hour, at least ten seconds apart, ended while they were building a
+///    program (BuildMark): then the files of all programs count as damaged.
+/// Files that look unchanged since their checksums were recorded are not read. Other processes may call this function,
+/// and PoCL may write, at the same time: PoCL writes files under another name and then renames them, so that none is
+/// incomplete.
 DamagedFiles SetDamagedAside(const std::string& folder);
 
 /// Notes the checksums of files that PoCL has written to the folder since the last call.

@@ -236,8 +236,8 @@ public:
 private:
   static bool IsOfKernels(const fs::path& path) { return path.extension() == ".bc" || path.extension() == ".so"; }
   static bool CanBeUsed(const fs::path& folder) { return access(folder.c_str(), R_OK | W_OK | X_OK) == 0; }
-  /// Whether a name may be part of a program's hash: `least` to `most` capital letters; the folder might contain other
-  /// files.
+  /// Whether a file name consists of `least` to `most` capital letters, as do the names of PoCL's program folders,
+  /// which are hashes; other files in the cache folder are ignored.
   static bool IsOfHash(const fs::path& path, std::size_t least, std::size_t most)
   {
     const std::string name = path.filename().string();
@@ -288,7 +288,8 @@ private:
       return;
     }
     const std::optional<Note> found =
-      NoteOf(folder.string()); // state before the inspection, so that later changes are detected next time
+      // state of the folder before its inspection, so that changes during it are detected next time
+      NoteOf(folder.string());
     std::vector<std::string> files, unusable;
     std::error_code none;
     for (fs::recursive_directory_iterator entry(folder, none), end; entry != end; entry.increment(none))
@@ -317,13 +318,13 @@ private:
     }
     // Whether the last change is more than a second ago: time stamps of file systems are coarse.
     const bool rests = found && std::time(nullptr) - found->changed / 1000000000 > 1;
-    if (sound && rests) // a folder that is not noted is inspected again by the next run
+    if (sound && rests) // a folder that is not recorded as known is inspected again by the next process
     {
       this->Known.Set(program, *found);
     }
   }
 
-  /// Inspects a file of kernels, and reports it if it is damaged.
+  /// Inspects a file of a compiled program, and reports it if it is damaged.
   /// @return whether the file is intact
   bool LookAtFile(const std::string& path, const Report& report)
   {
@@ -383,8 +384,9 @@ constexpr const char* PrefixOfMarks = "tyndall-building-";
 /// Approximate start time of this process; ranks of one job start together and have nearly equal times.
 const std::time_t Begun = std::time(nullptr);
 
-/// Whether two or more runs that started at least ten seconds apart ended while they were building programs. Deletes
-/// the marks of such runs, and marks older than an hour. A mark that can be locked belongs to a process that has ended.
+/// Whether two or more processes that started at least ten seconds apart ended while they were building programs, which
+/// PoCL may have caused by loading damaged bitcode. If so, deletes the marks (files of BuildMark) of these processes;
+/// always deletes marks older than an hour. A mark whose lock is free belongs to a process that has ended.
 bool EndedWhileBuilding(const std::string& folder)
 {
   constexpr std::int64_t second = 1000000000, apart = 10 * second, old = 3600 * second;

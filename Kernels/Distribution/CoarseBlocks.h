@@ -29,9 +29,10 @@ public:
   Communicator& Comm() const { return this->TheCommunicator; }
   const BlockPartition& Fine() const { return this->FinePartition; }
   const BlockPartition& Coarse() const { return this->CoarsePartition; }
-  /// Smallest ratio of coarse to fine spacing (Coarsening::Ratio) of the whole grids.
+  /// Smallest ratio, over the three axes, of coarse to fine spacing of the whole grids (Coarsening::Ratio).
   double Ratio() const { return this->Whole.Ratio(); }
-  /// Coarsening to this rank's coarse voxels from the fine voxels that they overlap, some of which other ranks may own.
+  /// Map (Coarsening) between this rank's coarse voxels and the fine voxels that they overlap, some of which other
+  /// ranks may own.
   const Coarsening& Own() const { return this->OwnPart; }
   bool HasOwn() const { return this->OwnBox().VoxelCount() > 0; } ///< whether this rank owns coarse voxels
 
@@ -45,8 +46,8 @@ public:
   /// @param values  values of this rank's block, `components` per fine voxel
   std::vector<float> Average(const std::vector<float>& values, int components) const;
 
-  /// Coarsening from this rank's fine voxels to the coarse voxels that contain them (Parent) and one layer of coarse
-  /// voxels around these, between which refinement interpolates.
+  /// Map (Coarsening) between this rank's fine voxels and the coarse voxels that contain them (Parent), with one layer
+  /// of coarse voxels around these, between which refinement interpolates.
   const Coarsening& Seen() const { return this->SeenPart; }
   /// Values of the coarse voxels of Seen(), gathered from the ranks that own them. Collective.
   /// @param values  values of this rank's coarse voxels, `components` per voxel

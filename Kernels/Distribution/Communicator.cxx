@@ -180,7 +180,7 @@ std::vector<char> Communicator::Agree(const std::vector<char>& own)
     }
   }
   const std::string words(worst.begin() + 1, worst.end());
-  // An inner Collective has already named the rank in a text that begins with "On rank ".
+  // A text that begins with "On rank " comes from a nested call of Collective, which has already named the rank.
   if (!alike && words.rfind("On rank ", 0) != 0)
   {
     const std::string where = "On rank " + std::to_string(from) + ": ";

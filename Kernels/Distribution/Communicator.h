@@ -16,7 +16,7 @@ namespace tyndall
 /// below these tags.
 namespace MessageTag
 {
-constexpr int ColumnsOfSight = 29992; ///< for the pixels of views, LitColor.cxx
+constexpr int ColumnsOfSight = 29992; ///< for columns of voxels seen by parallel rays, LitColor.cxx
 constexpr int CornersOfPaths = 29995; ///< for vertices of photon paths, PhotonPaths.cxx
 constexpr int RunsOfBytes = 29996;    ///< for run-length encoded bytes, BrickedBytes.cxx
 constexpr int GhostCells = 29998;     ///< for values of ghost cells, Halo.cxx
@@ -209,7 +209,7 @@ struct HeldFailure
     }
   }
 
-  bool broken = false; ///< whether this rank has failed, or a rank whose messages it needs
+  bool broken = false; ///< whether this rank has failed, or did not receive a message because another rank has failed
   std::exception_ptr error;
 };
 }

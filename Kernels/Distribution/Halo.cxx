@@ -65,7 +65,9 @@ std::vector<VoxelBox> PartsByPeriods(const VoxelBox& box, const Grid& whole)
 {
   std::vector<VoxelBox> parts;
   const VoxelBox period = { {}, whole.size };
-  const std::array<int, 3> back = ShiftOf(box, whole.size); // shift to the first period that the box reaches
+  // shift that moves the first voxel of `box` into the grid; minus this shift moves the grid to the first periodic
+  // image that the box overlaps
+  const std::array<int, 3> back = ShiftOf(box, whole.size);
   std::array<int, 3> by;
   for (by[2] = -back[2]; by[2] < EndOf(box, 2); by[2] += whole.size[2])
   {

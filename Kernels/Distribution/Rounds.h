@@ -60,7 +60,8 @@ public:
     for (bool left = true; left; ++round)
     {
       const std::vector<std::vector<OnItsWay>> parcels = this->Comm.Exchange<OnItsWay>(this->Neighbours, [&] {
-        // Progress that is reported at the end of this round: half of the remaining work is assumed to be done in it.
+        // Progress at the end of this round, for the report: since the number of rounds is unknown, each is assumed to
+        // do half of the remaining work.
         const double next = this->Neighbours.empty() ? 1.0 : 0.5 * (1.0 + done);
         const Monitor ofRound = OfPart(monitor, done, next);
         std::vector<std::vector<OnItsWay>> gone = this->Sorted(follow(round, std::move(arrived), ofRound));

@@ -62,8 +62,8 @@ std::vector<std::string> ShareLines(Communicator& communicator, bool found, cons
   return shared;
 }
 
-/// Whether the light that the ranks kept is of one solve: compares the domain's powers and rates, which each rank
-/// stores with its light.
+/// Whether the lights that the ranks kept come from the same solve: compares the powers and rates of the whole domain,
+/// which each rank stores with its light.
 bool IsOfOneSolve(Communicator& communicator, const KeptLight& kept)
 {
   std::vector<double> values(kept.firstScattered.begin(), kept.firstScattered.end());

@@ -18,8 +18,8 @@ void ShareFigures(Communicator& communicator, bool found, LightField& light);
 /// Sets `light.leftOut` on all ranks to that of the first rank that has voxels. Collective.
 void ShareLeftOut(const Domain& domain, LightField& light);
 
-/// Reason, in the same clause on all ranks, why a distributed solve cannot start from kept light; empty if it can. Each
-/// rank keeps the light of its block; if one rank cannot start from it, none does. Collective.
+/// Reason why a distributed solve cannot start from kept light, the same text on all ranks; empty if it can. Each rank
+/// keeps the light of its block; if one rank cannot start from it, none does. Collective.
 /// @param whyNot  the reason on this rank, from WhyNotBegun
 std::string WhyNotBegunOnAny(Communicator& communicator, const KeptLight& kept, const std::string& whyNot);
 }

@@ -93,7 +93,7 @@ SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here)
     return all;
   }
   const std::size_t ranks = domain.Partition().blocks.size(), own = domain.Rank();
-  std::vector<double> colours(3 * ranks, 0.0); // one colour per rank; (0, 0, 0) for a rank without light
+  std::vector<double> colours(3 * ranks, 0.0); // colour of the light of each rank, r g b; (0, 0, 0): none
   if (!here.colour.IsBlack())
   {
     const Rgb relative = here.colour.Relative();
