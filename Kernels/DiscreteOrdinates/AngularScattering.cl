@@ -1,5 +1,6 @@
 // Scattering of radiance between the directions in each voxel, by N terms or by the full matrix (numerics.md, Eqs.
-// (D7), (D8)). Radiance is [group][stride][8 directions]. The host defines
+// (D7), (D8)). Radiance is [group of eight directions][voxel][8 directions]; successive groups are `stride` voxels
+// apart, which is at least the number of voxels. The host defines
 //
 //   REAL_WIDTH  number of moments in a vector
 //   GROUPS      number of groups of eight directions
@@ -25,8 +26,8 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
-// Computes the moments of eight voxels from their radiance, [voxel][MOMENTS]. Sums over directions are sums of partial
-// sums by group, so that moments of uniform light round equally.
+// Computes the angular moments of eight voxels, [voxel][MOMENTS], from their radiance. Adds the directions group by
+// group, and then the groups, so that rounding errors are the same in all voxels of equal radiance.
 //   weights  [direction][MOMENTS]: weight of each direction in each moment, sr
 inline void find_moments(
   const __global float* radiance, const __global float* weights, ulong stride, ulong first, __global float* moments)
@@ -55,7 +56,8 @@ inline void find_moments(
   }
 }
 
-// Writes the fluence of the order, and adds moments of eight voxels to fluence and net flux.
+// Writes the fluence of this scattering order of eight voxels to `order`, and adds their fluence and net flux to the
+// sums over all orders, `fluence` and `flux`.
 inline void add_light(const __global float* moments, ulong voxels, ulong first, __global float* order,
   __global float* fluence, __global float* flux)
 {
@@ -74,8 +76,8 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
   }
 }
 
-// Macros for eight voxels b by eight directions. With POSITIVE, POSITIVE_PART sets negative sources to 0, and
-// NOTE_SCALE writes the factor by which positive sources must be multiplied to conserve power.
+// Macros for the source of voxel b (0 to 7) in eight directions. With POSITIVE, POSITIVE_PART sets negative sources to
+// 0, and NOTE_SCALE writes the factor by which the remaining sources must be multiplied to conserve power.
 #define POSITIVE_PART(b)                                            \
   source##b = POSITIVE ? fmax(source##b, (float8)0.0f) : source##b; \
   power##b = multiply_add8(angle, source##b, power##b);
@@ -98,11 +100,12 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
 
 // Scatters by the terms of the phase function. One work-item per BLOCK voxels.
 //   radiance  W / (length^2 sr), padded by BLOCK voxels
-//   source    W / (length^3 sr), may be the array `radiance`; with POSITIVE to be multiplied by `scale` of the voxel
-// moments   scratch, [voxel][MOMENTS], padded by BLOCK voxels
-// spread    [group][term][8]: factor of each term in the source of each direction
+//   source    scattering source, W / (length^3 sr); may be the array `radiance`. With POSITIVE it must still be
+//             multiplied by the voxel's value in `scale`
+//   moments   scratch, [voxel][MOMENTS], padded by BLOCK voxels
+//   spread    [group][term][8]: factor of each term in the source of each direction
 //   angles    [group][8]: weights of the directions, sr
-// order     fluence of this order, W / length^2; `fluence` and `flux` are added to
+//   order     fluence of this scattering order, W / length^2; it is also added to `fluence`, and net flux to `flux`
 __kernel void scatter_terms(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* spread, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
@@ -165,7 +168,7 @@ __kernel void scatter_matrix(const __global float* radiance, __global float* sou
 // Scatters into one direction by the full matrix, as published without factorisation (Gong et al., Eq. (13)). One
 // work-item per voxel.
 //   row          [incident direction]: phase function into the outgoing direction, times the weight of the incident one
-//   group, lane  of the outgoing direction
+//   group, lane  indices of the outgoing direction: its group, and its place among the eight of the group
 __kernel void scatter_along(const __global float* radiance, __global float* source, const __global float* row,
   const __global float* sigma_s, int group, int lane, ulong stride)
 {
@@ -178,7 +181,7 @@ __kernel void scatter_along(const __global float* radiance, __global float* sour
   source[(group * stride + i) * 8 + lane] = sigma_s[i] * sum8(sum);
 }
 
-// Adds fluence and net flux of a radiance, without scattering.
+// Adds the fluence and net flux of `radiance` to `fluence` and `flux`, without scattering.
 __kernel void gather_light(const __global float* radiance, __global float* moments, const __global float* weights,
   __global float* order, __global float* fluence, __global float* flux, ScatteringVoxels at)
 {

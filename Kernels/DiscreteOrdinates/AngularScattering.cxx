@@ -11,9 +11,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t Block = 8;        ///< voxels per work-item
-constexpr std::size_t GroupSize = 64;   ///< work-items per work-group
-constexpr std::size_t FirstBatch = 512; ///< work-items of the first launch, before the run time has been measured
+constexpr std::size_t Block = 8;      ///< voxels per work-item
+constexpr std::size_t GroupSize = 64; ///< work-items per work-group
+/// work-items of the first launch; later launches are sized by the run time measured
+constexpr std::size_t FirstBatch = 512;
 
 int RowsOf(int terms, bool netFlux, int width)
 {
@@ -82,8 +83,9 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
   this->LoadPhase(groups, phase);
 }
 
-/// Loads the scattering factors into each outgoing direction: of the terms; or the matrix, [group][direction][lane];
-/// or, for PairSums::Passes, the rows of the matrix.
+/// Loads the factors of the scattering sum into each outgoing direction: for PairSums::Terms those of the terms,
+/// [group][term][lane]; for PairSums::Matrix the matrix, [group][incident direction][lane]; for PairSums::Passes its
+/// rows, one array each.
 void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
 {
   const auto ofMatrix = [&](int to, std::size_t from) {

@@ -23,8 +23,8 @@ enum class PairSums
 struct OrdinatesLight
 {
   Buffer<float> order;   ///< fluence of the last order, W / length^2
-  Buffer<float> fluence; ///< fluence of all orders, W / length^2; added to
-  Buffer<float> flux;    ///< net flux of all orders, W / length^2, [x, y, z][voxel]; added to; empty: not requested
+  Buffer<float> fluence; ///< fluence summed over all scattering orders, W / length^2
+  Buffer<float> flux;    ///< net flux summed over all orders, W / length^2, [x, y, z][voxel]; empty: not requested
 };
 
 /// Scattering operator of discrete ordinates: computes the source in all directions from the radiance along all
@@ -32,13 +32,13 @@ struct OrdinatesLight
 class AngularScattering
 {
 public:
-  /// @param positive  whether negative sources, which N terms can produce, are set to 0, and positive ones scaled to
-  ///   conserve power (Eq. (D8)); false: sources are not changed
+  /// @param positive  true: negative sources, which N terms can produce, are set to 0, and the positive ones of the
+  ///   voxel are scaled to conserve power (Eq. (D8)); false: sources are not changed
   AngularScattering(Device& device, const OrdinateGroups& groups, const SeparablePhaseFunction& phase, PairSums sums,
     bool positive, bool netFlux, std::size_t voxels);
 
-  /// Number of floats of a radiance or source array: all voxels and directions, plus padding that vector loads may
-  /// read.
+  /// Number of floats of a radiance or source array: all voxels and directions, plus padding for vector loads that read
+  /// beyond the last voxel.
   static std::size_t Floats(const OrdinateGroups& groups, std::size_t voxels);
   /// Bytes of device memory that an instance needs.
   static std::size_t Bytes(const OrdinateGroups& groups, int terms, PairSums sums, std::size_t voxels);

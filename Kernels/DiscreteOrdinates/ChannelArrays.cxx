@@ -46,8 +46,10 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   }
 }
 
-/// Emission of a voxel, W / (length^3 sr).
-/// @param emptyVoxels  true: only if the voxel is empty and OfVacuum transports its emission; false: only if not
+/// Emission of a voxel by one of the two methods of transport, W / (length^3 sr).
+/// @param emptyVoxels  true: the emission that is transported along the separate quadrature OfVacuum, i.e. that of
+///   empty voxels if OfVacuum is set; false: all other emission. 0 if the voxel's emission is transported by the other
+///   method
 float ChannelArrays::EmissionOf(std::size_t voxel, bool emptyVoxels) const
 {
   const double sigma_t = static_cast<double>(this->Absorption[voxel]) + this->Scattering[voxel];
@@ -93,7 +95,8 @@ Buffer<float> ChannelArrays::Load(const char* what, double absorbed, double scat
 
 std::size_t ChannelArrays::Bytes(const Grid& grid, bool netFlux)
 {
-  const std::size_t ofVoxels = grid.VoxelCount() * (9 + (netFlux ? 3 : 0)); // three of the nine are for lamps
+  // 9 floats per voxel, of which 3 are for lamps
+  const std::size_t ofVoxels = grid.VoxelCount() * (9 + (netFlux ? 3 : 0));
   return sizeof(float) * (ofVoxels + 2 * BoxFaceCellCount(grid));
 }
 
@@ -136,9 +139,9 @@ void ChannelArrays::AddLamps(
   }
 }
 
-/// Adds the uncollided light of the emission of empty voxels, and its first-collision source for the mean direction in
-/// each voxel.
-/// @param volume  with only path integrals in its deposit, which are 0 on entry
+/// Adds the uncollided light that empty voxels emit, and its first-collision source, which is computed from the mean
+/// direction of this light in each voxel.
+/// @param volume  its deposit has no arrays but the path integrals, which are 0 on entry
 SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScattering& scattering,
   const Buffer<float>& sigma_s, const LampTarget& target, const Monitor& monitor) const
 {
@@ -180,7 +183,7 @@ std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
   return sweep;
 }
 
-/// Adds the uncollided light of another solver, and its first-collision source.
+/// Adds the uncollided light computed by another solver, and its first-collision source.
 void ChannelArrays::AddGiven(
   const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source, OrdinatesResult& result)
 {
@@ -202,7 +205,7 @@ void ChannelArrays::AddGiven(
   const Domain& domain = this->Scene.domain;
   if (!IsFirstThatHas(domain.Comm(), domain.Partition()))
   {
-    image.escaped = {}; // counted on one rank only: every rank holds the sum over ranks
+    image.escaped = {}; // escaped powers are sums over ranks, which every rank holds: only one rank counts them
   }
   const SweepTally tally = TallyOf(image, this->TheMedium, this->Scene.channel, 1);
   this->CountLamp(SumOf(domain, tally), result.ledger);
@@ -254,7 +257,7 @@ void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double facto
   cl::Kernel add = this->TheDevice.Kernel("add_even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
   With(add, source, even, cl_ulong(OrdinateStride(this->Voxels)));
   Launch(this->TheDevice, add, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
-  this->TheDevice.Finish(); // before the values on the host are destroyed
+  this->TheDevice.Finish(); // the kernel reads `even`, which is destroyed on return
 }
 
 void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const
@@ -271,7 +274,7 @@ void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger
     cl::Kernel even = this->TheDevice.Kernel("even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
     With(even, source, values, cl_ulong(OrdinateStride(this->Voxels)));
     Launch(this->TheDevice, even, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
-    this->TheDevice.Finish(); // before the values on the host are destroyed
+    this->TheDevice.Finish(); // the kernel reads `values`, which is destroyed on return
   });
   ledger.Emit(0, 4.0 * Pi * this->Scene.domain.Sum(sum * this->Layout.grid.VoxelVolume()));
 }

@@ -16,9 +16,9 @@
 
 namespace tyndall
 {
-/// Arrays of one channel on a device, and the operations that both schemes share: uncollided light of lamps, and
-/// powers. The forward peak of the phase function is removed from sigma_s and sigma_t (numerics.md, Eq. (D6)), except
-/// in the transport of uncollided light of lamps, which is exact.
+/// Arrays of one channel on a device, and the operations that the published and the conservative scheme share:
+/// uncollided light of lamps, and powers. The forward peak of the phase function is removed from sigma_s and sigma_t
+/// (numerics.md, Eq. (D6)), except in the transport of uncollided light of lamps, which is exact.
 class ChannelArrays
 {
 public:
@@ -38,20 +38,23 @@ public:
 
   /// Adds the uncollided light of all lamps, of empty voxels and of another solver to fluence and powers, and its
   /// first-collision source to `source`. Collective.
-  /// @param source  of all directions, W / (length^3 sr), relative to Scale
+  /// @param source  source of all directions, W / (length^3 sr). On entry a voxel's source is its value here times
+  ///   Scale; on return, if light was added, it is the value itself, and Scale is 1
   void AddLamps(
     const Buffer<float>& source, const std::array<bool, 3>& periodic, OrdinatesResult& result, const Monitor& monitor);
-  /// Power of lamp light that wraps around periodic axes without end, W.
+  /// Power of lamp light that wraps around periodic axes without end, because nothing attenuates it, W.
   double Stranded() const { return this->GoingRound; }
 
-  /// Power that the medium absorbs from a fluence, and power that it scatters, W.
+  /// Power absorbed and power scattered by the medium at a given fluence, W.
   struct Powers
   {
     double absorbed = 0.0, scattered = 0.0;
   };
-  /// Collective. @param lamps whether the fluence is that of uncollided light of lamps
+  /// Collective.
+  /// @param lamps  true: `values` is fluence of uncollided light of lamps, all of whose scattering counts; false: other
+  ///   fluence, whose scattering into the forward peak does not count as scattering
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
-  /// Power scattered from the absolute difference of two fluences, W. Collective.
+  /// Scattered power of the absolute difference of two fluences, W; `others` empty: 0. Collective.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
   /// Writes the isotropic emission of the voxels to `source`, W / (length^3 sr). Collective if any voxel emits.
   /// @param ledger  receives the power of all emission
@@ -66,16 +69,18 @@ public:
   const std::size_t Voxels;
   const VolumeLayout Layout;
   Buffer<float> SigmaT, SigmaS; ///< coefficients without the forward peak, 1/length
-  Buffer<float> Scale;          ///< factor of the sources of each voxel, initially 1
-  Buffer<float> Direct;         ///< uncollided fluence, W / length^2
+  /// factor by which the sources of all directions of a voxel are to be multiplied, initially 1
+  Buffer<float> Scale;
+  Buffer<float> Direct; ///< uncollided fluence, W / length^2
   OrdinatesLight Light;
-  const std::unique_ptr<FaceLight> Faces; ///< light by cell of the box faces; null: no face reflects
+  /// outgoing power and reflected radiance by cell of the box faces; null: no face reflects
+  const std::unique_ptr<FaceLight> Faces;
 
 private:
   double ScatteredAway() const
   {
     return 1.0 - this->Angles.phase.Peak();
-  } ///< scattered fraction without the forward peak
+  } ///< fraction of the scattered power that is not scattered into the forward peak
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
   std::unique_ptr<SweepOperator> SweepOf(
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request);
@@ -91,7 +96,7 @@ private:
   const OrdinatesAngles& Angles;
   std::vector<float> Absorption, Scattering;
   bool AnyEmission = false, AnyScattering = false;
-  /// Quadrature for the emission of empty voxels; null: they do not emit, or EmitEvenly() emits it.
+  /// Quadrature for the emission of empty voxels; null: no empty voxel emits, or EmitEvenly() adds their emission.
   std::unique_ptr<const SweptDirections> OfVacuum;
   double GoingRound = 0.0;
   SweepWorkspace Workspace;

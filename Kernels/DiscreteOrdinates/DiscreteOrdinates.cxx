@@ -21,26 +21,31 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SlowestRate = 1.0 - 1e-6; ///< largest ratio of successive orders that is passed to the next solve
+/// largest ratio of the powers of successive scattering orders that is passed to the next solve
+constexpr double SlowestRate = 1.0 - 1e-6;
 
-/// First guesses of the channels from the light of the previous solve (numerics.md, section 6.4). Each rank keeps the
-/// light of its block; either all ranks use their kept light, or none does.
+/// Initial guesses: for each channel the scattered fluence of the previous solve, from which this solve may start
+/// (numerics.md, section 6.4). Each rank keeps the light of its block; either all ranks use their kept light, or none
+/// does.
 class OrdinatesWarmStart
 {
 public:
-  /// @param kept  null: no first guess, nothing is kept; `kept` and `settings` must outlive this object
+  /// @param kept  light of the previous solve; null: there is no initial guess, and no light is kept for the next
+  ///   solve. `kept` and `settings` must outlive this object
   OrdinatesWarmStart(const KeptLight* kept, const OrdinatesSettings& settings)
     : Kept(kept)
     , Settings(settings)
   {
   }
 
-  /// Makes the first guess of a channel. Collective.
+  /// Returns the initial guess of a channel; OrdinatesGuess::begins is false if the solve cannot start from it.
+  /// Collective.
   /// @param channels  number of channels of the solve
   OrdinatesGuess Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles);
   /// Stores the light of a channel for the next solve.
   void Take(const OrdinatesResult& found, int channel);
-  /// Replaces the kept light, and writes to left_out how the solve began. Does nothing if no light is kept.
+  /// Replaces the kept light by that of this solve, and writes to left_out whether the solve started from an initial
+  /// guess. Does nothing if no light is kept.
   void Finish(LightField& light, KeptLight* kept);
 
 private:
@@ -50,7 +55,9 @@ private:
   const KeptLight* Kept;
   const OrdinatesSettings& Settings;
   KeptLight Left;
-  std::string WhyNot; ///< reason why a channel does not use its guess, of the first such channel; empty: all use it
+  /// reason why a channel could not start from its initial guess, of the first such channel; empty: all channels start
+  /// from theirs
+  std::string WhyNot;
 };
 
 OrdinatesGuess OrdinatesWarmStart::Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles)
@@ -84,7 +91,8 @@ std::string OrdinatesWarmStart::WhyNotOf(const OrdinatesAngles& angles) const
   return WhyNotBegun(*this->Kept, this->Left.kind, this->Settings.maximumOrders);
 }
 
-/// First guess of one channel.
+/// Initial guess of one channel from the kept light.
+/// @param begins  whether the solve may start from it
 OrdinatesGuess OrdinatesWarmStart::GuessOf(int channel, bool begins) const
 {
   OrdinatesGuess guess;
@@ -119,7 +127,7 @@ void OrdinatesWarmStart::Finish(LightField& light, KeptLight* kept)
   Keep(std::move(this->Left), this->WhyNot.empty(), light, *kept);
 }
 
-/// A scene in the units of the solver, with the channels that are solved.
+/// A scene in the units in which the solver computes (PropagationProblem), and the number of channels that are solved.
 struct SolvedScene
 {
   const Domain& domain;
@@ -157,7 +165,8 @@ std::vector<std::string> Words(
   return words;
 }
 
-/// Solves all channels in sequence. @return light in the units of `scene`. Collective.
+/// Solves for the light of all channels, one after the other. Collective.
+/// @return light in the units of `scene`
 LightField SolveChannels(
   Device& device, const SolvedScene& scene, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
@@ -221,8 +230,8 @@ void CheckOrdinates(const Domain& domain, const Medium& medium, const Illuminati
     { 1.0 * static_cast<int>(settings.scattering), 1.0 * settings.spiralDirections, 1.0 * settings.terms });
 }
 
-/// Uncollided light given by another solver. If any rank has such light, the result on an empty block refers to an
-/// array that is not read, so that all ranks take the same branches.
+/// Uncollided light given by another solver. If any rank has such light, a rank with an empty block gets an image of
+/// one value that is never read, so that all ranks take part in the same collective calls.
 UncollidedImage UncollidedKnown(const Domain& domain, const UncollidedImage& own)
 {
   static const float nothing = 0.0f;

@@ -1,10 +1,12 @@
 // First-collision source of uncollided light of a lamp, by the phase function between the lamp's ray and each direction
-// (numerics.md, Eq. (D12)). Radiance is [group][stride][8 directions]. The host defines
+// (numerics.md, Eq. (D12)). Radiance is [group of eight directions][voxel][8 directions]; successive groups are
+// `stride` voxels apart. The host defines
 //
 //   GROUPS  number of groups of eight directions
-//   TABLE   values of the phase function at equidistant angles from 0 to pi
-//   WAYS    1: each voxel has a mean direction, whose length is the fraction of the light along it;
-//           0: rays of a lamp
+//   TABLE   number of angles, equidistant from 0 to pi, at which the phase function is tabulated
+//   WAYS    1: `ways` gives the mean direction of the light in each voxel; the length of this vector is the fraction of
+//              the light along it, and the rest is isotropic;
+//           0: light has the direction of the lamp's ray through the centre of the voxel
 #include "DiscreteOrdinates/OrdinatesShared.h"
 
 #define MOST_TILT 0.98f // largest |t| in Eq. (D12); equal to MostTilt in LampScattering.cxx
@@ -58,7 +60,8 @@ inline float3 way_of(const LampInRays* lamp, const __global float* ways, ulong i
 
 // Adds uncollided light to fluence and net flux. One work-item per voxel.
 //   path     path integrals of the lamp, W length
-//   direct   uncollided fluence, W / length^2, added to, as are `fluence` and, if has_flux, `flux`, [x, y, z][voxel]
+//   direct   sum of the uncollided fluence of all lamps, W / length^2. The lamp's fluence is added to this array and to
+//            `fluence`; if has_flux, its net flux to `flux`, [x, y, z][voxel]
 __kernel void add_lamp(const __global float* path, __global float* fluence, __global float* direct,
   __global float* flux, int has_flux, LampInRays lamp, const __global float* ways)
 {
@@ -77,8 +80,8 @@ __kernel void add_lamp(const __global float* path, __global float* fluence, __gl
 
 // Adds the first-collision source of parallel light, which scatters into each direction by the same factor in every
 // voxel.
-//   source  W / (length^3 sr); relative to scale on entry, absolute on return
-//   parts   [group][8], 1/sr: LampScattering::PartsAlong
+//   source  W / (length^3 sr). On entry a voxel's source is its value here times `scale`; on return, the value itself
+//   parts   [group][8], 1/sr: fraction of the scattered light per solid angle (LampScattering::PartsAlong)
 __kernel void scatter_parallel(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* parts, ulong stride, float per_volume)
 {
@@ -89,12 +92,12 @@ __kernel void scatter_parallel(__global float* source, const __global float* sca
 
 // Adds the first-collision source of light whose direction varies by voxel: of a lamp with a position or, with WAYS, of
 // given mean directions.
-//   source  W / (length^3 sr); relative to scale on entry, absolute on return
+//   source  W / (length^3 sr). On entry a voxel's source is its value here times `scale`; on return, the value itself
 //   omegas  [group][x, y, z, solid angle][8]
 //   table   phase function at equidistant angles, 1/sr
 //
-// The source is corrected by the factor 1 + t cosine, normalised over directions, so that its power is exact and, as
-// far as no direction becomes negative, its mean cosine (numerics.md, Eq. (D12)).
+// The phase function is multiplied by 1 + t cosine and normalised over directions, so that the scattered power is
+// exact, and the mean cosine too, unless this requires |t| > MOST_TILT (numerics.md, Eq. (D12)).
 __kernel void scatter_from_place(__global float* source, const __global float* scale, const __global float* path,
   const __global float* sigma_s, const __global float* omegas, const __global float* table, ulong stride,
   LampInRays lamp, const __global float* ways)
@@ -117,8 +120,8 @@ __kernel void scatter_from_place(__global float* source, const __global float* s
   const float sum = sum8(sums);
   const float mean = sum8(firsts) / sum, square = sum8(seconds) / sum;
   const float lacking = lamp.meanCosine - mean, slope = square - lamp.meanCosine * mean;
-  // The mean cosine of a peak that lies in a single direction cannot be corrected. |t| < 1 keeps the factor positive,
-  // so that the sum over directions does not cancel.
+  // If the whole peak lies within one direction, no t can change its mean cosine, and t is set to its limit. |t| < 1
+  // keeps the factor positive, so that terms of the sum over directions do not cancel.
   const float tilt = slope > 1e-6f ? clamp(lacking / slope, -MOST_TILT, MOST_TILT) : copysign(MOST_TILT, lacking);
   float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
   power *= directed;

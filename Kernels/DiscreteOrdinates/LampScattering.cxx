@@ -20,12 +20,12 @@ namespace tyndall
 namespace
 {
 constexpr double MostTilt = 0.98; ///< largest |t| in Eq. (D12); equal to MOST_TILT in LampScattering.cl
-constexpr double Least = 1e-9;    ///< smallest value of the phase function, 1/sr
+constexpr double Least = 1e-9;    ///< smallest value of the tabulated phase function, 1/sr
 constexpr int TableSize = 1024;
 constexpr int MeansDegree = 256; ///< highest degree of Legendre moments; higher ones vanish in the mean over a cell
 
-/// Phase function averaged over the cell of a direction, 1/sr, at equidistant angles from 0 to pi. All values are
-/// positive, so that normalisation does not divide by 0 for narrow peaks.
+/// Phase function averaged over the solid angle of one direction, 1/sr, at equidistant angles from 0 to pi. All values
+/// are positive, so that normalisation does not divide by 0 for narrow peaks.
 std::vector<float> MeansByAngle(const PhaseFunction& function, double solidAngle)
 {
   const std::vector<double> moments = function.Moments(MeansDegree), cap = CapMoments(solidAngle, MeansDegree);
@@ -69,8 +69,9 @@ LampScattering::LampScattering(
   this->Table = Buffer<float>(device, this->ByAngle, "the phase function");
 }
 
-/// Phase function between a ray and each direction, 1/sr, [group][lane], corrected so that its sum over directions is 1
-/// and, as far as no direction becomes negative, its mean cosine is exact (part_i of numerics.md, Eq. (D12)).
+/// Phase function between a ray and each direction, 1/sr, [group][lane], corrected so that its integral over the
+/// directions is 1 and its mean cosine is exact, as far as that keeps all values positive (part_i of numerics.md, Eq.
+/// (D12)).
 std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) const
 {
   const auto cosine = [&](int g, int lane) {
@@ -155,7 +156,7 @@ void LampScattering::Add(
     With(scatter, target.source, target.scale, path, sigma_s, parts, stride, info.perVolume);
     const cl::NDRange all(this->TheGrid.VoxelCount(), this->Groups.Count());
     Launch(this->TheDevice, scatter, all);
-    this->TheDevice.Finish(); // before the parts on the host are destroyed
+    this->TheDevice.Finish(); // the kernel reads `parts`, which is destroyed at the end of this block
   }
   else
   {

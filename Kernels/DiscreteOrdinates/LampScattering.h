@@ -15,17 +15,17 @@ namespace tyndall
 /// Arrays that receive the first-collision source and the uncollided light of a lamp.
 struct LampTarget
 {
-  /// Source of all directions, W / (length^3 sr), added to. On entry the source of a voxel is its value here times
-  /// `scale`.
+  /// Source of all directions, W / (length^3 sr), to which the first-collision source is added. On entry the source of
+  /// a voxel is its value here times `scale`.
   const Buffer<float>& source;
   Buffer<float>& scale;        ///< factor of `source` by voxel; on return 1, because `source` has been multiplied by it
-  const Buffer<float>& direct; ///< uncollided fluence, W / length^2; added to
-  const OrdinatesLight& light; ///< its fluence and net flux are added to
+  const Buffer<float>& direct; ///< uncollided fluence, W / length^2; the lamp's is added to it
+  const OrdinatesLight& light; ///< the lamp's fluence and net flux are added to its sums over orders
 };
 
 /// First-collision source of uncollided light: proportional to the phase function between the ray and each direction,
-/// averaged over the cell of the direction (numerics.md, Eq. (D12)). Power and mean cosine are exact, and no source is
-/// negative, regardless of the number of terms for later scatterings.
+/// averaged over the solid angle of the direction (numerics.md, Eq. (D12)). Scattered power and its mean cosine are
+/// exact, and no source is negative, however few terms the phase function has for later scatterings.
 ///
 /// Rays start at the position of the lamp; for a rectangle at its centre, which is inaccurate close to it. In the voxel
 /// that contains the lamp, first scattering is isotropic.
@@ -35,12 +35,12 @@ public:
   /// @param groups  must outlive this
   LampScattering(Device& device, const Grid& grid, const OrdinateGroups& groups, const PhaseFunction& function);
 
-  /// Adds uncollided light and first-collision source of a lamp.
+  /// Adds the uncollided light and the first-collision source of a lamp to `target`.
   /// @param path  path integrals of the lamp's light, W length
   void Add(const Light& lamp, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
-  /// Adds uncollided light that has a mean direction in each voxel, and its first-collision source. The length of that
-  /// vector is the fraction of the light along it; the rest is isotropic.
-  /// @param ways  mean directions, [voxel][x, y, z]
+  /// Adds uncollided light that has a mean direction in each voxel, and its first-collision source, to `target`.
+  /// @param ways  mean directions, [voxel][x, y, z]; the length of a vector, 0 to 1, is the fraction of the light along
+  ///   it, and the rest is isotropic
   void AddAlong(
     const Buffer<float>& ways, const Buffer<float>& path, const Buffer<float>& sigma_s, const LampTarget& target) const;
 

@@ -11,8 +11,9 @@ namespace tyndall
 {
 constexpr int OrdinateLanes = 8; ///< number of directions in a group, which kernels process as one vector
 
-/// Stride between the radiance arrays of successive groups, in voxels: at least the number of voxels, and such that the
-/// same voxel of different groups does not map to the same few cache lines (a power of two is ten times slower).
+/// Number of voxels from the radiance of one group of directions to that of the next: at least the number of voxels of
+/// the grid, and such that the same voxel of different groups does not map to the same few cache lines (a power of two
+/// is ten times slower).
 constexpr std::size_t OrdinateStride(std::size_t voxels)
 {
   return (voxels + 127) / 128 * 128 + 8;
@@ -21,7 +22,7 @@ constexpr std::size_t OrdinateStride(std::size_t voxels)
 /// Eight directions of one octant, whose sweeps visit the voxels in the same order.
 struct OrdinateGroup
 {
-  std::array<bool, 3> up = {}; ///< whether the directions are positive along each axis
+  std::array<bool, 3> up = {}; ///< whether the components of the directions along x, y and z are positive
   /// Indices of the directions; the last one is repeated to fill all lanes.
   std::array<int, OrdinateLanes> direction = {};
   int count = 0; ///< number of distinct directions

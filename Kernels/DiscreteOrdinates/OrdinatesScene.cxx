@@ -70,7 +70,8 @@ void OrdinatesRecord::Add(double goesOn, double more, const EnergyLedger& ledger
 
 namespace
 {
-/// Directions per cube face assumed in the search for peaks of the environment, if directions are on a spiral.
+/// Directions per cube face of the quadrature with which peaks of the environment are found, if the solve itself uses
+/// directions on a spiral.
 constexpr int FacesPeaksAreSoughtFor = 25;
 
 void TakePowers(LightField& light, const EnergyLedger& ledger, int channel)
@@ -87,8 +88,8 @@ void TakePowers(LightField& light, const EnergyLedger& ledger, int channel)
   }
 }
 
-/// Adds the convergence rows of a channel to the sum over channels. If a channel has fewer rows, its last one is
-/// repeated.
+/// Adds the rows of the convergence table of one channel to those of all channels. If a channel has fewer rows than
+/// others, its last one is repeated.
 void AddRows(std::vector<ConvergenceRow>& sum, const std::vector<ConvergenceRow>& rows, bool first)
 {
   const ConvergenceRow last = sum.empty() ? ConvergenceRow() : sum.back();

@@ -25,7 +25,8 @@
 
 namespace tyndall
 {
-/// First guess of one channel: scattered light of the previous solve (KeptLight.h).
+/// Initial guess of one channel: the scattered fluence of the previous solve (KeptLight.h), from which the iteration
+/// starts.
 struct OrdinatesGuess
 {
   bool keeps = false;        ///< whether the light of this solve is kept for the next
@@ -35,7 +36,7 @@ struct OrdinatesGuess
   double rate = 0.0;
 };
 
-/// One channel of a scene, in the units of the solver.
+/// One channel of a scene, in the units in which the solver computes (PropagationProblem).
 struct OrdinatesScene
 {
   const Domain& domain;
@@ -52,8 +53,8 @@ struct OrdinatesScene
 /// Sums a tally over all ranks. Collective.
 SweepTally SumOf(const Domain& domain, const SweepTally& own);
 
-/// Directions of a solve, and the phase function between them: its separable form for later orders, and the function
-/// itself for first scattering.
+/// Directions of a solve, and the phase function between them: its separable form for second and later scattering
+/// orders, and the function itself for first scattering.
 struct OrdinatesAngles
 {
   OrdinateGroups groups;
@@ -71,27 +72,32 @@ struct OrdinatesResult
   std::vector<float> facePower;
   std::vector<ConvergenceRow> convergence;
   bool diverged = false;
-  std::vector<float> left;     ///< scattered fluence, W / length^2, to keep for the next solve; empty: not requested
-  double firstScattered = 0.0; ///< first-scattered power, W, by which the next solve scales its guess
-  double rate = 0.0;           ///< ratio of the powers of the last two orders
+  /// scattered fluence, W / length^2, that the next solve may use as its initial guess; empty: not requested
+  std::vector<float> left;
+  /// power scattered by first collisions, W; the next solve multiplies its initial guess by the ratio of its own such
+  /// power to this one
+  double firstScattered = 0.0;
+  double rate = 0.0; ///< ratio of the powers of the last two scattering orders
 };
 
-/// Makes the light by cell of the box faces for the directions of a solve: the albedo times the outgoing power of a
-/// cell is incident in the next sweep, as equal radiance along all incident directions (numerics.md, Eq. (D14)). Null
-/// if no face reflects.
+/// Makes the arrays of outgoing and reflected light by cell of the box faces for the directions of a solve: the albedo
+/// times the outgoing power of a cell is incident in the next sweep, as equal radiance along all incident directions
+/// (numerics.md, Eq. (D14)). Null if no face reflects.
 std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& scene, const OrdinateGroups& groups);
 
 /// Arrays of `faces` that a sweep adds to and reads; none if `faces` is null.
 std::optional<LightOfCells> CellsOf(const FaceLight* faces);
 
-/// Rows of the convergence table of one channel, with the remainder estimated from the ratio of successive orders.
+/// Rows of the convergence table of one channel. The sum of the orders not computed is estimated from the ratio of
+/// successive orders.
 class OrdinatesRecord
 {
 public:
-  /// Declares the next order the first correction to a first guess (RestOfOrders::BeginWarm).
+  /// Declares that the next order is the first correction to an initial guess, and sets the ratio of successive orders
+  /// that the previous solve found (RestOfOrders::BeginWarm).
   void BeginWarm(double rate) { this->Rest.BeginWarm(rate); }
-  /// @param goesOn  power that the next order carries, W (published scheme: change of fluence); after a first guess its
-  ///   absolute value summed over voxels, because orders may be negative
+  /// @param goesOn  power still in transport, which the next order carries, W (published scheme: change of fluence);
+  ///   after an initial guess, whose corrections may be negative, the sum of its absolute values over voxels
   void Add(double goesOn, const EnergyLedger& ledger) { this->Add(goesOn, goesOn, ledger); }
   /// @param more  power by which the sum of all orders increases, W
   void Add(double goesOn, double more, const EnergyLedger& ledger);
@@ -120,12 +126,12 @@ struct FarLight
 /// @param perFace  directions per cube face of the solve
 FarLight FarLightOf(const Illumination& shining, int perFace, const OrdinatesSettings& settings);
 
-/// Phase function of a channel. If its mean cosine varies by voxel, it has the mean cosine weighted by sigma_s.
-/// Collective.
+/// Phase function of a channel. If its mean cosine varies by voxel, the result has the mean over the voxels, weighted
+/// by sigma_s. Collective.
 PhaseFunction FunctionOf(const Domain& domain, const Medium& medium, int channel);
 
-/// Warnings about properties of the medium that make the light inaccurate.
-/// @param thickestStep  largest ThickestStep of all channels
+/// Warnings about properties of the medium or settings that make the light inaccurate.
+/// @param thickestStep  largest ThickestStep (sigma_t times the length of an explicit step) of all channels
 std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thickestStep, bool cosineVaries);
 
 /// Albedo of each face, with the value of one channel in all three components.
@@ -149,7 +155,8 @@ std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int
 /// Copies the result of one channel to `light`.
 void TakeChannel(LightField& light, const OrdinatesResult& found, int channel);
 
-/// Sets the quantities of `light` that are derived from the fluence, in the units of the solver.
+/// Sets in-scattered radiance, half-range flux and the name of the device in `light`, from its fluence and the
+/// directions; `light` is in the units of the solver.
 void DescribeLight(LightField& light, const Device& device, const FarLight& far);
 
 /// Checks convergence and, except for the published scheme, the energy balance of `light` (Convergence.h). Collective.

@@ -36,13 +36,16 @@ struct OrdinatesSettings
 {
   OrdinatesScheme scheme = OrdinatesScheme::Conservative;
   OrdinatesScattering scattering = OrdinatesScattering::SphericalHarmonics;
-  int directionsPerFace = 25; ///< directions per cube face, a square number; more are used for slabs
-  /// Number of directions on a spiral, at least 16, in place of directionsPerFace; 0: not used.
+  /// directions per cube face, a square number; a plane-parallel slab may be solved with more
+  int directionsPerFace = 25;
+  /// Number of directions on a spiral over the unit sphere, at least 16, which replace those of directionsPerFace; 0:
+  /// directions of the cube.
   int spiralDirections = 0;
   int terms = 25;          ///< number of terms of the phase function, at most the number of directions
   int maximumOrders = 0;   ///< limit on scattering orders (published scheme: steps); 0: iterate to the tolerance
   double tolerance = 1e-4; ///< relative error of fluence at which iterations stop, > 0
-  /// Number of orders after which the remainder is extrapolated as a geometric series (conservative scheme); 0: off.
+  /// Number of orders after which the sum of all later orders is extrapolated as a geometric series (conservative
+  /// scheme); 0: no extrapolation.
   int seriesAfter = 0;
   std::array<bool, 3> periodic = { false, false, false }; ///< light wraps around these axes
   bool netFlux = false;                                   ///< whether to compute net_flux
@@ -70,6 +73,7 @@ OrdinatesSettings AtQuality(
 /// "Name = value" of each setting that a quality level may choose and that has an effect: directionsPerFace is not
 /// listed if spiralDirections is set, nor terms if scattering is by the full matrix.
 std::vector<std::string> Words(const OrdinatesSettings& settings);
-/// "Name = value" of the settings that were used for `light`: slabs are solved with more directions (UnvaryingAxes.h).
+/// "Name = value" of the settings that were used for `light`: plane-parallel slabs are solved with more directions
+/// (DirectionsPerFaceFor, GridAxes.h).
 std::vector<std::string> Words(OrdinatesSettings settings, const LightField& light);
 }

@@ -20,14 +20,15 @@ typedef struct
 {
   int size[3];
   int begin, end; ///< range of layers, counted in the order in which the directions of a group cross them
-  ulong stride;   ///< stride between groups of directions, voxels
+  /// number of voxels from the radiance of one group of directions to that of the next (OrdinateStride)
+  ulong stride;
 } SweptLayers;
 
 /// Range of voxels that a launch of a scattering kernel processes.
 typedef struct
 {
   ulong voxels; ///< number of voxels of the grid
-  ulong stride; ///< stride between groups of directions, voxels
+  ulong stride; ///< number of voxels from the radiance of one group of directions to that of the next (OrdinateStride)
   ulong begin;  ///< first voxel of the launch
 } ScatteringVoxels;
 SHARED_END

@@ -135,8 +135,8 @@ void PipelinedSweep::FindContacts(Octant& octant, const SweptFaces& faces) const
   octant.waiting.resize(octant.aroundFrom.size());
 }
 
-/// Boundary conditions of the block. Makes Cells, the light by cell of the block's faces, if faces of the whole grid
-/// reflect.
+/// Boundary conditions of the block. If faces of the whole grid reflect, makes Cells, the outgoing and reflected light
+/// by cell of the block's faces.
 SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
 {
   SweptFaces faces = ofWhole;
@@ -149,14 +149,14 @@ SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
   return faces;
 }
 
-/// Calls visit(index in the values of ReadFace() for the octant) for each group and cell of a contact, in the same
-/// order on both ranks.
-/// @param cells  layer of voxels of this block at the contact
+/// Calls visit(place) for each group of directions of an octant and each voxel of a contact with another block. `place`
+/// is the index of the radiance among the values of ReadFace() for the octant. The order is the same on both ranks.
 template <class Visit>
 void PipelinedSweep::ForFace(
   const Octant& octant, const BlockContact& contact, const VoxelBox& cells, const Visit& visit) const
 {
-  const int axis = AxisOf(contact.kind), u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2; // u runs along rows
+  // u: axis along which the voxels of a row of the face follow each other; v: axis along which rows do
+  const int axis = AxisOf(contact.kind), u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
   const VoxelBox& block = this->TheDomain.Own();
   const std::size_t rows = block.size[v], row = block.size[u];
   for (std::size_t g = 0; g < static_cast<std::size_t>(octant.groups); ++g)
@@ -215,8 +215,8 @@ void PipelinedSweep::TakeFrom(const Octant& octant, int number)
   });
 }
 
-/// Receives the radiance that wraps around periodic axes, after all octants have been swept, and keeps it for the next
-/// sweep.
+/// Receives the radiance that wraps around periodic axes, after all octants have been swept, and stores it in `waiting`
+/// for the next sweep.
 void PipelinedSweep::TakeFromAround()
 {
   for (const int number : this->Order)

@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// Light by cell of the faces of this rank's block, exchanged with the light by cell of the faces of the whole grid,
-/// which all ranks hold.
+/// Outgoing power and reflected radiance by cell of the faces of this rank's block, exchanged with those by cell of the
+/// faces of the whole grid, which all ranks hold.
 class CellsOfBlock
 {
 public:
@@ -28,7 +28,7 @@ public:
   /// Copies the incident radiance from the cells of the whole grid to the cells of the block.
   void LetIn();
   /// Adds the outgoing power of the blocks of all ranks to the cells of the whole grid. Collective.
-  /// @param leave  adds outgoing power to Seen().out, which is zero before
+  /// @param leave  function that adds this block's outgoing power to Seen().out, which is zero when it is called
   void LetOut(const std::function<void()>& leave);
 
 private:
@@ -37,7 +37,7 @@ private:
   const LightOfCells& OfWhole;
   Buffer<float> Out, In;
   const LightOfCells OfBlock;
-  /// Pairs of indices of a cell: among the cells of the block, and of the whole grid.
+  /// Two indices of each cell of the block's faces: among the cells of the block, and among those of the whole grid.
   std::vector<std::array<std::size_t, 2>> Places;
 };
 
@@ -65,7 +65,7 @@ public:
 private:
   struct Octant
   {
-    ParallelBundles way; ///< direction of the octant, without rays
+    ParallelBundles way; ///< marching axis and signs of the octant; its list of rays is empty
     int first = 0, groups = 0;
     std::vector<BlockContact> senders, receivers;
     std::vector<BlockContact> aroundFrom, aroundTo; ///< contacts across the ends of periodic axes
@@ -85,7 +85,7 @@ private:
   Device& TheDevice;
   const Domain& TheDomain;
   const Grid TheGrid;
-  std::optional<CellsOfBlock> Cells; ///< set if faces reflect
+  std::optional<CellsOfBlock> Cells; ///< light by cell of the block's faces; set if faces reflect
   std::vector<Octant> Octants;
   std::vector<int> Order; ///< order in which this rank sweeps the octants
   UpwindSweep Sweep;

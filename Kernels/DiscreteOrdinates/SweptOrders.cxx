@@ -14,7 +14,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 10000;
-/// Largest ratio of successive orders in the extrapolated series, so that its sum is bounded.
+/// Limit on the ratio of successive orders with which the geometric series is extrapolated, so that its sum is bounded.
 constexpr double FastestSeries = 0.99;
 
 PairSums SumsOf(const OrdinatesSettings& settings)
@@ -118,7 +118,8 @@ private:
 
   bool IsWarm() const { return this->Scene.guess.begins; }
 
-  /// Warm start: adds the scattering source of the guess to the first-collision source (numerics.md, section 6.4).
+  /// Warm start: adds the scattering source of the initial guess (the kept scattered fluence, scaled to the
+  /// first-scattered power of this solve) to the first-collision source (numerics.md, section 6.4).
   void BeginWarm()
   {
     if (!this->IsWarm())
@@ -184,8 +185,8 @@ private:
     return this->Settings.seriesAfter > 0 && static_cast<int>(this->Record.All().size()) >= this->Settings.seriesAfter;
   }
 
-  /// Adds the orders that were not swept to the fluence: the last order, continued as a geometric series with the ratio
-  /// of the last two orders.
+  /// Adds the orders that were not swept to the fluence: a geometric series that begins with the last order, and whose
+  /// ratio is that of the last two orders.
   void AddSeries()
   {
     if (this->GoesOnAsSeries() && this->GoesOn > 0.0)
@@ -201,7 +202,7 @@ private:
   {
     for (float& value : this->Result.fluence)
     {
-      // Removes negative fluence, a remainder of the guess that later sweeps would have removed.
+      // Sets negative fluence, which an initial guess can leave where it was too large, to 0.
       value = this->IsWarm() ? std::max(value, 0.0f) : value;
     }
     for (std::size_t i = 0; i < this->Result.fluence.size() && this->Scene.guess.keeps; ++i)
@@ -232,7 +233,9 @@ private:
     }
     this->Scene.domain.Collective([&] {
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
-      this->Radiance.Fill(0.0f); // no scattering: the next sweep carries only light that wraps around periodic axes
+      // no scattering: the radiance that the next sweep reads as its source is 0; it carries only light that wraps
+      // around periodic axes
+      this->Radiance.Fill(0.0f);
       this->Source.Fill(0.0f);
     });
   }
@@ -272,8 +275,8 @@ private:
     {
       return true;
     }
-    // Least number of orders, after which the rate of decrease is known; a guess comes with the rate of the previous
-    // solve.
+    // Least number of orders: the remainder is estimated from the ratio of successive orders, which is known after
+    // three; a warm start uses the ratio that the previous solve found.
     const int least = this->IsWarm() ? 2 : 3;
     return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
                                             : orders >= least && this->Record.Residual() <= this->Settings.tolerance;
@@ -288,12 +291,14 @@ private:
   Buffer<float> Radiance, Source; ///< Source: empty if scattering works in place in Radiance
   OrdinatesRecord Record;
   OrdinatesResult Result;
-  /// Guess, W / length^2; empty once its source has been subtracted.
+  /// Scattered fluence from which a warm start begins, W / length^2; empty once its source has been subtracted.
   std::vector<float> Guess;
-  bool CountsGuess = false; ///< whether the source contains that of the guess
-  /// Power that the next order carries, power that wraps around periodic axes, and reflected power, W.
+  /// whether the next order's source contains that of the initial guess, which is then to be subtracted
+  bool CountsGuess = false;
+  /// Power that the next order carries, power that wraps around periodic axes in the next sweep, and reflected power,
+  /// W.
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0;
-  /// Power that wrapped around periodic axes in the last sweep, W.
+  /// Power that wrapped around periodic axes between the last two sweeps, W.
   double WasOnTheWay = 0.0;
 };
 }

@@ -1,5 +1,6 @@
-// Upwind sweep along all directions: computes mean and outgoing radiance from source and incident radiance
-// (numerics.md, Eqs. (D9) to (D11)). Radiance is [group][stride][8 directions]. The host defines
+// Upwind sweep along all directions: computes mean and outgoing radiance of each voxel from source and incident
+// radiance (numerics.md, Eqs. (D9) to (D11)). Radiance is [group of eight directions][voxel][8 directions]; successive
+// groups are `stride` voxels apart. The host defines
 //
 //   REAL_WIDTH  8: a work-item processes all directions of a group; 1: one direction
 #include "DiscreteOrdinates/OrdinatesShared.h"
@@ -133,9 +134,10 @@ __kernel void enter_by_cells(
   ((__global float8*)face)[group * cells + cell] += (float8)in[(up[3 * group + axis] ? low : high) + cell];
 }
 
-// Adds the outgoing power of each cell of the two faces perpendicular to an axis.
-//   out     W, by cell of the box faces
-//   across  [group][3][8]: power that radiance 1 carries through a cell perpendicular to each axis, W
+// Adds the outgoing power of each cell of the two faces perpendicular to an axis to `out`.
+//   out     W, by cell of the box faces; the cells of the two faces begin at `low` and `high`
+//   across  [group][3][8]: power that a radiance of 1 W / (length^2 sr) along the direction carries through a cell
+//           perpendicular to each axis, W
 __kernel void leave_by_cells(const __global float* face, __global float* out, const __global float* across,
   const __global int* up, int axis, int groups, ulong low, ulong high)
 {

@@ -13,7 +13,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LongestChord = 1e6; ///< largest chord, in voxel edges, for directions along which nothing varies
+/// largest chord through a voxel, in voxel edges, assumed for directions along which nothing varies
+constexpr double LongestChord = 1e6;
 
 std::size_t FaceVoxels(const Grid& grid, int axis)
 {
@@ -227,7 +228,7 @@ void UpwindSweep::FillFace(int axis, const IncomingRadiance& incoming, FacePower
   cl::Kernel fill = this->Kernel("fill_face");
   With(fill, this->Faces[axis], table, cl_int(voxels));
   Launch(this->TheDevice, fill, cl::NDRange(this->Groups.Count() * voxels));
-  this->TheDevice.Finish(); // before the table on the host is destroyed
+  this->TheDevice.Finish(); // the kernel reads `table`, which is destroyed on return
 }
 
 void UpwindSweep::Count(FacePowers& powers) const

@@ -36,11 +36,11 @@ public:
     const IncomingRadiance& incoming, const Monitor& monitor) = 0;
 };
 
-/// Light of one channel by cell of the box faces: FaceLight::Out() and In().
+/// Light of one channel in each cell of the box's faces: the arrays FaceLight::Out() and In().
 struct LightOfCells
 {
-  const Buffer<float>& out; ///< outgoing power, W; sweeps add to it
-  const Buffer<float>& in;  ///< reflected radiance, W / (length^2 sr)
+  const Buffer<float>& out; ///< outgoing power of each cell, W; sweeps add to it
+  const Buffer<float>& in;  ///< reflected radiance of each cell, W / (length^2 sr), incident in the next sweep
 };
 
 /// Boundary conditions of a sweep.
@@ -48,9 +48,11 @@ struct SweptFaces
 {
   /// Periodic axes, around which light wraps in the next sweep.
   std::array<bool, 3> periodic = {};
-  /// Axes with one voxel in the whole grid that are periodic: nothing varies along them, and no light is transported.
+  /// Axes along which the whole grid has one voxel and is periodic: nothing varies along them, and no light is
+  /// transported along them.
   std::array<bool, 3> unvarying = {};
-  const LightOfCells* reflecting = nullptr; ///< light by cell of reflecting faces; null: no face reflects
+  /// outgoing and reflected light by cell of the box's faces; null: no face reflects
+  const LightOfCells* reflecting = nullptr;
   /// Bit mask of the faces -x, +x, ... +z of the block that are interior to the whole grid; their power is not counted.
   int inner = 0;
 

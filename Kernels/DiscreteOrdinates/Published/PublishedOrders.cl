@@ -1,7 +1,8 @@
 // Kernels of the published scheme: one explicit step of the radiance along all directions (Gong et al., Eqs. (7) and
-// (9)). Radiance is [group][stride][8 directions].
+// (9)). Radiance is [group of eight directions][voxel][8 directions]; successive groups are `stride` voxels apart.
 
-// Computes the radiance before advection: L + h (Q - sigma_t L + S), with the step h.
+// Computes the radiance L after emission and collisions, before it is advected: L + h (Q - sigma_t L + S), where h is
+// the length of the step.
 //   scattered  S, scattering source, W / (length^3 sr)
 //   steady     Q, emission and first-collision source of lamps, W / (length^3 sr)
 __kernel void change_radiance(__global float* radiance, const __global float* scattered, const __global float* steady,

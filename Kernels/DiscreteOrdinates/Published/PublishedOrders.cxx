@@ -95,7 +95,8 @@ public:
 private:
   cl::Kernel Kernel(const char* name) const { return this->TheDevice.Kernel(name, kernel_source::PublishedOrders, ""); }
 
-  /// Power that radiance 1 carries through a voxel face, W.
+  /// Power that a radiance of 1 W / (length^2 sr) along a direction carries through a voxel face perpendicular to
+  /// `axis`, W.
   double Across(int group, int lane, int axis) const
   {
     return this->Groups.Weight(group, lane) * std::abs(this->Groups.Of(group, lane).omega[axis]) *
@@ -230,7 +231,8 @@ private:
   {
     if (this->Settings.netFlux)
     {
-      this->Arrays.Light.flux.Fill(0.0f); // discards the sum over all steps
+      // discards the net flux summed over all steps; only that of the last step is wanted
+      this->Arrays.Light.flux.Fill(0.0f);
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, {});
     }
     this->Arrays.Read(this->Result);
