@@ -13,9 +13,10 @@ namespace tyndall
 {
 namespace
 {
-/// Components of the mean direction along an axis below the first value have the weight 0 in the estimate of first
-/// moments, since light also decreases at shadow edges. The weight grows linearly to 1 at the second value, so that
-/// rounding does not decide.
+/// Decrease of fluence along an axis is attributed to attenuation only if light travels along that axis, since light
+/// also decreases at shadow edges: the estimated first moment along the axis is multiplied by a weight that depends on
+/// the component of the mean direction along it. The weight is 0 up to the first value, and grows linearly to 1 at the
+/// second, so that rounding errors cannot switch it on or off.
 constexpr double SaysNothing = 0.15, SaysAll = 0.25;
 
 /// Mean of exp(-k x) over x from 0 to 1.
@@ -90,10 +91,12 @@ private:
     const std::size_t last = this->Box.Beyond(voxel, 2 * axis + 1 - ahead);
     if (last != Outside)
     {
-      // At the last voxel of the box, k follows from the voxel upstream, and is converted to this voxel's thickness.
+      // At the last voxel of the box, k is computed from the decrease from the voxel upstream to this one, and is
+      // multiplied by the ratio of their thicknesses.
       const double before = this->Thickness(last, axis), there = this->Fluence(last);
       const double ratio = before > 0.0 ? thickness / before : 0.0;
-      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0; // 1 without light upstream
+      // without light upstream no decrease is assumed
+      const double passes = there > 0.0 ? this->Fluence(voxel) / there : 1.0;
       return before > 0.0 ? NearerBy(std::min(ratio * FallOff(passes, ratio, before / std::abs(along)), most))
                           : NearerBy(most);
     }
@@ -156,8 +159,8 @@ double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel)
 
 namespace
 {
-/// Settings of light propagation maps for uncollided light: source Automatic, so that voxels are extended along axes on
-/// which nothing varies, with a quadrature adapted to them.
+/// Settings of light propagation maps for uncollided light. The source option is Automatic: unlike Constant, it widens
+/// voxels along periodic axes of one voxel, and adapts the quadrature to such a grid (UnvaryingAxes).
 PropagationSettings AsSweep(const LatticeSettings& settings)
 {
   PropagationSettings of = AsPropagation(settings);
@@ -165,7 +168,8 @@ PropagationSettings AsSweep(const LatticeSettings& settings)
   return of;
 }
 
-/// Sets first moments along periodic axes of one voxel to 0: the voxel is its own neighbour there.
+/// Sets the first moments along a periodic axis of one voxel to 0: there the voxel is its own neighbour, and light that
+/// is moved across its face remains in it.
 void ClearAcrossSingleVoxels(const Grid& whole, const LatticeSettings& settings, std::vector<float>& moments)
 {
   for (std::size_t i = 0; i < moments.size(); ++i)
@@ -191,15 +195,17 @@ std::vector<float> FluxByChannel(const LightField& light, int channels)
   return values;
 }
 
-/// Computes the uncollided light of lamps and environment by a solve of light propagation maps with one order.
-/// Collective.
+/// Computes the uncollided light of lamps and environment by light propagation maps, which are stopped after the first
+/// order. Collective.
 Uncollided BySweep(Device& device, const LatticeProblem& problem, const LatticeSettings& settings, bool firstMoments,
   const Monitor& monitor)
 {
   const Domain& domain = problem.TheDomain();
   const std::size_t voxels = problem.OwnMedium().grid.VoxelCount();
   const int channels = problem.Channels();
-  Medium dark = problem.OwnMedium(); // made isotropic, so that there is no delta-M truncation
+  // a copy that neither emits nor scatters anisotropically: with an isotropic phase function, delta-M does not truncate
+  // a forward peak
+  Medium dark = problem.OwnMedium();
   dark.emission = {};
   dark.phase = PhaseFunction();
   PropagationSettings once = AsSweep(settings);
@@ -288,7 +294,7 @@ Uncollided FindUncollided(
     found.image = given;
     if (!IsFirstThatHas(domain.Comm(), domain.Partition()))
     {
-      found.image.escaped = {}; // counted on one rank only: every rank has the powers of the whole grid
+      found.image.escaped = {}; // powers are those of the whole grid, which every rank holds: only one rank counts them
     }
     AddMomentsOfImage(found, problem, settings, moments);
     return found;

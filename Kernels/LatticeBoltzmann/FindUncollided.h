@@ -14,7 +14,8 @@
 
 namespace tyndall
 {
-/// Uncollided light by known voxel (LatticeBox): an UncollidedImage and the arrays it refers to.
+/// Uncollided light in each known voxel, i.e. the rank's own voxels and its ghost voxels (LatticeBox): an
+/// UncollidedImage and the arrays it refers to.
 struct Uncollided
 {
   std::vector<float> fluence, netFlux;
@@ -31,9 +32,9 @@ struct Uncollided
 /// 1/2 (numerics.md, Eq. (L14), k = sigma_t h).
 double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel);
 
-/// Computes uncollided light by known voxel: the light given by another solver, if there is any, else that of lamps and
-/// environment by light propagation maps. Diffuse light of sky and faces is excluded, since it is incident on the
-/// lattice. Collective.
+/// Computes the uncollided light in each known voxel (own or ghost voxel of this rank): the light given by another
+/// solver, if there is any, else that of lamps and environment by light propagation maps. Diffuse light of sky and
+/// faces is excluded, since it is incident on the lattice. Collective.
 Uncollided FindUncollided(
   Device& device, const LatticeProblem& problem, const LatticeSettings& settings, const Monitor& monitor);
 

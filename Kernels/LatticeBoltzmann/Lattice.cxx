@@ -46,7 +46,8 @@ Lattice::Lattice(Device& device, const LatticeBox& box, const LatticeSettings& s
 void Lattice::LayOut(const LatticeVoxels& voxels)
 {
   std::copy(this->Size.begin(), this->Size.end(), this->TheInfo.size);
-  // The ghost value after a row may be stored in the unused values at the beginning of the next row.
+  // Rows have LatticeFirst unused values at their beginning, so that the ghost value after the end of a row can be
+  // stored in those of the next row.
   this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst;
   this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
   for (int i = 0; i < 18; ++i)
@@ -75,7 +76,7 @@ std::vector<float> Lattice::Arrange(const Inside& inside, const Outside& outside
       for (at[0] = -1; at[0] <= this->Size[0]; ++at[0])
       {
         int faces = 0;
-        float beyondThem = 0.0f; // sum of outside(face) over the faces that `at` lies beyond
+        float beyondThem = 0.0f; // sum of outside(face) over the faces of the box beyond which the position `at` lies
         std::array<int, 3> near = at;
         for (int a = 0; a < 3; ++a)
         {

@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// Photon densities of one channel on a device, and the lattice steps that collide and stream them (numerics.md,
-/// section 10 c).
+/// Photon densities of one channel on a device (the light in each voxel along each link, W / length^2), and the lattice
+/// steps that collide and stream them (numerics.md, section 10 c).
 class Lattice
 {
 public:
@@ -29,7 +29,8 @@ public:
 
   /// Makes Step() use `queue` instead of the device's queue.
   void StepOn(const cl::CommandQueue& queue) { this->Queue = queue; }
-  void SetSource(const std::vector<float>& source); ///< sets LatticeVoxels::source, by known voxel
+  /// replaces the array LatticeVoxels::source on the device; values are by known voxel
+  void SetSource(const std::vector<float>& source);
   /// Sets the source to scatters times fluence plus `emits`. Queued. Arrays are in the layout of the lattice unless
   /// stated otherwise.
   /// @param scatters  fraction of the fluence that is scattered in a step through a voxel, times the conversion from
@@ -45,8 +46,8 @@ public:
 
   /// Light that escapes through the box's faces in the next step, W / length^2, [face][voxel].
   std::vector<float> Leaving();
-  /// Light that would escape in a step for a fluence of 1 everywhere and black faces, [face][voxel]. Does not change
-  /// Densities().
+  /// Light that would escape in a step if the fluence were 1 everywhere and the faces were black, [face][voxel]. Does
+  /// not change Densities().
   std::vector<float> LeavingOfOne();
   /// Computes the net flux, W / length^2, [x, y, z][voxel].
   std::vector<float> NetFlux();
@@ -69,15 +70,16 @@ private:
   cl::Kernel Kernel(const char* name) const;
 
   Device& TheDevice;
-  cl::CommandQueue Queue; ///< queue of the steps
+  cl::CommandQueue Queue; ///< command queue for steps
   const LatticeBox Box;
   const std::array<int, 3> Size;
   const LatticeSettings& Settings;
   LatticeInfo TheInfo = {};
   std::string Options;
   Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Endless, Shown;
-  /// Densities before and after a step; with blocks, Next holds the light that blocks receive.
+  /// Densities before and after a step. If the lattice steps in blocks, Next holds the light that blocks receive from
+  /// each other.
   Buffer<float> Now, Next;
-  Buffer<float> Sends; ///< with blocks: light that blocks send
+  Buffer<float> Sends; ///< if the lattice steps in blocks: light that blocks send to each other
 };
 }

@@ -227,7 +227,8 @@ double LatticeAccount::CountFaces(LightField& light) const
   const double area = this->Edge() * this->Edge();
   const std::vector<float> through = this->Photons.Leaving();
   const std::vector<float> inwards =
-    this->Photons.LeavingOfOne(); // by reciprocity also the light that enters from a fluence of 1 outside
+    // by reciprocity, also the light that enters each voxel from outside if the fluence there is 1
+    this->Photons.LeavingOfOne();
   double entered = 0.0;
   for (std::size_t face = 0; face < 6; ++face)
   {
@@ -261,7 +262,8 @@ void LatticeAccount::AddFlux(LightField& light) const
   {
     const std::size_t known = this->Box.Known(i);
     const double tau = this->Edge() * this->TheMedium.sigma_a.At(known, static_cast<int>(this->Channel));
-    // Converts the flux of densities to the mean over a step, as for fluence.
+    // The net flux of the densities is that after a step; multiplied by this factor, it is the mean over the step, as
+    // is the fluence.
     const double mean = tau > 1e-6 ? this->Voxels.lost[known] / tau : 1.0;
     for (std::size_t a = 0; a < 3; ++a)
     {
@@ -275,9 +277,9 @@ void LatticeAccount::AddFlux(LightField& light) const
   }
 }
 
-/// Net flux in a voxel of the first-collision source that LatticeVoxels::crossing moves across a face (Eq. (L13)): in
-/// the voxel of first scattering from the mean collision position to the face, in the neighbour from the face to the
-/// centre.
+/// Net flux in a voxel due to first-collision source that LatticeVoxels::crossing moves across a face to the neighbour
+/// (Eq. (L13)): it counts as light that travels from the mean collision position to the face in the voxel of first
+/// scattering, and from the face to the centre in the neighbour.
 double LatticeAccount::FluxOfCrossing(std::size_t known, std::size_t face) const
 {
   const std::size_t beyond = this->Box.Beyond(known, face);

@@ -31,7 +31,8 @@ void CheckCubes(const Grid& grid)
 /// that can be resolved.
 void CheckThickness(const Medium& medium)
 {
-  constexpr double thickest = 1e10, absorbsAtLeast = 1e-3; // absorption of 1e-13 per collision; doubles round to 1e-16
+  // 1e-3 / 1e10 = 1e-13 absorbed per collision, well above the relative rounding error of a double, 1e-16
+  constexpr double thickest = 1e10, absorbsAtLeast = 1e-3;
   const double edge = medium.grid.spacing[0];
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
@@ -77,7 +78,7 @@ void CheckLattice(const Domain& domain, const Medium& medium, const Field& ior, 
 
 bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)
 {
-  constexpr double thick = 0.1; // thickness of a voxel, mean free paths
+  constexpr double thick = 0.1; // mean free paths across a voxel above which the position of first scattering matters
   return settings.scheme == LatticeScheme::Conservative && AnyVoxelIsThickerThan(thick, medium);
 }
 
@@ -131,7 +132,8 @@ LightField BeginLight(const LatticeProblem& problem, const LatticeSettings& sett
 
 namespace
 {
-/// Sets the quantities of `light` that are derived from the fluence, and leftOut, in the units of the solve.
+/// Sets leftOut, and the quantities of `light` that are derived from its fluence; `light` is in the units of the
+/// solver.
 void DescribeLight(
   LightField& light, const Device& device, bool anisotropic, const LatticeSettings& settings, double thickest)
 {

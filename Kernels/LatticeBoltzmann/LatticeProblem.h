@@ -51,7 +51,7 @@ private:
   Field WithGhosts(const Field& own);
 
   const PropagationProblem Scene; ///< scene of this rank's block
-  std::optional<Halo> Ghosts;     ///< unset on one rank
+  std::optional<Halo> Ghosts;     ///< halo of the block; unset on one rank
   std::vector<std::vector<float>> GhostValues;
   Medium Known;
   Field KnownIndex;

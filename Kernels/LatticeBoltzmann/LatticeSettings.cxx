@@ -79,7 +79,8 @@ PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDe
   of.maximumOrders = settings.maximumSteps;
   of.netFlux = settings.netFlux;
   of.angularDegree = angularDegree;
-  of.source = PropagationSource::Constant; // other sources may extend the voxels of slabs; the lattice needs cubes
+  // with other options for the source, voxels of plane-parallel slabs may be widened; the lattice needs cubes
+  of.source = PropagationSource::Constant;
   return of;
 }
 

@@ -18,7 +18,8 @@ SHARED_BEGIN
 enum
 {
   LatticeFirst = 16, ///< index of a row's first voxel, chosen so that rows are aligned for vector loads
-  OtherBlock = 6     ///< in place of a face number: another block lies beyond the face
+  /// stands for a face number where another block, rather than a face of the grid, lies beyond the face
+  OtherBlock = 6
 };
 
 /// Memory layout of a lattice: voxels with a halo of one layer, in rows of `row` values, the first voxel at
@@ -39,9 +40,10 @@ typedef struct
 /// Parameters of a sweep along the lines of links of a pair of opposite directions (LatticeLines.cl).
 typedef struct
 {
-  LatticeInfo lattice; ///< layout of the lattice; without incoming light in a sweep without sources
-  int pair;            ///< directions 2 pair and 2 pair + 1
-  int writes;          ///< 1: the sweep also writes densities, in the layout of step_lattice
+  /// layout of the lattice, with the incident light at its faces; that is 0 in a sweep of collided light alone
+  LatticeInfo lattice;
+  int pair;   ///< directions 2 pair and 2 pair + 1
+  int writes; ///< 1: the sweep also writes densities, in the layout of step_lattice
 } LinePass;
 SHARED_END
 

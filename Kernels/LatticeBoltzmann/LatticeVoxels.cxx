@@ -14,8 +14,9 @@ namespace tyndall
 {
 namespace
 {
-/// A closed line is endless if its voxels remove, on average, less than this fraction of the light per step. The second
-/// value applies if all axes are periodic: all lines then close, and thin media remove light over many laps.
+/// A closed line of links counts as endless if its voxels remove, on average, less than this fraction of the light per
+/// step. The second value applies if all axes are periodic: all lines then close, and in thin media light must travel
+/// many times around a line before it is removed.
 constexpr double LeastEnding = 1e-3, LeastEndingInClosedBox = 1e-12;
 
 /// Probability that diffuse light that starts between two points reaches the farther point before the nearer one, and
@@ -63,11 +64,13 @@ public:
     return this->Close ? this->Across * (this->IsDiagonal ? static_cast<std::size_t>(this->Common) : 1) : 0;
   }
 
-  /// Index of the line through a voxel, which may lie beyond the grid's periodic ends.
+  /// Index of the closed line through a voxel, whose indices may lie beyond the grid's periodic ends.
   std::size_t Through(const std::array<int, 3>& voxel) const
   {
     std::size_t line = 0;
-    int along = 0; // constant along a diagonal line, up to multiples of Common
+    // sum or difference of the voxel's two indices that change along a diagonal line; on one line it is constant modulo
+    // Common, the greatest common divisor of the grid's sizes along these two axes
+    int along = 0;
     int sign = 1;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -283,7 +286,8 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
       continue;
     }
     std::array<double, 6> parts = {};
-    const double decays = 0.5 * DecaysAcross(medium, i, channel); // e-folds from the voxel's centre to a face
+    // e-folds of diffuse light from the voxel's centre to a face
+    const double decays = 0.5 * DecaysAcross(medium, i, channel);
     const double normal = NearerOfNormalBeam(medium, i, channel);
     for (std::size_t face = 0; face < 6; ++face)
     {

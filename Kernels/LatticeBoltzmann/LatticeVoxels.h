@@ -17,7 +17,8 @@ namespace tyndall
 /// Weight of a lattice direction in isotropic light; the weights add up to 1.
 double LatticeWeight(int directions, int i);
 
-/// Second moment of the lattice directions along an axis: the sum of w c c.
+/// Second moment of the lattice directions along an axis: the sum over directions of weight times squared component of
+/// the link vector.
 double LatticeSquares(int directions);
 
 /// Coefficients of the lattice step for one channel, by known voxel (numerics.md, Eqs. (L2) to (L6)).
@@ -56,12 +57,13 @@ struct LatticeVoxels
   double OpenWeight(std::size_t voxel) const;
 
   bool Reflects() const; ///< whether a face has an albedo above 0
-  double Given() const;  ///< sum of sources and incident light; above 0 if there is any
+  /// sum of the isotropic sources of all known voxels and of the incident light at the faces; 0 if there is no light
+  double Given() const;
 
   /// Diffusive resistances (Eq. (L12)): difference of fluence / n^2 that drives a flux of 1 W / length^2 from a voxel's
   /// centre to its faces (Within), between the centres of neighbours (Between), and from a centre out of the box
   /// (OfFace; infinite at a face of albedo 1).
-  /// @param least  lower bound for the fraction of light that a step turns or absorbs
+  /// @param least  lower bound for the fraction of light that is absorbed or scattered isotropically in a step
   double ResistanceWithin(std::size_t voxel, double least = 0.0) const;
   double ResistanceBetween(std::size_t a, std::size_t b, double least = 0.0) const;
   double ResistanceOfFace(std::size_t voxel, std::size_t face, double least = 0.0) const;

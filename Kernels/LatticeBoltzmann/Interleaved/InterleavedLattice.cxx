@@ -72,11 +72,13 @@ std::vector<float> ScattersOf(const Medium& medium, int channel, double unit, co
 
 namespace
 {
-/// Smallest overlap of photons and lattice, as a fraction of the shorter one's time, that counts as concurrent.
+/// Photons and lattice steps count as concurrent if they overlap by more than this fraction of the shorter of their run
+/// times.
 constexpr double Overlap = 0.05;
 
-/// Number of lattice steps while the photons march the next segments of their paths, after `done` steps. The last step
-/// is reserved for when all photons have ended.
+/// Number of lattice steps to queue while the photons march the next segments of their paths. If the settings limit the
+/// number of steps, one is left for the time when all photons have ended.
+/// @param done  steps taken so far
 int StepsOfTurn(const LatticeSettings& settings, int done)
 {
   const int most = settings.stepsPerExchange, asked = settings.maximumSteps;
@@ -195,7 +197,8 @@ LightField InterleavedLattice::Solve(PhotonMarcher& marcher, const std::vector<P
   const TurnTimes& times = turns.times;
   this->TakeAll(found);
   const double marched =
-    (ClockSeconds() - start) / static_cast<double>(this->Channels.size()); // convergence rows are sums over channels
+    // the time is divided among the channels, since the rows of the convergence table are summed over them
+    (ClockSeconds() - start) / static_cast<double>(this->Channels.size());
   LightField light = BeginLight(*this->Problem, this->Settings);
   double thickest = 0.0;
   for (std::size_t c = 0; c < this->Channels.size(); ++c)

@@ -51,8 +51,9 @@ struct PhotonChannelMap
   double power = 1.0;   ///< lattice units of power per W of the photons
 };
 
-/// Fraction of a channel's fluence that is scattered in a step, times `unit`, by voxel: `scatters` of
-/// Lattice::SetSourceOf.
+/// For each voxel, the fraction of a channel's fluence that is scattered in a step, multiplied by `unit`: the argument
+/// `scatters` of Lattice::SetSourceOf.
+/// @param unit  conversion factor from the photons' fluence to that of the lattice
 /// @param begins  LatticeVoxels::begins
 std::vector<float> ScattersOf(const Medium& medium, int channel, double unit, const std::vector<double>& begins);
 
@@ -77,7 +78,8 @@ private:
   void Take(const cl::CommandQueue& queue, const Buffer<float>& fluence);
   void TakeAll(const PhotonLight& photons);
 
-  /// A lattice channel and its share of the photons' light.
+  /// The lattice of one channel, the channel of the photons' light that it uses, and the arguments of
+  /// Lattice::SetSourceOf by which its source is updated.
   struct Channel
   {
     std::unique_ptr<LatticeChannel> lattice;

@@ -50,7 +50,7 @@ LatticeDiffusion::Matrix LatticeDiffusion::MatrixOf(
       const std::size_t axis = face / 2;
       if (settings.periodic[axis] && this->TheDomain.Whole().size[axis] == 1)
       {
-        continue; // on a periodic axis of one voxel, the voxel is its own neighbour
+        continue; // on a periodic axis of one voxel, the voxel is its own neighbour, and no light is exchanged
       }
       const std::size_t beyond = box.Beyond(at, face);
       std::array<int, 3> above = atHeld;

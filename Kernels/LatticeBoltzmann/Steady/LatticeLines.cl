@@ -151,7 +151,8 @@ static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
   return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
 }
 
-// U (sends) and R (returns) of a voxel, from the upward pass.
+// Light that a voxel sends up from itself and all voxels below it: U (sends), if no light arrives from above, and R
+// (returns), the fraction of light arriving from above.
 typedef struct
 {
   exact sends, returns;
@@ -174,14 +175,14 @@ static Behind cross_up(Link link, Behind here)
   return next;
 }
 
-// Light at a link: `up_arrives` in the voxel above it, `lower` in the voxel below it, and `up`, sent up by the voxel
-// below.
+// Light at a link: `up_arrives` arrives in the voxel above the link, `lower` arrives in the voxel below it, and `up` is
+// what the voxel below sends up.
 typedef struct
 {
   exact up_arrives, lower, up;
 } Crossed;
 
-// Light at a link for known light `down` that the voxel above sends down. `below`: U and R of the voxel below.
+// Computes the light at a link from the light `down` that the voxel above sends down, and U and R of the voxel below.
 static Crossed cross_down(Link link, Behind below, exact down)
 {
   const exact up = (below.sends + below.returns * link.down * down) / (1 - below.returns * (1 - link.up));
@@ -208,15 +209,16 @@ static Beginning begin_at_cut(Link link)
   return begin;
 }
 
-// Light that the first voxel of a cut line sends down to the cut, as a linear function of the light x sent up the cut
-// and of the light B that arrives from above at the last voxel: sent + round x + gives_back B.
+// A closed line is cut below its first voxel, and so is a line that comes from another block. This is the light that
+// the first voxel sends down to the cut, as a linear function of the light x sent up the cut and of the light B that
+// arrives from above at the last voxel: sent + round x + gives_back B.
 typedef struct
 {
   exact sent, round, gives_back;
 } Cut;
 
-// State at the last voxel reached by go_up(): its place and index, the number of voxels so far, the response of its
-// upward light to light sent up the cut (part), and Cut.
+// State of the upward pass at the last voxel that it has reached: place and index of the voxel, number of voxels so
+// far, the fraction of light sent up the cut that this voxel sends up (part), and the light sent down to the cut (Cut).
 typedef struct
 {
   Place place;
@@ -283,7 +285,7 @@ static ulong density_at(LatticeInfo lattice, const int* at)
 //   round     light sent up the cut, if the line is cut; else 0
 //   first     light that arrives in the first voxel from below, and the fraction of the light it sends down that
 //             returns
-//   sum       [voxel], W / length^2, added to: light that arrives in the voxel from above and from below
+//   sum       [voxel], W / length^2; the light that arrives in the voxel from above and from below is added to it
 static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, exact round, Border first, bool is_cut,
   const __global exact* behind, const __global exact* share, __global exact* sum, __global float* densities, int writes)
 {
@@ -318,7 +320,7 @@ static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, ex
 // Solves all lines of the directions 2 pair and 2 pair + 1. One work-item per line.
 //   behind    [voxel][2], scratch
 //   share     [voxel], scratch: T of go_up() for closed lines
-//   sum       [voxel], W / length^2, added to: light that arrives in the voxel from above and from below
+//   sum       [voxel], W / length^2; the light that arrives in the voxel from above and from below is added to it
 //   endless   [voxel], with ENDLESS: bit mask of the direction pairs whose line is endless; such lines carry no light
 __kernel void sweep_lines(LinePass pass, MEDIUM, __global exact* behind, __global exact* share, __global exact* sum,
   __global float* densities, const __global float* endless)

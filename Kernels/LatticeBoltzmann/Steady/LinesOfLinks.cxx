@@ -14,9 +14,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr int PairsAtOnce = 3; ///< number of pairs of directions whose cut lines are swept concurrently
-/// Numbers of values per piece in the arrays `sent` and `joined` of LatticeLines.cl, and of the values of `sent` that
-/// are sent in every sweep.
+/// number of pairs of opposite directions that are swept concurrently, if lines are cut at the faces of blocks
+constexpr int PairsAtOnce = 3;
+/// Numbers of values per piece in the arrays `sent` (PieceValues) and `joined` (JoinedValues) of LatticeLines.cl. Of
+/// those in `sent`, the first SweepValues change from sweep to sweep, and are sent in every sweep.
 constexpr std::size_t PieceValues = 8, JoinedValues = 3, SweepValues = 2;
 
 /// Extracts the values of own voxels from those of known voxels.
@@ -113,7 +114,8 @@ void LinesOfLinks::LoadCutLines()
   }
 }
 
-/// Finds the lines of a pair of directions that this rank joins, and the pieces that it exchanges with other ranks.
+/// Finds, for a pair of opposite directions, the lines whose pieces this rank joins (those that begin in its block),
+/// and the pieces that it exchanges with other ranks.
 LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
 {
   const int self = this->TheDomain.Rank();
@@ -166,8 +168,8 @@ LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
   return pair;
 }
 
-/// The array `below` of LatticeLines.cl: properties of the voxel before each piece; 1 if the piece begins at a face of
-/// the grid.
+/// The array `below` of LatticeLines.cl: link transmission and n^2 of the voxel before each piece; both 1 if the piece
+/// begins at a face of the grid.
 LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) const
 {
   const VoxelBox& block = this->TheDomain.Own();
@@ -217,7 +219,9 @@ void LinesOfLinks::ExchangeParts()
 }
 
 /// Sends values of pieces to other ranks; after a failure sends empty messages, so that no rank waits.
-/// @param values  values of all pieces of this rank, by number; if `part.of` is 0, of the sent pieces in their order
+/// @param part  which values of each piece are sent
+/// @param values  values of all pieces of this rank, by number; if `part.of` is 0, only those of the pieces in `to`, in
+///   their order
 void LinesOfLinks::Send(const std::vector<Shared>& to, int tag, Part part, const Values& values)
 {
   auto next = values.begin();
@@ -335,7 +339,7 @@ void LinesOfLinks::GoDown(int pair, Slot& slot)
   });
 }
 
-/// Sweeps the lines of a pair of directions that lie in this block.
+/// Sweeps the lines of a pair of opposite directions in a serial solve, where no line is cut between blocks.
 void LinesOfLinks::SweepWhole(int pair)
 {
   const Slot& slot = this->Slots.front();
@@ -343,8 +347,8 @@ void LinesOfLinks::SweepWhole(int pair)
     this->Densities->Densities(), this->Endless);
 }
 
-/// Sweeps the cut lines of pairs `begin` to `end` concurrently, so that a rank computes one pair while it waits for
-/// another.
+/// Sweeps the lines of the pairs of directions from `begin` to before `end` concurrently, if lines are cut at the faces
+/// of blocks: a rank computes one pair while it waits for messages of another.
 void LinesOfLinks::SweepCut(int begin, int end)
 {
   for (int pair = begin; pair < end; ++pair)
@@ -400,7 +404,7 @@ LinesOfLinks::Values LinesOfLinks::Sweep(const Values& even, bool withIncident, 
         this->SweepWhole(begin);
       }
       this->Work += end - begin;
-      // Progress towards 1, since the number of sweeps is not known in advance.
+      // Progress, which approaches 1, since the number of sweeps is not known in advance.
       Report(monitor, 1.0 - 1.0 / (1.0 + 0.01 * this->Work));
     });
   }

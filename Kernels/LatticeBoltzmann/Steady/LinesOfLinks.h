@@ -44,7 +44,7 @@ private:
     int rank = 0;
     std::vector<std::size_t> pieces;
   };
-  /// A line that this rank joins: for each of its pieces, the index among all pieces that this rank receives.
+  /// A line whose pieces this rank joins: for each of its pieces, the index among all pieces that this rank receives.
   struct Line
   {
     std::vector<std::size_t> places;
@@ -53,13 +53,15 @@ private:
   struct Pair
   {
     std::array<std::size_t, 2> range = {}; ///< range of work-items of the kernels
-    std::vector<Shared> sentTo;            ///< this rank's pieces, by the rank that joins their lines
-    std::vector<Shared> receivedFrom;      ///< pieces of the lines that this rank joins, by the rank that owns them
+    std::vector<Shared> sentTo;            ///< this rank's pieces, by the rank that joins the pieces of their lines
+    /// pieces of the lines that this rank joins, by the rank in whose block each lies
+    std::vector<Shared> receivedFrom;
     std::vector<Line> lines;
     std::vector<PieceOfLine> parts; ///< responses of the received pieces, in one array
     ExactValues below;
   };
-  /// Range of values to send of each piece: `count` values from `first` on, of `of` values per piece.
+  /// Values of a piece that are sent: `count` values, from index `first` on, of the `of` values that an array has for
+  /// each piece.
   struct Part
   {
     std::size_t first = 0, count = 0, of = 0;

@@ -112,7 +112,7 @@ std::vector<PiecesOfLines::Voxel> PiecesOfLines::FirstVoxels(
 {
   const int a = this->Moving.front(), b = this->Moving.back();
   std::vector<Voxel> found;
-  // Adds the voxels for which begins(voxel) holds, of the plane in which lines enter the box along `axis`.
+  // Adds voxels of the plane through which lines enter the box along `axis`: those for which begins(voxel) is true.
   const auto addFrom = [&](int axis, const auto& begins) {
     VoxelBox plane = box;
     plane.first[axis] = this->Entry(box, axis);
@@ -175,8 +175,9 @@ double Inverse(double rest)
   return rest > 0.0 ? 1.0 / rest : 0.0;
 }
 
-/// Pieces joined so far: light that the last piece sends up (sends) and light that the first piece sends down (cut), as
-/// linear functions of the light sent down to the last piece.
+/// Response of the pieces joined so far: light that the last piece sends up (sends) and light that the first piece
+/// sends down (cut), as linear functions of the light sent down to the last piece and, for a closed line, of the light
+/// that wraps around it.
 struct WayUp
 {
   WayUp(const PieceOfLine& piece, const SentByPiece& sent, bool closed)
@@ -188,8 +189,8 @@ struct WayUp
   /// Joins the next piece. @return light sent up into `piece`, as a function of the light sent down to its last voxel
   Linear Add(const PieceOfLine& piece, const SentByPiece& sent)
   {
-    // Light sent down to the last piece so far: the transmitted fraction of the light that `piece` sends down, plus the
-    // fraction of its own upward light that the link reflects.
+    // Factor from light sent up by the last piece so far to light that comes down to it again: the light transmitted
+    // into `piece` that it gives back, plus the fraction that the link reflects.
     const double again = piece.down * piece.givesBack + 1.0 - piece.up;
     const double inverse = Inverse(1.0 - this->sends.ofAhead * again);
     const Linear down = { piece.down * sent.down, 0.0, piece.down * piece.comesDown };
@@ -204,7 +205,8 @@ struct WayUp
   Linear sends, cut;
 };
 
-/// Light of a closed line at the link between its last and its first piece: sent up through it, and sent down to it.
+/// Light of a closed line at the link between its last and its first piece.
+/// @return `up`: what the last piece sends into the link; `down`: what arrives at the last piece from the link
 SentByPiece RoundOf(const WayUp& way, const PieceOfLine& first)
 {
   const double inverse = Inverse(1.0 - first.down * way.cut.ofAhead);

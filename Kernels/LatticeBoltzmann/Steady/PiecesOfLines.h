@@ -27,7 +27,8 @@ public:
   };
   struct Line
   {
-    std::vector<Piece> pieces; ///< in upward order: in the direction 2 pair
+    /// in upward order, i.e. in the order in which light along direction 2 pair crosses them
+    std::vector<Piece> pieces;
     bool closed = false;
   };
 
@@ -45,7 +46,7 @@ public:
 
 private:
   using Voxel = std::array<int, 3>;
-  /// Index of the voxel at which lines enter a box, along an axis with a component of the link vector.
+  /// Index of the plane of voxels through which lines enter a box, along an axis along which they move.
   int Entry(const VoxelBox& box, int axis) const
   {
     return this->Way[axis] > 0 ? box.first[axis] : EndOf(box, axis) - 1;
@@ -61,7 +62,7 @@ private:
   std::array<bool, 3> Periodic;
   int Pair;
   std::array<int, 3> Way;
-  std::vector<int> Moving, Still; ///< axes along which lines move, and along which they do not
+  std::vector<int> Moving, Still; ///< axes along which the link vector has a component, and along which it has none
 };
 
 template <class Visit>
