@@ -36,8 +36,10 @@ struct KeptLight
   LightKind kind;
   /// Scattered light, in the units and the layout of the solver; uncollided light is recomputed in each solve.
   std::vector<float> scattered;
-  Rgb firstScattered = {}; ///< power of the first-collision source, W; the guess is scaled by the change of this power
-  Rgb rate = {};           ///< ratio of the light of successive iterations at the end of the solve
+  /// power of the first-collision source, W; the next solve multiplies the initial guess by the ratio of its own such
+  /// power to this one
+  Rgb firstScattered = {};
+  Rgb rate = {}; ///< ratio of the light of successive iterations at the end of the last solve
   std::vector<ConvergenceRow> fromDarkness; ///< convergence rows of the last solve without an initial guess
 
   /// Whether no light is kept. A rank without voxels keeps the powers of the domain, but no values.
@@ -53,7 +55,7 @@ std::string WhyNotBegun(const KeptLight& kept, const LightKind& kind, int maximu
 ///   later solves
 void Keep(KeptLight&& left, bool warm, LightField& light, KeptLight& kept);
 
-/// Clause returned by WhyNotBegun for published methods, which do not start from a guess.
+/// Clause returned by WhyNotBegun for published methods, which do not start from an initial guess.
 constexpr const char* const NotBegunAsPublished = "orders as published begin in the dark";
 
 /// Entry of LightField::leftOut for a solve for which a warm start was requested.

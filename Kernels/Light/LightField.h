@@ -111,7 +111,7 @@ struct LightField : SolveReport
   std::vector<float> straightOn;
   std::vector<Light> lampsApart; ///< lamps whose first-collision source is not included in scatteredMoments
   /// Outgoing radiance at the box's faces, W / (length^2 sr), [cell][SurfaceCosines][channel] (BoxFaces.h); empty if no
-  /// boundary voxel is optically thick, or it is not known.
+  /// boundary voxel is optically thick, or if the solver did not compute this radiance.
   std::vector<float> surfaceRadiance;
   EnergyBalance balance;
   /// Escaped power through faces -x, +x, -y, +y, -z, +z, W: power that leaves, less the power the faces reflect.

@@ -11,7 +11,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int LargestUnstaggered = 100; ///< largest number of directions per face of a fitted quadrature
+/// largest number of directions per face with rays that start in the middle of voxels; with more, rays start at
+/// staggered positions
+constexpr int LargestUnstaggered = 100;
 /// Measured cost of a direction of uncollided light, relative to a direction of a sweep.
 constexpr double UncollidedWork = 5.0;
 constexpr double LeastSweeps = 3.0;
@@ -20,8 +22,8 @@ constexpr double OnFinerGrid = 1.3;
 constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 100, 196, 256, 400 };
 constexpr int UncollidedCounts[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
 
-/// Measured error with a number of directions per cube face, relative to that with 9; above 100 directions, with
-/// staggered rays.
+/// Measured error of the fluence for a number of directions per cube face, relative to the error with 9 directions.
+/// Errors with more than 100 directions were measured with rays that start at staggered positions in their voxels.
 struct Fall
 {
   double directions, error;
@@ -29,7 +31,8 @@ struct Fall
 constexpr Fall Falls[] = { { 1, 8.0 }, { 4, 2.6 }, { 9, 1.0 }, { 16, 0.8 }, { 25, 0.5 }, { 36, 0.38 }, { 49, 0.34 },
   { 64, 0.28 }, { 100, 0.22 }, { 256, 0.14 }, { 400, 0.12 }, { 900, 0.06 }, { 1600, 0.035 }, { 4096, 0.02 } };
 
-/// Error with `directions` per cube face relative to that with 9: interpolates Falls, linearly in logarithms.
+/// Error of the fluence with `directions` per cube face relative to that with 9: interpolates the table Falls, linearly
+/// in the logarithms of both quantities.
 double FallenTo(int directions)
 {
   const Fall* above = std::begin(Falls) + 1;
@@ -42,8 +45,9 @@ double FallenTo(int directions)
   return below.error * std::pow(above->error / below.error, part);
 }
 
-/// Root mean square over values i of part(one, i) - part(other, i), relative to the root mean square of the fluence of
+/// Root mean square over voxels i of part(one, i) - part(other, i), relative to the root mean square of the fluence of
 /// `other`.
+/// @param part  part(light, i): the part of the fluence that is compared, e.g. the uncollided one
 template <class Part>
 double Difference(Communicator& communicator, const LightField& one, const LightField& other, const Part& part)
 {

@@ -6,10 +6,10 @@
 
 namespace tyndall
 {
-/// Predicts the discretisation error in angle, and the work of a solve, as functions of the number of directions, from
-/// two solves on the same grid with few and with more directions. The decrease of the error with the number of
-/// directions was measured (measurements.md), separately for uncollided and for scattered light; the two errors are
-/// treated as uncorrelated. Each rank passes the light of its subdomain; results are global.
+/// Predicts the error due to the angular discretisation, and the work of a solve, as functions of the number of
+/// directions, from two solves on the same grid with few and with more directions. The decrease of the error with the
+/// number of directions was measured (measurements.md), separately for uncollided and for scattered light; the two
+/// errors are treated as uncorrelated. Each rank passes the light of its subdomain; results are global.
 class DirectionForecast
 {
 public:
@@ -26,13 +26,13 @@ public:
   /// @param between  solution with few directions for scattered light and more directions for uncollided light
   void Separate(Communicator& communicator, const LightField& few, const LightField& between, const LightField& more);
 
-  /// Predicted root-mean-square error of fluence in angle, relative to the fluence, on a grid with twice the voxels per
-  /// axis.
+  /// Predicted root-mean-square error of the fluence due to the angular discretisation, relative to the fluence, on a
+  /// grid with twice the voxels per axis.
   double Error(const PropagationSettings& settings) const;
   /// Error(settings) divided by the predicted difference between the solutions with `settings` and with `others` on the
   /// coarse grid.
   double PartOfDifference(const PropagationSettings& settings, const PropagationSettings& others) const;
-  /// Predicted work, in units of a sweep along one direction per cube face.
+  /// Predicted work, in units of the work of one sweep with one direction per cube face.
   double Work(const PropagationSettings& settings) const;
   /// The settings with the least work among those with a predicted error of at most `error`; if there are none, those
   /// with the least error. Only numbers that have their default values in `settings` are changed. Uncollided light uses
@@ -42,7 +42,9 @@ public:
   void Correct(double factor);
 
 private:
-  double Fallen; ///< ratio of the difference between the two solutions to the error with 9 directions on the finer grid
+  /// ratio of the root-mean-square difference between the two solutions to the error that a solution with 9 directions
+  /// has on the finer grid
+  double Fallen;
   /// Errors of uncollided and of scattered light with 9 directions per face, relative to the fluence.
   double OfUncollided = 0.0, OfScattered = 0.0;
   bool Separated = false;

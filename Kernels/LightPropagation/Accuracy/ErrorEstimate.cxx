@@ -27,7 +27,8 @@ int OtherDirections(int directionsPerFace)
   return other * other;
 }
 
-/// Angular error with `directions` per cube face, relative to the difference from the solution with `others`.
+/// Ratio of the angular error of a solution with `directions` per cube face to its difference from the solution with
+/// `others` per cube face.
 double PartOfDifference(int directions, int others)
 {
   const double ratio = std::pow(static_cast<double>(others) / directions, OrderInDirections);
@@ -106,7 +107,9 @@ double SumOf(const std::vector<double>& values)
 /// solve and of two coarse solves.
 struct ErrorOfAverages
 {
-  double inSpace, partOfDifference; ///< factors that convert differences of solves to errors in space and in directions
+  /// factors that convert differences between solves to the errors due to voxel size and due to the number of
+  /// directions
+  double inSpace, partOfDifference;
 
   double InSpace(float fine, float same) const { return this->inSpace * (static_cast<double>(fine) - same); }
   double InDirections(float same, float other) const
@@ -134,9 +137,10 @@ struct VarianceOfAverages
   std::vector<double> variance;       ///< variance of the fluence
 };
 
-/// Sets fluenceError and relativeError of `light`. The errors by voxel are smoothed; the sum of their squares is
-/// preserved. Relative to the fluence, this sum is the larger one of those over coarse voxels and over fine voxels
-/// (InVoxels): coarse voxels do not resolve the decrease of light next to lamps.
+/// Sets fluenceError and relativeError of `light`. The squared errors by voxel are smoothed over neighbouring coarse
+/// voxels, and scaled so that their sum does not change. This sum, relative to that of squared fluences, is computed
+/// over coarse voxels and over fine voxels (InVoxels), and the larger result is used: coarse voxels do not resolve the
+/// decrease of light next to lamps.
 void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfAverages& own, VarianceOfAverages seen)
 {
   const Coarsening& toSeen = blocks.Seen();
@@ -162,8 +166,8 @@ void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfA
   light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
 }
 
-/// Sets the error of a plane-parallel solve, which has an error in angle only: the change caused by fewer polar
-/// cosines.
+/// Sets the error of a plane-parallel solve, whose only error is due to the angular discretisation: the change of the
+/// fluence with fewer polar cosines.
 void WriteErrorOfCosines(LightField& light, const LightField& few)
 {
   double errors = 0.0, fluences = 0.0;

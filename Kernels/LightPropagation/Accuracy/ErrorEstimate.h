@@ -14,7 +14,7 @@ namespace tyndall
 /// Function that solves a scene on the grid of its domain. Collective.
 using PropagationSolver = std::function<LightField(const SceneBlock&, const PropagationSettings&, const Monitor&)>;
 
-/// Error components of Eq. (84) that are estimated separately, in space and in directions, as root mean squares
+/// Error components of Eq. (84): the errors due to voxel size and due to the number of directions, as root mean squares
 /// relative to that of fluence, and the residual of the iteration.
 struct ErrorParts
 {

@@ -59,7 +59,8 @@ private:
 
   const CoarseBlocks& Blocks;
   const bool Here;
-  std::vector<VoxelBox> Boxes; ///< boxes of coarse voxels by rank: all of them on one rank, none on the others
+  /// box of coarse voxels that each rank holds: the whole coarse grid on one rank, none on the others
+  std::vector<VoxelBox> Boxes;
   Medium TheMedium;
   Illumination Light;
   Field Index;
@@ -139,7 +140,7 @@ void RequireSame(const SceneBlock& scene, const PropagationSettings& alike)
     { scene.index.values ? 1.0 : 0.0 });
 }
 
-/// Preview shown to the user: coarse light interpolated to this rank's voxels.
+/// Preview shown to the user: the coarse light, interpolated to this rank's fine voxels.
 LightField Shown(LightField&& found, const CoarseBlocks& blocks)
 {
   LightField light;

@@ -67,7 +67,7 @@ std::vector<float> Repeated(const float* values, int components, const Grid& coa
 class DividedScene
 {
 public:
-  /// @param scene  scene whose fields, but not its index, are repeated; must outlive this object
+  /// @param scene  scene whose fields are repeated, except for SceneBlock::index; must outlive this object
   /// @param parts  number of fine voxels per voxel along each axis
   DividedScene(const SceneBlock& scene, const Factors& parts);
   DividedScene(const DividedScene&) = delete;

@@ -20,8 +20,8 @@ namespace
 {
 constexpr double Aim = 0.95;          ///< estimated error at which the search ends (Goal), relative to the target
 constexpr double DirectionPart = 0.9; ///< fraction of Goal that is allowed for the angular error
-/// Smallest allowance for the angular error, relative to Goal. Voxels are halved only if the error in voxel size
-/// exceeds the same limit.
+/// Smallest allowance for the angular error, relative to Goal, if the error in voxel size leaves less. Voxels are
+/// halved only if the error in voxel size exceeds the same limit.
 constexpr double LeastRoom = 0.3;
 /// Error in voxel size, relative to Goal, above which more directions do not help.
 constexpr double MuchTooCoarse = 1.5;
@@ -40,7 +40,7 @@ struct CoarseLight
   PropagationSettings settings;
   std::vector<float> fluence;
 
-  /// Whether a solve with `others` on the coarse grid would give this fluence.
+  /// Whether `others` are the settings of this solve, as far as they affect the fluence on the coarse grid.
   bool Has(const PropagationSettings& others) const
   {
     return others.directionsPerFace == this->settings.directionsPerFace && others.uncollidedDirections == 0 &&
@@ -191,10 +191,13 @@ private:
     }
   }
 
-  /// Whether Goal is met even if the complete difference from a coarse solution with other directions were an error in
-  /// voxel size, so that the error in voxel size need not be separated. Sets the error estimate accordingly.
+  /// Estimates the error from above without a further solve: counts the complete difference from a coarse solution with
+  /// another number of directions as error in voxel size, and adds the predicted angular error. Sets the error estimate
+  /// of the light to the result.
   /// @param other  fluence of that coarse solution
   /// @param error  predicted angular error
+  /// @param order  order of convergence in voxel size
+  /// @return whether the light meets Goal; then the error in voxel size need not be separated
   bool IsMetAtMost(const std::vector<float>& other, double error, double order)
   {
     ErrorParts parts = WriteErrorEstimate(this->Light, this->Blocks, other, other, 0.0, order);

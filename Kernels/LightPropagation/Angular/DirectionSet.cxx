@@ -14,9 +14,12 @@ namespace tyndall
 namespace
 {
 
-/// Minimum number of sample cells along a face's edge, if the quadrature's cells do not form a grid.
+/// The environment is sampled on a grid of cells on each cube face. This is the minimum number of such cells along a
+/// face's edge, if the cells of the quadrature do not form a grid.
 constexpr int FewestParts = 48;
-constexpr double BorderTolerance = 1e-9; ///< relative offset of points on a border between two cells
+/// A point that is equally near to two directions is moved to either side by this relative distance, so that each gets
+/// half of its light.
+constexpr double BorderTolerance = 1e-9;
 /// Smallest eigenvalue that KeepFlux() inverts, relative to the largest.
 constexpr double LeastMode = 1e-3;
 
@@ -96,7 +99,8 @@ struct Seen
   std::vector<double> solidAngle; ///< solid angle of each direction's cell, sr
   /// Flux density through the cube's faces in the direction of travel, W / length^2.
   std::array<Rgb, 6> flux = {};
-  std::array<double, 6> cosines = {}; ///< flux density through the cube's faces at radiance 1, sr
+  /// flux density through the cube's faces in a uniform environment of radiance 1, sr
+  std::array<double, 6> cosines = {};
 
   explicit Seen(const DirectionSet& set)
     : sum(set.directions.size(), Rgb{})
@@ -152,7 +156,7 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
         {
           seen.Add(first + b / parts * n + a / parts, omega, weight, radiance);
         }
-        else if (a == b || a + b == n * parts - 1) // on a border between the face's eighths: half to each of both cells
+        else if (a == b || a + b == n * parts - 1) // on a border between eighths of the face: half to each side's cell
         {
           seen.Add(first + NearestOnFace(set, s * (1.0 + BorderTolerance), t), omega, 0.5 * weight, radiance);
           seen.Add(first + NearestOnFace(set, s, t * (1.0 + BorderTolerance)), omega, 0.5 * weight, radiance);

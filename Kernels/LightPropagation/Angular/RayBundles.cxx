@@ -163,9 +163,9 @@ void Insert(std::vector<Move>& moves, double depth, double part)
   }
 }
 
-/// Moves along one axis, by plane, of rays that start at `start` in their voxel and move by `tangent` voxels per plane,
-/// tangent x planes in total: moves of all power, and one move by a fraction equal to the remainder (numerics.md, Eq.
-/// (21)).
+/// Moves along one axis, by plane, of rays that start at `start` in their voxel and move by `tangent` voxels per plane.
+/// Over all planes they move by tangent x planes voxels: the integer part as moves of a ray's complete power, the
+/// remainder as one move of that fraction of the power (numerics.md, Eq. (21)).
 std::vector<Move> Moves(double start, double tangent, int planes)
 {
   std::vector<Move> moves(planes);

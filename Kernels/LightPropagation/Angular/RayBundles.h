@@ -101,8 +101,8 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bo
   const DirectionSet& set, int mapResolution, RayStarts starts = RayStarts::Middle);
 
 /// Bundles for one collimated beam: one for each of the mapResolution^2 lattices of rays, with one member. Its
-/// `direction` is 0 if the beam marches forward along the axis, else its `opposite` is 0; the other index is -1. Power
-/// is that at irradiance 1.
+/// `direction` is 0 if the beam marches forward along the axis, else its `opposite` is 0; the other index is -1.
+/// Bundle::power is the power of a ray at an irradiance of 1 W / length^2, divided by it.
 std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const std::array<double, 3>& omega, int mapResolution);
 

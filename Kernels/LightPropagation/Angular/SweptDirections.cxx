@@ -63,7 +63,8 @@ std::vector<Bundle> DirectionSymmetry::Standing(const std::vector<Bundle>& bundl
   std::vector<Bundle> standing;
   for (const Bundle& bundle : bundles)
   {
-    std::map<std::size_t, std::vector<Member>> parts; // members by number of directions in their class
+    // members of the bundle, by the number of directions in their class
+    std::map<std::size_t, std::vector<Member>> parts;
     for (Member member : bundle.members)
     {
       member.direction = this->IsRepresentative(member.direction) ? member.direction : -1;

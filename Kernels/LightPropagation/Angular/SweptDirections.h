@@ -47,7 +47,8 @@ public:
 
   const DirectionSet& Set() const { return this->Directions; }
   RayStarts Starts() const { return this->WhereRaysStart; }
-  int RaysPerEdge() const { return this->MapResolution; } ///< number of rays per edge of a voxel and direction
+  /// number of rays, for each direction, that start along one edge of a voxel
+  int RaysPerEdge() const { return this->MapResolution; }
   const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
   /// Whether only one direction of each class is swept; not if the net flux is requested, which differs between mirror
   /// images.
