@@ -11,9 +11,10 @@ namespace tyndall
 {
 namespace
 {
-/// Factor on RestOfOrders::After() after a warm start, since the error of a guess decreases unevenly.
+/// Safety factor on the remainder that RestOfOrders::After() estimates after a warm start, since the error of an
+/// initial guess decreases unevenly.
 constexpr double WarmMargin = 1.5;
-/// Factor on the error that RestOfChanges::After() estimates, since changes decrease unevenly.
+/// Safety factor on the error that RestOfChanges::After() estimates, since changes decrease unevenly.
 constexpr double MarginOfChanges = 1.5;
 /// Fraction of the incoming power above which left-over power adds a warning, unless the tolerance is larger.
 constexpr double MuchLeftOver = 0.01;
@@ -31,8 +32,10 @@ constexpr double OpaqueVoxel = 100.0; ///< approximate optical thickness beyond 
 
 struct ThickestVoxel
 {
-  double thickness = 0.0; ///< sigma_t of the similarity relation times its longest edge, largest of all channels
-  std::string name;       ///< text that describes its position in the grid; empty: not known
+  /// optical thickness along its longest edge, with the transport extinction sigma_a + sigma_s (1 - g), largest of all
+  /// channels
+  double thickness = 0.0;
+  std::string name; ///< text that describes its position in the grid; empty: not known
 };
 
 /// Voxel of a medium with the largest transport extinction.

@@ -10,7 +10,8 @@
 
 #define CELLS_AT_ONCE 64
 
-// Sums scale times value plus `more` over the block's voxels in each cell. Work-items process rows of cells.
+// For each coarse cell, sums `scale` * value + `more` over those of its voxels that lie in the block. Work-items
+// process rows of cells.
 __kernel void sum_cells(
   CoarseCells box, const __global float* values, float scale, float more, __global float* sums, ulong first)
 {
@@ -193,8 +194,8 @@ inline between find_between(const CoarseCells* box, int axis, int voxel)
 // (76e)). One work-item per row of voxels.
 //   found    solution, W / length^2, by cell
 //   path     path integrals, W length; replaced
-//   fluence  W / length^2, added to
-//   tally    [row] absorbed power of all added light, and of the solution alone
+//   fluence  W / length^2; the light is added to it
+//   tally    [row] power absorbed from all light that is added, and from that of the solution alone
 __kernel void add_found(CoarseCells box, const __global exact* found, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
   float volume, __global float8* tally)
@@ -252,8 +253,8 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
   tally[r] = (float8)(absorbed, of_found, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
 }
 
-// Adds the path integrals of a sweep and of a first guess by voxel to the fluence, as add_found() does for the
-// solution.
+// Adds the path integrals of a sweep to the fluence, and those of an initial guess of the later orders, as add_found()
+// does for the cells' solution. The guess is given by voxel.
 //   guess  path integrals of all later orders, W length
 __kernel void add_guess(CoarseCells box, const __global float* restrict guess, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,

@@ -112,7 +112,8 @@ cl::Kernel CoarseDiffusion::Kernel(const char* name) const
     name, kernel_source::CoarseDiffusion, RowOptions(this->TheDevice) + ExactOption(this->TheDevice));
 }
 
-/// Sum over the voxels of each cell and over all ranks of scale times value plus `more`; cells with x fastest.
+/// For each coarse cell, the sum of `scale` * value + `more` over its voxels on all ranks. Cells are in the order x
+/// fastest.
 /// @param first  offset of the channel in `values`
 std::vector<double> CoarseDiffusion::SumByCells(
   const CoarseCells& box, const Buffer<float>& values, int first, double scale, double more) const

@@ -73,7 +73,7 @@ private:
     CoarseCells box = {};
     std::unique_ptr<MultigridSolver> solver; ///< null except on the first rank
     std::vector<double> borders;             ///< CoarseMatrix::borders
-    std::vector<double> found;               ///< solution of the last order, W / length^2, by cell
+    std::vector<double> found;               ///< solution after the last scattering order, W / length^2, by cell
     ExactValues foundOnDevice;
   };
   void MakeBoxes(const VolumeLayout& layout, const Settings& settings);

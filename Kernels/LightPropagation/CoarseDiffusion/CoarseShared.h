@@ -8,13 +8,14 @@ SHARED_BEGIN
 /// arrays.
 typedef struct
 {
-  int size[3];       ///< voxels of the block
-  int origin[3];     ///< first voxel of the block in the whole grid
-  int held[3];       ///< voxels of the block with its ghost voxels
-  int lead[3];       ///< number of ghost voxels below the block along each axis
-  int wraps[3];      ///< 1: periodic axes that the block spans from end to end
-  int first, firstT; ///< offset of the channel in arrays of the block: `first`, in sigma_t `firstT`
-  /// Offset of the channel in arrays with ghost voxels: `heldFirst`, in sigma_t `heldFirstT`
+  int size[3];   ///< voxels of the block
+  int origin[3]; ///< first voxel of the block in the whole grid
+  int held[3];   ///< voxels of the block with its ghost voxels
+  int lead[3];   ///< number of ghost voxels below the block along each axis
+  int wraps[3];  ///< 1: periodic axes that the block spans from end to end
+  /// offset of the channel in arrays of the block; `firstT`: in sigma_t, which all channels may share
+  int first, firstT;
+  /// Offset of the channel in arrays with ghost voxels; `heldFirstT`: in sigma_t
   int heldFirst, heldFirstT;
   float spacing[3];
   int linear;           ///< 1: light varies linearly across voxels; 0: it is constant in each

@@ -32,7 +32,8 @@ public:
   /// Fetches from the neighbouring ranks the values of the voxels just outside the faces of this block. Collective.
   /// @param byFaces  values of this block by voxel face, [channel][face][stride]
   BeyondFaces FetchBeyond(const Buffer<float>& byFaces);
-  /// The medium and the `deposit` arrays through which an uncollided source transports its light (UncollidedSource.h).
+  /// Describes to an uncollided source (UncollidedSource.h) the medium through which it transports its light, and the
+  /// arrays `deposit` to which it adds that light.
   UncollidedVolume VolumeOf(const Deposit& deposit, const AngularBasis* basis);
 
 private:

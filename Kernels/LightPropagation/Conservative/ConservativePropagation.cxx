@@ -112,7 +112,7 @@ int HarmonicsKept(int degree, std::size_t values)
   return count(degree);
 }
 
-/// Smallest sigma_s, 1 / solver's unit of length, whose scattered light is stored for pictures.
+/// Smallest sigma_s, in the solver's units (1/length), whose scattered light is stored for pictures.
 constexpr float LeastScattering = 1e-30f;
 
 /// Factor that converts a scattering source, per length, to one per scattering mean free path: 1 / sigma_s, or 0 where
@@ -313,8 +313,8 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
   const Illumination& illumination, const PropagationSettings& settings)
 {
   const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
-  // Each block may be plane-parallel while the domain is not, if blocks differ; the serial solve would then use voxels,
-  // too.
+  // If blocks differ, each of them may consist of plane-parallel layers although the domain does not; a serial solve
+  // would then use voxels, too.
   const bool varies = !domain.IsEmpty() && !IsPlaneParallel(medium, illumination, settings);
   if (problem.IsSlab() || !domain.Any(varies))
   {

@@ -23,8 +23,9 @@ struct Aside
   AsidePlanes planes;
 };
 
-/// Adds to `power` the power of the rays of a bundle that enter through faces parallel to the marching axis, as
-/// SweepBorder counts it. On a short periodic axis it is the average over laps (SweepPlan::LayLaps).
+/// Adds to `power` the power of the rays of a bundle that enter through faces parallel to the marching axis, counted as
+/// SweepBorder counts it. Along a short periodic axis the ray pattern repeats only after several laps around the axis
+/// (SweepPlan::LayLaps); the power is then the average over laps.
 void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
 {
   const PlaneAxes& axes = aside.axes;
@@ -94,7 +95,8 @@ void FaceReflection::SetPowerIn(std::vector<double> powerIn)
 std::vector<float> FaceReflection::RadianceOf(
   const std::vector<double>& swept, const std::vector<double>& uncollided) const
 {
-  // Power of uncollided light by cell, W, with the uneven pattern of the rays.
+  // Power of uncollided light by cell, W, distributed like the light that the rays of a sweep carry into the cells of
+  // the face.
   std::vector<double> brought(swept.size());
   for (std::size_t i = 0; i < swept.size(); ++i)
   {

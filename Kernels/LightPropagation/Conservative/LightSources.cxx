@@ -20,9 +20,10 @@ constexpr double SetUp = 0.8;
 /// Time of a solve with DSA, in units of the time of one scattering order: set-up, and five sweeps with their
 /// corrections.
 constexpr double AcceleratedOrders = 18.0;
-/// Time of a solve with coarse-mesh DSA, in units of the time of one order; measured: 9 in 128^3 voxels, 14 in 64^3.
+/// Time of a solve with coarse-mesh DSA, in units of the time of one scattering order; measured: 9 in 128^3 voxels, 14
+/// in 64^3.
 constexpr double OrdersByCells = 12.0;
-constexpr double LeastOrders = 3.0; ///< smallest number of orders that source iteration sweeps
+constexpr double LeastOrders = 3.0; ///< smallest number of scattering orders that source iteration sweeps
 constexpr double Lit = 0.5;         ///< fraction of all directions that carry light of one face
 constexpr int Choices[] = { 36, 49, 64, 100 };
 
@@ -239,7 +240,8 @@ void LightSources::FindFineBoundary()
   {
     return;
   }
-  // Automatically chosen finer directions are dropped if few of their rays would hit the faces.
+  // Requested directions with too few rays are an error, which CheckRays() throws; automatically chosen directions with
+  // too few rays are not used.
   if (ofAll)
   {
     fine->CheckRays(this->Layout.channels);

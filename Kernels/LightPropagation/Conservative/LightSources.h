@@ -88,8 +88,8 @@ public:
 
   using Sources = std::vector<std::unique_ptr<UncollidedSource>>;
   Sources LampSources() const;
-  /// Sources of uncollided light other than lamps that are not swept: localised emission and uncollided light given by
-  /// another solver.
+  /// Sources of uncollided light, other than lamps, whose light is not swept: localised emission, and uncollided light
+  /// given by another solver.
   Sources OtherSources() const;
   /// Source of the emission of empty voxels, if it is swept along OfVacuum; else none.
   Sources VacuumSources() const;

@@ -8,11 +8,12 @@ namespace tyndall
 {
 namespace
 {
-/// Largest number of calls of OwedPower::Collect(); each call passes power that is still owed one voxel farther.
+/// Largest number of calls of OwedPower::Collect(). Power that a call cannot subtract from the direct neighbours of a
+/// voxel is passed one voxel farther by the next call.
 constexpr int MostTurns = 50;
 
-/// One channel of fluence on this rank, and the absorbed power that voxels owe because their negative fluence was
-/// raised.
+/// One channel of fluence on this rank. Where negative fluence is raised, the voxel absorbs additional power; it owes
+/// this power until the power has been subtracted from what its neighbours absorb.
 class OwedPower
 {
 public:
@@ -87,8 +88,9 @@ private:
     }
   }
 
-  /// Sum of `values`, by voxel of the box with halo, over the up to six neighbours of the voxel with index `known`
-  /// there.
+  /// Sum of `values`, an array over the block with its halo, over the up to six neighbours of a voxel.
+  /// @param known  index of the voxel in that array
+  /// @param at  indices of the voxel along the axes of the block with its halo
   double SumBeside(const std::vector<float>& values, std::size_t known, const std::array<int, 3>& at) const
   {
     const std::array<std::size_t, 3> step = this->Known.Strides();

@@ -27,7 +27,7 @@ void CutOffNegative(Communicator& communicator, const Halo& around, const Volume
 void MakeFluence(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
   std::vector<float>& solved, std::vector<float> path, const std::vector<float>& uncollided);
 
-/// CutOffNegative() for an array on the device, with 0 in place of negative values.
+/// CutOffNegative() for an array on the device; negative values are replaced by 0.
 void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
   Buffer<float>& fluence);
 }

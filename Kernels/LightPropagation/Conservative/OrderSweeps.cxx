@@ -8,12 +8,14 @@ namespace tyndall
 {
 namespace
 {
-/// Largest number of planes of voxels that a ray crosses around a periodic axis in one order, if more orders follow.
+/// Largest number of planes of voxels that a ray crosses in one sweep while it wraps around a periodic axis, if another
+/// scattering order will continue it.
 constexpr int FewPlanes = 256;
 constexpr double MostlyLit = 0.75; ///< fraction of rays with incident light above which the first order sweeps all rays
 /// Fraction of voxels in the medium's bounding box above which all orders sweep the whole grid.
 constexpr double MostlyFilled = 0.75;
-/// Number of orders assumed when deciding whether to omit empty slabs, if the settings set no limit.
+/// Number of scattering orders assumed in the decision whether later sweeps omit the empty voxels around the medium, if
+/// the settings set no limit.
 constexpr int OrdersExpected = 6;
 }
 
@@ -22,7 +24,7 @@ OrderSweeps::OrderSweeps(
   : Parts(parts)
 {
   const PropagationSettings& settings = parts.Problem.Settings();
-  // With coarse-mesh DSA rays complete their laps around periodic axes in one sweep: the coarse solution does not
+  // With coarse-mesh DSA a ray is followed around periodic axes to its end in one sweep: the coarse solution does not
   // include the light of rays that wait for the next sweep.
   const bool wholeWay = settings.maximumOrders > 0 || byCells;
   SweepRequest request = { deposit, parts.AllRays(), {}, wholeWay ? MostPlanesAround : FewPlanes };
@@ -32,7 +34,7 @@ OrderSweeps::OrderSweeps(
   this->Whole = parts.Transport.MakeSweep(request);
   if (!octantSource && !byCells && this->MayOmitEmptySlabs())
   {
-    // Deposits no net flux: the final sweep computes that of all orders.
+    // This sweep adds no net flux: that of all later orders is computed by the final sweep (SweepEmptySlabs).
     this->Filled = parts.Transport.MakeSweep(
       { { &parts.Path, nullptr, nullptr, nullptr }, parts.AllRays(), parts.Problem.Traits().filled });
   }

@@ -46,7 +46,8 @@ private:
   /// Sweep of the first order along directions with incident light only, if these are few and the medium does not emit;
   /// else null.
   std::unique_ptr<SweepOperator> Lit;
-  /// Sweep of the later orders if the medium leaves much of the volume empty; else null.
+  /// Sweep of the later orders through the bounding box of the medium only, if the medium leaves much of the volume
+  /// empty; else null.
   std::unique_ptr<SweepOperator> Filled;
   double LitPart = 1.0; ///< fraction of the rays that the first order sweeps
 };

@@ -68,8 +68,8 @@ std::size_t LargestPlane(const SolveExtent& solve)
   return std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
 }
 
-/// Number of positions at which rays leave sideways through faces of the box, over all planes along a marching axis;
-/// largest of the three axes.
+/// Number of positions at which the parallel rays of one direction leave the box through faces parallel to their
+/// marching axis, over all planes of voxels; largest of the three axes.
 std::size_t MostBesidePlanes(const SolveExtent& solve)
 {
   std::size_t most = 0;
@@ -105,7 +105,7 @@ std::size_t BytesOf(const Device& device, const SolveExtent& solve)
   return sizeof(float) * layout.Values() * (ArraysOfLight(solve) + ArraysOfOrders(solve)) + BytesOfSweep(device, solve);
 }
 
-/// Memory budget of a device, independent of the need of the solve.
+/// Memory budget of a device, whatever the solve needs.
 /// @param asked  settings.memoryBudget, bytes
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
 {

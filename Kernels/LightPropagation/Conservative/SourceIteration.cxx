@@ -19,7 +19,8 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
-constexpr double FallByCells = 0.3; ///< smallest assumed ratio of successive remainders with coarse-mesh DSA
+/// smallest ratio of successive orders assumed in the estimate of the remainder, with coarse-mesh DSA
+constexpr double FallByCells = 0.3;
 }
 
 SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
@@ -281,7 +282,7 @@ void SourceIteration::SweepOrder(const Monitor& monitor)
     this->Result.ledger.Count(tally);
     return;
   }
-  for (int c = 0; c < 3; ++c) // the faces of this escaped power are known only after OrderSweeps::SweepEmptySlabs
+  for (int c = 0; c < 3; ++c) // through which faces this power escaped is known only after OrderSweeps::SweepEmptySlabs
   {
     for (const Rgb& face : tally.out)
     {
@@ -434,7 +435,8 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
       parts.WholeDeposit(), parts.Fluence, parts.Source, this->Sweeps->Values(this->Order));
     if (parts.StoresMoments())
     {
-      // In the first order `shown` holds the first-scattered light of lamps, which is subtracted from the source.
+      // In the first order `shown` holds the first-scattered light of lamps, and becomes the source minus that light;
+      // in later orders the source is added to it.
       AddToShown(parts.TheDevice, parts.Layout.Places(parts.Functions()).beams, parts.Source, this->Result.shown,
         this->Order == 0 ? -1.0f : 1.0f);
       if (this->Order == 0 && parts.Lights.Given)
@@ -446,7 +448,8 @@ ScatteringOperator::Powers SourceIteration::ScatterSwept()
   return { this->TheDomain.Sum(powers.absorbed), this->TheDomain.Sum(powers.scattered) };
 }
 
-/// Warm start: adds the scattering source of the first guess to the source of the next sweep.
+/// Warm start: adds the scattering source of the initial guess (the scattered light of the previous solve) to the
+/// source of the next sweep.
 void SourceIteration::BeginWarm()
 {
   this->Warm.AddGuessTo(this->Parts.Source);
@@ -457,9 +460,9 @@ void SourceIteration::BeginWarm()
   }
 }
 
-/// Warm start: subtracts the scattering source of the guess from the new source after the first sweep that carried it.
-/// The difference is the error of the guess, which later sweeps transport. It can be negative, so its magnitude, not
-/// its power, enters the residual (numerics.md, Eqs. (46a) to (46c)).
+/// Warm start: subtracts the scattering source of the initial guess from the new source, after the first sweep that
+/// carried it. The difference is the error of the guess, which later sweeps transport. It can be negative, so its
+/// magnitude, not its power, enters the residual (numerics.md, Eqs. (46a) to (46c)).
 void SourceIteration::GoOnWarm()
 {
   const Rgb guessed = this->Order == 1 ? this->Warm.GuessedPower() : Rgb{};
@@ -505,8 +508,8 @@ bool SourceIteration::Done() const
   {
     return true;
   }
-  // Least number of sweeps, after which the rate of decrease is known; a guess comes with the rate of the previous
-  // solve.
+  // Least number of sweeps: the remainder is estimated from the ratio of successive orders, which is known after three;
+  // a warm start uses the ratio that the previous solve found.
   const int least = this->Warm.Begins() ? 2 : 3;
   return this->Settings.maximumOrders > 0
     ? this->Order >= this->Settings.maximumOrders

@@ -45,8 +45,8 @@ class SourceIteration : public Iteration
 {
 public:
   /// @param parts  must outlive this
-  /// @param kept  light of the previous solve (WarmStart.h), must outlive this; null, on all ranks: no first guess,
-  ///   nothing is kept
+  /// @param kept  light of the previous solve (WarmStart.h), must outlive this; null, on all ranks: start from zero and
+  ///   keep nothing
   explicit SourceIteration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 

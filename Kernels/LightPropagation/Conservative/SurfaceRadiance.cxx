@@ -12,12 +12,14 @@ namespace
 {
 /// Error of the diffusion power through a cell, relative to sqrt(1 - albedo) times the incident light (Eq. (79)).
 constexpr double Uncertainty = 0.1;
-/// Error of the diffusion power through a cell that lamps light unevenly: relative to the reflected light of lamps,
-/// times the deviation of their light in the cell's voxel from the average (Eq. (79)).
+/// Error of the diffusion power through a cell that lamps light unevenly, relative to the lamp light that the cell
+/// reflects times |1 - b|, where b is the lamp light deposited in the cell's voxel divided by that expected from the
+/// irradiance (Eq. (79)).
 constexpr double UncertainPart = 0.5;
 /// Largest ratio of lamp light deposited in a voxel to that expected from the irradiance.
 constexpr double MostUneven = 4.0;
-/// Largest decay rate, per mean free path, assumed for light from deep inside; at 1 it diverges.
+/// Largest decay rate, per mean free path, assumed for light from deep inside; at a rate of 1 its radiance along the
+/// normal diverges.
 constexpr double LargestExponent = 0.9;
 
 /// Gauss-Legendre nodes and weights on [0, 1].
@@ -37,7 +39,8 @@ struct Beam
 struct Surface
 {
   double albedo, emitted; ///< `emitted`: emission / sigma_a, W / (length^2 sr); 0 without absorption
-  double out, in;         ///< outgoing and incident power, each as isotropic radiance
+  /// outgoing and incident power, each given as the isotropic radiance that carries it, W / (length^2 sr)
+  double out, in;
   std::vector<Beam> beams;
   double brought = 1.0; ///< lamp light deposited in the voxel, relative to that expected from `beams`
 };
@@ -102,7 +105,7 @@ double DiffuseExitance(double albedo, double mu)
 /// Outgoing radiance of a cell at the cosines SurfaceCosines, W / (length^2 sr).
 std::array<double, 4> Leaving(const Surface& s)
 {
-  // Isotropic radiance with the outgoing power of OfHalfSpace(), and of DiffuseExitance().
+  // Isotropic radiances that carry the same outgoing power as OfHalfSpace() and as DiffuseExitance().
   double halfSpace = 0.0, deep = 0.0;
   for (std::size_t n = 0; n < Nodes.size(); ++n)
   {

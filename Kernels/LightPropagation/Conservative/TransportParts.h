@@ -61,8 +61,8 @@ public:
 
   const Domain& TheDomain() const { return this->Problem.TheDomain(); }
   bool IsEmpty() const { return this->TheDomain().IsEmpty(); } ///< whether the block has no voxels
-  /// Writes the emission of the medium, and the forward peak of given light that delta-M treats as unscattered, to
-  /// Source. Collective; call before any other method.
+  /// Writes the emission of the medium, and the forward peak of light given by another solver, which delta-M treats as
+  /// unscattered, to Source. Collective; call before any other method.
   void LoadSource();
   /// Whether the first sweep has a non-zero source on any rank; always true if settings.leaveOut is off.
   bool HasSource() const { return this->MediumShines; }
@@ -107,11 +107,12 @@ public:
   std::vector<AxisBundles> AllRays() const; ///< all rays of the usual quadrature
   /// Angular functions in the usual directions, for SweepRequest::angular; null: scattering is isotropic.
   const AngularValues* UsualValues() const { return this->Angular ? &this->Angular->Values() : nullptr; }
-  void DarkenBeams(); ///< sets the sources of beams in Source to 0
+  void DarkenBeams(); ///< sets the first-collision sources of beams in Source to 0
   /// Object that moves the beams' first-collision sources out of Source for the sweep in which beams are traced, and
   /// back for the next one (BeamScattering.h).
   BeamsInSource BeamsOfSource();
-  void LightBeams(const Buffer<float>& given) const; ///< copies the sources of beams from `given` to Source
+  /// copies the first-collision sources of beams from `given` to Source
+  void LightBeams(const Buffer<float>& given) const;
   std::size_t BeamValues() const { return this->Angular ? this->Angular->Beams() * this->Layout.Values() : 0; }
   /// Whether the angular moments of scattered light are part of the result.
   bool StoresMoments() const

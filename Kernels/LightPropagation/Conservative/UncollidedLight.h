@@ -67,7 +67,8 @@ private:
   std::vector<float> Lengths, LengthsOfLamps;
   const BlockWithGhosts& Block;
   const GhostedMedium& Coefficients;
-  Buffer<float> PathOfLamp, MomentsOfLamp;       ///< deposit of one lamp (Deposit::path, firstMoments)
+  /// arrays to which the light of one lamp is deposited (Deposit::path, firstMoments)
+  Buffer<float> PathOfLamp, MomentsOfLamp;
   Buffer<float> ThroughFaces, ScatteredInVoxels; ///< sums over all lamps: Passed() and OfLamps() without ghost cells
   GhostedBuffer PathWithGhosts, MomentsWithGhosts, AllPathWithGhosts, PassedWithGhosts, OfLampsWithGhosts;
   EnergyLedger Counted;

@@ -8,10 +8,10 @@
 
 namespace tyndall
 {
-/// First guess of a solve: zero, or the scattered light of the previous solve (numerics.md, section 6.4). Uncollided
-/// light is always computed anew. A guess changes the number of sweeps, not the limit: the iteration continues from the
-/// error of the guess, which the first sweep measures. Construct and call collectively; each rank keeps the light of
-/// its block.
+/// Initial guess of a solve: zero, or the scattered light of the previous solve (numerics.md, section 6.4). Uncollided
+/// light is always computed anew. The guess changes the number of sweeps, not the limit: the iteration continues from
+/// the error of the guess, which the first sweep measures. Construct and call collectively; each rank keeps the light
+/// of its block.
 class WarmStart
 {
 public:
@@ -26,19 +26,19 @@ public:
   bool Begins() const { return this->Keeps() && this->WhyNot.empty(); }
   std::vector<std::string> LeftOut() const;
 
-  /// Computes the guess: the kept light, scaled by the ratio of first-scattered powers of this solve and the previous
-  /// one, Eq. (46a). Must be called if Keeps().
+  /// Computes the initial guess: the kept light, scaled by the ratio of first-scattered powers of this solve and the
+  /// previous one, Eq. (46a). Must be called if Keeps().
   /// @param direct  uncollided fluence, W / length^2, [channel][stride]
   void Prepare(const std::vector<float>& direct);
-  /// Path integrals of the first guess on the device, W length, [function][channel][stride].
+  /// Path integrals of the initial guess on the device, W length, [function][channel][stride].
   const Buffer<float>& Guess() const { return this->Path; }
   const std::vector<float>& Guessed() const { return this->Scaled; } ///< Guess() in host memory
-  /// Power that the guess scatters, W, summed over ranks.
+  /// Power scattered from the initial guess, W by channel, summed over ranks.
   const Rgb& GuessedPower() const { return this->Power; }
   /// Ratio of the last two changes of the previous solve's iteration; 0: unknown, because the channel was dark.
   double Rate(int channel) const { return this->Kept->rate[channel]; }
 
-  /// Adds the scattering source of the guess to `source`; TakeGuessFrom() subtracts it, and frees the guess.
+  /// Adds the scattering source of the initial guess to `source`; TakeGuessFrom() subtracts it, and frees the guess.
   void AddGuessTo(const Buffer<float>& source) const;
   void TakeGuessFrom(const Buffer<float>& source);
   /// Magnitude of a source that may be negative, W by channel: root mean square over directions, summed over voxels

@@ -130,7 +130,8 @@ void DiffusionAcceleration::FindShown()
   });
 }
 
-/// Adds the first-collision source to the given source, which also contains the emission.
+/// Adds the first-collision source to Arrays.Given(), the source that stays the same in all iterations, which already
+/// contains the emission.
 void DiffusionAcceleration::GiveFirstScattered()
 {
   TransportParts& parts = this->Parts;
@@ -166,7 +167,7 @@ void DiffusionAcceleration::MakeSweep()
   this->Swept = parts.Transport.MakeSweep(request);
 }
 
-/// Arrays that a sweep adds to; without net flux, which the diffusion systems compute.
+/// Arrays that a sweep adds to. Net flux is not among them, since the diffusion systems compute it.
 Deposit DiffusionAcceleration::DepositOfSweep()
 {
   const Deposit whole = this->Parts.WholeDeposit();
@@ -364,14 +365,16 @@ void DiffusionAcceleration::CountLight()
 bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
-  // Least number of sweeps, after which the rate of convergence is known: 2 after a warm start, because the guess comes
-  // with the rate of the previous solve; 3 with angular moments, which the measured change does not include.
+  // Least number of sweeps, after which the rate of convergence is known: 2 after a warm start, which uses the rate of
+  // the previous solve; 3 otherwise, and always with angular moments, since the measured change of the light does not
+  // include that of moments.
   const int least = this->Warm.Begins() && !this->HasMoments() ? 2 : 3;
   return iterations >= most || this->Residual == 0.0 ||
     (iterations >= least && MeetsTolerance(this->Settings, this->Residual));
 }
 
-/// Stores the uncollided fluence in Result.fluenceDirect, and prepares the warm start.
+/// Stores the uncollided fluence in Result.fluenceDirect and, if light is kept from solve to solve, computes the
+/// initial guess of the warm start.
 void DiffusionAcceleration::LookAtDirect()
 {
   std::vector<float> direct;
@@ -386,8 +389,9 @@ void DiffusionAcceleration::LookAtDirect()
   }
 }
 
-/// Warm start: stores the light of the first iteration, which each solve computes anew, and adds the guess, the
-/// contribution of later iterations in the previous solve, before the second sweep (numerics.md, Eq. (46d)).
+/// Warm start: stores the light of the first iteration, which each solve computes anew. Before the second sweep, adds
+/// the initial guess: the light that the later iterations of the previous solve added to that of its first one
+/// (numerics.md, Eq. (46d)).
 void DiffusionAcceleration::BeginWarm()
 {
   TransportParts& parts = this->Parts;
@@ -425,7 +429,7 @@ void DiffusionAcceleration::BeginWarm()
   });
 }
 
-/// The guess of a channel as a state of its diffusion system (DiffusionSystem::State), W / length^2.
+/// Initial guess of a channel in the layout of its diffusion system (DiffusionSystem::State), W / length^2.
 /// @param fluence  path integrals of the guess with ghost cells, W length
 std::vector<double> DiffusionAcceleration::GuessOf(int c, const std::vector<float>& fluence) const
 {

@@ -23,8 +23,8 @@ class DiffusionAcceleration : public Iteration
 {
 public:
   /// @param parts  must outlive this object; made with IterationScheme::Dsa
-  /// @param kept  light of the previous solve (WarmStart.h), must outlive this; null, on all ranks: no first guess,
-  ///   nothing is kept
+  /// @param kept  light of the previous solve (WarmStart.h), must outlive this; null, on all ranks: start from zero and
+  ///   keep nothing
   explicit DiffusionAcceleration(TransportParts& parts, const KeptLight* kept = nullptr);
   IterationResult Run(const Monitor& monitor) override;
 
@@ -61,7 +61,7 @@ private:
   std::vector<float> UncollidedFluence; ///< fluence of uncollided light, W / length^2, [channel][stride]
   std::unique_ptr<SweepOperator> Swept; ///< sweep of scattered and boundary light along the usual quadrature
   std::vector<std::unique_ptr<DiffusionSolver>> Systems; ///< diffusion systems, by channel
-  /// Power by cell of the box faces; unset unless faces reflect or face power is requested.
+  /// Power through each cell of the box faces; unset unless faces reflect or face power is requested.
   std::optional<FaceBalance> Box;
   SweepTally Tally; ///< incident and escaped power of the last sweep
   /// Power emitted or first scattered, and power incident through the box faces, W by channel.

@@ -1,5 +1,5 @@
-// Escape correction (EscapeCorrection.h). The host defines GROUP, the number of work-items that sum a chunk
-// (GroupSum.cl).
+// Escape correction (EscapeCorrection.h). The host defines GROUP, the number of work-items that together sum over a
+// chunk of voxels (GroupSum.cl).
 
 #include "LightPropagation/Scattering/CollectShared.h"
 #include "Numerics/GroupSum.cl"

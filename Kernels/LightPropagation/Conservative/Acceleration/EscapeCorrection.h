@@ -33,7 +33,8 @@ private:
   Device& TheDevice;
   const VolumeLayout& Layout;
   const Buffer<float>& SigmaT;
-  /// Additional escaped power of each voxel for a source of 1, divided by sigma_t: W length, [channel][stride].
+  /// Additional escaped power of each voxel for a source of 1 W / (length^3 sr), divided by sigma_t: W length,
+  /// [channel][stride].
   Buffer<float> Extra;
 };
 }

@@ -51,7 +51,7 @@ void FaceBalance::FindOwnCells(const BlockWithGhosts& block)
   const Grid& held = block.WithGhosts().grid;
   ForBoxFaceCells(held, [&](const BoxFaceCell& cell) {
     const std::array<int, 3> voxel = held.VoxelAt(cell.voxel);
-    if (block.IsOwn(voxel)) // of the faces of the grid with ghost cells, those at own voxels are faces of the box
+    if (block.IsOwn(voxel)) // at an own voxel, a face of the block with its ghost cells is a face of the box
     {
       const BoxFaceLayout layout = LayoutOfFace(this->Faces.Box(), cell.face);
       std::size_t place = layout.first;
@@ -117,7 +117,8 @@ double FaceBalance::Reflect(int iteration, const Rgb& given)
     {
       change = std::max(change, this->ReflectChannel(iteration, c, given[c]));
     }
-    // Powers of the diffusion solution do not have the uneven pattern of rays, so they are passed as uncollided light.
+    // The diffusion solution does not have the uneven pattern of a sweep's rays, so its reflected power is passed to
+    // LetIn() as uncollided light.
     this->Faces.LetIn(std::vector<double>(this->CameBack.size(), 0.0), this->CameBack);
   });
   return this->TheDomain.Max(change); // maximum over ranks, whose devices may round differently
