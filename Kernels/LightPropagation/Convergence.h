@@ -21,18 +21,20 @@ public:
   /// @param rate  lower bound on the ratio of successive orders; 0: not known
   void BeginWarm(double rate);
 
-  /// Adds the next order, and estimates the remainder.
-  /// @param now  power of this order, or its magnitude, > 0
-  /// @param all  sum over all orders so far, in the same unit
-  /// @return estimated remainder relative to `all`; at most 1 after the first order, which does not show the rate of
-  ///   decrease
+  /// Adds the next scattering order, and estimates the sum of all later ones.
+  /// @param now  magnitude of the light of this order, for example its power, > 0
+  /// @param all  sum of the magnitudes of all orders so far, in the same unit
+  /// @return estimated sum of the later orders, relative to `all`; at most 1 after the first order, which does not show
+  ///   the rate of decrease
   double After(double now, double all);
-  double Ratio() const { return this->LastRatio; } ///< ratio of the last order to the previous one
+  /// Ratio of the last order's magnitude to that of the order before it.
+  double Ratio() const { return this->LastRatio; }
 
 private:
   int Orders = 0;
   bool Warm = false;
-  bool Compares = false; ///< whether the ratio of the next order to the last one is meaningful
+  /// Whether the next order may be compared with Last: false before the first order and after BeginWarm().
+  bool Compares = false;
   double Last = 0.0, LastRatio = 0.0, Least = 0.0;
 };
 
@@ -62,9 +64,8 @@ private:
 /// @param others  all other power that the next order carries, W
 double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double others);
 
-/// Power of one channel that remains after an accelerated order, W; as GoesOnToItsEnd(), for accelerations whose
-/// prediction already includes light that wraps around periodic axes. That light is added only if it does not decrease
-/// from order to order.
+/// Like GoesOnToItsEnd(), W, for orders that are accelerated: the acceleration's prediction already includes the light
+/// that wraps around periodic axes, so its power is added to `others` only if it does not decrease from order to order.
 /// @param others  power of the last order that the acceleration did not predict, W
 double GoesOnAsForeseen(double before, double onTheWay, double others);
 

@@ -23,7 +23,7 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     const float scatters = sigma_s[first + i % voxels];
     if (scatters < 0.0f)
     {
-      continue; // a ghost voxel, which its owner counts
+      continue; // a ghost voxel, whose values only the rank that owns it adds
     }
     const exact tau = i < voxels ? scatters * length : 0;
     const exact f = found[i] - given[i];
@@ -44,7 +44,8 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
   PUT_SUM_OF_GROUP(exact8, all, of_chunks[get_group_id(0)])
 }
 
-// given = found - w1 (found - found1) - w2 (found - found2). Overwrites found2 by found, and change2 by found - given.
+// given = found - w1 (found - found1) - w2 (found - found2), with the weights w1 and w2 of AndersonMixing::WeightsBy().
+// Overwrites found2 by found, and change2 by found - given.
 //   found1, found2  results of the previous iteration and of the one before it
 __kernel void anderson_step(__global exact* given, const __global exact* found, const __global float* found1,
   __global float* found2, __global float* change2, float w1, float w2)

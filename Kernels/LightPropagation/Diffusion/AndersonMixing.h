@@ -22,7 +22,8 @@ public:
   /// sigma_s length; 0 without scattering.
   struct Weighting
   {
-    /// Scattering coefficient, 1/length; below 0 in ghost voxels, which are excluded because their owners count them.
+    /// Scattering coefficient, 1/length; below 0 in ghost voxels, which are excluded from sums because the ranks that
+    /// own them add their values.
     const Buffer<float>* sigma_s;
     std::size_t first; ///< offset of the first voxel's value in sigma_s
     float length;

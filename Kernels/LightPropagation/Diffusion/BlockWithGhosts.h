@@ -64,7 +64,7 @@ class GhostedBuffer
 public:
   GhostedBuffer() = default;
   /// @param block, own  must outlive this object
-  /// @param parts  number of consecutive arrays of one stride in `own`
+  /// @param parts  number of arrays that `own` holds one after another at equal distances
   GhostedBuffer(Device& device, const BlockWithGhosts& block, const Buffer<float>& own, int parts, const char* what);
   GhostedBuffer(Device& device, const BlockWithGhosts& block, Buffer<float>& own, int parts, const char* what)
     : GhostedBuffer(device, block, const_cast<const Buffer<float>&>(own), parts, what)

@@ -19,7 +19,8 @@
     (!(layout).periodic[1] && ((at)[1] == 0 || (at)[1] == (layout).size[1] - 1)) || \
     (!(layout).periodic[2] && ((at)[2] == 0 || (at)[2] == (layout).size[2] - 1)))
 
-// Indices of the six neighbours of a voxel, wrapped around every axis; where the box ends the conductance is 0.
+// Indices of the six neighbours of a voxel, wrapped around every axis. A neighbour across the box's boundary has no
+// effect, because the conductance there is 0, unless the axis is periodic.
 static void find_neighbours(const int* size, int x, int y, int z, int i, int* next)
 {
   const int row = size[0];
@@ -75,8 +76,9 @@ static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
   const int x = border[0], y = border[1], z = border[2];            \
   const int i = (z * (layout).size[1] + y) * (layout).size[0] + x;
 
-// Factors of the net outgoing power through a reflecting face of the box (numerics.md, Eqs. (76b), (76c)), which is
-// ofMedium times the power without incident light, minus ofLight times the incident power.
+// Factors in the net outgoing power through a reflecting face of the box (numerics.md, Eqs. (76b), (76c)). The net
+// power is ofMedium times the power that the medium sends through the face when no light is incident, minus ofLight
+// times the incident power.
 typedef struct
 {
   float ofMedium, ofLight;

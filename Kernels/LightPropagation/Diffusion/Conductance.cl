@@ -109,7 +109,7 @@ inline real weight_of_transport(const DiffusionLayout* layout, real tau, real ab
 }
 
 // Crossing pattern of a face between voxels of optical length tau (`pattern` of numerics.md, Eq. (65)).
-//   crossing  value for thick voxels (CrossingPattern.h)
+//   crossing  its value for thick voxels (CrossingPattern.h)
 inline real pattern_of(real crossing, real tau)
 {
   // The factor is 1 in thin voxels, where the fluence has the crossing pattern, too
@@ -120,17 +120,19 @@ inline real pattern_of(real crossing, real tau)
 // Inner face between voxels 0 and 1, which are neighbours along an axis.
 typedef struct
 {
-  real sigma_t[2], sigma_a[2]; // coefficients of the two voxels, 1/length
+  real sigma_t[2], sigma_a[2]; // extinction and absorption coefficients of the two voxels, 1/length
   real flatSource[2];          // result of flat_source_current()
-  real model[2];               // fluence of the model, W / length^2
-  real passes;                 // conductance, length^2
-  real net;                    // net power from 0 to 1 in the sweep, W
-  real driven;                 // part of `net` that is driven by the net flux of the given source (Eq. (53a))
-  real crossing;               // crossing pattern for thick voxels
+  // Fluence from which diffusion gives the power that is compared with the sweep's, W / length^2.
+  real model[2];
+  real passes; // conductance, length^2
+  real net;    // net power that crosses the face from voxel 0 to voxel 1 in the sweep, W
+  // Part of `net` due to the net flux of the known source (emission and first collisions, Eq. (53a)).
+  real driven;
+  real crossing; // factor of the crossing pattern (CrossingPattern.h), if the voxels are optically thick
 } inner_face;
 
-// Remainder of the power through the face from voxel 0 to 1: R of numerics.md, Eq. (54), the weighted power of the
-// sweep minus that of the model.
+// Remainder of the power through the face from voxel 0 to 1: R of numerics.md, Eq. (54), the power of the sweep minus
+// that of diffusion, times the weight of the transport correction.
 inline real remainder_of(const DiffusionLayout* layout, int axis, const inner_face* face)
 {
   const float h = layout->spacing[axis];

@@ -17,8 +17,8 @@ double FaceArea(const Grid& grid, int axis)
   return grid.spacing[(axis + 1) % 3] * grid.spacing[(axis + 2) % 3];
 }
 
-/// Power per area, at radiance 1, that rays marching along the axis `marching` carry upwards through faces
-/// perpendicular to `axis`, by plane of voxels along `marching`.
+/// Power per area that crosses voxel faces perpendicular to `axis` towards increasing index, for radiance 1, by the
+/// rays that march along the axis `marching`: one value for each plane of voxels perpendicular to `marching`.
 std::vector<double> CrossingsIn(
   const Grid& grid, const DirectionSet& set, int mapResolution, RayStarts starts, int axis, int marching)
 {

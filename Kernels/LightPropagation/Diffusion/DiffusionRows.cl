@@ -51,7 +51,7 @@ inline int find_spans(const DiffusionLayout* layout, int axis, int y, int z, fac
   return 1;
 }
 
-// Stores a vector at x of a row of an array [voxel]; of the last vector only the voxels of the row.
+// Stores a vector of values from voxel x of a row on, in an array [voxel]. Lanes beyond the row's end are not stored.
 inline void store_in_row(real values, int x, int size, __global float* row)
 {
   if (x + REAL_WIDTH <= size)
@@ -69,7 +69,7 @@ inline void store_in_row(real values, int x, int size, __global float* row)
 
 // Computes flat_source_current() (Conductance.cl) of each voxel along each axis.
 //   flat_source  [axis][flatStride]
-//   swept        extinction of the sweeps, 1/length
+//   swept        extinction that sweeps use, 1/length
 __kernel void diffusion_flat_source(
   DiffusionLayout layout, const __global float* sigma_t, const __global float* swept, __global float* flat_source)
 {
@@ -86,8 +86,8 @@ __kernel void diffusion_flat_source(
         real current = flat_source_current(sweeps * layout.spacing[axis]);
         if (MOMENTS)
         {
-          // A fraction of the current is carried by the first moment of the source, exactly; only the remaining current
-          // has the excess of a constant source, Eq. (51).
+          // A fraction of the current is due to the source's first moment, and is exact. Only the rest of the current
+          // is too large because the source is constant in each voxel, Eq. (51).
           const real rest = fmin(load_real(x, sigma_t + here) / fmax(sweeps, (real)1e-37f), (real)1.0f);
           const real part = select((real)1.0f, rest, sweeps > (real)0.0f);
           current = 1.0f / 6.0f + part * (current - 1.0f / 6.0f);
@@ -238,7 +238,7 @@ static real load_rounded(const __global exact* row, int x, int size)
   return *(real*)values;
 }
 
-// Computes the fluence of the model, for which the sweep's powers are compared with diffusion (m of numerics.md, Eq.
+// Computes the fluence from which diffusion gives the powers that are compared with the sweep's (m of numerics.md, Eq.
 // (56)): in thin voxels the fluence of the sweep, in optically thick ones the fluence from which its source was
 // computed.
 //   extinction  sigma_t in rows, from diffusion_extinction; if SKIN is 0, in the layout of the sweeps
@@ -297,9 +297,9 @@ typedef struct
   const __global float* givenFlux;
 } face_arrays;
 
-// Power from voxels j to their next neighbours i along the axis, without the part that the difference of fluence drives
-// (numerics.md, Eqs. (53a), (54)): remainder, power driven by the given source's net flux, and first-scattered light of
-// lamps, W.
+// Power from voxels j to their next neighbours i along the axis, W, without the part that is proportional to the
+// difference of their fluences (numerics.md, Eqs. (53a), (54)). It is the sum of the remainder R, the power due to the
+// net flux of the known source (emission and first collisions), and the first-scattered light of lamps.
 static real power_of_faces(
   const DiffusionLayout* layout, const face_arrays* of, int axis, int j, int i, real passes, real crossing)
 {

@@ -7,7 +7,7 @@ SHARED_BEGIN
 enum
 {
   DiffusionChunk = 4096, ///< number of values that one work-group sums; the host adds the sums of chunks in double
-  AndersonSums = 8,      ///< number of sums per chunk for Anderson mixing
+  AndersonSums = 8,      ///< number of sums that Anderson mixing needs of each chunk of values
   RowVector = 8,         ///< width of the widest SIMD vector along rows of a level, floats
   RowsLead = 16          ///< padding before a level's first row, floats
 };
@@ -24,8 +24,8 @@ typedef struct
   int single[3]; ///< 1: the whole grid of the level has one voxel along this axis
   int pitch;     ///< distance between rows, floats
   int plane;     ///< distance between planes, floats
-  int floats;    ///< size of an array, floats
-  int together;  ///< number of rows per work-item on a CPU
+  int floats;    ///< number of floats in an array of the level
+  int together;  ///< number of consecutive rows that a work-item processes on a CPU
 } MultigridLevel;
 
 /// Geometry and constants of the diffusion system of one channel, and the offsets of the channel in the solver's
@@ -45,7 +45,8 @@ typedef struct
   /// the quadrature.
   float halfRange;
   float floor; ///< minimum optical length between voxel centres: conductance does not grow below it
-  /// Factor of absorption in the weight of the transport correction: 3, Eq. (55); 0 with moments.
+  /// Factor of the absorption in the weight of the transport correction: 3 (numerics.md, Eq. (55)), or 0 if scattering
+  /// is computed in angular moments.
   float absorbingWeight;
   float incoming[6];   ///< incident power per area through each face of the box, W / length^2
   float albedo[6];     ///< albedo of each face of the box
@@ -58,19 +59,20 @@ enum
   BorderNet = 0,     ///< outgoing minus incoming power, without the transport correction; accurate for each voxel
   BorderShare = 1,   ///< transport correction of BorderNet; accurate only in sums over a face of the box
   BorderSeeming = 2, ///< outgoing power in the sweep (estimated, numerics.md, Eq. (61))
-  /// Weight of the transport correction if the voxel has several faces on the box, else -1; dimensionless.
+  /// Weight of the transport correction if several faces of the voxel lie on the box's boundary, else -1;
+  /// dimensionless.
   BorderWeight = 3,
   BorderCame = 4,       ///< incoming power in the sweep
-  BorderWholeShare = 5, ///< transport correction before reflection at the face
+  BorderWholeShare = 5, ///< transport correction, as BorderShare, without the factor for reflection at the face
   BorderValues = 6
 };
 
 /// Rows of the array `faces`: power by cell of the box's faces, W.
 enum
 {
-  FaceCame = 0,  ///< reflected power that was incident in the sweep
-  FaceGiven = 1, ///< reflected power of uncollided light, which sweeps do not carry
+  FaceCame = 0,  ///< power that the face reflected and that was incident in the last sweep
+  FaceGiven = 1, ///< reflected power of uncollided light, which sweeps do not trace
   FaceLeft = 2,  ///< outgoing power in the sweep
-  FaceLeaves = 3 ///< outgoing power of the solution
+  FaceLeaves = 3 ///< outgoing power of the diffusion solution
 };
 SHARED_END

@@ -37,7 +37,8 @@ constexpr double Reduction = 3e-3;
 /// add up.
 constexpr double SlowReduction = 1e-4;
 constexpr int Several = 12;
-/// Targets of Refine(): factor by which the residual is reduced, and its root mean square relative to `unit`.
+/// Targets of Refine(): factor by which it reduces the residual of the diffusion system, and upper bound on the
+/// residual's root mean square, relative to the typical power of a voxel.
 constexpr double RefinedBy = 0.1, RefinedTo = 1e-6;
 
 /// Sets negative powers, which rounding can produce at dark faces, to 0, and scales the positive ones to conserve the

@@ -21,26 +21,29 @@ public:
   /// @param pattern  crossing pattern of the whole grid
   /// @param arrays  arrays with ghost voxels. In ghost voxels sigma_t, sigma_a, partialCurrents and passed have the
   ///   values of the owners, sigma_s is below 0, and all other arrays are not read.
-  /// @param incoming  incident power through the faces of the whole grid without that of lamps, W / length^2
+  /// @param incoming  incident power per area of each face of the whole grid, without lamps, W / length^2
   /// @param periodic  which axes of the domain are periodic
   /// @param linear  as in DiffusionLayout
   DiffusionSolver(Device& device, const BlockWithGhosts& block, const DirectionSet& directions,
     const CrossingPattern& pattern, const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming,
     const std::array<bool, 3>& periodic, bool linear);
 
-  /// Solves for the fluence of all orders after a sweep, and mixes it with previous solutions.
+  /// After a sweep, solves for the fluence of all scattering orders, and mixes it with previous solutions
+  /// (AndersonMixing.h).
   /// @param unit  typical power of a voxel, W
   /// @return change of the fluence by sweep and solve, |found - given| / |found| (numerics.md, Eq. (72))
   double Correct(double unit);
-  /// Continues the solve of the last Correct() to a smaller residual.
+  /// Continues the linear solver's iteration of the last Correct(), to a smaller residual.
+  /// @param unit  as in Correct()
   void Refine(double unit);
   double Absorbed() const; ///< absorbed power of the last solution, W
   /// Escaped power through each of the box's faces in the last solution, W; 0 on periodic axes.
   /// @param entered  incident power of the sweep, W
   /// @param ofSweep  escaped power of the sweep through each face, W
   std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
-  /// Warm start: adds a guess to the solution from which the next sweep's source and the next correction are computed.
-  /// @param guessed  W / length^2, by voxel with ghosts, in the layout of DiffusionSystem::State()
+  /// Warm start: adds estimated fluences to the solution from which the next sweep's source and the next correction are
+  /// computed.
+  /// @param guessed  fluence to add, W / length^2, by voxel with ghosts, in the layout of DiffusionSystem::State()
   void BeginBeyond(const std::vector<double>& guessed);
 
   // Functions that are not collective:

@@ -10,7 +10,8 @@
 #include "LightPropagation/Diffusion/BoxBorders.cl"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Conductance of face d of the voxel with indices `at`. `conductance` is of low faces, in rows (MultigridLevel).
+// Conductance of face d of the voxel with indices `at`. The array `conductance` holds one value per voxel and axis,
+// that of the voxel's low face, in rows (MultigridLevel).
 static float conductance_at(const DiffusionLayout* layout, const __global float* conductance, int d, const int* at)
 {
   int of[3] = { at[0], at[1], at[2] };
@@ -75,7 +76,8 @@ typedef struct
   const __global float* passed;
   const __global float* model;
   const __global float* pattern;
-  const __global float* givenFlux; // net flux of the given source over 4 pi, [axis][stride]
+  // Net flux of the known source (emission and first collisions) over 4 pi, [axis][stride].
+  const __global float* givenFlux;
   ulong stride;
   const __global float* faces; // if FACES: rows of power by cell of the box's faces, W (DiffusionShared.h)
 } diffusion_arrays;
@@ -112,15 +114,15 @@ static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* ar
 #endif
 }
 
-// Fluence difference over half a voxel along an axis that is equivalent to the net flux of the given source
-// (numerics.md, Eq. (53a)).
+// Fluence difference over half a voxel along an axis that is equivalent to the net flux of the known source, which is
+// emission and first collisions (numerics.md, Eq. (53a)).
 static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
 {
   return MOMENTS ? 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i] : 0.0f;
 }
 
-// Fluence difference equivalent to the given source's net flux, as drive(), from the centre of voxel i through its face
-// d to the centre of voxel j. drive_out(): to the box's face d.
+// Fluence difference equivalent to the known source's net flux, as for drive(), but between the centres of voxel i and
+// of voxel j, its neighbour through face d. For drive_out() it is between the centre and the box's face d.
 static float drive_through(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j)
 {
   return (d & 1 ? 1.0f : -1.0f) * (drive(layout, arrays, d / 2, i) + drive(layout, arrays, d / 2, j));
@@ -138,8 +140,8 @@ static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* 
   return arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
 }
 
-// Remainder R of the power through inner face d from voxel i to j: weighted power of the sweep minus that of the model
-// (numerics.md, Eq. (54)).
+// Remainder R of the power through inner face d from voxel i to j: power of the sweep minus that of diffusion, times
+// the weight of the transport correction (numerics.md, Eq. (54)).
 static float remainder_of_face(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
 {
@@ -209,8 +211,8 @@ static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arr
 #endif
 }
 
-// Remainder of the net outgoing power through all faces of the box at voxel i: weighted power of the sweep minus that
-// of the model (R_box of numerics.md, Eq. (60)), W.
+// Remainder of the net outgoing power through all faces of the box at voxel i: power of the sweep minus that of
+// diffusion, times the weight of the transport correction (R_box of numerics.md, Eq. (60)), W.
 //   power    emitted and scattered power of the voxel in the sweep, minus the power that collides in it, W
 //   share    [face] part of the remainder for each face, in proportion to `seeming`
 //   seeming  [face] outgoing power of the sweep; estimated, since its tally is not by voxel (numerics.md, Eq. (61))
@@ -301,8 +303,8 @@ static exact power_of_border(const DiffusionLayout* layout, const diffusion_arra
 #endif
 }
 
-// Net outgoing power through face d of voxel i in the solution, W; `share` is from remainder_of_borders() and used at
-// faces of the box.
+// Net outgoing power through face d of voxel i in the solution, W; `share` is from remainder_of_borders(), and is used
+// only if the face lies on the box's boundary.
 static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, const float* share)
 {
@@ -356,7 +358,7 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
 // cell of the box's faces.
 //   borders     [cell of the box's faces][BorderNet ... BorderWholeShare]; all but BorderNet are written
 //   source      source of the sweep, W / (length^3 sr)
-//   given_flux  net flux of the given source over 4 pi, if there are angular moments, [channel][x, y, z][stride]
+//   given_flux  net flux of the known source over 4 pi, if there are angular moments, [channel][x, y, z][stride]
 __kernel void diffusion_border_balance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
   const __global float* conductance, const __global float* currents, const __global float* passed,
@@ -452,7 +454,7 @@ __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma
 }
 
 // Computes the moments of degree 1 of the solution and stores them after the fluence, [x, y, z][voxel]: those of the
-// sweep, plus the net flux of the solution minus that of the model (numerics.md, Eq. (70a)).
+// sweep, plus the diffusive net flux of the solution minus that of the fluence `model` (numerics.md, Eq. (70a)).
 //   moments  angular moments of the sweep's path integrals, W length
 //   model    result of diffusion_model
 __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float* conductance,
@@ -476,7 +478,7 @@ __kernel void diffusion_found_flux(DiffusionLayout layout, const __global float*
         sum += (d & 1 ? 1.0f : -1.0f) * conductance_at(&layout, conductance, d, at) * change;
       }
     }
-    const int function = axis == 0 ? 3 : axis; // functions 1 to 3 are sqrt(3) times y, z, x
+    const int function = axis == 0 ? 3 : axis; // angular functions 1 to 3 are sqrt(3) times the direction's y, z, x
     const exact swept_length = moments[MOMENT_PLACE(places, function, channel, line, x)];
     fluence[(axis + 1) * count + i] =
       (swept_length + 1.73205081f * 0.5f * sum * layout.spacing[axis]) / volume_of(&layout);
@@ -498,8 +500,9 @@ __kernel void diffusion_put_flux(
   }
 }
 
-// Changes the next sweep's source in optically thick voxels next to thinner ones. With the weight skin, the source
-// becomes the one whose surface emits the outgoing partial current of diffusion (numerics.md, Eqs. (63), (64)).
+// Changes the next sweep's source in optically thick voxels next to thinner ones. The source is mixed with the one with
+// which the voxel's surface emits the outgoing partial current of diffusion; the latter has the weight openness(), 0 to
+// 1 (numerics.md, Eqs. (63), (64)).
 //   skins  by row of voxels, from diffusion_skins
 __kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
   const __global float* sigma_t, const __global float* sigma_a, const __global float* conductance,

@@ -91,7 +91,8 @@ public:
     /// Power of lamps' first-scattered light that leaves a voxel through each face without another collision
     /// (LampPassing.h), W, [channel][-x, +x, -y, +y, -z, +z][stride]; null: voxels are thin, or there are no lamps.
     const Buffer<float>* passed;
-    /// First-collision source of lamps minus `passed`, W / (length^3 sr), [channel][stride]; used with `passed` only.
+    /// First-collision source of lamps without the light that `passed` counts, W / (length^3 sr), [channel][stride];
+    /// not used if `passed` is null.
     const Buffer<float>* ofLamps;
     /// Power by cell of the box's faces, W, [FaceCame ... FaceLeaves][cell of BoxFaces.h]; SumBorders() writes the row
     /// FaceLeaves. Null: no face reflects, and power by cell is not requested.
@@ -126,11 +127,11 @@ public:
   // Steps of DiffusionSolver::Correct(), in order. The system of a rank's block includes ghost voxels, which have
   // `sigma_s` below 0 and are excluded from sums.
 
-  /// Computes the fluence m of Eq. (56), for which the sweep's powers are compared with diffusion.
+  /// Computes the fluence m of Eq. (56), from which diffusion gives the powers that are compared with the sweep's.
   void FindModel();
   Buffer<float>& TheModel() { return this->Model; } ///< result of FindModel(), W / length^2, [voxel]
-  void Balance(); ///< computes the right-hand side of Eq. (53) from the sweep's powers and the model
-  /// The solution, with ghost voxels: input and result of the solver.
+  void Balance(); ///< computes the right-hand side of Eq. (53) from the sweep's powers and the result of FindModel()
+  /// The solution, with ghost voxels: input and result of the linear solver.
   ExactValues& Solved() { return this->Solution; }
   void FindFlux(); ///< with angular moments: computes the moments of degree 1 of the solution, Eq. (70a)
   AndersonMixing::Sums SumsOfChange() const; ///< this rank's sums for Anderson mixing of the solution
@@ -142,8 +143,8 @@ public:
     /// By face: outgoing power of the solution, outgoing power of the sweep (estimated), and incident power of the
     /// sweep.
     std::array<double, 6> out = {}, seeming = {}, came = {};
-    /// Sum of the weights of the transport correction over cells of voxels with several faces on the box, and number of
-    /// these cells.
+    /// Sum of the weights of the transport correction over the cells of voxels that have several faces on the box's
+    /// boundary, and number of these cells.
     double transportWeight = 0.0, shared = 0.0;
   };
   /// @param counts  whether to include a cell, given by its face and its indices along the other two axes in order
@@ -155,7 +156,8 @@ public:
   SurfacePowers PowersAtSurface() const;
 
   /// Replaces the moments of degree 1 in a sweep's path integrals, W length, by those that belong to NextFluence(): the
-  /// sweep's moments, plus the net flux of the solution minus that of the model (numerics.md, Eq. (70a)).
+  /// sweep's moments, plus the diffusive net flux of the solution minus that of the result of FindModel() (numerics.md,
+  /// Eq. (70a)).
   void PutNextFlux(const Buffer<float>& path);
 
   /// Adds the net flux of the solution times the voxel's volume to `flux`, [channel][x, y, z][stride].

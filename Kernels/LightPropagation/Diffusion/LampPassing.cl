@@ -5,9 +5,10 @@
 #include "LightPropagation/Diffusion/BoxBorders.cl"
 #include "LightPropagation/Sweep/FallOfLight.cl"
 
-// Fraction of scattered light that returns to the entry face (`back` of numerics.md, Eq. (69)), if collisions have the
-// density exp(-b t) at the optical depth t < tau, and light is attenuated by exp(-k t) on its way back. r, 0 to 1, is
-// the proximity of first scattering to the face: 1 - 2 t / tau for the mean depth t.
+// Fraction of scattered light that returns to the entry face (`back` of numerics.md, Eq. (69)), if the density of first
+// collisions decreases as exp(-b t) with the optical depth t < tau behind that face, and light is attenuated by exp(-k
+// t) on its way back. The constant b follows from r = 1 - 2 t_mean / tau, where t_mean is the mean optical depth of
+// first collisions: r is 0 if it is that of the voxel's centre, 1 if it is that of the face.
 static float comes_back(float tau, float r, float k)
 {
   const float x = fall_of(fmin(r, 0.999999f)), y = x + k * tau;
@@ -16,8 +17,8 @@ static float comes_back(float tau, float r, float k)
   return back / shone;
 }
 
-// Fraction of a voxel's scattered light that crosses an inner face, beyond the fraction for scattering at the voxel's
-// centre (numerics.md, Eqs. (66), (69)); without the factor way_i / (way_i + way_j).
+// Fraction of a voxel's first-scattered light that crosses an inner face, minus the fraction that would cross it if all
+// light scattered at the voxel's centre; without the factor way_i / (way_i + way_j) of numerics.md, Eqs. (66) and (69).
 static float passes_inside(float tau, float r, float k)
 {
   if (k * tau < 0.02f)
@@ -43,8 +44,8 @@ static float beside_sweeps(float tau)
   return 1.0f + transport_weight * (0.02f + 0.17f * transport_weight);
 }
 
-// Fraction of a voxel's scattered light that crosses a face of the box, beyond the fraction for scattering at the
-// voxel's centre (numerics.md, Eqs. (66), (69)).
+// Fraction of a voxel's first-scattered light that crosses a face of the box, minus the fraction that would cross it if
+// all light scattered at the voxel's centre (numerics.md, Eqs. (66), (69)).
 static float passes_border(float tau, float r, float k)
 {
   const float depth = 0.5f * (1.0f - r) * tau;
@@ -89,7 +90,8 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
     const float tau = sigma_t[i] * h;
     const float r = length > 0.0f ? fmin(2.0f * first_moments[d * stride + i] / length, 1.0f) : 0.0f;
     part[d] = 0.0f;
-    // Light scattered forward in angular moments does not return to its entry face.
+    // Where sweeps use more extinction than the diffusion system, angular moments represent forward scattering, which
+    // does not send light back through its entry face.
     if (tau <= 0.0f || r <= 0.0f || swept[i] > sigma_t[i])
     {
       continue;

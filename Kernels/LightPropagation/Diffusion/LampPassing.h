@@ -19,11 +19,12 @@ struct LampLight
   const Buffer<float>* sigma_t;
   const Buffer<float>* sigma_a;
   const Buffer<float>* sigma_s;
-  const Buffer<float>* swept;        ///< extinction of the sweeps, 1/length
+  const Buffer<float>* swept;        ///< extinction that sweeps use, 1/length
   const Buffer<float>* path;         ///< path integrals of the lamp, W length
   const Buffer<float>* firstMoments; ///< first moments of the lamp's deposit (Deposit::firstMoments), W length
-  const Buffer<float>* passed;       ///< power through voxel faces, W; added to
-  const Buffer<float>* allPath;      ///< path integrals of all lamps, W length; added to
+  /// Power of first-scattered light through voxel faces, W, to which PassLampLight() adds.
+  const Buffer<float>* passed;
+  const Buffer<float>* allPath; ///< path integrals of all lamps, W length, to which PassLampLight() adds `path`
 };
 
 /// Adds the power of a lamp's first-scattered light that leaves its voxel through each face without another collision

@@ -31,7 +31,7 @@ Buffer<cl_int> PlacesInRows(Device& device, const MultigridLevel& level, const s
   return { device, places, "ghost voxels" };
 }
 
-/// Adds values by voxel of a box to an array by voxel of the grid that contains the box.
+/// Adds an array over the voxels of a box to an array over the voxels of the grid that contains the box.
 void AddPart(const std::vector<float>& part, const VoxelBox& box, const Grid& grid, float* values)
 {
   Grid ofBox;

@@ -11,7 +11,7 @@ namespace
 {
 constexpr std::size_t FewVoxels = 64;        ///< number of voxels below which a level is not coarsened further
 constexpr int VoxelsOfItem = 4096;           ///< approximate number of voxels per work-item
-constexpr int BetweenPlanes = 2 * RowVector; ///< padding of planes, floats
+constexpr int BetweenPlanes = 2 * RowVector; ///< padding after each plane of voxels, floats
 
 /// Sets the memory layout of a level from its size.
 void LayOut(MultigridLevel& level)

@@ -13,9 +13,9 @@ namespace tyndall
 /// @param spacing  voxel edges of the finest level
 std::vector<MultigridLevel> MultigridLevels(const std::array<int, 3>& size, const std::array<double, 3>& spacing);
 
-/// Layout of a box of a level, for arrays of one rank.
-/// @param box, own  boxes in voxels of the whole level: of the arrays, and of the voxels that this rank owns
-/// @param joined  box of the rank's arrays on the next coarser level, in its voxels
+/// Memory layout of one rank's arrays, which cover a box of a level.
+/// @param box, own  box that the arrays cover, and box of the voxels that this rank owns, in voxels of the whole level
+/// @param joined  box that the rank's arrays cover on the next coarser level, in voxels of that level
 MultigridLevel PartOfLevel(
   const MultigridLevel& whole, const VoxelBox& box, const VoxelBox& own, const VoxelBox& joined = {});
 /// Copy of the level in which all voxels of the box count as owned, for kernels that also process ghost voxels.

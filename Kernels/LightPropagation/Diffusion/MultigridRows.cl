@@ -89,7 +89,7 @@ inline void fill_ghosts_of(__global float* row, int size, int x)
 typedef struct
 {
   const __global float *own, *low_y, *high_y, *low_z, *high_z; // values in the row, and in its four neighbouring rows
-  // Loss of the row's voxels, and conductances of their faces
+  // Loss terms of the matrix for the row's voxels, and conductances of the voxels' faces
   const __global float *loss, *passes_x, *passes_y, *passes_high_y, *passes_z, *passes_high_z;
 } matrix_row;
 

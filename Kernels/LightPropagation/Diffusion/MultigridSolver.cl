@@ -146,8 +146,8 @@ static float residual_at(
   return (float)(right - sum);
 }
 
-// Replaces the right-hand side by the residual r of `values`, times per_unit, and computes Jacobi's initial guess for
-// the correction of `values`.
+// Replaces the right-hand side by the residual r of `values`, multiplied by per_unit (the reciprocal of a typical
+// right-hand side), and computes Jacobi's initial guess for the correction of `values`.
 //   sums  partial sums of r r, [work-group]
 __kernel void begin_residual(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global exact* values, float per_unit, __global float* right,
@@ -316,8 +316,8 @@ __kernel void level_smooth(MultigridLevel level, const __global float* conductan
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
-// Between two visits of a level: kept = part found, right -= part A found, and Jacobi's initial guess for the new
-// right-hand side. `found` is the correction of the first visit.
+// Between two visits of a level: kept = part * found, right -= part * A found (A the matrix), and Jacobi's initial
+// guess for the new right-hand side. `found` is the correction of the first visit.
 __kernel void level_revisit(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* inverse, const __global float* found, float part, __global float* kept, __global float* right,
   __global float* guess)
@@ -338,7 +338,7 @@ __kernel void level_revisit(MultigridLevel level, const __global float* conducta
   }
 }
 
-// Computes values = added + part values.
+// Computes values = added + part * values.
 __kernel void scale_and_add(MultigridLevel level, const __global float* added, float part, __global float* values)
 {
   FOR_ROWS(level)
@@ -462,10 +462,12 @@ __kernel void apply_matrix(MultigridLevel level, const __global float* conductan
   PUT_SUM_OF_GROUP(exact, sum, sums[get_group_id(0)])
 }
 
-// Step of conjugate gradients: x += step_of_values p, r -= step A p, and Jacobi's initial guess for the new residual r.
+// Step of conjugate gradients along the search direction p: x += step_of_values * p, r -= step * A p, and Jacobi's
+// initial guess for the new residual r.
 //   direction, applied  p and A p
 //   left    r
-//   values  x by voxel, without ghosts between rows, in W / length^2; r and p are in the solver's unit
+//   values  x by voxel, without ghosts between rows, in W / length^2; r and p are relative to the parameter `unit` of
+//           MultigridSolver::Solve()
 //   sums    partial sums of r r, [work-group]
 __kernel void go_along(MultigridLevel level, const __global float* direction, const __global float* applied,
   const __global float* inverse, float step, exact step_of_values, __global float* left, __global float* guess,

@@ -37,7 +37,8 @@ constexpr int Patience = 12;
 /// Bound on the reduction of the residual's root mean square, divided by the bound on its reduction in the
 /// preconditioner's norm.
 constexpr double Looser = 10.0;
-/// Ratio of the residual's norm, sqrt(r z), to its largest initial value below which the residual is rounding error.
+/// The residual r counts as rounding error if its norm, sqrt(r z) with the preconditioned residual z, is below this
+/// fraction of the largest norm at the start of a solve.
 constexpr double Negligible = 1e-12;
 
 /// Test whether an iteration should go on: whether the residual is above its bound and has halved recently. To be
@@ -322,7 +323,7 @@ void MultigridSolver::VisitTwice(std::size_t l)
   this->ScaleAndAdd(level, level.kept, PartOfVisit, level.better);
 }
 
-/// Computes values = added + part values, in rows of a level.
+/// Computes values = added + part * values, in rows of a level.
 void MultigridSolver::ScaleAndAdd(
   const Level& level, const Buffer<float>& added, float part, const Buffer<float>& values)
 {
@@ -347,7 +348,7 @@ double MultigridSolver::SumAfter(const std::function<void()>& work) const
   return this->TheDomain.Sum(sum);
 }
 
-/// Replaces the right-hand side by the residual r = b - A x of `values`. @return r r, relative to `unit`
+/// Replaces the right-hand side by the residual r = b - A x of `values`. @return r r, with r relative to `unit`
 double MultigridSolver::Begin(const ExactValues& values, double unit)
 {
   return this->SumAfter([&] {
@@ -360,7 +361,7 @@ double MultigridSolver::Begin(const ExactValues& values, double unit)
   });
 }
 
-/// New search direction: p = z + part p.
+/// New search direction: p = z + part * p, with the preconditioned residual z.
 void MultigridSolver::Turn(double part)
 {
   this->TheDomain.Collective([&] {
@@ -384,7 +385,7 @@ double MultigridSolver::Curvature()
   });
 }
 
-/// Step along the search direction: x += length p, r -= length A p. @return r r, relative to `unit`
+/// Step along the search direction: x += length * p, r -= length * A p. @return r r, with r relative to `unit`
 double MultigridSolver::Step(const ExactValues& values, double length, double unit)
 {
   return this->SumAfter([&] {

@@ -120,8 +120,8 @@ private:
   /// Approximate inverse of the coarsest level's matrix, on devices where it is faster (level_answers); else empty.
   Buffer<float> Answers;
   ExactValues Sums;
-  /// Largest initial r z of all solves so far, relative to `unit`. Later solves stop at residuals that are rounding
-  /// errors relative to this value.
+  /// Squared norm r z of the residual r at the start of a solve (z the preconditioned residual, both relative to
+  /// `unit`), the largest of all solves so far. Later solves stop at residuals that are rounding errors relative to it.
   double FirstResidual = 0.0;
 };
 }
