@@ -22,10 +22,11 @@ typedef struct
 {
   float spacing[3];
   int sourceFirst[3], sourceSize[3];
-  int strides[3], base;             // of sigma_t: voxel (0, 0, 0) is at index `base`
-  int sourceStrides[3], sourceBase; // of emission: lowest voxel of the box is at index `sourceBase`
-  int last, sourceLast;             // highest index of sigma_t and of emission
-  int axis[3];                      // the original axis that corresponds to each permuted axis
+  int strides[3], base; // strides of the array sigma_t by axis, and index of voxel (0, 0, 0) in it
+  // Strides of the array of emission by axis, and index of the box's lowest voxel in it.
+  int sourceStrides[3], sourceBase;
+  int last, sourceLast; // highest index of sigma_t and of emission
+  int axis[3];          // the original axis that corresponds to each permuted axis
   float sign[3];
 } turned_scene;
 
@@ -123,7 +124,7 @@ static inline void take_pairs(const __global float* from, integer i, real* first
 #endif
 }
 
-// Mean transmittance over a segment of optical length tau, phi1 of Eq. (1); `left` receives exp(-tau).
+// Mean transmittance over a segment of optical length tau, phi1 of numerics.md, Eq. (1); `left` receives exp(-tau).
 static real mean_left(real tau, real* left)
 {
   const real lost = extinguished(tau, left);

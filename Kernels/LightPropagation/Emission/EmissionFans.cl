@@ -3,17 +3,19 @@
 //   NET_FLUX  1: compute net flux
 //
 // A fan consists of all rays from one point of the emitting box into one 24th of the sphere of directions, on a grid of
-// tangents fine enough that a ray crosses every voxel of the last layer. For each ray and layer, the light that the ray
-// carries is stored; each voxel averages over the rays that cross it (numerics.md, Eqs. (40a), (40b)). The rays of a
-// SIMD packet belong to one row of a fan: they cross planes between rows of voxels together, and at most one plane
-// between voxels of a row per step.
+// tangents fine enough that a ray crosses every voxel of the last layer. For each ray and each layer of voxels that it
+// crosses, the light that the ray carries is stored; each voxel averages over the rays that cross it (numerics.md, Eqs.
+// (40a), (40b)). The rays of a SIMD packet belong to one row of a fan: they cross planes between rows of voxels
+// together, and at most one plane between voxels of a row per step.
 
 #include "LightPropagation/Emission/EmissionBox.cl"
 
-// Accepted difference of the two halves of the fans, in units of EmissionInfo::uneven: the mean of both halves is more
-// accurate than their difference suggests.
+// Bound on the difference between the light of the fans' two halves, relative to EmissionInfo::uneven times their sum:
+// the sum is more accurate than the difference of the halves suggests.
 #define OF_HALVES 3.0f
-#define DIM 1e-6f // transmittance of the light below which the two halves of the fans need not agree
+// Fraction of the light without extinction; if the halves' sum is smaller, their difference is compared with this
+// instead.
+#define DIM 1e-6f
 
 static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* turned)
 {
@@ -434,7 +436,8 @@ __kernel void judge_cells(EmissionInfo s, int axis, int up, ulong first, float e
   const int aside = max(abs(2 * at[0] + 1 - 2 * s.sourceFirst[u] - s.sourceSize[u]),
     abs(2 * at[1] + 1 - 2 * s.sourceFirst[v] - s.sourceSize[v]));
   const float away = 0.5f * ahead * s.spacing[axis];
-  const bool far = ahead > s.near && aside <= ahead; // fans have a layer of voxels before this cell
+  // Fans store no light before their first layer of voxels, nor outside their 24th of space.
+  const bool far = ahead > s.near && aside <= ahead;
   const bool even = agree(&s, faces[first + i], halves[first + i], emitted / fmax(away * away, 1e-30f));
   found[first + i] = !far ? -1.0f : even ? 1.0f : 0.0f;
 }

@@ -313,7 +313,8 @@ private:
     const auto cover = [&](int k, float& first, int& count) {
       const double low = std::min(0.0, (fan.first[k] - box.First[k] - box.Size[k]) / nearest);
       const double high = std::min(away + 0.5 * box.Size[k] + 0.5, ends[k] - box.First[k] + 0.0) / nearest;
-      first = static_cast<float>(low) - fan.spacing; // one spacing lower, since a point's offset is at most that
+      // One spacing lower, since each fan adds an offset of at most one spacing to its tangents.
+      first = static_cast<float>(low) - fan.spacing;
       count = static_cast<int>(std::ceil((high - low) / fan.spacing)) + 3;
     };
     cover(1, fan.firstLine, fan.lines);
@@ -429,7 +430,9 @@ private:
   Device& TheDevice;
   const FanScene& Scene;
   const Buffer<float> Emission;
-  Buffer<float> Outside, Halves, FaceHalves; ///< arguments of lay_out() and collect_fans()
+  /// Extinction outside the emitting box (lay_out()), and light of the first half of the fans in voxels and in face
+  /// cells.
+  Buffer<float> Outside, Halves, FaceHalves;
   /// Marching axis of the fans for which the extinction in `Outside` is laid out, 0 to 2; -1: not laid out yet
   int LaidOut = -1;
   FanLight Light;

@@ -97,8 +97,8 @@ __kernel void copy_images(
 
 // Copies light to the cells of a face that are mirror images.
 // faces       [cell][channel]
-// from_first  first cell of the face that is read: of this face, or of the opposite one if it is its mirror image
-// first       first cell of the face that is written
+// from_first  first cell that is read: of the opposite face if this face is its mirror image, else of this face
+// first       first cell of this face, which is written
 __kernel void copy_image_cells(
   EmissionInfo s, int mirrored, int face, ulong from_first, ulong first, int channels, __global float* faces)
 {

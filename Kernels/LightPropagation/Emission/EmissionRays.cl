@@ -201,7 +201,9 @@ typedef struct
 {
   int permutations[6][3]; // permutations of the scene's axes
   int count;
-  int turned, either; // bit masks of axes that are reflected, and of axes that are used in both senses
+  // Bit masks: axes that are reflected; axes along which the voxel is level with the emission's centre, so that both
+  // senses are averaged.
+  int turned, either;
 } ways_to_turn;
 
 // Whether axis a precedes axis b in the permuted scene. Order: the normal of a receiving face, then decreasing distance

@@ -13,12 +13,13 @@ namespace tyndall
 namespace
 {
 constexpr double Empty = 1e-4; ///< maximum optical thickness of an empty voxel
-constexpr std::size_t MostVoxels = std::size_t(1)
-  << 21;                               ///< largest grid in which emission from empty voxels is swept separately
+/// Largest number of voxels of a grid in which emission from empty voxels is swept separately.
+constexpr std::size_t MostVoxels = std::size_t(1) << 21;
 constexpr int FewestPerEdge = 12;      ///< minimum number of directions along the edge of a cube's face
 constexpr double RaysOfVoxel = 2304.0; ///< approximate number of rays per voxel along all directions of a cube's face
-constexpr double RaysOfGrid =
-  64e6; ///< maximum number of rays over all voxels, if that is at least one per direction and voxel
+/// Maximum number of rays, summed over all voxels and all directions of a cube's face; at least one per voxel and
+/// direction is traced.
+constexpr double RaysOfGrid = 64e6;
 }
 
 UncollidedEmission::UncollidedEmission(EmissionPeak peak, double error)

@@ -83,7 +83,7 @@ private:
     const Eigen::VectorXd& bAtExit, bool fromTop);
 };
 
-/// Means over the depth of a layer, at the nodes.
+/// Radiance averaged over the depth of a layer, at the nodes of the quadrature.
 struct LayerMeans
 {
   Eigen::VectorXd sum;  ///< mean of downward plus upward radiance

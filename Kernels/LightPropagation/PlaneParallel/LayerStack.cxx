@@ -231,7 +231,8 @@ private:
   std::vector<std::vector<double>> BeamsAt, OfBeams;
   double BeamsAtTop = 0.0, BeamsAtBottom = 0.0; ///< escaped power of the beams, W / length^2
   std::vector<LayerSource> Sources;
-  std::vector<Below> Under; ///< layers below each interface, interfaces from the top
+  /// Reflection and emitted light of all layers below each interface; interfaces from the top.
+  std::vector<Below> Under;
   /// [layer]: operator from downward radiance above a layer to upward radiance below it
   std::vector<Eigen::MatrixXd> UpOfDown;
   std::vector<Eigen::VectorXd> UpOfSources;

@@ -27,7 +27,8 @@ struct StackBeam
 {
   double cosine = 1.0; ///< cosine to the axis of the layers, above 0
   bool fromTop = true; ///< whether the beam enters at the top; false: at the bottom
-  /// Incident irradiance, perpendicular to the beam, W / length^2; in order m > 0 times cos or sin of m azimuth.
+  /// Incident irradiance, perpendicular to the beam, W / length^2; in azimuthal order m > 0 multiplied by the cosine or
+  /// sine of m times the azimuth.
   double irradiance = 0.0;
 };
 
@@ -42,7 +43,7 @@ struct StackLight
 /// Scattered, emitted and diffuse boundary light of a stack of layers; the beams are not included.
 struct StackSolution
 {
-  std::vector<LayerMeans> means;                ///< means of each layer
+  std::vector<LayerMeans> means;                ///< mean radiance of each layer
   Eigen::VectorXd upAtTop, downAtBottom;        ///< outgoing radiance at the nodes
   Eigen::VectorXd downAtTop, upAtBottom;        ///< incident radiance at the nodes, including reflected light
   double beamsAtTop = 0.0, beamsAtBottom = 0.0; ///< power of the beams that leaves, W / length^2, before reflection

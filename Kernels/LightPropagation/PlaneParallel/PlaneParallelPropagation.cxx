@@ -86,7 +86,8 @@ std::array<double, SurfaceCosines.size()> AtSurfaceCosines(
   return at;
 }
 
-/// Solves the columns of a plane-parallel scene and expands them to a LightField by voxel.
+/// Solves a plane-parallel scene, one column of layers for each channel, and copies the result to all voxels of a
+/// LightField.
 class SlabLight
 {
 public:
@@ -295,7 +296,8 @@ LightField SolvePlaneParallel(
   const Medium& medium, const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor)
 {
   Check(Domain(medium.grid), medium, illumination, settings);
-  EquiangularDirections(settings.directionsPerFace); // checks the number of directions, which is not used
+  // Throws if the number of directions is invalid, although that number is not used.
+  EquiangularDirections(settings.directionsPerFace);
   const double start = ClockSeconds();
   const MediumTraits traits = TraitsOf(medium, true);
   LightField light = SolveChannels(settings.leaveOut, SceneChannels(medium, traits, illumination), medium, illumination,

@@ -24,8 +24,8 @@ struct FallOff
   double mean, left;
 };
 
-/// Integral over the cosine of values at the nodes, which include the square root of the weight; times the cosine if
-/// `cosine`, times the sine if `sine`.
+/// Integral over the cosine of `values`, multiplied by the cosine if `cosine` is set, and by the sine if `sine` is set.
+/// The values are given at the nodes and contain the square root of the node's weight as a factor.
 double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values, bool cosine, bool sine)
 {
   double sum = 0.0;
@@ -141,7 +141,7 @@ LayerStack SlabScene::StackOf(int channel, int degree) const
 {
   const Medium& medium = this->TheMedium;
   LayerStack stack;
-  std::map<double, DeltaM> phases;                        // delta-M truncations by mean cosine
+  std::map<double, DeltaM> phases;                        // truncated phase functions (delta-M); key: mean cosine
   std::map<std::pair<double, double>, std::size_t> kinds; // index in LayerStack::kinds; key: absorption and mean cosine
   for (std::size_t i = 0; i < this->Count(); ++i)
   {
@@ -270,7 +270,7 @@ void SlabColumn::AddBeams(const SlabScene& scene, const StackLight& light, int c
   }
 }
 
-/// Adds to `direct` the uncollided light of sky, faces and emission, along the nodes.
+/// Adds to `direct` the uncollided light of sky, faces and emission, integrated over the directions of the nodes.
 void SlabColumn::AddDiffuse(const StackLight& light, const LayerStack& unscattered, const HalfRangeQuadrature& nodes)
 {
   const std::size_t count = unscattered.layers.size();

@@ -14,9 +14,11 @@ constexpr int MostMoments = 32;     ///< highest degree of phase-function moment
 constexpr double Negligible = 1e-3; ///< magnitude below which a moment of a phase function is neglected
 constexpr int DegreeOfSlabs = 9, DegreeOfThin = 6, DegreeOfOthers = 3;
 constexpr double SomewhatForward = 0.6;
-constexpr double Thick = 8.0; ///< optical thickness of the box above which singly scattered light is a small fraction
+/// Optical thickness of the box above which singly scattered light is a small fraction of all scattered light.
+constexpr double Thick = 8.0;
 constexpr double MuchThinner = 8.0;
-/// Number of arrays of moments: source, path, given light, and uncollided light.
+/// Number of arrays of angular moments that a solve holds: of the source, path integrals, given source (emission and
+/// first collisions) and uncollided light.
 constexpr std::size_t ArraysOfMoments = 4;
 
 /// Largest magnitude of a moment over all phase functions of the medium, by degree.

@@ -15,7 +15,7 @@ namespace tyndall
 struct DeviceMemory
 {
   std::size_t all = std::numeric_limits<std::size_t>::max();
-  std::size_t one = std::numeric_limits<std::size_t>::max(); ///< size of the largest single array
+  std::size_t one = std::numeric_limits<std::size_t>::max(); ///< size of the largest single array, bytes
 };
 /// Returns the free memory of a device.
 DeviceMemory MemoryOf(const Device& device);

@@ -16,7 +16,8 @@ constexpr double ThickBox = 8.0;
 struct Level
 {
   int directions, directionsInThickBox;
-  int uncollidedDirections; ///< directions per face for uncollided light, if light is incident through faces
+  /// Directions per cube face for uncollided light, used if light is incident through the box's faces.
+  int uncollidedDirections;
   double tolerance, emissionError;
 };
 

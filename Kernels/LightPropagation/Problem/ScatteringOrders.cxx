@@ -26,9 +26,10 @@ constexpr double Extrapolation = 1.42 / 2.0;
 /// Optical thickness along a voxel's longest edge above which sweeps with moments need more expensive corrections.
 constexpr double ThickVoxel = 10.0;
 
-/// Time of an accelerated solve, in units of one unaccelerated scattering order of the same scene (`./run bench
-/// thick`): set-up and finish, number of iterations (rows), and correction per iteration, in addition to its sweep.
-/// LightSources.cxx uses fixed totals instead: 18 orders for DSA, 12 for coarse-mesh DSA.
+/// Cost of an accelerated solve (`./run bench thick`). Times are relative to that of one scattering order of source
+/// iteration in the same scene: `setUp` is the time of set-up and finish, `rows` the number of iterations, and
+/// `correction` the time of an iteration's correction, in addition to its sweep. LightSources.cxx uses fixed totals
+/// instead: 18 orders for DSA, 12 for coarse-mesh DSA.
 struct AcceleratedTime
 {
   double setUp, rows, correction;
@@ -48,7 +49,8 @@ constexpr AcceleratedTime InCells = { 3.0, 0.0, 0.4 };
 constexpr double CellFall = 0.3;
 constexpr double CellAtMost = 1.0; ///< maximum optical width of a cell of coarse-mesh DSA where the medium is thickest
 constexpr int MostHalvings = 3;
-constexpr double PlainSetUp = 0.8; ///< set-up of source iteration, in orders: measured 0.8 in 100^3 voxels, 2 in 40^3
+/// Time of set-up of source iteration, relative to that of one order: measured 0.8 in 100^3 voxels, 2 in 40^3.
+constexpr double PlainSetUp = 0.8;
 
 /// Sums of a quantity over the lines of voxels along each axis: [axis][position on the other two axes, the lower one
 /// fastest].
@@ -115,9 +117,10 @@ struct ThickLines
 /// Properties of one channel from which the number of scattering orders is estimated.
 struct ScatteringOfChannel
 {
-  ThickLines diffusing; ///< optical thickness by transport extinction, for diffusing light
-  ThickLines swept;     ///< optical thickness by the extinction of the sweeps; unused without angular moments
-  double albedo = 0.0;  ///< mean albedo, in the coefficients that the sweeps use
+  /// Optical thickness of lines of voxels, with the transport extinction, by which light diffuses.
+  ThickLines diffusing;
+  ThickLines swept;    ///< the same with the extinction that sweeps use; unused without angular moments
+  double albedo = 0.0; ///< mean albedo, from the scattering and extinction coefficients that sweeps use
 };
 
 /// Properties of a scene from which the number of scattering orders is estimated.

@@ -14,7 +14,8 @@ namespace
 constexpr int FromPerFace = 144;
 /// Smallest accepted value of the phase function, relative to its mean; allows for rounding.
 constexpr double LeastPart = 1e-3;
-constexpr double MostDamping = 16.0; ///< largest damping s, at which all moments above degree 0 vanish
+/// Largest damping s of numerics.md, Eq. (8d), at which all moments above degree 0 vanish.
+constexpr double MostDamping = 16.0;
 
 /// Whether `omega` lies in one of the 48 parts of the sphere that are images of each other under rotations and
 /// reflections of the cube. A quadrature and its functions, degree by degree, have that symmetry.
@@ -40,7 +41,9 @@ std::vector<std::array<double, 3>> ComingFrom(const DirectionSet& set)
   return from;
 }
 
-constexpr double Thickest = 1.0; ///< optical thickness of a voxel up to which its degree is above 0
+/// Maximum optical thickness, along the shortest edge and without the forward peak, of a voxel that scatters in moments
+/// above degree 0.
+constexpr double Thickest = 1.0;
 /// Number of intervals between tabulated mean cosines; truncations are interpolated linearly.
 constexpr int Columns = 1024;
 

@@ -49,7 +49,7 @@ public:
   ///   moments of delta-M, which may be negative in some directions
   TruncatedScattering(const Medium& medium, int degree, int channels, const DirectionKernel* nowhereNegative = nullptr);
 
-  int Degree() const { return this->MostDegree; } ///< highest degree of any voxel
+  int Degree() const { return this->MostDegree; } ///< highest degree of the angular moments of any voxel
   /// Sets the highest degree of any voxel to that of the domain, if the medium is a subdomain: at least that of the
   /// subdomain, at most that given to the constructor.
   void RaiseDegree(int degree) { this->MostDegree = degree; }
@@ -85,9 +85,12 @@ private:
   int MostDegree;
   int Channels;
   bool NowhereNegative;
-  std::array<std::vector<DeltaM>, 3> OfChannel; ///< [degree]; used if g does not vary by voxel
-  std::vector<std::vector<DeltaM>> OfG;         ///< [g, evenly spaced from -1 to 1][degree]; used if g varies
-  std::vector<std::uint8_t> Degrees;            ///< degree of each voxel, [voxel][channel]; empty: all 0
+  /// Truncated phase functions by [channel][degree]; used if g does not vary by voxel.
+  std::array<std::vector<DeltaM>, 3> OfChannel;
+  /// Truncated phase functions by [g, evenly spaced from -1 to 1][degree]; used if g varies.
+  std::vector<std::vector<DeltaM>> OfG;
+  /// Degree of the angular moments of each voxel, [voxel][channel]; empty: all 0.
+  std::vector<std::uint8_t> Degrees;
 };
 
 /// A medium's coefficients on the device, 1/length, in the layout of VolumeLayout. sigma_t and sigma_s exclude light
