@@ -74,7 +74,7 @@ void ParallelPropagation::FinishOrder()
   this->Ledger.Count(std::exchange(this->Tally, {}));
   this->Ledger.CloseOrder(fluence);
   this->FluenceDirect = first ? std::move(fluence) : this->FluenceDirect;
-  this->Emits = true; // U is not zero from now on
+  this->Emits = true; // the source U is not zero from now on
 }
 
 void ParallelPropagation::UpdateSourcesOfOrder()

@@ -28,7 +28,7 @@ class ParallelPropagation
 {
 public:
   /// @param medium  its arrays must outlive this object
-  /// @param temporaryBytes  limit on the memory of T; 0: the memory left on the device
+  /// @param temporaryBytes  limit on the memory of the temporary buffers T; 0: the memory left on the device
   /// @param channels  3: solve three channels even if medium and light are grey; 1: as many as the scene needs
   /// @throws InvalidInput if medium, illumination or settings are invalid
   /// @throws DeviceError if a batch of one direction does not fit
@@ -45,25 +45,27 @@ public:
   /// Traces all rays of the directions of a batch through the volume once, which fills T.
   /// @param monitor  receives the progress of the solve
   void Propagate(int batch, const Monitor& monitor = {});
-  /// Adds T of a batch to the moments of the current order.
+  /// Adds the temporary buffers T (deposits of the rays) of a batch to the moments of the current order.
   void Collect(int batch);
-  /// Ends an order: computes U of the next order, I and fluence of all orders so far, powers and convergence.
+  /// Ends an order: computes the source U of the next order, the scattered radiance I and the fluence of all orders so
+  /// far, powers and convergence.
   void FinishOrder();
   /// Runs one scattering order: Propagate() and Collect() for each batch, then FinishOrder().
   void RunOrder(const Monitor& monitor = {});
   /// Whether the maximum order or the tolerance of the settings is reached.
   bool Done() const { return this->Ledger.Done(); }
 
-  /// T of a batch divided by sigma_s, so that it exists in vacuum too: length W / (length^2 sr), one array per
-  /// direction, x fastest, channels interleaved. T of Eq. (6) is sigma_s times this.
+  /// Temporary buffers T (deposits of the rays) of a batch, divided by sigma_s, so that they exist in vacuum too:
+  /// length W / (length^2 sr), one array per direction, x fastest, channels interleaved. T of Eq. (6) is sigma_s times
+  /// this.
   std::vector<std::vector<float>> Contributions(int batch) const;
   void SetContributions(int batch, const std::vector<std::vector<float>>& contributions);
 
-  /// U that the next order propagates, W / (length^3 sr): channels * SourceDirections() values per voxel, channels
-  /// fastest. Initially the emission of the medium.
+  /// Source U that the next order propagates, W / (length^3 sr): channels * SourceDirections() values per voxel,
+  /// channels fastest. Initially the emission of the medium.
   std::vector<float> Source() const { return this->Volumes.ReadSource(); }
-  /// Sets U of the next order, as returned by Source(). That order then has no boundary light, as any order after the
-  /// first.
+  /// Sets the source U of the next order, as returned by Source(). That order then has no boundary light, as any order
+  /// after the first.
   void SetSource(const std::vector<float>& source);
 
   LightField Result() const; ///< light of all orders so far
@@ -83,14 +85,14 @@ private:
   PublishedPlan Plan;
   PublishedSweep Sweep;
   cl::Kernel UpdateSources;
-  SweepTally Tally; ///< incident, escaped and wrapped power of the current order
-  bool Emits;       ///< whether U is not zero everywhere
+  SweepTally Tally; ///< power that is incident, escapes and wraps around periodic axes in the current order
+  bool Emits;       ///< whether the source U is nonzero in any voxel
   bool SourceGiven = false;
   std::vector<float> FluenceDirect;
 };
 
 /// Solves all scattering orders with ParallelPropagation.
-/// @param temporaryBytes  limit on the memory of T; 0: the memory left on the device
+/// @param temporaryBytes  limit on the memory of the temporary buffers T; 0: the memory left on the device
 LightField SolveParallel(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor = {}, std::size_t temporaryBytes = 0);
 }

@@ -163,7 +163,7 @@ std::vector<std::vector<double>> ScatteringFactors(
     }
     for (std::size_t d = 0; d < stored.size(); ++d)
     {
-      // division by `all` corrects the difference between rings and patches
+      // `all` is 1 but for the difference between the rings of PatchMeans and patches; dividing by it conserves power
       factors[d][i] += from.weight * scattered[d] / all;
     }
     cellSize[i] += from.weight;

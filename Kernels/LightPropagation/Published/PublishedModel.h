@@ -22,8 +22,9 @@ namespace tyndall
 ///
 /// A ray of direction i, weight w_i (sr), carries radiance L, W / (length^2 sr). Deposits are stored divided by
 /// sigma_s, so that fluence, the sum of deposits over all directions, is 4 pi I / sigma_s in the paper's notation, and
-/// exists in vacuum too. Light that enters a periodic box through a side face starts at the elements of the map, so
-/// such a box should be several voxels wide.
+/// exists in vacuum too. In a box that is periodic along some axes, light that enters through a face parallel to a
+/// ray's marching axis starts at the elements of the map, i.e. where the map's rays are within the voxels, so such a
+/// box should be several voxels wide.
 class PublishedModel
 {
 public:
@@ -40,10 +41,10 @@ public:
   /// Incident radiance, W / (length^2 sr), along `direction` through the face across `axis` in order 0.
   const Rgb& Boundary(int direction, int axis) const { return this->BoundaryRadiances[direction][axis]; }
 
-  /// Directions for which I is stored: a single (0, 0, 0) for the mean over all directions, or
+  /// Directions for which the scattered radiance I is stored: a single (0, 0, 0) for the mean over all directions, or
   /// settings.storedDirections directions.
   const std::vector<std::array<double, 3>>& StoredDirections() const { return this->Stored; }
-  /// Directions for which U is stored: the six face normals if StoredDirections() has a single entry, else
+  /// Directions for which the source U is stored: the six face normals if StoredDirections() has a single entry, else
   /// StoredDirections().
   const std::vector<std::array<double, 3>>& SourceDirections() const { return this->Sources; }
   /// Index of the entry of SourceDirections() nearest to `direction`: d(i) of Eq. (3).
@@ -65,9 +66,9 @@ public:
   /// All moments of light from another solver, with fluence 1 and mean direction `mean`. A fraction |mean| of it is
   /// assigned to the nearest direction of the set; the remainder is isotropic. The net flux is exact.
   std::vector<double> MomentsAlong(const std::array<double, 3>& mean) const;
-  /// U / sigma_s of a source direction.
+  /// Source U of a source direction, divided by sigma_s.
   Part Source(int sourceDirection) const;
-  /// I / sigma_s of a stored direction.
+  /// Scattered radiance I of a stored direction, divided by sigma_s.
   Part ScatteredRadiance(int storedDirection) const;
   /// Index of the moment that is the net flux along `axis`.
   int NetFlux(int axis) const { return this->FirstFlux + axis; }
@@ -130,7 +131,8 @@ struct MapGeometry
   {
     return this->forward ? crossed : this->planes - 1 - crossed;
   } ///< index of the plane that rays reach after `crossed` planes
-  /// Face across `entryAxis` through which this direction enters: 2 axis, + 1 on the upper side.
+  /// Face across `entryAxis` through which this direction enters: index 2 * entryAxis, or 2 * entryAxis + 1 for the
+  /// upper side.
   int EntryFace(int entryAxis) const;
   int ExitFace(int exitAxis) const { return this->EntryFace(exitAxis) ^ 1; }
   /// Transverse position within its voxel, 0 to 1, at which a ray begins order `order` if it began order 0 at `start`.
@@ -144,9 +146,9 @@ private:
   bool Continues; ///< whether rays wrap around the marching axis after the last plane
 };
 
-/// Traverses the voxels along one ray (Amanatides and Woo 1987), in double. Voxel boundaries closer than 1e-9 of a
-/// plane are crossed together, so that all rays of a direction treat ties equally. Crossings that coincide with the end
-/// of the path belong to the next order.
+/// Traverses the voxels along one ray (Amanatides and Woo 1987), in double. Voxel boundaries that are closer together
+/// than 1e-9 of the path through a plane are crossed at once, so that all rays of a direction treat ties equally.
+/// Crossings that coincide with the end of the path belong to the next order.
 class GridWalk
 {
 public:

@@ -40,7 +40,7 @@ typedef struct
   int direction; ///< index of the direction within the batch
   int parity;    ///< ray map, 0 or 1, from which radiance is read; the other one is written
   int moveU, moveV;
-  int source;   ///< slot of U for this direction
+  int source;   ///< slot of the source U for this direction
   float length; ///< path length in the voxel
 } PublishedCrossing;
 SHARED_END

@@ -28,7 +28,8 @@ PublishedPlan::PublishedPlan(Device& device, const Grid& grid, const PublishedMo
   this->MeasureBuffers(perBatch);
 }
 
-/// Number of directions per batch: all of a cube face if their T fits into the remaining memory; at least one.
+/// Number of directions per batch: all of a cube face if their temporary buffers T fit into the remaining memory; at
+/// least one.
 int PublishedPlan::DirectionsPerBatch(std::size_t temporaryBytes) const
 {
   const int perFace = this->Model.Directions().PerFace();
@@ -287,7 +288,8 @@ void PublishedSweep::TallyIncident(const Batch& batch, SweepTally& tally) const
   }
 }
 
-/// Adds the outgoing power of a pass to `tally`, from the outgoing radiance in the layout of PublishedPropagate.cl.
+/// Adds to `tally` the outgoing power of a pass (all rays of a batch on one sub-map), from the outgoing radiance in the
+/// layout of PublishedPropagate.cl.
 void PublishedSweep::TallyEscaped(const Batch& batch, SweepTally& tally) const
 {
   const std::vector<float> escaped = this->Escaped.Read();

@@ -34,11 +34,12 @@ public:
   struct Pass
   {
     std::vector<Launch> launches;
-    int end = 0; ///< index of the crossings for end_rays()
+    int end = 0; ///< index in `crossings` of the entries that end_rays() reads
     std::size_t carriedFirst = 0;
   };
 
-  /// Directions of one cube face whose rays are propagated together, and whose deposits are in T at the same time.
+  /// Directions of one cube face whose rays are propagated together, and whose deposits are in the temporary buffers T
+  /// at the same time.
   struct Batch
   {
     int first = 0, count = 0; ///< range of directions
@@ -46,19 +47,19 @@ public:
     std::size_t carriedFirst = 0;
     std::vector<MapGeometry> maps;
     std::vector<Pass> passes;
-    Buffer<PublishedCrossing> crossings; ///< crossings of all passes
+    Buffer<PublishedCrossing> crossings; ///< voxel crossings of all passes
     int Layout() const { return this->maps[0].axis == 0 ? 1 : 0; }
     /// Map of the first direction; all maps have the same axes and sizes.
     const MapGeometry& Map() const { return this->maps[0]; }
   };
 
   /// @param model, volumes  must outlive this object
-  /// @param temporaryBytes  limit on the memory of T; 0: the memory left on the device
+  /// @param temporaryBytes  limit on the memory of the temporary buffers T; 0: the memory left on the device
   PublishedPlan(Device& device, const Grid& grid, const PublishedModel& model, const PropagationSettings& settings,
     const PublishedVolumes& volumes, std::size_t temporaryBytes);
 
   std::vector<Batch> batches;
-  Buffer<float> coefficients; ///< coefficients of moments times density of the map, [batch][moment][direction]
+  Buffer<float> coefficients; ///< coefficients of moments times MapGeometry::density, [batch][moment][direction]
   PublishedSizes sizes;
 
   int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
@@ -67,8 +68,8 @@ public:
   /// order.
   std::size_t CarriedStride(const Batch& batch) const;
 
-  /// Makes the passes of a batch in order `order`. Rays that wrap around a periodic axis start at another position in
-  /// their voxels in each order.
+  /// Makes the passes of a batch (its rays on each sub-map) for scattering order `order`. Rays that wrap around a
+  /// periodic axis start at another position in their voxels in each order.
   void MakePasses(Batch& batch, int order) const;
   /// Path of the rays of a sub-map in a scattering order.
   GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
@@ -111,12 +112,12 @@ public:
   void Begin(const Batch& batch, bool incident, SweepTally& tally);
 
   /// Traces one ray per voxel of the first plane and direction through all planes. Adds escaped power to `tally`.
-  /// @param emits   whether U is not zero everywhere
+  /// @param emits   whether the source U is nonzero in any voxel
   /// @param report  receives the completed fraction of the pass
   void Send(
     const Batch& batch, const Pass& pass, bool emits, SweepTally& tally, const std::function<void(double)>& report);
 
-  /// Adds T of a batch to the moments of the order.
+  /// Adds the temporary buffers T (deposits of the rays) of a batch to the moments of the order.
   /// @param begins  whether this is the first batch of a memory layout, which overwrites the moments
   void Collect(const Batch& batch, bool begins);
 

@@ -36,7 +36,8 @@ VolumeLayouts::VolumeLayouts(const Grid& grid, int width)
   {
     this->row[layout] = RoundUp(across[layout][0], width);
     const cl_int rows = this->row[layout] * across[layout][1];
-    this->plane[layout] = RoundUp(rows, 16) + (rows % 1024 == 0 ? 16 : 0); // avoids planes of a multiple of 4 KB
+    // Avoids planes whose size is a multiple of 4 KB.
+    this->plane[layout] = RoundUp(rows, 16) + (rows % 1024 == 0 ? 16 : 0);
     this->volume[layout] = this->plane[layout] * across[layout][2];
   }
 }
@@ -149,7 +150,7 @@ void PublishedVolumes::FindSlots()
   }
 }
 
-/// Allocates U in the layouts in which the maps read it, and sets it to the emission of the medium.
+/// Allocates the source U in the layouts in which the maps read it, and sets it to the emission of the medium.
 void PublishedVolumes::MakeSources(const Medium& medium)
 {
   std::vector<PublishedPart> parts;
@@ -176,7 +177,7 @@ void PublishedVolumes::MakeSources(const Medium& medium)
   }
 }
 
-/// Writes U of all source directions in all layouts.
+/// Writes the source U of all source directions in all layouts.
 /// @param value  function of (voxel, source direction, channel)
 template <class Value>
 void PublishedVolumes::WriteSources(Value value)

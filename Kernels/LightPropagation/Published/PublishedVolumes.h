@@ -19,8 +19,8 @@ struct VolumeLayouts : PublishedLayouts
   std::size_t Index(int layout, int x, int y, int z) const;
 };
 
-/// Arrays that stay on the device between scattering orders: the medium, U, and the moments of the current order and of
-/// all orders; [...][channel][volume], with zero padding.
+/// Arrays that stay on the device between scattering orders: the medium, the source U, and the moments of the current
+/// order and of all orders; [...][channel][volume], with zero padding.
 struct PublishedVolumes
 {
   /// @param medium  copied
@@ -32,18 +32,18 @@ struct PublishedVolumes
   int Channels() const { return this->Model.Channels(); }
   std::size_t LayoutSize(int layout) const; ///< floats per quantity, all channels
 
-  /// Slot in Sources[layout] of U of a source direction; -1 if no map reads it in this layout.
+  /// Slot in Sources[layout] of the source U of a source direction; -1 if no map reads it in this layout.
   int SourceSlot(int layout, int sourceDirection) const { return this->Slots[layout][sourceDirection]; }
 
   /// Converts an array that is x fastest, with channels interleaved, to a layout.
   std::vector<float> Arrange(int layout, const float* interleaved) const;
   /// Converts an array in a layout to one that is x fastest, with channels interleaved.
   std::vector<float> Interleave(int layout, const float* arranged) const;
-  /// Sets U from an array [voxel][source direction][channel], x fastest.
+  /// Sets the source U from an array [voxel][source direction][channel], x fastest.
   void WriteSource(const std::vector<float>& source);
   /// Adds the uncollided light of another solver to the moments of the order just propagated.
   void AddGiven(const UncollidedImage& image);
-  /// Reads U into an array [voxel][source direction][channel], x fastest.
+  /// Reads the source U into an array [voxel][source direction][channel], x fastest.
   std::vector<float> ReadSource() const;
   /// Reads one moment from an array in layout 0; result x fastest, channels interleaved.
   std::vector<float> ReadMoment(const Buffer<float>& moments, int moment) const;
@@ -55,7 +55,7 @@ struct PublishedVolumes
   VolumeLayouts Layouts;
   bool Coloured; ///< whether sigma_t or sigma_s differs between channels
 
-  /// sigma_t, sigma_s, U and moments of the current order, [layout]
+  /// sigma_t, sigma_s, source U and moments of the current order, [layout]
   Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2];
   Buffer<float> Totals; ///< moments of all orders, layout 0
   Buffer<PublishedPart> Parts;

@@ -249,7 +249,8 @@ private:
     tyndall::Add(this->Tally, TallyOf(image, this->TheMedium, 0, this->Channels));
   }
 
-  /// Completes Eq. (4): computes U of the next order from the moments of this order, and adds these to the totals.
+  /// Completes Eq. (4): computes the source U of the next order from the moments of this order, and adds these to the
+  /// totals.
   void UpdateSources()
   {
     for (std::size_t k = 0; k < this->Totals.size(); ++k)
@@ -277,7 +278,8 @@ private:
   SweepTally Tally;   ///< incident, escaped and wrapped power of the current order
   std::size_t Values; ///< number of voxels times number of channels
   std::vector<float> Extinction, Scattering;
-  std::vector<std::vector<float>> Sources; ///< U by source direction, channels interleaved; empty if no map reads it
+  /// Source U by source direction, channels interleaved; empty if no map reads it.
+  std::vector<std::vector<float>> Sources;
   /// Moments of this order, in double: thousands of rays cross a flat voxel, and sums in float were wrong by 6e-4.
   std::vector<std::vector<double>> OrderMoments;
   std::vector<std::vector<float>> Totals;  ///< moments of all orders

@@ -78,9 +78,9 @@ __kernel void add_first_scattered(
   source[i] += (float)((exact)sigma_s[i] * path[i] / volume);
 }
 
-// Sets `source` to the given source plus the scattering source, for one channel, which starts at index `first` in all
-// arrays except `fluence`. One work-item per voxel. Negative values of the fluence, which a diffusion system may
-// return, count as 0.
+// Sets `source` to the given source (emission and first collisions) plus the scattering source, for one channel, which
+// starts at index `first` in all arrays except `fluence`. One work-item per voxel. Negative values of the fluence,
+// which a diffusion system may return, count as 0.
 __kernel void scatter_fluence(const __global exact* fluence, const __global float* given, __global float* source,
   const __global float* sigma_s, ulong first)
 {

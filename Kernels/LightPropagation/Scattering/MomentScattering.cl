@@ -59,7 +59,7 @@ __kernel void add_scattered_moments(MomentPlaces places, int channel, const __gl
 #undef ADD
 }
 
-// Sets `source` to the given source plus the scattering source.
+// Sets `source` to the given source (emission and first collisions) plus the scattering source.
 __kernel void scatter_given_moments(MomentPlaces places, int channel, const __global float* path,
   const __global float* given, __global float* source, const __global float* sigma_s, ulong stride, float per_path)
 {
@@ -75,7 +75,8 @@ __kernel void add_moments(MomentPlaces places, const __global float* path, __glo
   to[at] += path[at];
 }
 
-// Computes shown = source + part * shown, for all angular moments. One work-item per value.
+// Computes shown = source + part * shown, for all angular moments; `shown` are the moments that are stored for
+// pictures. One work-item per value.
 __kernel void add_to_shown(const __global float* source, __global float* shown, float part)
 {
   const ulong at = get_global_id(0);

@@ -47,7 +47,8 @@ std::unique_ptr<const ScatteringOperator> MakeScattering(
 void AddMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to);
 
-/// Computes shown = source + part * shown, for all angular moments of a source.
+/// Computes shown = source + part * shown, for all angular moments of a source; `shown` are the moments that are stored
+/// for pictures (IterationResult::shown).
 /// @param values  number of values in each array
 void AddToShown(
   Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part);

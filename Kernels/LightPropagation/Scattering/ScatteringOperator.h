@@ -43,13 +43,13 @@ public:
   virtual void AddFirstScattered(const Deposit& uncollided, const Buffer<float>& source) const = 0;
 
   /// Adds the first-collision source of a parallel beam to its range of `source`, after the angular moments, in voxels
-  /// whose first scattering is exact in angle (BeamScattering.h).
+  /// whose first-scattered light follows the phase function instead of truncated moments (BeamScattering.h).
   /// @param path  path integrals of the beam, W length, [channel][stride]
   /// @param beam  index of the beam, see SweptMoments::BeamOf()
   virtual void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int beam) const = 0;
 
-  /// Writes one channel of `source`: the given source plus the scattering source of the fluence of all orders, as DSA
-  /// computes it between two sweeps. Nowhere negative.
+  /// Writes one channel of `source`: the given source (emission and first collisions) plus the scattering source of the
+  /// fluence of all orders, as DSA computes it between two sweeps. Nowhere negative.
   /// @param swept  light of the last sweep, for operators that also need its angular distribution
   /// @param fluence  fluence of this channel, W / length^2
   /// @param given  emission and first-collision source, W / (length^3 sr); negative where a correction by a finer
