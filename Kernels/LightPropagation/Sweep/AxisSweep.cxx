@@ -73,7 +73,7 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
   {
     return;
   }
-  // The maps of a periodic axis hold the rays in transit from the previous sweep.
+  // The power of rays in transit along a periodic axis is still in the maps from the previous sweep.
   const bool mapsEmpty = !lit && !this->IsPeriodic() && !byCells;
   const double launches = this->Plan.laps == 1 ? this->Plan.launches : static_cast<double>(this->Plan.units.size());
   this->Cross(volume, { volume.source != nullptr, lit, volume.faceIn != nullptr, mapsEmpty }, this->FirstCrossings,
@@ -110,7 +110,7 @@ SweepTally AxisSweep::Finish()
   if (!this->IsPeriodic() && !this->Dark)
   {
     CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
-    // Power in the maps after the last plane of an open axis has escaped.
+    // On an open axis, the rays behind the last plane, whose power is in the maps, have left the box.
     const std::array<Rgb, 2> power = this->PowerInMaps();
     for (int way = 0; way < 2; ++way)
     {
@@ -123,8 +123,8 @@ SweepTally AxisSweep::Finish()
   return this->Tally;
 }
 
-/// Writes the power of incident light to the maps, W. If the boundary source is the same in each sweep, its SweepBorder
-/// is cached.
+/// Writes the incident power of each ray to the maps, W. If the boundary source is the same in each sweep, its
+/// SweepBorder is cached.
 void AxisSweep::Enter(const SweepBoundary& boundary, std::size_t firstChannel)
 {
   std::unique_ptr<SweepBorder>& kept = this->Borders[firstChannel];
@@ -148,7 +148,8 @@ void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor
   CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
   if (!this->Kernel.IsBorderClear() || volume.faceIn)
   {
-    // Incident light in the columns outside the plane has entered; it must not enter again when rays wrap around.
+    // The columns beside the maps' rows hold power that has already entered through the sides; it must not enter again
+    // when rays wrap around.
     this->RunOnMaps("darken_beside", nullptr, false, this->RowsOfMaps());
   }
   this->Kernel.ClearBorder();
@@ -172,8 +173,8 @@ void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffe
 {
   const SweepPlan& plan = this->Plan;
   const Deposit& to = volume.deposit;
-  // With angular moments or cells of faces, planes are never chained; one program, compiled for periodic boxes, then
-  // also serves open boxes.
+  // With angular moments or cells of faces, a bundle always crosses one plane at a time, so one program, compiled for
+  // periodic boxes, serves open boxes, too.
   const bool faces = to.faceOut || entry.byCells, alone = plan.angular || faces;
   cl::Kernel kernel =
     this->Kernel.Make(faces, alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v], false);
@@ -256,7 +257,8 @@ cl::NDRange AxisSweep::RowsOfMaps() const
 }
 
 /// Buffer in which escaped power is summed per cell of the box's faces, W. Its sums are exact (ExactValues), because
-/// tens of thousands of rays end in a cell; units that run concurrently have their own copies where they share cells.
+/// tens of thousands of rays end in a cell; work-items that may add to the same cell have their own copies of all
+/// cells.
 const cl::Buffer& AxisSweep::CellsOf(const Deposit& to)
 {
   if (!to.faceOut)
@@ -292,7 +294,7 @@ void AxisSweep::SumMaps()
   this->RunOnMaps("map_power", nullptr, false, this->RowsOfMaps(), this->Sums);
 }
 
-/// Power in the maps per sense of marching, W, from the sums that SumMaps computed.
+/// Power of the rays in the maps per sense of marching, W, from the sums that SumMaps computed.
 std::array<Rgb, 2> AxisSweep::PowerInMaps() const
 {
   std::array<Rgb, 2> power = {};

@@ -15,13 +15,13 @@
 
 namespace tyndall
 {
-/// Sweep along one axis on a CPU: carries the rays of a set of bundles through a volume and deposits the power that
-/// they lose. Propagation and collection are done in one pass, without a buffer per direction (Gruson et al. 2012,
-/// section 4.1, need one; numerics.md, section 4).
+/// Sweep along one axis on a CPU: carries the rays of bundles (sets of symmetric directions, RayBundles.h) through a
+/// volume and deposits the power that they lose. Propagation and collection are done in one pass, without a buffer per
+/// direction (Gruson et al. 2012, section 4.1, need one; numerics.md, section 4).
 ///
-/// Memory: the maps hold one float per voxel of a plane, direction, channel and sense of marching (forward, backward);
-/// each unit of work has scratch for a few planes. Both are in the workspace, except the maps of a periodic axis, whose
-/// rays are kept from one sweep to the next.
+/// Memory: the maps hold the power of each ray, one float per voxel of a plane, direction, channel and sense of
+/// marching (forward, backward); each work-item has scratch for a few planes. Both are in the workspace, except the
+/// maps of a periodic axis, whose rays are kept from one sweep to the next.
 class AxisSweep
 {
 public:
@@ -35,7 +35,7 @@ public:
   /// periodic axis.
   /// @param boundary  incident light; empty: none
   /// @param mostPlanes  maximum number of planes that rays cross along a periodic axis in this sweep; rays that are
-  /// then still in transit stay in the maps for the next sweep
+  /// then still in transit are continued in the next sweep
   /// @param monitor  receives the completed fraction of this sweep, 0 to 1
   void Start(const SweepVolume& volume, const SweepBoundary& boundary, int mostPlanes, const Monitor& monitor);
 
@@ -67,7 +67,7 @@ private:
   const cl::Buffer& CellsOf(const Deposit& to);
   void TakeFaceCells(const Deposit& to);
   bool IsPeriodic() const { return this->Plan.periodic[this->Plan.axes.axis]; }
-  /// Power of each ray, W, in the layout of SweepBorder::maps.
+  /// Maps: power of each ray, W, in the layout of SweepBorder::maps.
   Buffer<float>& Maps() { return this->IsPeriodic() ? this->OwnMaps : this->Workspace.maps; }
   void SumMaps();
   std::array<Rgb, 2> PowerInMaps() const;
@@ -79,9 +79,11 @@ private:
   const bool SameBoundary;
   SweepKernel Kernel;
 
-  Buffer<float> OwnMaps;                ///< power of the rays of a periodic axis, W; unused on an open axis
-  std::optional<ExactValues> FaceCells; ///< escaped power per cell of the box's faces, W, [unit][channel][cell]
-  Buffer<float> Sums;                   ///< power in the maps, W, [sense][bundle][row][channel]
+  Buffer<float> OwnMaps; ///< power of the rays of a periodic axis, W; unused on an open axis
+  /// Escaped power per cell of the box's faces, W, [work-item or, if all share cells, 1][channel][cell].
+  std::optional<ExactValues> FaceCells;
+  /// Power of the rays, W, summed over rows of the maps, [sense of marching][bundle][row][channel].
+  Buffer<float> Sums;
   Buffer<BundleInfo> Bundles;
   Buffer<CrossingInfo> FirstCrossings;
   /// Copies slices of a volume in host memory to the device; null: the volume is in device memory

@@ -4,8 +4,8 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// Index of the values received from the neighbours of a block, one per cell of its faces (BeyondFaces in
-/// Pipelined/AcrossFaces.h).
+/// Where to find the values that a block received from its neighbours, one per cell of the block's faces (BeyondFaces
+/// in Pipelined/AcrossFaces.h).
 typedef struct
 {
   /// Index of the first cell of each face of the block, -x to +z; -1: the face is on the domain's boundary

@@ -1,6 +1,7 @@
-// Kernel that carries rays through a range of planes, on a CPU. A work-item carries all rays of its unit (one sense of
-// marching, some or all bundles) and deposits into the volume directly. Units of one launch never share a plane, so
-// there are no races and the order of summation is fixed. The host defines the options of SweepLayout.cl.
+// Kernel that carries rays through a range of planes, on a CPU. A work-item carries the rays of its unit of work (one
+// sense of marching, some or all bundles) and adds to the volume's sums directly. Units of work in the same launch
+// never share a plane, so there are no races and the order of summation is fixed. The host defines the options of
+// SweepLayout.cl.
 
 #include "LightPropagation/Sweep/OnCpu/SweepCrossing.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -8,7 +9,7 @@
 #include "LightPropagation/Sweep/OnCpu/SweepPartialCurrents.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepSides.cl"
 
-// Sets the state to plane k of a chain.
+// Makes plane k of a chain (planes that a bundle crosses together) the one that the work-item crosses.
 static void go_to_plane(sweep_state* state, int k)
 {
   const struct plane_place* place = state->places + k;
@@ -23,8 +24,8 @@ static void go_to_plane(sweep_state* state, int k)
 }
 
 #if OCTANT_SOURCE
-// The two combinations of senses along u and v (WaysAside) to which a member's direction belongs. They are equal unless
-// the direction has no component along u or v.
+// The combinations of senses along u and v (WaysAside) to which a direction (member) of a bundle belongs: two if it has
+// no component along u or v, else the same one twice.
 static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 {
   const float2 signs = signs_of(bundle, m);
@@ -36,7 +37,7 @@ static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 }
 #endif
 
-// Functions for one bundle, compiled once for each number of members.
+// Functions that carry the rays of one bundle, compiled once for each number of directions (members) in a bundle.
 #define MEMBERS 1
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
@@ -50,7 +51,8 @@ static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 
-// Arrays of the volume that a unit sweeps, from the group's first channel on; see the arguments of `sweep`.
+// Arrays of the volume that a work-item sweeps, from the first of the channels that are swept together; see the
+// arguments of `sweep`.
 typedef struct
 {
   const SweepInfo* info;
@@ -63,7 +65,8 @@ typedef struct
   int backward;
 } swept_volume;
 
-// Maps, incident power, bundles and moves of the rays of a unit's sense of marching; see the arguments of `sweep`.
+// Maps (power of each ray), incident power, bundles and sideways moves of the rays of a work-item's sense of marching;
+// see the arguments of `sweep`.
 typedef struct
 {
   __global float* maps;
@@ -74,7 +77,7 @@ typedef struct
   __global leaving_float* leaving;
 } swept_rays;
 
-// Arrays in a unit's scratch memory, in addition to those in sweep_state.
+// Arrays in a work-item's scratch memory, in addition to those in sweep_state.
 typedef struct
 {
   __global float* planes;
@@ -84,14 +87,14 @@ typedef struct
 #endif
 } unit_scratch;
 
-// Planes [first, first + count) of the volume, packed in scratch.
+// Planes [first, first + count) of the volume, copied to scratch memory in padded rows.
 typedef struct
 {
   __global float* planes;
   __global int* thin; // whether all voxels of a row are optically thin, [plane][row]
   int first, count;
-  // Path integral, per unit of source, of light within its voxel of origin; one element per plane, from the first one
-  // crossed
+  // Path integral, within its voxel of origin, of the light that a source of 1 emits; one element per plane, from the
+  // first one crossed
   const __global OwnLightInfo* own;
 } packed_planes;
 
@@ -110,7 +113,8 @@ static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float*
   }
 }
 
-// Packs rows [rows.x, rows.y) of planes for crossing, and clears their sums.
+// Copies rows [rows.x, rows.y) of planes to scratch memory, to be crossed by rays, and sets the sums of their voxels to
+// 0.
 static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -159,7 +163,8 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
 
 #if !ANGULAR
 // Adds the path integral of emitted and scattered light within its voxel of origin to a row (numerics.md, Eq. (26)):
-// source times (length - taken) / sigma_t; in thin voxels, where the difference would cancel and `taken` is not stored,
+// source times (length - taken) / sigma_t, where `length` and `taken` are sums over rays of power times path length and
+// of power times mean transmitted length. In thin voxels, where the difference would cancel and `taken` is not stored,
 // a polynomial replaces it.
 static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
@@ -227,8 +232,8 @@ static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* pac
   }
 }
 
-// Carries the rays of bundle `b` through a chain of planes.
-// @param crossings  moves and segments of all bundles, from the chain's first plane on
+// Carries the rays of bundle `b` through a chain of planes, which it crosses together, row by row.
+// @param crossings  sideways moves and segment lengths of all bundles, from the chain's first plane on
 static void cross_planes(sweep_state* state, int planes, const swept_rays* rays, int b,
   const __global CrossingInfo* crossings, int first_row, int end_row)
 {
@@ -249,9 +254,9 @@ static void cross_planes(sweep_state* state, int planes, const swept_rays* rays,
 #undef CROSS
 }
 
-// Carries the rays of `count` bundles, from bundle `first` on, through a chain of planes. If the planes hold much data
-// (moments, or large chained planes), bundles alternate on tiles of rows, so that a tile stays in the cache for all
-// bundles.
+// Carries the rays of `count` bundles, from bundle `first` on, through a chain of planes, which each bundle crosses
+// together, row by row. If the planes hold much data (moments, or large chained planes), bundles alternate on tiles of
+// rows, so that a tile stays in the cache for all bundles.
 // @param planes  number of planes; 1 if CHAINED is 0
 // @param packed  the planes; if KEPT_ROWS, their rows are packed tile by tile, and `count` is the number of all bundles
 static void cross_bundles(sweep_state* state, const swept_volume* volume, const packed_planes* packed, int planes,
@@ -272,7 +277,7 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
     return;
   }
   const int behind = ROWS_BEHIND(state->chained_before + planes);
-  int ended = 0; // number of rows that are finished
+  int ended = 0; // number of rows that all bundles have crossed and whose sums were added to the volume
   for (int row = FirstRow; row < state->sizeV + behind; row += tile)
   {
     if (KEPT_ROWS)
@@ -299,7 +304,7 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
   state->ring = kept;
 }
 
-// For streamed volumes, moves the pointers of the volume to a slot, which holds a slice (SliceStream.h). The steps in
+// For streamed volumes, moves the pointers of the volume to a slot, which holds a slice (SliceStream.h). The strides in
 // PlaneInfo are those of a slot, slot.x is the slot's number, and slot.y is the index in the box of the slot's first
 // plane.
 static void go_to_slot(SweepInfo* info, int2 slot, swept_volume* volume)
@@ -335,7 +340,7 @@ static void go_to_channel(swept_volume* volume)
   volume->octants += 8 * info->first;
 }
 
-// Sets the members of the state that are the same for all planes, except for pointers.
+// Sets those values of sweep_state that are the same for all planes, except for pointers.
 static void begin_state(sweep_state* state, const SweepInfo* info)
 {
   const PlaneInfo* layout = &info->planes;
@@ -376,7 +381,7 @@ static int bundles_together(const sweep_state* state, int bundles)
   return ANGULAR || state->tile > 0 ? min(bundles, (int)BundlesTogether) : bundles;
 }
 
-// Divides a unit's scratch into arrays, and clears the rows of rays in it.
+// Divides a work-item's scratch memory into arrays, and sets the rows of rays in it to 0.
 static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __global float* scratch, int together)
 {
   const PlaneInfo* layout = &info->planes;
@@ -500,7 +505,7 @@ static packed_planes part_of(const packed_planes* packed, const swept_volume* vo
 }
 
 // Number of planes to pack together, from plane `begin` of the ray pattern on; at most up to plane `end`, and to the
-// end of the lap that began at plane `lap`.
+// end of the lap (passage through all planes of a periodic axis) that began at plane `lap`.
 static int planes_to_pack(const SweepInfo* info, int begin, int end, int lap, int backward)
 {
   const PlaneInfo* layout = &info->planes;
@@ -512,7 +517,8 @@ static int planes_to_pack(const SweepInfo* info, int begin, int end, int lap, in
 #endif
 }
 
-// Carries the rays of a unit through packed planes, chain by chain.
+// Carries a work-item's rays through packed planes, chain by chain; a chain is one plane or two that a bundle crosses
+// together.
 // @param places  the packed planes in marching order
 // @param begin  index of the first of these planes, counted from where rays start
 static void cross_chains(sweep_state* state, const swept_volume* volume, const swept_rays* rays, const UnitInfo* unit,
@@ -523,8 +529,8 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
   for (int i = 0, chained; i < packed->count; i += chained)
   {
     const int k = begin + i;
-    // Chains begin at the same planes whatever range a launch crosses, so that rows and sums are processed in the same
-    // order.
+    // Chains (planes that a bundle crosses together) begin at the same planes whatever range a launch crosses, so that
+    // rows and sums are processed in the same order.
     state->chained_before = CHAINED ? (unit->planesBefore + k) % info->planes.chained : 0;
     chained = CHAINED ? min(info->planes.chained - state->chained_before, packed->count - i) : 1;
     state->places = places + i;
@@ -545,7 +551,8 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
   }
 }
 
-// Carries the rays of the units of a launch through their planes. One work-item per unit.
+// Carries the rays of the units of work of a launch through their planes. One work-item per unit of work (UnitInfo: one
+// sense of marching, some or all bundles).
 // sigma     extinction, 1/length, [voxel]
 // source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
 // octants   additional source per octant, see SweepRequest::octantSource
@@ -553,11 +560,13 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
 // lost      rounding errors of path in this sweep (compensated summation), if rays wrap around the marching axis
 // flux      net flux, W length, [channel][x, y, z][stride], added to
 // currents  power that enters the voxel through each face, W, [channel][-x, +x, -y, +y, -z, +z][stride], added to
-// maps      power of the rays of both senses of marching (or of the only one), W
-// border    power of incident rays, W: the rows outside for both senses, then the radiances for both senses
+// maps      power of each ray, W, for both senses of marching (or for the only one)
+// border    power of incident rays, W, each for both senses: rows that enter through the faces normal to v, then values
+// for the faces normal to u
 // coefficients  values of the angular functions, see BundleInfo, both senses
-// crossings moves and segments, [plane of the ray pattern][bundle]
-// own       path integrals per unit source within the voxel of origin, [unit][plane from where rays start]
+// crossings sideways moves and segment lengths, [plane of the ray pattern][bundle]
+// own       path integrals, within the voxel of origin, of the light that a source of 1 emits, [unit][plane from where
+// rays start]
 // schedule  first plane and end, counted from where rays start, [launch][unit]; planes beyond the last plane wrap
 //           around; if streamed [launch][planes, slots][unit], see go_to_slot
 // tally     escaped power, W, [plane, counted from where rays start][unit][-u, +u, -v, +v][channel]
@@ -608,7 +617,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   struct plane_place places[PLANES_TOGETHER];
   for (int begin = range.x, count; begin < range.y; begin += count)
   {
-    const int lap = begin / info.planes.sizeP * info.planes.sizeP; // planes marched in earlier laps
+    // Number of planes crossed in earlier laps around a periodic axis.
+    const int lap = begin / info.planes.sizeP * info.planes.sizeP;
     count = planes_to_pack(&info, begin, range.y, lap, way);
     const packed_planes packed = { parts.planes, parts.thin,
       way ? info.planes.sizeP - (begin - lap) - count : begin - lap, count, own + u * info.patternPlanes + begin };

@@ -30,8 +30,8 @@
 
 #if ANGULAR
 #include "LightPropagation/Sweep/OnCpu/SweepMoments.cl"
-// Calls FUNCTION with the bundle's number of frames as a constant: one frame for a single member, two for eight
-// members.
+// Calls FUNCTION with the bundle's number of frames as a constant. A frame is a set of up to four directions (members)
+// that differ only in signs: one member makes one frame, eight members make two.
 #define FOR_FRAMES(FUNCTION, y, slot)                       \
   if (MEMBERS == 8 || (MEMBERS > 1 && bundle->frames == 2)) \
   {                                                         \
@@ -51,18 +51,19 @@ typedef struct
   // Power that enters the plane's voxels, W, [channel][CurrentFaces]; null: not computed
   __global float* entered;
   bool deposit, thin;
-  float power, cosine; // power of a ray at radiance 1, and cosine to the marching axis, see BundleInfo
+  float power, cosine; // power of a ray at radiance 1, and cosine of its angle to the marching axis, see BundleInfo
 } SEGMENT_ROWS;
 
-// Components of the members' directions normal to the marching axis.
+// Components, normal to the marching axis, of the directions (members) of a bundle.
 typedef struct
 {
   float alongU[MEMBERS], alongV[MEMBERS]; // components along u and v, for the net flux
   int2 aside[MEMBERS];                    // combinations of senses along u and v, see ways_aside
 } MEMBER_WAYS;
 
-// Carries all rays of a channel through one segment in a vector of voxels.
-// own_path  path integral of a unit source within its own voxel, times the cosine between rays and axis
+// For one channel and a vector of voxels, carries the rays of all members of a bundle through one segment.
+// own_path  path integral, within its voxel of origin, of the light that a source of 1 emits, times the cosine between
+// rays and axis
 static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_ROWS* rows, const MEMBER_WAYS* ways,
   int x, int c, const real_crossing* crossing, real own_path, const __global float** in, __global float* out)
 {
@@ -117,7 +118,8 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
 }
 
 // Carries all rays of a row through one segment each (numerics.md, Eqs. (23), (24); Gruson et al. 2012, Eq. 3, in
-// conservative form), with p1 the mean transmitted length:
+// conservative form). With P the power of a ray before the segment, P' behind it, p1 the mean transmitted length, q the
+// source, and `power` the power of a ray at radiance 1:
 //   path += p1 P,  P' = P - sigma p1 P + power q p1
 // The path integral of the source's light within its own voxel does not depend on P; add_own_light in Sweep.cl adds it.
 // @param entered  rows of the power that enters the plane's voxels, W, [channel][CurrentFaces]; null if not computed
@@ -153,9 +155,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
       const real taken = multiply_add(crossing.meanLength, (real)(rows.power * MEMBERS), load_real(x, taken_row));
       store_real(taken, x, taken_row);
     }
-    // Path integral of a unit source within its own voxel, (length - mean_length) / sigma, times the cosine. Across the
-    // axis the contributions of mirror images to the net flux cancel; along the axis they do not, as a ray and its
-    // opposite may cross the voxel in different segments.
+    // Path integral, within its voxel of origin, of the light that a source of 1 emits, (length - mean_length) / sigma,
+    // times the cosine. Across the axis the contributions of mirror images to the net flux cancel; along the axis they
+    // do not, as a ray and its opposite may cross the voxel in different segments.
     const real own_path =
       NET_FLUX ? own_path_of(x, &crossing, inverse_row, length) * (rows.power * MEMBERS * rows.cosine) : (real)0.0f;
 #pragma unroll
@@ -168,8 +170,8 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 
 #endif
 
-// Carries the rays of a row through one segment, with or without angular moments.
-// @param slot  index of the row among those for which a bundle keeps sources
+// Carries the rays of a row through one segment: by CROSS_MOMENTS with angular moments, else by CROSS_VOXELS.
+// @param slot  index of the row among those whose sources along the bundle's rays are stored
 // @param first  whether this segment is the row's first in the plane
 static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool deposit, const __global float** in,
   __global float* out, float length, const __global BundleInfo* bundle)
@@ -285,7 +287,7 @@ static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global floa
 }
 
 // Writes the power of the rays that enter through the faces normal to u to the columns at both ends of every row in the
-// rings.
+// ring buffers between stages.
 static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
@@ -443,7 +445,8 @@ static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __glob
   }
 }
 
-// Writes the rays that enter through the faces normal to u to the columns beside a row within a plane, before stage s.
+// Writes the power of the rays that enter through the faces normal to u before stage s of a plane to the columns beside
+// a row.
 static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* radiance,
   const __global BundleInfo* bundle, const __global CrossingInfo* crossing, __global float* out)
 {
@@ -464,9 +467,9 @@ static void ENTER_ROW(sweep_state* state, int y, int s, const __global float* ra
 #endif
 }
 
-// Begins to carry a bundle through a chain of planes: lists the chain's stages, and fills the rows and columns of rays
-// that enter sideways. Parameters as for CROSS_PLANES. Returns the row of rays that enter through the faces normal to
-// v.
+// Begins to carry a bundle through a chain of planes: lists the chain's stages (each moves rays sideways and takes them
+// through one voxel), and fills the rows and columns of rays that enter sideways. Parameters as for CROSS_PLANES.
+// Returns the row of rays that enter through the faces normal to v.
 static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __global float* map,
   const __global float* outside, const __global float* radiance, const __global BundleInfo* bundle,
   const __global CrossingInfo* crossings, bool begins, chain_of_stages* chain)
@@ -512,7 +515,8 @@ static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __globa
   return outside;
 }
 
-// Carries row y of a bundle through stage g of a chain. Parameters as for CROSS_PLANES.
+// Carries row y of a bundle's rays through stage g of a chain of planes. A stage moves rays sideways and takes them
+// through one voxel. Parameters as for CROSS_PLANES.
 // @param beside  row of rays that enter through the faces normal to v
 static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state, const chain_of_stages* chain, int g,
   int y, __global float* map, const __global float* beside, const __global float* outside,
@@ -531,7 +535,7 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
   __global float* out =
     g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
 #if CURRENTS
-  if (inside && (ANGULAR || s > 0)) // else CROSS_CHANNEL adds the power
+  if (inside && (ANGULAR || s > 0)) // at stage 0 without angular moments, CROSS_CHANNEL adds the power
   {
     COUNT_CURRENTS(state, y, s, in, own, bundle, crossing);
   }
@@ -571,7 +575,8 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
 // @param map      power of the bundle's rays, W, [row][member][channel][ROW], with two rows more than the plane
 // @param outside  row of rays that enter through the faces normal to v, W, [member][channel][ROW]
 // @param radiance power of rays that enter through the faces normal to u, W, [member][channel]
-// @param crossings  moves and segments in the first plane; those in the following planes are state->allBundles apart
+// @param crossings  sideways moves and segment lengths in the first plane; those in the following planes are
+//   state->allBundles apart
 // @param coefficients  values of the bundle's angular functions
 // @param first_row, end_row  range of rows that the first stage crosses in this call; the first of successive calls
 // begins at FirstRow

@@ -48,8 +48,8 @@ static inline __attribute__((always_inline)) real_crossing cross_length(const sw
   return crossing;
 }
 
-// Path integral of a unit source within its own voxel, per unit of a ray's power: (length - p1) / sigma, numerics.md,
-// Eq. (24).
+// Path integral, within its voxel of origin, of the light that a source of 1 emits, divided by a ray's power at
+// radiance 1: (length - p1) / sigma (numerics.md, Eq. (24)).
 static inline __attribute__((always_inline)) real own_path_of(
   int x, const real_crossing* crossing, const __global float* inverse_row, float length)
 {
@@ -58,7 +58,7 @@ static inline __attribute__((always_inline)) real own_path_of(
   return select(thick_path, thin_path, crossing->tau < (real)1e-2f);
 }
 
-// Signs of the direction of a bundle's member along u and v.
+// Signs of the components along u and v of one direction (member m) of a bundle.
 static inline float2 signs_of(const __global BundleInfo* bundle, int m)
 {
   return (float2)(bundle->move[m][0] + bundle->move[m][1], bundle->move[m][2] + bundle->move[m][3]);

@@ -7,11 +7,12 @@
 
 namespace tyndall
 {
-/// Kernel `sweep` (OnCpu/Sweep.cl) of a plan, with its arguments and the device arrays that describe the plan's rays.
+/// Kernel `sweep` (OnCpu/Sweep.cl) for a sweep plan, with its arguments and the device arrays that describe the plan's
+/// rays.
 class SweepKernel
 {
 public:
-  /// @param plan  must outlive this object
+  /// @param plan  plan of the sweep; must outlive this object
   SweepKernel(Device& device, const SweepPlan& plan);
 
   /// Sets the incident light that is uniform over each face parallel to the marching axis.
@@ -19,7 +20,7 @@ public:
   void SetBorder(const std::vector<float>& outside, const std::vector<float>& radiance);
   void ClearBorder();
   bool IsBorderClear() const { return this->BorderIsClear; }
-  /// Sets the path integrals, per unit of source, of light within its voxel of origin (SweepPlan::OwnLight).
+  /// Sets the path integrals, within the voxel of origin, of the light that a source of 1 emits (SweepPlan::OwnLight).
   void SetOwnLight(const std::vector<OwnLightInfo>& own);
 
   /// Arguments of one or several launches of the kernel.
@@ -30,7 +31,8 @@ public:
     const Buffer<float>& maps;
     const Buffer<float>& scratch;
     const Buffer<CrossingInfo>& crossings;
-    /// Range of planes (first, end) of each unit, [launch][unit]; if streamed, SliceStream::Schedule::rows
+    /// Range of planes (first, end) that each work-item crosses, [launch][work-item]; if streamed,
+    /// SliceStream::Schedule::rows
     const Buffer<cl_int2>& schedule;
     /// Incident radiance per cell of the faces, or power of the rays that enter through the sides (Sweep.cl)
     const cl::Buffer& entering;
@@ -49,14 +51,14 @@ public:
   void Launch(cl::Kernel& kernel, Crossing& crossing, int launch, const std::vector<cl::Event>* after = nullptr,
     cl::Event* done = nullptr) const;
 
-  /// Power that escaped through the faces parallel to the marching axis in the launches so far, W, [plane][unit][-u,
-  /// +u, -v, +v][channel].
+  /// Power that escaped through the faces parallel to the marching axis in the launches so far, W,
+  /// [plane][work-item][-u, +u, -v, +v][channel].
   std::vector<float> Sideways() const { return this->Left.Read(); }
 
 private:
   Device& TheDevice;
   const SweepPlan& Plan;
-  Buffer<float> Border; ///< incident power: `outside`, then `radiance`, each for both senses of marching
+  Buffer<float> Border; ///< incident power: `outside` for both senses of marching, then `radiance` for both
   bool BorderIsClear = false;
   Buffer<float> Left, Coefficients;
   Buffer<BundleInfo> Bundles;

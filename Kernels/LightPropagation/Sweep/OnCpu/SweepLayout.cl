@@ -16,7 +16,8 @@
 // thus share one program, which takes seconds to compile.
 //
 // Rays carry power (W), so escaped power needs no further factor at any face. A row of a map holds the power of the
-// rays, at the voxels that they enter, for all members of a bundle and all channels: float [member][channel][ROW].
+// rays, at the voxels that they enter, for all directions (members) of a bundle and all channels: float
+// [member][channel][ROW].
 
 #pragma once
 #include "LightPropagation/Sweep/SweepShared.h"
@@ -24,12 +25,14 @@
 #include "Numerics/Numerics.cl"
 
 #define PAD REAL_WIDTH
-#define LAG 2 // rows by which a stage lags behind the previous stage
-// Maximum number of planes packed together
+// Number of rows by which a stage (the crossing of one of a plane's up to three segments) lags behind the previous
+// stage.
+#define LAG 2
+// Maximum number of planes that are copied to scratch memory together
 #define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained)
 #define FLUX (NET_FLUX ? 3 : 0)
 
-// Indices of the quantities of one plane that follow those of SweepShared.h.
+// Indices of the quantities stored for each row of a plane, after those of SweepShared.h.
 #define PLANE_BEAMS (PlaneSource + CHANNELS)
 #define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
@@ -39,8 +42,8 @@
 #define PLANES PLANE_COUNT(CHANNELS, BEAMS, NET_FLUX, CURRENTS, OCTANT_SOURCE)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 
-// Whether up to PLANES_CHAINED planes may be crossed as a chain, row by row. Not possible if the rays that enter or
-// leave sideways are stored by plane, or if rows wrap around.
+// Whether a bundle may cross up to PLANES_CHAINED planes together, row by row, as a chain. Not possible if the rays
+// that enter or leave sideways are stored by plane, or if rows wrap around.
 #define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
 // Attribute of functions that are called at most once per row. Inlining them in unrolled loops makes compilation a
 // third slower; where planes may be chained, however, calls cost 10% of a sweep with 64 voxels per row.
@@ -65,7 +68,7 @@
 #define MOMENTS_OF_CHANNEL(info) ((ulong)(info)->moments.groups * ((info)->moments.functions - 1) * MomentGroup)
 #endif
 
-// Maximum number of planes in a chain.
+// Maximum number of planes that a bundle crosses together, as a chain.
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)
 // Maximum number of rows by which the last stage of a chain lags behind the first
@@ -100,8 +103,8 @@ typedef struct
   int width;                        // sizeU rounded up to whole vectors
   int shines, border, roundAxis;    // flags, see SweepInfo
   int periodicU, periodicV;         // flags, see SweepInfo
-  int allBundles;                   // number of bundles of all units
-  const struct plane_place* places; // the planes of a chain
+  int allBundles;                   // number of bundles of all work-items
+  const struct plane_place* places; // the planes of a chain, which a bundle crosses together
   __global float* planes;           // quantities of the plane that is being crossed
   __global int* thin;               // 1 if all voxels of a row of that plane are thin, [row]
   float meanLength[MeanLengthTerms];
@@ -113,10 +116,11 @@ typedef struct
   int rings;            // number of ring buffers: one after each stage except the last
   __global float* ring; // rows between stages, [ring][RingRows][RAYS_OF_ROW]
 #if ANGULAR
-  // Sources in the members' directions, W / (length^3 sr), MomentRows rows of RAYS_OF_ROW floats
+  // Sources in the directions (members) of a bundle, W / (length^3 sr), MomentRows rows of RAYS_OF_ROW floats
   __global float* sources;
-  __global float* paths;   // path integrals of the members, W length, laid out as sources
-  __global float* ownPath; // path integral of a unit source within its own voxel, MomentRows rows
+  __global float* paths; // path integrals of the bundle's directions, W length, laid out as sources
+  // Path integral, within its voxel of origin, of the light that a source of 1 emits, MomentRows rows.
+  __global float* ownPath;
   // Moments, from the second function on, of the plane's source and of its path integral; number of floats from one row
   // to the next, and from one channel to the next.
   const __global float* momentSource;
@@ -135,7 +139,7 @@ typedef struct
   const FaceInfo* faces;
   ulong faceFirst[4];        // index of the first cell of the plane that is being crossed, per side, first channel
   int firstPlane;            // index in the grid of the first plane of the box
-  __global exact* faceOut;   // escaped power per cell that the unit sums
+  __global exact* faceOut;   // escaped power per cell to which the work-item adds
   int facePlane, facePlanes; // index of the plane that is being crossed; number of planes
   const __global float* faceIn;
 #endif

@@ -1,10 +1,11 @@
-// Kernels for the start and end of a sweep, on the maps of rays. The host defines the options of Exact.cl.
+// Kernels for the start and end of a sweep, on the maps, which hold the power of each ray. The host defines the options
+// of Exact.cl.
 
 #include "LightPropagation/Sweep/SweepShared.h"
 #include "Numerics/Exact.cl"
 
-// Index in the maps of the first ray of a row of a bundle; the rays of further members and channels, [member][channel],
-// follow at distances of `row` floats.
+// Index in the maps of the first ray of a row of a bundle; the rays of the bundle's other directions (members) and
+// channels, [member][channel], follow at distances of `row` floats.
 static ulong row_of_maps(const MapsInfo* info, const __global BundleInfo* bundle, int row, int way)
 {
   return way * info->eachWay + bundle->map + (ulong)row * bundle->members * info->channels * info->row + info->border;
@@ -41,8 +42,8 @@ __kernel void map_power(
   }
 }
 
-// Clears the columns beside a row's voxels, which hold light incident on u's face; no light is incident once rays wrap
-// around a periodic axis. One work-item per row of a bundle and sense of marching.
+// Clears the columns beside a row's voxels, which hold the power of rays that enter through the faces normal to u: no
+// light is incident once rays wrap around a periodic axis. One work-item per row of a bundle and sense of marching.
 __kernel void darken_beside(MapsInfo info, __global float* maps, const __global BundleInfo* bundles)
 {
   const __global BundleInfo* bundle = bundles + get_global_id(1);
@@ -79,8 +80,8 @@ __kernel void leave_by_cells(
   }
 }
 
-// Adds the escaped power per cell of all units, in the order of the units, to face_out, and clears the units' values.
-// One work-item per value.
+// Adds the escaped power per cell that the work-items of `sweep` summed separately, in their order, to face_out, and
+// clears their values. One work-item per value.
 __kernel void take_face_cells(__global exact* units, int count, ulong values, __global float* face_out)
 {
   const ulong i = get_global_id(0);

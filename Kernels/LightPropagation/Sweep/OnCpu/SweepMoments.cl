@@ -1,12 +1,13 @@
 // Functions that carry a bundle through a row, with light and source in angular moments (numerics.md, section 4.7).
 // Compiled once for each number of MEMBERS, by SweepBundle.cl.
 //
-// Members of a frame differ only in the signs of u and v, so the values of an angular function in their directions
-// differ only in sign. Functions are therefore summed by parity along u and v, which gives four sums for up to four
-// members, instead of one sum per member. A bundle has one frame or two; each value of a moment is read once for both.
+// Members (directions) of a frame differ only in the signs of their components along u and v, so the values of an
+// angular function in their directions differ only in sign. Functions are therefore summed by parity along u and v,
+// which gives four sums for up to four members, instead of one sum per member. A bundle has one frame or two; each
+// value of a moment is read once for both.
 
 #define MOST_OF_FRAME (MEMBERS < 4 ? MEMBERS : 4)
-// Index of the first member of frame f; eight members are two frames of four.
+// Index of the first direction (member) of frame f of a bundle; eight members are two frames of four.
 #define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f])
 
 // Loops over the functions k, from the second on, parity by parity; skips parities whose functions are zero in all of
@@ -97,7 +98,7 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
 }
 
 // Carries all rays of a row through one segment each, like CROSS_VOXELS, but with a separate source and path integral
-// for each member.
+// for each direction (member) of the bundle.
 static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* state, int y, int slot, bool first,
   bool thin, const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
 {
@@ -131,7 +132,7 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
   }
 }
 
-// Adds the members' path integrals to the moments of row y (numerics.md, Eq. (29b)).
+// Adds the path integrals of the bundle's directions to the moments of row y (numerics.md, Eq. (29b)).
 // @param frames  number of frames of the bundle, a compile-time constant
 static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)

@@ -134,7 +134,7 @@ static void add_one(float value, __global float* sum, __global float* lost)
 }
 
 // Adds a block of packed planes to the volume, multiplied by `sign`: the inverse of pack_block.
-// @param used  number of rows that exist
+// @param used  number of rows of the block that exist in the volume
 static inline __attribute__((always_inline)) void unpack_block(
   const __global float* from, int plane, float sign, __global float* volume, __global float* lost, ulong step, int used)
 {
@@ -156,7 +156,7 @@ static inline __attribute__((always_inline)) void unpack_block(
 }
 
 // Adds one quantity of rows of packed planes to the volume, multiplied by `sign`. Accesses exactly the voxels of these
-// rows, since other units may access neighbouring voxels concurrently.
+// rows, since other work-items may access neighbouring voxels concurrently.
 static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, int first, int count, int2 rows,
   float sign, __global float* volume, __global float* lost)
 {

@@ -17,7 +17,7 @@
 #define SIDE_FLOATS(state) ((state)->sizeU + (state)->sizeV + 1)
 #define SIDE_OF_RAY(state, sides, bundle, ray) ((sides) + ((bundle)->border + (ray)) * SIDE_FLOATS(state))
 
-// Reads the rays of all members that enter through the face normal to v into the row `outside`.
+// Reads the rays that enter through the face normal to v, in all directions of the bundle, into the row `outside`.
 static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* bundle, int rays)
 {
   for (int ray = 0; ray < rays; ++ray)
@@ -33,7 +33,8 @@ static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* 
   }
 }
 
-// Writes a member's rays that enter through the face normal to u in a move of `du` to the column beside row y.
+// Writes the power of the rays of one direction (member) of a bundle that enter through the face normal to u in a move
+// of `du` to the column beside row y.
 static BY_ROW void take_across_u(
   sweep_state* state, const __global BundleInfo* bundle, int member, int y, int du, __global float* out)
 {
@@ -44,7 +45,8 @@ static BY_ROW void take_across_u(
   }
 }
 
-// Writes the rays of a member's row y that leave the box in a move of (du, dv) to the sides.
+// Writes the power of the rays in row y, of one direction (member) of a bundle, that leave the box in a move of (du,
+// dv) to the sides.
 static BY_ROW void give_sides(
   sweep_state* state, const __global BundleInfo* bundle, int member, const __global float* row, int y, int du, int dv)
 {
