@@ -76,7 +76,8 @@ GpuLanes::GpuLanes(const Device& device, const SweepVolume& volume, std::vector<
   }
 }
 
-/// Appends a plan's bundles and crossings to those laid out so far, and adds a lane for each sense of marching.
+/// Appends a plan's bundles and crossings to those laid out so far, and adds a lane (the rays that march in one sense
+/// along the axis) for each sense of marching.
 void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
 {
   const int firstBundle = static_cast<int>(this->bundles.size());
@@ -132,7 +133,8 @@ void GpuLanes::LayBatches(bool atOnce)
   }
 }
 
-/// Sets the indices of the maps and arrays of a batch's lanes, and updates the maximum sizes over all batches.
+/// Sets where the maps and arrays of a batch's lanes begin in the buffers, and updates the maximum sizes over all
+/// batches. A batch is a group of lanes (rays of one sense along an axis) that cross planes in the same launches.
 void GpuLanes::Place(LaneBatch& batch, std::size_t stride)
 {
   for (int i = 0; i < batch.count; ++i)

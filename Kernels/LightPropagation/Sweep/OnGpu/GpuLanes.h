@@ -11,11 +11,11 @@
 
 namespace tyndall
 {
-/// Lane of a plan's rays that march in one sense. Its indices into buffers are not yet set.
+/// Lane of a sweep plan: its rays that march in one sense. Its indices into buffers are not yet set.
 /// @param way  sense of marching: 0 forward along the axis, 1 backward
 SweepLane LaneOf(const SweepPlan& plan, int way);
 
-/// Number of floats per ray and plane in the sides of a lane, the arrays of rays that enter or leave sideways
+/// Number of floats per ray and plane in the arrays of the rays that enter or leave a lane's planes sideways
 /// (LanePlane.cl).
 std::size_t SideFloats(const SweepLane& lane);
 
@@ -23,19 +23,22 @@ std::size_t SideFloats(const SweepLane& lane);
 /// [ray][function].
 std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularValues& angular);
 
-/// Batch of lanes that cross planes in the same launches: lanes of open axes, or both senses along one periodic axis.
+/// Batch of lanes (each the rays of one sense along an axis) that cross planes in the same launches: lanes of open
+/// axes, or both senses along one periodic axis.
 struct LaneBatch
 {
   int first = 0, count = 0; ///< index of the first lane, and number of lanes
   bool around = false;      ///< whether the marching axis is periodic, so that rays wrap around
-  std::size_t plan = 0;     ///< index of the lanes' plan, if rays wrap around
-  std::size_t maps = 0;     ///< number of floats in the batch's maps
+  std::size_t plan = 0;     ///< index of the sweep plan of the lanes' axis, if rays wrap around
+  std::size_t maps = 0;     ///< number of floats in the batch's maps, which hold the power of each ray
   /// Number of floats for the rays at the sides of the batch's planes, if light is given or summed per cell of faces
   std::size_t sides = 0;
-  bool hasArrays = false; ///< whether each lane writes to its own arrays, which are summed afterwards
+  /// Whether each lane has path integrals, fluxes and currents of its own, which are summed afterwards.
+  bool hasArrays = false;
 };
 
-/// Lanes and batches of a sweep on GPUs, with the indices of their data in the buffers. Computed once, on the host.
+/// Lanes (each the rays of one sense along an axis) of a sweep on GPUs, their grouping into batches that run
+/// concurrently, and the indices of their data in the buffers. Computed once, on the host.
 struct GpuLanes
 {
   /// @param volume  channels that are swept together
@@ -52,9 +55,10 @@ struct GpuLanes
   std::vector<CrossingInfo> crossings;
   /// Values of the angular functions in each ray's direction, [ray][function, then beam]; empty without angular moments
   std::vector<float> functions;
-  /// Per lane: index, in LanePowers' sums at the ends of axes, of the first row of its maps, [ray][channel][v]
+  /// For each lane: index of the sum of its maps' first row among LanePowers' sums at the ends of axes,
+  /// [ray][channel][v]
   std::vector<std::size_t> ends;
-  /// Per lane: index, in LanePowers' sums at the sides, of its first row, [plane][side][channel]
+  /// For each lane: index of its first sum among LanePowers' sums at the sides, [plane][side][channel]
   std::vector<std::size_t> sides;
   std::size_t endRows = 0, sideRows = 0;
   std::size_t escaped = 0; ///< number of floats of escaped power, all lanes; see SweepLane::escaped
@@ -67,7 +71,7 @@ struct GpuLanes
   /// Maximum number of lanes in a batch with its own arrays, and in a batch on a periodic axis
   int mostWithArrays = 0, mostAround = 0;
 
-  /// Number of floats of the lanes' own arrays.
+  /// Number of floats of the arrays that lanes have of their own, so that they can run concurrently.
   /// @param stride  floats per channel
   std::size_t ArrayFloats(std::size_t stride) const;
   std::string Options() const; ///< build options for LaneSums.cl

@@ -7,7 +7,8 @@
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
 #include "Numerics/Numerics.cl"
 
-// Cells of the box's faces, for one channel, that adjoin a plane of a lane.
+// Cells of the box's faces, for one channel, that adjoin a plane, for a lane (the rays that march in one sense along an
+// axis).
 typedef struct
 {
   const __global SweepLane* lane;
@@ -16,7 +17,7 @@ typedef struct
   int plane;
 } cells_beside;
 
-// A ray of a lane in a plane: its bundle, member and moves.
+// A ray in a plane: its bundle, the index of its direction (member) in the bundle, and its sideways moves.
 typedef struct
 {
   const __global BundleInfo* bundle;
@@ -24,8 +25,8 @@ typedef struct
   int member;
 } ray_in_plane;
 
-// Ray number `ray` of a lane in the k-th plane that the lane crosses.
-// @param rays  per ray of all lanes: the index of its bundle, and of its member in the bundle
+// Ray number `ray` of a lane (the rays that march in one sense along an axis) in the k-th plane that they cross.
+// @param rays  for each ray of all lanes: index of its bundle, and index of its direction (member) in the bundle
 static ray_in_plane ray_of(const __global SweepLane* lane, const __global int2* rays,
   const __global BundleInfo* bundles, const __global CrossingInfo* crossings, int ray, int k)
 {
@@ -56,9 +57,9 @@ static float light_of_cells(const cells_beside* cells, float power, int side, in
     (move == 0 || beside < 0 || beside >= size ? here : 0.5f * (here + light_of_cell(cells, side, beside)));
 }
 
-// Writes the power of the rays that enter through the sides of a lane's planes, W. One work-item per position along the
-// sides (LanePlane.cl).
-// crossings  moves of rays, from the lane's first plane on
+// Writes the power of the rays that enter through the sides of planes, W, for one lane (the rays that march in one
+// sense along an axis). One work-item per position along the sides (LanePlane.cl).
+// crossings  sideways moves of rays, from the lane's first plane on
 __kernel void enter_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
   const __global float4* entering, const __global float* face_in, ulong first, ulong stride, __global float* sides_in)
@@ -167,7 +168,7 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   {
     const int2 of = rays[lane->firstRay + r];
     const __global BundleInfo* bundle = bundles + of.x;
-    // A ray's move across this side is a move along the bundle's u
+    // whether a move across this side of the box is one along the first axis, u, of the bundle
     const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0;
     const float planes = ofU ? bundle->planesU : bundle->planesV;
     // Number of planes before and behind this one in which the ray may move so that power leaves through this plane's
@@ -187,8 +188,8 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   face_out[first + c * stride + of_lane->first[side] + p * of_lane->plane[side] + i * of_lane->along[side]] += left;
 }
 
-// Adds the light incident per cell to the power of a lane's rays where they start. One work-item per float of the
-// lane's maps.
+// Adds the light incident per cell to the power of a lane's rays (those that march in one sense along an axis) where
+// they start. One work-item per float of the lane's maps.
 __kernel void enter_start(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global float* face_in, ulong first,
   ulong stride, __global float* maps)
@@ -200,7 +201,8 @@ __kernel void enter_start(int number, const __global SweepLane* lanes, const __g
   maps[lane->map + i] += power * face_in[first + slot % CHANNELS * stride + faces[number].start + i % plane];
 }
 
-// Adds the power of a lane's rays to the cells of the face where they end, W. One work-item per cell and channel.
+// Adds the power of a lane's rays (those that march in one sense along an axis) to the cells of the face where they
+// end, W. One work-item per cell and channel.
 __kernel void leave_end(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global float* maps, __global float* face_out, ulong first, ulong stride)
 {

@@ -8,8 +8,8 @@
 namespace tyndall
 {
 /// Incident radiance and escaped power per cell of the box's faces (SweepRequest::faceIn, Deposit::faceOut) in a sweep
-/// on GPUs; kernels in LaneFaces.cl. The device stores the rays at the sides of the planes of a batch's lanes: one
-/// float per ray, plane and cell of the plane's edges, for entering and for leaving rays.
+/// on GPUs; kernels in LaneFaces.cl. The device stores the rays at the sides of the planes that are crossed
+/// concurrently: one float per ray, plane and cell of the plane's edges, for entering and for leaving rays.
 class LaneFaces
 {
 public:
@@ -33,7 +33,7 @@ public:
   /// Power of the rays that leave through the sides of the planes, W
   const Buffer<float>& Out() const { return this->SidesOut; }
 
-  /// Adds the light incident per cell of the faces where rays of an open axis start to their maps.
+  /// Adds to `maps` (power of each ray) the light incident per cell of the faces where the rays of open axes start.
   /// @param first  index of the first channel's first value in faceIn and faceOut
   void EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
   /// Writes the light incident per cell to the sides of the planes, before these are crossed.
@@ -59,7 +59,8 @@ private:
   bool Spreads;
   std::size_t Cells; ///< number of cells of all faces, per channel
   Buffer<LaneFaceInfo> Faces;
-  Buffer<cl_int2> RayPlaces; ///< per ray of all lanes: index of its bundle, and of its member in the bundle
+  /// For each ray of all lanes: index of its bundle, and index of its direction (member) in the bundle.
+  Buffer<cl_int2> RayPlaces;
   Buffer<float> SidesIn, SidesOut;
 };
 }

@@ -1,4 +1,5 @@
-// Index of the planes that a lane of a sweep on GPUs crosses, and memory layout of the rays at their sides.
+// Index of the planes that a lane (the rays that march in one sense along an axis) of a sweep on GPUs crosses, and
+// memory layout of the rays at the planes' sides.
 //
 // The power of rays that enter or leave through the sides is stored as [plane, counted from where rays
 // start][ray][channel][SIDE_FLOATS], see SweepSides.cl.
@@ -8,7 +9,7 @@
 
 #define SIDE_FLOATS(plane) ((plane)->sizeU + (plane)->sizeV + 1)
 
-// Index in the box of the k-th plane that a lane crosses, k >= 0.
+// Index in the box of the k-th plane that the rays of a lane (one sense along an axis) cross, k >= 0.
 static int plane_of(const __global SweepLane* lane, int k)
 {
   // If k is beyond the planes of the axis, rays are in another lap around a periodic axis

@@ -1,11 +1,12 @@
-// Kernels for the start and end of a sweep on GPUs: they initialise rays, and sum the deposits of the lanes. The host
-// defines
+// Kernels for the start and end of a sweep on GPUs: they initialise rays, and sum the deposits of the lanes (each the
+// rays that march in one sense along an axis). The host defines
 //   CHANNELS   channels swept together
 //   FUNCTIONS  number of angular functions; 1: fluence only
 
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 
-// Sets the power of a lane's rays where they start, W. One work-item per float of the lane's maps.
+// Sets the power of a lane's rays (those that march in one sense along an axis) where they start, W. One work-item per
+// float of the lane's maps.
 __kernel void start_rays(
   int first_lane, const __global SweepLane* lanes, const __global float4* entering, __global float* maps)
 {
@@ -33,8 +34,9 @@ __kernel void sum_rows(const __global float* rows, ulong first, int length, __gl
   sums[first_sum + get_global_id(0)] = sum;
 }
 
-// Adds the deposits of lanes with their own arrays to `sum`, in the order of the lanes, so that the result is
-// identical, bit for bit, to that of lanes that add to `sum` directly. One work-item per value.
+// Adds the deposits of lanes (each the rays of one sense along an axis) that have arrays of their own to `sum`, in the
+// order of the lanes, so that the result is identical, bit for bit, to that of lanes that add to `sum` directly. One
+// work-item per value.
 __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values, __global float* sum, ulong first)
 {
   const ulong i = get_global_id(0);
@@ -46,8 +48,8 @@ __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values,
   sum[first + i] = all;
 }
 
-// Adds the angular moments of lanes with their own arrays to `sum`, in the order of the lanes. One work-item per
-// voxel, function and channel.
+// Adds the angular moments of lanes (each the rays of one sense along an axis) that have arrays of their own to `sum`,
+// in the order of the lanes. One work-item per voxel, function and channel.
 __kernel void add_moments_of_lanes(
   PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)
 {

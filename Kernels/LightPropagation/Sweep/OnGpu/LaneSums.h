@@ -7,9 +7,10 @@
 
 namespace tyndall
 {
-/// Deposits of lanes that run concurrently or wrap around an axis, each lane in its own arrays: [lane], then as in
-/// Deposit. AddUp() adds them to the deposit in the order of the lanes, so that results are identical, bit for bit, to
-/// those of lanes that add to the deposit directly.
+/// Deposits (path integrals, net flux, partial currents) of lanes (each the rays of one sense along an axis) that run
+/// concurrently or wrap around an axis, each lane in its own arrays: [lane], then as in Deposit. AddUp() adds them to
+/// the deposit in the order of the lanes, so that results are identical, bit for bit, to those of lanes that add to the
+/// deposit directly.
 class LaneArrays
 {
 public:
@@ -18,12 +19,12 @@ public:
   LaneArrays(Device& device, const GpuLanes& lanes, const VolumeLayout& layout, const Deposit& to);
 
   void Clear(const LaneBatch& batch);
-  /// Adds the deposits of the lanes of a batch to the deposit of the volume.
+  /// Adds the deposits of a batch, i.e. of lanes that ran concurrently, to the deposit of the volume.
   /// @param launch  arguments of any launch of the batch
   void AddUp(const LaneBatch& batch, const PlaneLaunch& launch, const SweepVolume& volume);
 
   Buffer<float> path, flux, currents;
-  Buffer<float> lost; ///< rounding errors of `path` (compensated summation), for lanes that wrap around
+  Buffer<float> lost; ///< rounding errors of `path` (compensated summation), for rays that wrap around a periodic axis
 
 private:
   void AddUpMoments(const LaneBatch& batch, const PlaneLaunch& launch, const SweepVolume& volume);
@@ -34,7 +35,7 @@ private:
   Deposit To;
 };
 
-/// Power that escapes from a sweep on GPUs: through the faces parallel to the marching axis, and from its maps after
+/// Power that escapes from a sweep on GPUs: through the faces parallel to the marching axis, and with the rays behind
 /// the last plane. Rows are summed on the device, the sums of rows on the host in double precision.
 class LanePowers
 {
@@ -54,7 +55,7 @@ public:
   void CountSides(const LaneBatch& batch, SweepTally& tally) const;
   /// Adds the power that escaped through the far ends of the batch's axes to SweepTally::out.
   void CountEnds(const LaneBatch& batch, SweepTally& tally) const;
-  Rgb OfEnds(const LaneBatch& batch) const; ///< power in the maps after the last plane, sum over all lanes, W
+  Rgb OfEnds(const LaneBatch& batch) const; ///< power of the rays behind the last plane, sum over the batch's lanes, W
 
 private:
   Rgb OfEnds(int lane, const std::vector<float>& sums) const;

@@ -13,8 +13,9 @@
 
 namespace tyndall
 {
-/// Streams a volume in host memory for one lane of a sweep on GPUs: the lane crosses slices of the volume one after
-/// another, in two alternating slots on the device (numerics.md, section 4.10).
+/// Streams a volume in host memory for one lane of a sweep on GPUs, i.e. the rays that march in one sense along an
+/// axis: they cross slices of the volume one after another, in two alternating slots on the device (numerics.md,
+/// section 4.10).
 class LaneSlices
 {
 public:
@@ -37,7 +38,7 @@ public:
 private:
   LaneSlices(const SweepPlan& plan, const SweepLane& lane);
 
-  SweepPlan Plan; ///< plan of the lane's axis, with the lane as its only unit
+  SweepPlan Plan; ///< sweep plan of the lane's axis, with all rays of the lane in a single unit of work
   std::unique_ptr<SliceStream> Stream;
   SliceStream::Schedule Schedule;
 };
@@ -67,7 +68,8 @@ enum
   SidesOfDomain = 2
 };
 
-/// Kernels that carry the rays of several lanes through planes on a GPU, one launch per plane.
+/// Kernels that carry the rays of several lanes (each the rays of one sense along an axis) through planes on a GPU, one
+/// launch per plane.
 class PlaneKernels
 {
 public:

@@ -58,7 +58,7 @@ static void gather_moments(
 }
 #endif
 
-// Carries the rays of all bundles of the lane through voxel (u, v).
+// Carries all rays that march in one sense along an axis, bundle by bundle, through voxel (u, v).
 // directed, functions  source along each ray and values of the angular functions, if ANGULAR
 static void cross_bundles(const plane_state* state, voxel_sums* sums, const __global BundleInfo* bundles,
   const __global CrossingInfo* crossings, const __global float* before, __global float* after,
@@ -124,7 +124,7 @@ static void put_moments(const plane_state* state, const PlaneLaunch* places, con
 }
 #endif
 
-// Writes (or adds, if state->adds) the voxel's sums to the lane's arrays.
+// Writes the voxel's sums to the path integrals, flux and currents of the lane, or adds to these if state->adds is set.
 static void put_sums(const plane_state* state, const PlaneLaunch* places, const voxel_sums* sums, ulong voxel, int u,
   int v, __global float* path, __global float* lost, __global float* flux, __global float* currents)
 {
@@ -168,8 +168,8 @@ static void put_sums(const plane_state* state, const PlaneLaunch* places, const 
   }
 }
 
-// Writes the power that escapes sideways from voxel (u, v), W. Each position along a side has one voxel; a voxel at the
-// box's edge has two positions.
+// Writes the power that escapes sideways from voxel (u, v), W. Each position along a side belongs to one voxel; a voxel
+// at the box's edge has positions on two sides.
 static void put_escaped(
   const plane_state* state, const voxel_sums* sums, int plane, int u, int v, __global float* escaped)
 {
@@ -185,7 +185,8 @@ static void put_escaped(
   }
 }
 
-// Carries the rays of several lanes through one plane. One work-item per voxel of the plane and lane.
+// Carries the rays of several lanes (SweepLane: one sense along an axis) through one plane. One work-item per voxel of
+// the plane and lane.
 // sigma     extinction, 1/length, [voxel]
 // source    W / (length^3 sr), [channel][stride]
 // octants   additional source per octant, see SweepRequest::octantSource
@@ -193,7 +194,8 @@ static void put_escaped(
 // lost      rounding errors of the path, laid out as path, if the marching axis is periodic
 // before    power of the rays at the voxel that they enter in this plane, W, [ray][channel][v][u] for each lane
 // after     power of the rays at the voxel that they enter in the next plane, W, laid out as `before`
-// entering  incident power, W, [ray][channel]: through u's face, through v's face, and where rays start
+// entering  incident power, W, [ray][channel]: through the face normal to u, through the face normal to v, and where
+// rays start
 // directed  source in the direction of each ray, W / (length^3 sr), laid out as `before`; if ANGULAR
 // functions values of the angular functions in the rays' directions, [ray][function, then beam]; if ANGULAR
 // escaped   power that escapes sideways, W, see SweepLane::escaped
@@ -250,7 +252,7 @@ __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, c
 
 #if ANGULAR
 // Computes the source in the direction of each ray, for the voxels of a plane, from its angular moments and beams
-// (numerics.md, Eq. (29b)). One work-item per voxel of the plane and lane.
+// (numerics.md, Eq. (29b)). One work-item per voxel of the plane and lane (SweepLane).
 __kernel void find_directed(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* source,
   const __global float* functions, __global float* directed)
 {

@@ -10,12 +10,13 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostAtOnce = 4; ///< lanes that run concurrently may use 1 / MostAtOnce of the memory
-constexpr int AllSides = 15;  ///< bits 0 to 3: each side of the box is a face of the domain
+/// Lanes (rays of one sense along an axis) that run concurrently may use 1 / MostAtOnce of the memory.
+constexpr int MostAtOnce = 4;
+constexpr int AllSides = 15; ///< bits 0 to 3: each side of the box is a face of the domain
 
-/// Returns the lanes of a sweep. They run concurrently, both senses of all axes, if their arrays fit in memory
-/// together. They run one after another if the arrays do not fit, if only a subregion of the grid is swept (the arrays
-/// outside it would have to be cleared), or if the volume is in host memory.
+/// Returns the lanes of a sweep, one for each sense along each axis. All lanes run concurrently if their arrays fit in
+/// memory together. They run one after another if the arrays do not fit, if only a subregion of the grid is swept (the
+/// arrays outside it would have to be cleared), or if the volume is in host memory.
 GpuLanes ChooseLanes(const Device& device, const SweepVolume& volume, const std::vector<AxisBundles>& rays,
   const std::array<bool, 3>& periodic, SweepOnGpu::Ways ways)
 {
@@ -168,7 +169,8 @@ bool SweepOnGpu::Enter(const SweepBoundary& boundary, int group, SweepTally& tal
   return !std::all_of(tally.in.begin(), tally.in.end(), IsBlack);
 }
 
-/// Carries the rays of a batch of open axes from where they start to the end of their axis.
+/// Carries the rays of a batch (lanes that run concurrently) of open axes from where they start to the end of their
+/// axis.
 void SweepOnGpu::CrossOnce(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
   const Crossing how = { volume.source != nullptr, &this->Entering };
@@ -185,8 +187,9 @@ void SweepOnGpu::CrossOnce(const LaneBatch& batch, const SweepVolume& volume, Sw
   this->Powers.CountEnds(batch, tally);
 }
 
-/// Carries the rays of a batch of a periodic axis, and those in transit from the previous sweep, through all laps in
-/// which rays start, and then around the axis until almost no power is in transit (numerics.md, section 4.6).
+/// Carries the rays of both senses along a periodic axis (a batch), and those in transit from the previous sweep,
+/// through all laps in which rays start, and then around the axis until almost no power is in transit (numerics.md,
+/// section 4.6).
 void SweepOnGpu::GoRound(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
   this->BeginLost(batch);
@@ -216,8 +219,8 @@ void SweepOnGpu::GoRound(const LaneBatch& batch, const SweepVolume& volume, Swee
   }
 }
 
-/// Sets to 0, before a sweep around a periodic axis, the lanes' own arrays or, if they have none, the rounding errors
-/// of the path integrals.
+/// Sets to 0, before a sweep around a periodic axis, the path integrals, fluxes and currents that lanes have of their
+/// own or, if they have none, the rounding errors of the path integrals.
 void SweepOnGpu::BeginLost(const LaneBatch& batch)
 {
   if (batch.hasArrays)
@@ -286,7 +289,7 @@ void SweepOnGpu::StartRays(const LaneBatch& batch)
   this->TheDevice.Queue().enqueueNDRangeKernel(start, cl::NullRange, cl::NDRange(floats, batch.count));
 }
 
-/// Carries the rays of a batch once through all planes.
+/// Carries the rays of a batch (lanes that run concurrently) once through all planes.
 /// @param maps  the two maps of ray powers; each plane reads one and writes the other
 /// @return number of planes
 int SweepOnGpu::Cross(const LaneBatch& batch, const SweepVolume& volume, const Crossing& how,
@@ -338,7 +341,8 @@ PlaneKernels::Size SweepOnGpu::SizeOf(const LaneBatch& batch) const
   return size;
 }
 
-/// Arrays that the plane kernels read and add to: those of the volume or, for deposits, the lanes' own arrays.
+/// Arrays that the plane kernels read and add to: those of the volume or, for deposits of lanes that run concurrently,
+/// the arrays of the lanes.
 VolumeArrays SweepOnGpu::Arrays(const LaneBatch& batch, const SweepVolume& volume) const
 {
   if (!batch.hasArrays)

@@ -51,14 +51,14 @@ public:
   void Forget() override { this->Forget({}); }
 
 private:
-  /// Sources, incident light and moves of the rays in one crossing of all planes by a batch.
+  /// Sources, incident light and moves of the rays while a batch (lanes that run concurrently) crosses all planes once.
   struct Crossing
   {
     bool shines;                                 ///< whether the medium has a source
     const Buffer<cl_float4>* entering;           ///< power of the light incident on the sides
-    const Buffer<CrossingInfo>* round = nullptr; ///< moves of rays that wrap around; null: rays start
+    const Buffer<CrossingInfo>* round = nullptr; ///< sideways moves of rays that wrap around; null: of rays that start
   };
-  /// Rays in transit along a periodic axis between sweeps, for a batch and a group of channels.
+  /// Rays in transit along a periodic axis between sweeps, for both senses along the axis and a group of channels.
   struct OnTheWay
   {
     Buffer<float> maps[2];
@@ -92,7 +92,7 @@ private:
   SweepWorkspace& Workspace;
   GpuLanes The;
 
-  /// Slices of each lane, for a volume in host memory; null: swept in place
+  /// For a volume in host memory: its slices, for each lane (rays of one sense along an axis); null: swept in place
   std::vector<std::unique_ptr<LaneSlices>> Slices;
   Buffer<SweepLane> Lanes;
   Buffer<BundleInfo> Bundles;

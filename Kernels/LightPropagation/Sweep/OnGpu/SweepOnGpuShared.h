@@ -18,7 +18,8 @@ typedef struct
   int around;               ///< whether the marching axis is periodic, so rays cross a voxel repeatedly
   int periodicU, periodicV; ///< whether the axes u and v, normal to the marching axis, are periodic
   int firstBundle, bundles;
-  int crossings; ///< index of the first of the crossings of the lane's first plane, [plane][bundle]
+  /// Index of the lane's first entry in the array of crossings (moves and segments of each bundle), [plane][bundle].
+  int crossings;
   /// Index of the lane's first ray among the rays of all lanes: in `entering` (a float4 per ray and channel),
   /// `functions` and maps
   int firstRay;

@@ -13,8 +13,8 @@
 #define LEAVES_GRID(state, side) true
 #endif
 
-// Effect of a segment on rays, see SweepCrossing.cl. own: path integral, within the voxel, of the light that a unit
-// source in it emits.
+// Effect of a segment on rays, see SweepCrossing.cl. own: path integral, within the voxel, of the light that a source
+// of 1 in it emits, divided by a ray's power at radiance 1.
 typedef struct
 {
   float meanLength, keep, change, own;
@@ -46,22 +46,23 @@ typedef struct
 #endif
 } plane_state;
 
-// A member of a bundle, with its moves and segments in the plane.
+// One direction (member) of a bundle, with the sideways moves and segments of its rays in the plane.
 typedef struct
 {
-  const __global float* rays;      // power of the member's rays, W, [channel][v][u]
-  const __global float4* entering; // incident power of a ray through u's, v's face, W, [channel]
-  // Source in the member's direction, W / (length^3 sr), [channel][v][u]; if ANGULAR
+  const __global float* rays; // power of the rays of this direction, W, [channel][v][u]
+  // Incident power of a ray, W, [channel]: x through the face normal to u, y through that normal to v.
+  const __global float4* entering;
+  // Source in this direction, W / (length^3 sr), [channel][v][u]; if ANGULAR
   const __global float* directed;
 #if SIDES
-  const __global float* sidesIn; // power of the member's incoming rays at the sides, W, [channel][SIDE_FLOATS]
+  const __global float* sidesIn; // power of this direction's incoming rays at the sides, W, [channel][SIDE_FLOATS]
   __global float* sidesOut;
 #endif
   float power;
   float length[3], part[3];
   int du[3], dv[3];
-  bool bothAtOnce; // whether the member's rays move along u and v at once in some segment
-  int octants[2];  // the two octants of the member's direction; equal unless it has no component along u or v
+  bool bothAtOnce; // whether rays of this direction move along u and v at once in some segment
+  int octants[2];  // the two octants of this direction; equal unless it has no component along u or v
 } member_state;
 
 static segment_effect effect_of(const plane_state* state, float sigma, float length)
@@ -106,7 +107,7 @@ static segment_effect effect_at(const plane_state* state, int u, int v, float le
   return effect_of(state, fmax(state->sigma[voxel_of(state, u, v)], state->vacuum), length);
 }
 
-// Additional source of a voxel in the octant of a member's direction, W / (length^3 sr).
+// Additional source of a voxel in the octant of a bundle's direction (member), W / (length^3 sr).
 static float shines_more(const plane_state* state, const member_state* member, int c, long voxel)
 {
 #if OCTANT_SOURCE
@@ -243,18 +244,20 @@ static colours behind_second(const plane_state* state, const member_state* membe
 typedef struct
 {
   float path[CHANNELS]; // path integral, W length; if ANGULAR, of one ray
-  float own;            // path integral of a unit source within its own voxel; if ANGULAR, of one ray
+  // Path integral, within the voxel, of the light that a source of 1 in it emits; if ANGULAR, of one ray.
+  float own;
 #if ANGULAR
   float moments[CHANNELS][FUNCTIONS];
 #endif
   float flux[CHANNELS][3]; // net flux along u, v and the marching axis, W length
-  float ownFlux;           // net flux of a unit source within its own voxel, along the marching axis
+  // Net flux, within the voxel along the marching axis, of the light that a source of 1 in it emits.
+  float ownFlux;
   float currents[CHANNELS][CurrentFaces];
   float escaped[4][CHANNELS]; // power that escapes through -u, +u, -v, +v, W
 } voxel_sums;
 
 // Adds the path integral, and net flux, of a segment to the sums.
-// @param not_lost  power that is subtracted from each ray, W, see not_lost_of
+// @param not_lost  power that is subtracted from each ray's for the path integral, W, see not_lost_of
 static void put_down(voxel_sums* sums, colours rays, colours not_lost, float meanLength, float3 along)
 {
   for (int c = 0; c < CHANNELS; ++c)
@@ -284,7 +287,8 @@ static void count_escaped(
   {
 #if SIDES == 2
     const __global float* in = member->sidesIn + c * SIDE_FLOATS(state);
-    // Power that enters the voxel through u's and v's face, where rays move along u and v at once in this segment
+    // Power that enters the voxel through the faces normal to u and to v, where rays move along u and v at once in this
+    // segment
     const float2 beyond = (float2)(in[state->sizeU + v], in[u]);
 #else
     const float2 beyond = member->entering[c].xy;
@@ -339,8 +343,8 @@ static void count_currents(
 }
 #endif
 
-// Power that is subtracted from each ray in the path integral, W, so that the voxel loses what its octant source adds
-// to the rays.
+// Power that is subtracted from each ray in the path integral, W, so that power is conserved: what the voxel's octant
+// source adds to the rays is missing from the voxel's path integral.
 static colours not_lost_of(const plane_state* state, const member_state* member, long voxel)
 {
   colours more = { { 0.0f } };
@@ -353,7 +357,8 @@ static colours not_lost_of(const plane_state* state, const member_state* member,
   return more;
 }
 
-// Carries the rays of one bundle member through voxel (u, v). Returns their power at the next plane, W.
+// Carries the rays of one direction (member) of a bundle through voxel (u, v). Returns their power at the next plane,
+// W.
 static colours cross_voxel(const plane_state* state, voxel_sums* sums, const member_state* member, int stages,
   const segment_effect* effects, float3 along, int u, int v)
 {
@@ -386,7 +391,7 @@ static colours cross_voxel(const plane_state* state, voxel_sums* sums, const mem
   return rays;
 }
 
-// Determines the octants of a member's direction, see SweepBundle.cl.
+// Determines the octants of a direction (member m) of a bundle, see SweepBundle.cl.
 static void find_octants(const __global SweepLane* lane, const __global BundleInfo* bundle, int m, int* octants)
 {
   const int u = lane->axis == 0 ? 1 : 0, v = lane->axis == 2 ? 1 : 2;

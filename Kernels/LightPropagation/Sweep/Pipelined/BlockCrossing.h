@@ -30,12 +30,12 @@ struct BlockWorkspace
 /// Rays of a block that march in one sense along an axis.
 struct RaysOfBlock
 {
-  const SweepPlan& plan; ///< plan of the block, without periodic axes; must outlive this object
+  const SweepPlan& plan; ///< sweep plan of the block, without periodic axes; must outlive this object
   int way = 0;           ///< sense of marching: 0 forward along the axis, 1 backward
   /// Whether the marching axis of the domain is periodic, so that rays enter the block repeatedly
   bool around = false;
 
-  /// Number of floats per ray and plane in the rays at the sides.
+  /// Number of floats per ray and plane in RaysAtFaces::sides.
   std::size_t SideFloats() const { return std::size_t(this->plan.plane.sizeU) + this->plan.plane.sizeV + 1; }
   std::size_t Sides() const { return this->plan.eachWay.radiance * this->plan.Planes() * this->SideFloats(); }
 };
@@ -48,7 +48,7 @@ public:
   virtual ~BlockCrossing() = default;
 
   virtual std::size_t MapFloats() const = 0;
-  /// Index in a map of the first ray of row v; the other rays of the row follow.
+  /// Index in the maps (power of each ray) of the first ray of row v; the other rays of the row follow.
   /// @param slot  index within the bundle, [member][channel]
   virtual std::size_t RowOfMap(const BundleInfo& bundle, std::size_t slot, int v) const = 0;
 

@@ -9,8 +9,9 @@ namespace tyndall
 {
 namespace
 {
-/// Carries a block's rays with the kernels of Sweep/OnGpu and their option SIDES (LanePlane.cl), as one lane that adds
-/// to the deposit. Maps are [ray][channel][v][u]. Arrays in host memory are streamed through the device in slices.
+/// Carries a block's rays with the kernels of Sweep/OnGpu and their option SIDES (LanePlane.cl), as one lane (all rays
+/// march in one sense along an axis) that adds to the deposit. Maps are [ray][channel][v][u]. Arrays in host memory are
+/// streamed through the device in slices.
 class BlockCrossingOnGpu final : public BlockCrossing
 {
 public:
@@ -40,7 +41,7 @@ private:
   std::unique_ptr<LaneSlices> MakeSlices();
   void Launch(const SweepVolume& volume, int outerSides, const Monitor& monitor);
   std::vector<float> SumsOfSides();
-  /// Map of the rays before plane k, counted from the block's first plane.
+  /// Power of each ray before plane k, counted from the block's first plane.
   const Buffer<float>& Maps(int k) const { return k % 2 == 0 ? this->Workspace.sweep.maps : this->Workspace.otherMaps; }
 
   Device& TheDevice;
@@ -109,7 +110,8 @@ std::unique_ptr<LaneSlices> BlockCrossingOnGpu::MakeSlices()
   SweepPlan plan = this->Plan;
   plan.grid.size = plan.box.size;
   plan.box.first = {};
-  plan.periodic[plan.axes.axis] = this->Rays.around; // a periodic axis needs the array `lost`
+  // A periodic axis needs the array `lost`, the rounding errors of path integrals.
+  plan.periodic[plan.axes.axis] = this->Rays.around;
   return LaneSlices::Make(this->TheDevice, plan, this->Lane, this->Workspace.sweep);
 }
 

@@ -59,7 +59,7 @@ void BlockSweep::BeginLap(int planes)
   }
 }
 
-/// Computes the moves and segments of rays in the block's planes for the current lap.
+/// Computes the moves and segments of rays in the block's planes for the current lap around a periodic axis.
 void BlockSweep::LayPattern()
 {
   const SweepPlan& plan = this->Plan;
@@ -100,8 +100,8 @@ BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t
   return { through(axes.u), through(axes.v), through(axes.axis) };
 }
 
-/// Calls act(incident power, bundle, [member][channel] index in the bundle, channel) for each member of each bundle and
-/// each channel; not at all if no light is incident.
+/// Calls act(incident power, bundle, [member][channel] index in the bundle, channel) for each direction (member) of
+/// each bundle and each channel; not at all if no light is incident.
 template <class Act>
 void BlockSweep::ForRaysFrom(const SweepBoundary& boundary, const Act& act) const
 {
@@ -246,8 +246,9 @@ void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& o
   }
 }
 
-/// Calls visit(inSides, place) for each ray that crosses a contact: place is an index into the sides if inSides, else
-/// into the maps. The order is that of the cells in the whole domain, so that sender and receiver agree.
+/// Calls visit(inSides, place) for each ray that crosses a contact (the voxel faces shared by two blocks): place is an
+/// index into the sides if inSides, else into the maps. The order is that of the cells in the whole domain, so that
+/// sender and receiver agree.
 /// @param out  true: indices of outgoing rays; false: of incoming rays
 template <class Visit>
 void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const
@@ -287,7 +288,8 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
   }
 }
 
-/// Calls visit(inSides, place) for each ray that crosses a contact at the end of the marching axis; see ForEachPlace.
+/// Calls visit(inSides, place) for each ray that crosses a contact of the kind Along, i.e. behind the last plane of a
+/// block; see ForEachPlace.
 template <class Visit>
 void BlockSweep::ForEachPlaceAlong(const BlockContact& contact, const Visit& visit) const
 {
@@ -312,8 +314,8 @@ void BlockSweep::ForEachPlaceAlong(const BlockContact& contact, const Visit& vis
   }
 }
 
-/// Calls act(ray) for the rays of all bundles and channels that make a sideways move of the kind `kind` in plane k of
-/// the block.
+/// Calls act(ray) for the rays of all bundles and channels that move sideways in plane k of the block: along u if
+/// `kind` is AsideU, along v if AsideV, along both at once if Edge.
 template <class Act>
 void BlockSweep::ForRaysThatMove(int k, BlockContact::Kind kind, const Act& act) const
 {

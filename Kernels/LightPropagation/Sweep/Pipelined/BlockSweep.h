@@ -22,9 +22,9 @@ struct LightByCells
   bool spreads = false;
 };
 
-/// Sweep of one block (subdomain) along one set of parallel bundles. Input: the rays that enter the block from other
-/// blocks and from outside the domain; output: the rays that leave it. Every ray crosses every voxel exactly as in a
-/// sweep of the whole domain.
+/// Sweep of one block (subdomain) for one set of parallel bundles, i.e. rays of one marching axis and octant. Input:
+/// the rays that enter the block from other blocks and from outside the domain; output: the rays that leave it. Every
+/// ray crosses every voxel exactly as in a sweep of the whole domain.
 class BlockSweep
 {
 public:
@@ -54,13 +54,14 @@ public:
   RaysAtFaces Cross(const SweepVolume& volume, RaysAtFaces in, const SweepBoundary& boundary, const LightByCells& cells,
     SweepTally& tally, const Monitor& monitor);
 
-  /// Pack() appends to `message` the rays that cross a contact with another block, in the order of the contact's cells
-  /// in the whole domain. Unpack() reads them from the message.
+  /// Pack() appends to `message` the power of the rays that cross a contact (the voxel faces shared with another
+  /// block), in the order of the contact's cells in the whole domain. Unpack() reads them from the message.
   /// @param at  index of the contact's first value in `message`; on return, the index after its last value
   void Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const;
   void Unpack(const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const;
 
-  /// Number of incoming rays that cross `contacts`, i.e. of the values in their messages.
+  /// Number of incoming rays that cross `contacts` (the voxel faces shared with other blocks), i.e. of the values in
+  /// the messages from these blocks.
   std::size_t Values(const std::vector<BlockContact>& contacts) const;
   int Axis() const { return this->Bundles.axis; }
   std::size_t Bytes() const; ///< host memory of the incoming and outgoing rays at the block's faces
@@ -101,12 +102,13 @@ private:
   std::vector<CrossingInfo> Crossings; ///< moves and segments of rays, [plane of the block][bundle]
   /// Sideways moves of each bundle's rays through the whole domain, voxels along the bundle's u and v
   std::vector<std::array<double, 2>> Moves;
-  int LapPlanes = 0;          ///< number of planes of the domain that rays have crossed in earlier laps
-  std::size_t SideFloats = 0; ///< number of floats per ray and plane in the rays at the sides
-  std::size_t RayCount = 0;   ///< number of members of all bundles, times channels
+  /// Number of planes of the domain that rays have crossed in earlier laps around a periodic axis.
+  int LapPlanes = 0;
+  std::size_t SideFloats = 0; ///< number of floats per ray and plane in RaysAtFaces::sides
+  std::size_t RayCount = 0;   ///< number of rays per voxel of a plane: directions of all bundles, times channels
 };
 
-/// Sideways move of a bundle's member in one stage of crossing a plane, voxels along u and v.
+/// Sideways move, for one direction (member) of a bundle, in one stage of crossing a plane, voxels along u and v.
 std::array<int, 2> MoveOf(const BundleInfo& bundle, int member, const CrossingInfo& crossing, int stage);
 
 /// Light per cell of the domain's faces in the sweep of a block: adds incident light and sums escaped power. Computes
@@ -127,13 +129,13 @@ public:
 
 private:
   using Voxel = std::array<int, 3>; ///< indices of a voxel in the whole domain
-  /// A ray, of one bundle member and channel, that moves sideways in a plane.
+  /// The rays of one direction (member) of a bundle and one channel, which move sideways in a plane.
   struct Aside
   {
     std::size_t bundle = 0;
     int member = 0, channel = 0, plane = 0; ///< plane: index in marching order
     int du = 0, dv = 0;
-    double part = 1.0; ///< fraction of the ray's power that moves
+    double part = 1.0; ///< fraction of each ray's power that moves
     std::size_t ray = 0;
   };
   template <class Act>

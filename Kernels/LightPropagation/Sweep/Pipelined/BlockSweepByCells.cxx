@@ -20,8 +20,8 @@ BlockSweep::ByCells::ByCells(const BlockSweep& sweep, const LightByCells& cells)
   }
 }
 
-/// Calls act for every ray per voxel, channel and plane that moves sideways in the plane; does nothing if no face of
-/// the block parallel to the marching axis is a face of the domain.
+/// Calls act for each sideways move of rays in the block's planes, for each direction of a bundle and channel; does
+/// nothing if no face of the block parallel to the marching axis is a face of the domain.
 template <class Act>
 void BlockSweep::ByCells::ForAside(const Act& act) const
 {
@@ -48,7 +48,7 @@ void BlockSweep::ByCells::ForAside(const Act& act) const
   }
 }
 
-/// Calls act(bundle, channel, index in a map, u, v) for every ray at an end of the marching axis.
+/// Calls act(bundle, channel, index in RaysAtFaces::maps, u, v) for every ray at an end of the marching axis.
 template <class Act>
 void BlockSweep::ByCells::ForEnds(const Act& act) const
 {
