@@ -51,9 +51,10 @@ SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, H
   }
 }
 
-/// Writes the incident power of a bundle's member. Rays enter where they start, and in place of rays that left
-/// sideways: one per row for each move along u, one per column for each move along v. Of the rays that move along u and
-/// v at once and enter at the plane's corner, half enter through u's face and half through v's.
+/// Writes the incident power of all rays of one bundle member (direction). Rays enter at the face where they start, and
+/// on the sides in place of rays that left there: one ray per row for each move along u, one ray per column for each
+/// move along v. If rays move along u and v at once, half of the power that enters at the corner of a plane comes
+/// through the face normal to u and half through the face normal to v.
 void SweepBorder::EnterMember(
   const SweepBoundary& boundary, std::size_t b, int way, int m, const std::array<double, 2>& moves)
 {
@@ -117,8 +118,8 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
-  // The columns outside the row hold rays that enter at the next move along u; a ray that moves along u and v at once
-  // enters from these columns.
+  // The columns before and after the row hold the rays that enter at the next move along u. They are also read by rays
+  // that move along u and v at once, through the corner of the plane.
   const bool periodicU = this->Plan.periodic[this->Plan.axes.u];
   const float beside = periodicU ? fromV : fromU;
   float* beyond = this->outside.data() + way * this->Plan.eachWay.outside + bundle.outside + inBlock;

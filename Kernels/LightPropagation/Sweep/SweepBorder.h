@@ -6,8 +6,8 @@
 
 namespace tyndall
 {
-/// Distance that a bundle's rays move sideways while they cross `planes` planes, in voxels along the u and v axes of
-/// the bundle.
+/// Number of voxels that a bundle's rays move sideways, along the u and v axes of the bundle, while they cross `planes`
+/// planes from plane `firstPlane` on.
 std::array<double, 2> SidewaysMoves(const Bundle& bundle, int firstPlane, int planes);
 
 /// Adds power that escaped through the faces parallel to the marching axis to SweepTally::out.
@@ -34,8 +34,8 @@ public:
   /// the face normal to u, through the face normal to v, or at the face where rays start.
   std::vector<cl_float4> rays;
 
-  /// Initial power of each ray, W; columns outside the plane hold the power of rays that enter through the faces normal
-  /// to u.
+  /// Power of each ray before it crosses the first plane, W, laid out as the maps of a sweep; the columns beyond the
+  /// end of a row hold the power of rays that enter through the faces normal to u.
   std::vector<float> maps;
   /// Power of rays that enter through the faces normal to v, W, [bundle][member][channel][row]
   std::vector<float> outside;

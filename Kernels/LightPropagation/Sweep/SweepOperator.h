@@ -34,21 +34,24 @@ struct Deposit
   /// of the whole domain.
   const Buffer<float>* faceOut = nullptr;
   /// Whether the power of a ray nearly parallel to a face, which meets that face only every few cells, is spread over
-  /// the cells that it represents. False: all its power leaves through the cell that it meets, as for incident light.
+  /// the cells between such crossings. False: all its power leaves through the cell that it meets, as for incident
+  /// light.
   bool spreadsAside = false;
 };
 
 /// Optical thickness of a voxel below which collisions of lamps' light are taken as uniform in the voxel.
 constexpr float ThinForFirstMoments = 0.02f;
 
-/// Planes along the marching axis to which a ray that leaves through a face parallel to that axis belongs. If the ray
-/// is nearly parallel to the face, it represents the power that leaves through cells of several planes
-/// (Deposit::spreadsAside).
+/// Rule by which the power of a ray that leaves through a face parallel to the marching axis is assigned to the cells
+/// of that face, one per plane. A ray nearly parallel to the face meets only few of the cells; it may represent the
+/// power that leaves through several of them (Deposit::spreadsAside).
 struct AsidePlanes
 {
   int size;
   bool periodic;
-  bool spreads; ///< whether a ray may belong to several planes; false: only to the plane in which it meets the face
+  /// Whether the power is divided among several planes; false: all of it leaves in the plane in which the ray meets the
+  /// face
+  bool spreads;
 };
 
 /// Calls act(plane, part) for each plane through whose cells a ray leaves, with the fraction of the ray's power that
@@ -107,8 +110,8 @@ inline void Add(SweepTally& sum, const SweepTally& tally, int first = 0)
 /// parallel beams: irradiance across the beam, W / length^2, and `direction` is 0.
 using SweepBoundary = std::function<Rgb(int direction, int face)>;
 
-/// Returns the channels of the group (VolumeLayout.h) whose first channel is `first`: all three if `first` is 0, else
-/// channel `first` as channel 0.
+/// Returns the values of `rgb` for the group of channels (VolumeLayout.h) whose first channel is `first`: all three if
+/// `first` is 0, else that of channel `first`, as channel 0.
 inline Rgb OfGroup(const Rgb& rgb, int first)
 {
   return first == 0 ? rgb : Rgb{ rgb[first], 0.0, 0.0 };
@@ -124,7 +127,7 @@ inline SweepBoundary OfGroup(const SweepBoundary& boundary, int first)
 
 /// Default of the maximum number of planes that a ray crosses along a periodic axis in one sweep.
 constexpr int MostPlanesAround = 8192;
-/// Fraction of the power after the first lap around a periodic axis at which rays stop wrapping around.
+/// Rays stop wrapping around a periodic axis once their power has fallen to this fraction of that after the first lap.
 constexpr double NothingLeft = 1e-7;
 
 /// Bundles of rays that march along one axis (0, 1, 2: x, y, z).

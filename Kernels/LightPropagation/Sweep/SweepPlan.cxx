@@ -16,8 +16,8 @@ constexpr double SecondsPerLaunch = 0.08;
 constexpr double SecondsPerRay = 1e-9;
 /// Magnitude below which an angular function (of mean square 1) is taken as zero
 constexpr double ZeroFunction = 1e-6;
-/// Maximum number of groups of bundles that march concurrently in the same sense, each two slabs behind the previous
-/// group
+/// Maximum number of groups of bundles that march concurrently in the same sense. Each group follows two slabs (ranges
+/// of planes) behind the previous one, so that they never cross the same planes at the same time.
 constexpr int MostGroups = 4;
 
 /// Coefficients of (1 - exp(-t)) / t = 1 + t (MeanLength[0] + t (MeanLength[1] + ...)), a minimax polynomial with an
@@ -44,7 +44,7 @@ int RowFloats(int width, int vector)
   return (vectors + 1) * vector;
 }
 
-/// Splits bundles into bundles of 1, 2, 4 or 8 members.
+/// Splits bundles of rays such that each has 1, 2, 4 or 8 members (directions), for which the kernels are compiled.
 std::vector<Bundle> InPowersOfTwo(const std::vector<Bundle>& bundles)
 {
   std::vector<Bundle> parts;
@@ -72,7 +72,8 @@ bool IsSwapped(const Member& member)
   return member.uFromU == 0;
 }
 
-/// Sorts the members of each bundle so that those whose directions differ only in signs are adjacent.
+/// Sorts the members of each bundle such that members whose directions differ only in the signs of u and v are
+/// adjacent.
 void SortIntoFrames(std::vector<Bundle>& bundles)
 {
   for (Bundle& bundle : bundles)
@@ -134,7 +135,7 @@ SweepPlan::SweepPlan(const Device& device, const SweepDescription& sweep, const 
 }
 
 /// Determines the number of laps around a short periodic axis in which rays start. Rays that start in its few planes
-/// would all have the same pattern of moves, so they start in several laps, each with a fraction of the power
+/// would all move sideways in the same planes, so they start in several laps, each with a fraction of the power
 /// (numerics.md, section 4.6).
 void SweepPlan::LayLaps()
 {
@@ -167,7 +168,8 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
-  // Rows that are packed just before they are crossed stay in the cache if one call processes all bundles.
+  // If all bundles are processed in one call, rows can be packed (copied to scratch) just before bundles cross them,
+  // and are then still in the cache.
   const bool inOneTurn = this->plane.tile > 0 && this->bundles.size() <= BundlesTogether;
   this->rowsKept = inOneTurn && this->plane.block == 1 && this->plane.sizeV > RowsOfChainKept ? RowsOfChainKept : 0;
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
@@ -250,8 +252,8 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   return description;
 }
 
-/// Determines the frames of each bundle and the indices of its coefficients, and computes the coefficients for both
-/// senses of marching.
+/// Determines the frames of each bundle (sets of members whose directions differ only in signs), and the values of the
+/// angular functions in their directions, with their indices, for both senses of marching.
 void SweepPlan::LayFrames()
 {
   for (std::size_t b = 0; b < this->bundles.size(); ++b)
@@ -279,8 +281,8 @@ void SweepPlan::LayFrames()
   }
 }
 
-/// Parities of the angular functions that a bundle needs: bit i is set if the functions of parity i, in the order of
-/// FunctionOrder, are not all zero in its directions.
+/// Parities (even or odd along u and v) of the angular functions that a bundle needs: bit i is set if the functions of
+/// parity i, in the order of FunctionOrder, are not all zero in its directions.
 int SweepPlan::ParitiesOf(const Bundle& bundle) const
 {
   int parities = 0;
@@ -300,8 +302,8 @@ int SweepPlan::ParitiesOf(const Bundle& bundle) const
   return parities;
 }
 
-/// Computes the angular functions of each frame of bundle b, for positive u and v, and the beams of each of its
-/// members.
+/// Appends to `coefficients` the values of the angular functions in the direction of each frame of bundle b, reflected
+/// to positive u and v, and the values of the beams in the direction of each of its members.
 void SweepPlan::LayCoefficients(std::size_t b, int way)
 {
   const auto directionOf = [way](const Member& member) { return way == 0 ? member.direction : member.opposite; };
@@ -335,7 +337,8 @@ void SweepPlan::LayCoefficients(std::size_t b, int way)
   }
 }
 
-/// Creates the units that run concurrently: for each sense of marching, enough groups of bundles to occupy all cores.
+/// Creates the units of work (one work-item each) that run concurrently: for each sense of marching, enough groups of
+/// bundles to occupy all cores.
 void SweepPlan::LayUnits(int computeUnits)
 {
   const int ways = (this->forward ? 1 : 0) + (this->backward ? 1 : 0);
@@ -381,8 +384,8 @@ int SweepPlan::CrossingPlanes() const
 
 std::size_t SweepPlan::ScratchFloats() const
 {
-  // Scratch of the bundles (two ring buffers, or the data kept between tiles), and the rays of a row of which only a
-  // fraction of the power moves.
+  // Scratch of the bundles (two ring buffers of rows, or the data kept from one tile of rows to the next), and the rays
+  // of one row of which only a fraction of the power moves.
   const std::size_t raysOfRow = static_cast<std::size_t>(MaxMembers) * this->channels * this->row;
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
   const std::size_t kept = this->angular
@@ -394,17 +397,17 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t quantities =
     PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
-  // All rows of a plane, even if rowsKept is set: with cells of faces, kernels use all of them.
+  // All rows of a plane, even if rowsKept is set: kernels compiled for light per cell of the faces do not use rowsKept.
   const std::size_t planes = quantities * rows * this->row;
   // Packed rows of the moments of the source and of the path integral
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow;
   return ring + planes + rows + packed + 3 * this->vector;
 }
 
-/// Borders between slabs, the ranges of planes that a unit crosses in one launch. The number of slabs is even, large
-/// enough to keep launches short, and at least eight per group if there are several groups. Except for the middle
-/// border, no border separates planes that are packed or chained together (PlaneInfo::together). Borders are symmetric
-/// about the middle, because units of opposite senses wait for each other.
+/// Borders between slabs, the ranges of planes that a unit of work crosses in one launch. The number of slabs is even
+/// and so large that launches stay short; with several groups of bundles it is at least eight per group. Except for the
+/// middle border, no border separates planes that are packed or chained together (PlaneInfo::together). Borders are
+/// symmetric about the middle, because units of work of opposite senses wait for each other.
 std::vector<int> SweepPlan::SlabBorders(int groups)
 {
   const int planes = this->Planes();
@@ -424,8 +427,9 @@ std::vector<int> SweepPlan::SlabBorders(int groups)
   return borders;
 }
 
-/// Schedules slabs such that units that run concurrently never share planes: a group follows two slabs behind the
-/// previous one, and forward and backward units, which approach each other, are in slabs of different parity.
+/// Schedules slabs (ranges of planes) such that units of work that run concurrently never share planes: each group of
+/// bundles follows two slabs behind the previous one, and forward and backward units of work, which approach each
+/// other, are in slabs of different parity.
 void SweepPlan::LaySchedule()
 {
   const int planes = this->Planes();
@@ -465,7 +469,7 @@ void SweepPlan::LayRounds()
   }
 }
 
-/// Number of rays per voxel in the unit with the most rays.
+/// Number of rays per voxel in the unit of work with the most rays.
 int SweepPlan::RaysPerUnit() const
 {
   std::size_t most = 0;

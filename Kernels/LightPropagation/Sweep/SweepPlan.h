@@ -33,21 +33,23 @@ struct SweepDescription
 /// Description of the sweep of `volume`; periodic[a] tells whether axis a is periodic.
 SweepDescription Describe(const SweepVolume& volume, const std::array<bool, 3>& periodic);
 
-/// Plan of a sweep along one axis: memory layout of the bundles, the units of work that run concurrently, and the
-/// planes that each unit crosses in each launch. Computed once, on the host.
+/// Plan of a sweep along one axis: memory layout of the bundles, the units of work (groups of bundles that one
+/// work-item carries in one sense) that run concurrently, and the planes that each unit of work crosses in each launch.
+/// Computed once, on the host.
 struct SweepPlan : SweepDescription
 {
   SweepPlan(const Device& device, const SweepDescription& sweep, const AxisBundles& rays);
 
   PlaneAxes axes;
-  /// Bundles of 1, 2, 4 or 8 members, the sizes for which the kernels are compiled
+  /// Bundles of 1, 2, 4 or 8 members (directions), the numbers for which the kernels are compiled
   std::vector<Bundle> bundles;
   bool forward = false; ///< whether any rays march from the lower to the upper end of the axis
   bool backward = false;
 
   int vector = 8; ///< number of floats in a vector of the kernels (SIMD width)
   int row = 0;    ///< number of floats in a padded row
-  /// Number of rows of a plane held in scratch if rows are packed just before they are crossed; 0: all rows
+  /// Number of rows of a plane held in scratch if rows are packed (copied there) just before bundles cross them; 0: all
+  /// rows
   int rowsKept = 0;
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
@@ -55,21 +57,22 @@ struct SweepPlan : SweepDescription
   /// Values of the angular functions (BundleInfo::coefficients), forward first
   std::vector<float> coefficients;
   FunctionOrder order; ///< order of the angular functions for the marching axis
-  /// Whether rows of a plane are rows of the array of moments, so that they need no packing
+  /// Whether the array of moments holds each row of a plane contiguously, so that rows need not be packed (copied to
+  /// scratch)
   bool momentsInPlace = false;
   /// Number of floats in a packed row of moments: all channels, all functions from the second on
   int momentRow = 0;
 
   std::vector<UnitInfo> units;
-  /// Range of planes (first, end) that each unit crosses in each launch, [launch][unit]
+  /// Range of planes (first, end) that each unit of work crosses in each launch, [launch][unit]
   std::vector<cl_int2> schedule;
   int launches = 0;
   double secondsPerLaunch = 0.0; ///< upper estimate of the time of a launch on a slow core, s
   /// Number of laps around a short periodic axis in which rays start, so that the axis is long enough for their pattern
   /// of moves; else 1
   int laps = 1;
-  /// Range of planes (first, end) that each unit crosses in each launch when rays wrap around a periodic axis,
-  /// [launch][unit]; only one unit runs in each launch
+  /// Range of planes (first, end) that each unit of work crosses in each launch when rays wrap around a periodic axis,
+  /// [launch][unit]; only one unit of work runs in each launch
   std::vector<cl_int2> roundSchedule;
 
   int Planes() const { return this->box.size[this->axes.axis]; }
@@ -83,14 +86,14 @@ struct SweepPlan : SweepDescription
   int CrossingPlanes() const;
   std::size_t ScratchFloats() const; ///< number of floats of scratch memory per unit
 
-  /// Moves and segment lengths of rays in each plane, [plane][bundle].
-  /// @param firstPlane  index of the first plane in the ray pattern
+  /// Sideways moves and segment lengths of rays in each plane, [plane][bundle].
+  /// @param firstPlane  first plane, counted from the plane where rays start
   std::vector<CrossingInfo> Crossings(int firstPlane, int planes) const;
   /// Path integral, per unit of source, of emitted and scattered light within its voxel of origin, [unit][plane].
   /// @param lapPlanes  number of planes that the rays have crossed at the start of this lap around a periodic axis
   std::vector<OwnLightInfo> OwnLight(int lapPlanes = 0) const;
-  /// Index of each angular function in a group of moments (MomentPlacesShared.h), in this axis's order of functions. 0
-  /// for the first function, which is stored elsewhere, and if there are no angular moments.
+  /// Offset of the values of each angular function within a group of moments (MomentPlacesShared.h), for the functions
+  /// in this axis's order. 0 for the first function, which is stored elsewhere, and if there are no angular moments.
   std::vector<cl_int> FunctionPlaces() const;
   /// Arguments of the kernel `sweep` that the plan determines.
   SweepInfo Info() const;

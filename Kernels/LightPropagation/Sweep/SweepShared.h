@@ -8,25 +8,33 @@ SHARED_BEGIN
 enum
 {
   MaxMembers = 8, ///< maximum number of members, i.e. symmetric directions, in a bundle
-  MaxFrames = 2,  ///< maximum number of frames in a bundle: u and v in order, and exchanged
-  /// Rows in a ring buffer between stages: a stage reads rows y - 1 to y + 1 while the stage before it writes row y + 2
+  /// Maximum number of frames in a bundle. A frame has the members whose directions differ only in signs; in the other
+  /// frame, u and v are exchanged
+  MaxFrames = 2,
+  /// Rows in the ring buffer between two stages of crossing a plane (a stage takes each ray through one voxel): a stage
+  /// reads rows y - 1 to y + 1 while the stage before it writes row y + 2
   RingRows = 4,
   /// Number of coefficients m of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
   MeanLengthTerms = 5,
-  /// Maximum number of bundles that alternate on a tile of rows, if there are angular moments or planes are chained
+  /// Maximum number of bundles that take turns on each tile (block of rows), if there are angular moments or planes are
+  /// chained
   BundlesTogether = 16,
-  MomentRows = 8, ///< rows for which a bundle's sources are stored: those that its stages are processing
+  /// Rows for which a bundle's sources are stored: those that its stages of crossing a plane work on
+  MomentRows = 8,
   /// Maximum number of planes in a chain, i.e. planes that a bundle crosses together, row by row
   MostChained = 2,
   /// Rows in a tile of a plane with angular moments; a tile stays in the cache while all bundles cross it
   RowsTogether = 8,
   /// Rows in a tile of chained planes; a tile stays in the cache while all bundles cross it
   RowsOfChain = 32,
-  /// Rows of chained planes held in scratch: a tile and the rows by which its last stage lags behind; a power of two
+  /// Rows of chained planes held in scratch: a tile and the rows by which the last stage lags behind the first; a power
+  /// of two
   RowsOfChainKept = 64,
-  RowsAhead = 2,     ///< number of rows by which the prefetch of a ray map is ahead in chained planes
+  /// In chained planes, a row of a map (powers of rays) is prefetched this number of rows before it is crossed
+  RowsAhead = 2,
   FloatsOfLine = 16, ///< number of floats in a cache line
-  /// Lowest row at which a first stage begins: along a periodic v, it also crosses up to two rows before the plane
+  /// Lowest row at which the first stage of crossing a plane begins: if v is periodic, it also crosses up to two rows
+  /// before the plane
   FirstRow = -2
 };
 
@@ -36,7 +44,8 @@ enum
 {
   PlaneSigma = 0,
   PlaneInverse = 1,
-  /// Sum over rays of power times mean transmitted length: subtracted to obtain the path of a voxel's own source
+  /// Sum over rays of power times mean transmitted length; subtracted to obtain the path integral of light in its voxel
+  /// of origin
   PlaneTaken = 2,
   PlaneSource = 3
 };
@@ -69,16 +78,18 @@ enum
 /// Number of ring buffers of rows between the stages of `planes` chained planes, with at most three stages per plane.
 #define RINGS_OF(planes) (3 * (planes)-1)
 
-/// Number of floats that a bundle keeps from one tile of rows to the next: two ring buffers; for MomentRows rows the
-/// members' sources and path integrals, and the path integral of a unit source in its own voxel.
+/// Number of floats that a bundle keeps from one tile of rows to the next: two ring buffers between stages; for
+/// MomentRows rows, the sources and path integrals of all members, and the path integral of a unit source in its own
+/// voxel.
 #define BUNDLE_FLOATS(channels, row) \
   ((RINGS_OF(1) * RingRows + 2 * MomentRows) * MaxMembers * (channels) * (row) + MomentRows * (row))
 
 typedef struct
 {
   int members;
-  int map;    ///< index of the first float of the bundle's maps (power of its rays)
-  int border; ///< index of the bundle's first value in the incident power at faces normal to u, [member][channel]
+  int map; ///< index of the first float of the bundle's maps (power of its rays)
+  /// Index of the bundle's first value in the array of power per ray incident at faces normal to u, [member][channel]
+  int border;
   /// Index of the bundle's first float in the rows that enter through faces normal to v, [member][channel][ROW]
   int outside;
   float power;  ///< power of a ray of radiance 1 (numerics.md, Eq. (19)), length^2 sr
@@ -86,8 +97,9 @@ typedef struct
   float sineU, sineV;
   /// Mean number of planes between two moves of a ray along u, and along v; at most the number of planes of the axis
   float planesU, planesV;
-  int move[MaxMembers]
-          [4]; ///< per member, signed permutation of the bundle's moves: u from u, u from v, v from u, v from v
+  /// Per member, the 2 x 2 signed permutation that maps the bundle's moves along its own axes to moves along u and v of
+  /// the plane: u from u, u from v, v from u, v from v
+  int move[MaxMembers][4];
   /// Number of frames, and index of each frame's first member, then the end of the last frame. A frame is a set of at
   /// most four members of the bundle whose directions differ only in signs.
   int frames, firstOfFrame[MaxFrames + 1];
@@ -114,7 +126,7 @@ typedef struct
   int backward; ///< 0: marches from the lower end of the axis, 1: from the upper end
   int firstBundle, bundles;
   int scratch; ///< index of the first float of the unit's scratch memory
-  /// Number of planes of the ray pattern that the unit's rays have crossed before its first plane
+  /// Number of planes from where the unit's rays start to the first plane of the swept box
   int planesBefore;
 } UnitInfo;
 
@@ -126,10 +138,12 @@ typedef struct
   int firstU, firstV, firstP;
   int stepU, stepV, stepP;
   int width;
-  int block;    ///< number of planes packed at once: 1 if rows are contiguous in memory, else the vector width
+  /// Number of planes packed (copied to scratch) at once: 1 if rows are contiguous in memory, else the vector width
+  int block;
   int together; ///< number of planes packed before any of them is crossed: a multiple of `block`
   int chained;  ///< number of planes in a chain, which a bundle crosses together, row by row
-  int tile;     ///< number of rows in a tile, on which bundles alternate; 0: each bundle crosses all rows
+  /// Number of rows in a tile, on which bundles take turns; 0: each bundle crosses all rows at once
+  int tile;
   float vacuum; ///< sigma_t used instead of 0 in vacuum, 1/length; so small that exp(-tau) is 1 in float
   float thin;   ///< sigma_t below which the polynomial `meanLength` holds on all segments, 1/length
   float meanLength[MeanLengthTerms];
@@ -152,10 +166,12 @@ typedef struct
   int first[4], plane[4], along[4];
   /// Index of the first channel's first cell; number of cells from one channel to the next
   ulong firstChannel, stride;
-  /// Number of values in each unit's own copy of the cells, if `spread`, because units run concurrently
+  /// Number of cells in each unit of work's own copy of the cells' values, if `spread`, because units of work run
+  /// concurrently
   ulong unit;
-  int out;    ///< 1: the power that leaves through each cell is summed
-  int spread; ///< 1: escaped power is spread over all cells that the ray represents; used if `out`
+  int out; ///< 1: the power that leaves through each cell is summed
+  /// Whether (1) the escaped power of a ray is spread over all cells that the ray represents; used if `out`
+  int spread;
   /// 1: incident radiance is given per cell, in addition to the radiance that is uniform over each face
   int in;
 } FaceInfo;
@@ -184,7 +200,7 @@ typedef struct
   int roundAxis;
   int periodicU, periodicV; ///< 1: the box is periodic along u, along v
   int bundles;
-  int patternPlanes; ///< number of planes of the ray pattern
+  int patternPlanes; ///< number of planes after which the sideways moves of rays repeat
   int launch;        ///< index of this launch in the schedule
   int axis;
   PlaneInfo planes;
@@ -197,7 +213,7 @@ typedef struct
   int parityEnds[4]; ///< end of the range of angular functions of each parity (SweepLayout.cl)
   int firstChannel;
   int streamed; ///< 1: the volumes are streamed in slices through slots (SliceStream.h)
-  /// Floats of a slot of the source, and of a slot of the path integral, if streamed
+  /// Number of floats in a slot of the source, and in a slot of the path integral, if streamed
   ulong sourceSlot, pathSlot;
   int outerSides; ///< for a subdomain: bit i is set if light that crosses side i of -u, +u, -v, +v leaves the domain
 } SweepInfo;
@@ -209,7 +225,7 @@ typedef struct
   ulong eachWay; ///< floats of the maps for one sense of marching
   int bundles, channels;
   int row, border;
-  int sizeU, width; ///< voxels of a row, and that number rounded up to whole vectors
+  int sizeU, width; ///< number of voxels in a row, and that number rounded up to whole vectors
   /// Per sense of marching: index of the first channel's first cell of the face where rays start (or end)
   ulong face[2];
   ulong faceStride; ///< number of cells from one channel to the next

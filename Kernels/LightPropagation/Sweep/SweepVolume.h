@@ -35,7 +35,7 @@ struct SweepVolume
   MomentPlaces moments = {}; ///< memory layout of source and path, if these have angular moments
 };
 
-/// Volume of a group of channels, with a null source.
+/// Volume of a group of channels, without a source.
 SweepVolume GroupVolume(
   const VolumeLayout& layout, const ChannelGroup& group, const Buffer<float>& sigma_t, const Deposit& deposit);
 
@@ -72,9 +72,10 @@ void ReserveOnDevice(Device& device, Buffer<float>& buffer, std::size_t floats, 
 /// Scratch memory shared by sweeps along different axes. Its contents are undefined between sweeps.
 struct SweepWorkspace
 {
-  Buffer<float> maps;    ///< power of the rays of an open (not periodic) axis, W
-  Buffer<float> scratch; ///< quantities of the planes that are being crossed
-  Buffer<float> lost;    ///< rounding errors of `path` (compensated summation), in sweeps along a periodic axis
+  Buffer<float> maps; ///< power of the rays of an open (not periodic) axis, W
+  /// Source, path integral and other quantities of the planes that are being crossed (SweepShared.h)
+  Buffer<float> scratch;
+  Buffer<float> lost; ///< rounding errors of `path` (compensated summation), in sweeps along a periodic axis
   std::array<Buffer<float>, SlotSizes().size()> slots; ///< slots of streamed volumes (SliceStream.h)
 
   /// Enlarges `maps` and `scratch` to these sizes. No sweep may be in progress, because buffers that are too small are
@@ -84,7 +85,7 @@ struct SweepWorkspace
   void ReserveSlots(Device& device, const SlotSizes& floats);
 };
 
-/// Sweep of a volume that sweeps its groups of channels (VolumeLayout::Groups) one after another.
+/// Sweep that treats the groups of channels of a volume (VolumeLayout::Groups) one after another.
 class SweepByGroups : public SweepOperator
 {
 public:

@@ -8,7 +8,8 @@ namespace tyndall
 {
 namespace
 {
-/// Number of voxels per pass, small enough that cache lines of all components stay in the cache until they are full
+/// Number of voxels that are interleaved at a time: so few that a cache line of the result stays in the cache until the
+/// values of all channels and components have been written to it
 constexpr std::size_t AtOnce = 512;
 }
 

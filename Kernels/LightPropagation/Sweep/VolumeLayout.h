@@ -56,7 +56,7 @@ struct VolumeLayout
   {
     return MOMENT_PLACE(places, function, channel, voxel / places.sizeX, voxel % places.sizeX);
   }
-  /// Channel of the value at index `at` of an array of angular moments; not for the values of beams.
+  /// Channel of the value at index `at` of an array of angular moments; not valid for the values of beams at its end.
   int ChannelOf(const MomentPlaces& places, std::size_t at) const
   {
     const std::size_t ofRow = static_cast<std::size_t>(places.groups) * (places.functions - 1) * MomentGroup;

@@ -160,8 +160,10 @@ void BlockSweep::ByCells::EnterAside(const Aside& ray, RaysAtFaces& in) const
   {
     return;
   }
-  // A ray that moves along u and v at once: at an edge of the domain, half of it enters through either face; at another
-  // edge of the block, all of it enters through the one face of the domain.
+  // Light per cell that a ray brings in if it moves diagonally, along both transverse axes u and v, in one step.
+  // Through an edge of the domain, half of its power enters through the face normal to u and half through the face
+  // normal to v. If only one of these two faces of the block is a face of the domain, all of the power enters through
+  // that one.
   const double beyond = outerU && outerV
     ? 0.5 * (this->LightOf(faceV, this->VoxelAt(ray, u0, v0), c) + this->LightOf(faceU, this->VoxelAt(ray, u0, v0), c))
     : outerV ? this->MeanLight(faceV, this->VoxelAt(ray, u0 - ray.du, v0), axes.u, ray.du, c)
@@ -190,8 +192,9 @@ void BlockSweep::ByCells::Leave(const RaysAtFaces& out, const SweepBoundary& bou
   });
 }
 
-/// Sums the power that leaves sideways, per cell. Of a ray at an edge of the domain that moves along u and v at once,
-/// half leaves through either face.
+/// Sums the power that leaves through the faces parallel to the marching axis, per cell. If a ray leaves diagonally
+/// through an edge of the domain, along both transverse axes u and v, half of its power is counted at each of the two
+/// faces.
 void BlockSweep::ByCells::LeaveAside(const Aside& ray, const RaysAtFaces& out) const
 {
   const SweepPlan& plan = this->Sweep.Plan;
@@ -213,7 +216,8 @@ void BlockSweep::ByCells::LeaveAside(const Aside& ray, const RaysAtFaces& out) c
   }
 }
 
-/// Sums the power of light that enters and leaves at an edge of the domain without crossing a voxel.
+/// Sums the power of diagonally moving rays that enter the domain through one face at an edge and leave at once through
+/// the other face there, without crossing a voxel.
 void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& boundary, SweepTally& tally) const
 {
   if (ray.du == 0 || ray.dv == 0)
@@ -238,9 +242,10 @@ void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& bound
   }
 }
 
-/// Sums the power that leaves through the face normal to axis `through` after entry through the face normal to axis
-/// `from`.
-/// @param alike  power of incident light that is uniform over the face, W; BlockCrossing adds it to the tally
+/// Sums the power of a ray that passes an edge of the domain: it enters through the face normal to axis `from` and
+/// leaves through the face normal to axis `through`.
+/// @param alike  the ray's power from incident light that is uniform over the face, W; it is added only to the cells,
+/// because BlockCrossing adds it to the tally
 void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, double alike, SweepTally& tally) const
 {
   const PlaneAxes& axes = this->Sweep.Plan.axes;
@@ -254,7 +259,9 @@ void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, doub
   }
 }
 
-/// Adds power that leaves through the face normal to `axis` to the cells in all planes that the ray represents.
+/// Adds `power`, which leaves through the face normal to `axis`, to cells of that face. If LightByCells::spreads, a ray
+/// nearly parallel to the face represents light that leaves through cells in several planes, and its power is divided
+/// among them.
 void BlockSweep::ByCells::LeaveThrough(const Aside& ray, int axis, const Voxel& voxel, double power) const
 {
   const SweepPlan& plan = this->Sweep.Plan;

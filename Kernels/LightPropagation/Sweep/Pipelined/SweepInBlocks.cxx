@@ -13,7 +13,7 @@ namespace tyndall
 {
 namespace
 {
-/// Replaces the power on each rank by its sum over all ranks, W. Collective.
+/// Replaces the power through each face on each rank, W, by its sum over all ranks. Collective.
 void AddUp(Communicator& communicator, std::array<Rgb, 6>& power)
 {
   std::vector<double> values;
@@ -80,8 +80,8 @@ SweepInBlocks::Task SweepInBlocks::MakeTask(const ParallelBundles& rays, BlockWo
   const SweepVolume volume = this->VolumeOf(0);
   task.sweep =
     std::make_unique<BlockSweep>(this->TheDevice, this->Partition, own, rays, this->Periodic, volume, workspace);
-  /// Contacts between two blocks in three lists: within the domain, around a periodic axis sideways, and around the
-  /// marching axis.
+  /// Finds the contacts (sets of shared voxel faces) through which rays pass from block `from` to block `to`, in three
+  /// lists: within the domain, around a periodic axis transverse to the marching axis, and around the marching axis.
   const auto sorted = [&](int from, int to) {
     std::array<Contacts, 3> found;
     for (const BlockContact& contact : ContactsBetween(this->Partition, rays, from, to, this->Periodic))
@@ -129,8 +129,8 @@ void SweepInBlocks::Forget()
   }
 }
 
-/// Sweeps the whole domain once. Collective. After an error, ranks continue to exchange messages, marked as failed, so
-/// that no rank waits forever.
+/// Sweeps the whole domain once. Collective. After an error on one rank, all ranks continue to exchange messages,
+/// marked as failed, so that no rank waits forever for a message.
 SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
 {
   const Deposit& to = this->Request.deposit;
@@ -157,7 +157,8 @@ SweepTally SweepInBlocks::Apply(const Buffer<float>* source, const SweepBoundary
   return tally;
 }
 
-/// Sweeps open axes in one lap, periodic axes until almost no power is in transit, as in AxisSweep.
+/// Sweeps one group of channels. Rays along an open axis need one lap (crossing of the domain); rays along a periodic
+/// axis continue in further laps until almost no power is in transit, as in AxisSweep.
 SweepTally SweepInBlocks::ApplyGroup(
   std::size_t group, const SweepVolume& volume, const SweepBoundary& boundary, const Monitor& monitor)
 {
@@ -198,14 +199,16 @@ SweepTally SweepInBlocks::ApplyGroup(
   return sweeping.tally;
 }
 
-/// Index of the group's first cell in FaceIn and Left, which hold all channels of the whole domain's faces.
+/// Index of the first face cell of this group of channels in FaceIn and Left, which hold the cells of the whole
+/// domain's faces for all channels.
 std::size_t SweepInBlocks::FirstCell(const SweepVolume& volume) const
 {
   return volume.firstChannel * BoxFaceCellCount(this->Partition.whole);
 }
 
-/// Sweeps one lap: first with sources and incident light if rays still start, then repeatedly with only the rays that
-/// wrap around sideways, until there are none. Collective.
+/// Sweeps one lap, in which rays cross the domain once along their marching axes. The first pass includes sources and
+/// incident light if rays still start in this lap; each further pass carries only the rays that wrapped around a
+/// periodic axis transverse to their marching axis, until there are none. Collective.
 /// @return false if an error occurred on any rank
 bool SweepInBlocks::SweepLap(Sweeping& sweeping, const Monitor& monitor)
 {
@@ -240,8 +243,8 @@ bool SweepInBlocks::SweepLap(Sweeping& sweeping, const Monitor& monitor)
   return true;
 }
 
-/// Sweeps this rank's block along all sets of bundles of the lap.
-/// @return whether any rays have wrapped around sideways to this rank
+/// Sweeps this rank's block once along each set of bundles of rays whose axis takes part in the lap.
+/// @return whether any rays have wrapped around a transverse periodic axis to this rank, so that another pass is needed
 bool SweepInBlocks::SweepPass(Sweeping& sweeping, const Monitor& monitor)
 {
   const std::vector<int>& order = this->TheSchedule.OrderOf(this->Comm.Rank());
@@ -263,7 +266,7 @@ void AddOverRanks(Device& device, Communicator& communicator, const std::vector<
   std::transform(out.begin(), out.end(), ofAll.begin(), out.begin(),
     [](float before, double more) { return static_cast<float>(before + more); });
   to.CopyFrom(Buffer<float>(device, out, "the light that leaves by cells"), 0, out.size());
-  device.Finish(); // the copy must end before the buffer is destroyed
+  device.Finish(); // the copy must end before its temporary source is destroyed
 }
 
 /// Whether this rank reports the incident power of the domain; only one of the ranks with voxels does.
@@ -319,7 +322,7 @@ void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, const Monitor& mon
   this->SendOn(number, state, rays);
 }
 
-/// Sends outgoing rays to ranks downwind and around periodic axes.
+/// Sends the outgoing rays of this rank's block to the ranks downwind, and to those reached around periodic axes.
 void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
 {
   const Task& task = this->Tasks[number];
@@ -348,7 +351,7 @@ void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
 }
 
 /// Receives the rays that wrapped around in this pass, from all ranks, after this rank has finished the pass.
-/// @return whether any of these rays continue in another pass
+/// @return whether any of these rays wrapped around a transverse axis and carry power, so that another pass is needed
 bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping)
 {
   const auto isLit = [](float value) { return value != 0.0f; };
@@ -414,8 +417,9 @@ SweepInBlocks::State SweepInBlocks::Enter(
   return this->EnterFromAround(task, sweeping, rays) == State::Lit ? State::Lit : state;
 }
 
-/// Adds the waiting rays that wrapped around a periodic axis to the incoming rays: those along the marching axis in a
-/// lap's first pass, those sideways in later passes.
+/// Adds the waiting rays that wrapped around a periodic axis to the incoming rays. In the first pass of a lap these are
+/// the rays that wrapped around the marching axis in the lap before; in later passes, those that wrapped around a
+/// transverse axis in the pass before.
 SweepInBlocks::State SweepInBlocks::EnterFromAround(Task& task, const Sweeping& sweeping, RaysAtFaces& rays) const
 {
   State state = State::Dark;

@@ -24,8 +24,9 @@ void AddOverRanks(Device& device, Communicator& communicator, const std::vector<
 /// order of summation.
 ///
 /// Rays that leave the domain at the end of a periodic axis enter at its other end after all blocks have been swept.
-/// Rays that wrap around sideways enter the same planes in another pass with only these rays, repeated until none are
-/// left. Rays that wrap around along the marching axis enter in the next lap, as in AxisSweep.
+/// Rays that wrap around an axis transverse to their marching axis enter the same planes in another pass with only
+/// these rays, repeated until none are left. Rays that wrap around their marching axis enter in the next lap (crossing
+/// of the domain), as in AxisSweep.
 ///
 /// Construction and Apply() are collective, with the same rays on all ranks. Light per cell of the faces
 /// (SweepRequest::faceIn, Deposit::faceOut) refers to the whole domain and is identical on all ranks.
@@ -38,7 +39,7 @@ public:
   /// @param workspace  must outlive this object; may be shared by sweeps that never run concurrently
   /// @param mostRays  maximum number of rays that cross a block together; 0: the number that minimises the time of the
   /// sweep (FastestParts)
-  /// @throws InvalidInput if the request contains something unsupported, or blocks wait for each other in a cycle
+  /// @throws InvalidInput if blocks wait for each other's rays in a cycle
   SweepInBlocks(Device& device, Communicator& communicator, const BlockPartition& partition, const VolumeLayout& layout,
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request,
     BlockWorkspace& workspace, int mostRays = 0);
@@ -59,17 +60,20 @@ private:
   struct Around
   {
     Contacts aside, ahead;
-    std::vector<float> rays; ///< rays that wrap around sideways: enter in the next pass
-    /// Per group of channels: rays that wrap around along the marching axis, entering in the next lap
+    /// Rays that wrap around an axis transverse to the marching axis; they enter in the next pass
+    std::vector<float> rays;
+    /// Per group of channels: rays that wrap around the marching axis; they enter in the next lap
     std::vector<std::vector<float>> waiting;
   };
   struct Task
   {
     std::unique_ptr<BlockSweep> sweep;
-    /// Contacts, within the domain, with each rank from which this block receives rays, and to which it sends rays
+    /// Contacts (sets of shared voxel faces) within the domain: per rank that sends rays to this block, and per rank
+    /// that receives rays from it
     std::vector<Contacts> senders, receivers;
-    std::vector<Around> aroundFrom; ///< rays that wrap around a periodic axis from each rank to this one
-    /// Contacts around periodic axes with each receiving rank: sideways, and along the marching axis
+    std::vector<Around> aroundFrom; ///< rays that reach this rank around a periodic axis, per sending rank
+    /// Contacts around periodic axes, per receiving rank: first around the transverse axes, then around the marching
+    /// axis
     std::vector<std::array<Contacts, 2>> aroundTo;
   };
   enum class State
@@ -90,10 +94,11 @@ private:
     LightByCells cells = {};
     std::size_t group = 0;
     int lap = 0;
-    std::array<bool, 3> goesOn = {}; ///< axes whose rays take part in this lap
-    bool again = false;              ///< whether this pass carries only rays that have wrapped around sideways
+    std::array<bool, 3> goesOn = {}; ///< whether rays that march along each axis take part in this lap
+    bool again = false;              ///< whether this pass carries only rays that have wrapped around a transverse axis
     SweepTally tally = {};
-    /// Power that left through the ends of periodic axes in this lap, by axis, W
+    /// Power of the rays that left the domain at the end of their periodic marching axis in this lap, per marching
+    /// axis, W
     std::array<Rgb, 3> ahead = {};
   };
   SweepTally ApplyGroup(
@@ -107,7 +112,8 @@ private:
   void SendOn(int number, State state, const RaysAtFaces& rays);
   bool TakeFromAround(const Sweeping& sweeping);
   bool IsAnyPeriodic() const { return this->Periodic[0] || this->Periodic[1] || this->Periodic[2]; }
-  int Laps(int axis) const; ///< number of laps in which rays start
+  /// Number of laps around the axis in which rays start: 1 unless the axis is periodic and short
+  int Laps(int axis) const;
 
   Device& TheDevice;
   Communicator& Comm;
@@ -116,12 +122,13 @@ private:
   BlockWorkspace& Workspace;
   std::vector<ParallelBundles> Parts;
   SweepSchedule TheSchedule;
-  std::vector<Task> Tasks; ///< tasks of this rank, in the order of Parts
+  /// Tasks of this rank (sweeps of its block along one set of bundles each), in the order of Parts
+  std::vector<Task> Tasks;
 
   // State of the sweep in progress.
   std::exception_ptr Error;  ///< error on this rank, if any
   std::vector<float> FaceIn; ///< incident radiance per cell, SweepRequest::faceIn; empty: none, or zero
-  /// Power that left this rank's block per cell of the domain's faces, W; empty: not summed
+  /// Power that left from this rank's block through each cell of the domain's faces, W; empty: not summed
   std::vector<double> Left;
 };
 }

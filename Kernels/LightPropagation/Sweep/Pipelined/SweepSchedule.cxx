@@ -15,8 +15,8 @@ namespace tyndall
 {
 namespace
 {
-/// Members of a bundle that march in sense `way` along its axis, with the signs signU, signV of their direction along
-/// u, v.
+/// Returns the bundle with only those of its directions that march in sense `way` along the axis and have the signs
+/// signU, signV along the transverse axes u, v.
 Bundle MembersThatGo(const Bundle& bundle, int way, int signU, int signV)
 {
   Bundle part = bundle;
@@ -107,8 +107,8 @@ std::vector<BlockContact> ContactsBetween(
     return {};
   }
   const PlaneAxes axes = AcrossAxis(rays.axis);
-  // Finds the contact of the given kind: the cells of the source block that are next to the target block, upwind along
-  // each of the axes `along`.
+  // Returns the contact of the given kind: the cells of block `from` that are the upwind neighbours of cells of block
+  // `to`, displaced by one voxel along each of the axes `along`.
   const auto contact = [&](BlockContact::Kind kind, std::initializer_list<int> along) {
     BlockContact found = { from, to, kind, target, false };
     for (const int axis : along)
@@ -161,8 +161,8 @@ struct TaskGraph
   std::vector<int> behind;
 };
 
-/// Number of rays that cross a contact, per channel. For a sideways contact, rays are counted by their mean number of
-/// moves per plane.
+/// Number of rays that cross a contact between two blocks, per channel. A ray crosses a contact parallel to the
+/// marching axis only in some planes, so it counts as its mean number of voxels moved per plane.
 std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& contact)
 {
   const double cells = static_cast<double>(contact.cells.VoxelCount());
@@ -180,7 +180,7 @@ std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& cont
   return static_cast<std::size_t>(rays);
 }
 
-/// Number of blocks on the longest downwind path from a block; found by recursion.
+/// Number of blocks downwind of a block on the longest chain of blocks that wait for its rays; found by recursion.
 int FindBehind(TaskGraph& graph, int rank)
 {
   int& behind = graph.behind[rank];
@@ -350,7 +350,7 @@ private:
   std::vector<std::set<std::pair<int, int>>> Ready;
   std::vector<bool> Busy;
   std::set<int> Touched;                             ///< ranks with an event at the current time
-  std::map<std::pair<int, int>, double> LastArrival; ///< time of the last message; key: rank, task
+  std::map<std::pair<int, int>, double> LastArrival; ///< latest arrival time of a message for a task; key: rank, task
   using Event = std::tuple<double, int, int, int>; ///< time; 0 if a task becomes ready, 1 if it is finished; rank; task
   std::priority_queue<Event, std::vector<Event>, std::greater<Event>> Events;
 };
@@ -371,8 +371,8 @@ SweepSchedule::SweepSchedule(
 
 std::vector<ParallelBundles> FastestParts(const BlockPartition& partition, const std::vector<AxisBundles>& rays)
 {
-  // Costs in units of one ray through one voxel, about 2 to 3 ns. The time to queue a block's launches was measured as
-  // about 1 ms.
+  // Costs relative to that of carrying one ray through one voxel, which takes about 2 to 3 ns. The overhead per block,
+  // mostly for queueing kernel launches, was measured as about 1 ms.
   const SweepCosts costs = { 1.0, 4e5, 2e3, 1.0 };
   std::vector<ParallelBundles> fastest = SortByOctant(rays, 0);
   double least = SweepSchedule(partition, fastest, costs).Time();

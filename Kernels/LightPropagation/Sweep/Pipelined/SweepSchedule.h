@@ -17,7 +17,7 @@ struct ParallelBundles
   int way = 0;                            ///< sense of marching: 0 forward along the axis, 1 backward
   std::array<int, 3> signs = { 1, 1, 1 }; ///< sign of the directions along x, y, z: 1 or -1
   std::vector<Bundle> bundles; ///< bundles of these rays; the direction of opposite sense is removed from each member
-  bool goThroughEdges = false; ///< whether some rays move along u and v at once
+  bool goThroughEdges = false; ///< whether any ray moves diagonally, along both transverse axes u and v, in one step
 
   int Rays() const; ///< number of rays per voxel of a plane across the axis
 };
@@ -31,10 +31,11 @@ struct BlockContact
 {
   enum Kind
   {
-    Along,  ///< through faces normal to the marching axis, after the last plane of a block
+    /// Through faces normal to the marching axis, after rays have crossed the last plane of a block
+    Along,
     AsideU, ///< AsideU, AsideV: through faces normal to u, v, within a plane
     AsideV,
-    Edge ///< by a sideways move along u and v at once
+    Edge ///< through an edge of the block: rays that move diagonally, along both u and v, in one step
   };
   int from = 0, to = 0;
   Kind kind = Along;
@@ -52,7 +53,7 @@ struct SweepCosts
   double ofRay = 1.0;     ///< cost per ray and voxel
   double ofTask = 0.0;    ///< overhead per block and set of parallel bundles
   double ofMessage = 0.0; ///< cost per message between ranks
-  double ofValue = 0.0;   ///< cost per ray and cell in a message
+  double ofValue = 0.0;   ///< cost per ray through one voxel face in a message
 };
 
 /// Order in which each rank sweeps its block along the sets of parallel bundles. The sets of all octants start
@@ -61,9 +62,9 @@ struct SweepCosts
 class SweepSchedule
 {
 public:
-  /// @param tasks  sets of parallel bundles; the task of a rank is to sweep its block along one of them
-  /// @throws InvalidInput if blocks wait for each other in a cycle, i.e. the partition cannot be made by successive
-  /// cuts along planes
+  /// @param tasks  sets of parallel bundles of rays; in each task a rank sweeps its block along one set
+  /// @throws InvalidInput if blocks wait for each other's rays in a cycle, which cannot occur if the partition is made
+  /// by successive cuts along planes
   SweepSchedule(const BlockPartition& partition, const std::vector<ParallelBundles>& tasks, const SweepCosts& costs);
 
   /// Indices of the sets of bundles in the order in which `rank` sweeps along them; empty if its block is empty.
@@ -71,8 +72,8 @@ public:
 
   double Time() const { return this->Makespan; }      ///< simulated time until the last rank has finished
   double BusyTime() const { return this->Work; }      ///< simulated time of computation, sum over all ranks
-  std::size_t Messages() const { return this->Sent; } ///< number of messages sent by all ranks
-  /// Upper bound of the number of rays in all messages, for one channel
+  std::size_t Messages() const { return this->Sent; } ///< number of messages sent by all ranks in one sweep
+  /// Upper bound of the number of rays in all messages of one sweep, for one channel
   std::size_t Values() const { return this->SentRays; }
   /// Number of blocks in the longest chain of blocks that light crosses one after another.
   int BlocksInALine() const { return this->InALine; }

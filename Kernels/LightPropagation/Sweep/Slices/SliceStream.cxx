@@ -8,12 +8,13 @@ namespace tyndall
 {
 namespace
 {
-/// Number of planes per slot, if memory allows: on a CPU as many as in Gruson et al. (2012); more on a GPU, since
-/// slices along x are transferred in rows of this many voxels.
+/// Number of planes of voxels per slot (device buffer for a slice of a streamed volume), if memory allows: on a CPU as
+/// many as in Gruson et al. (2012); more on a GPU, since slices along x are transferred in rows of this many voxels.
 constexpr int SliceThickness = 16, SliceThicknessOnGpu = 64;
-constexpr std::size_t SlotsPerUnit = 2; ///< one slot is crossed while the other is transferred
+/// Rays cross the voxels in one slot while the other slot is transferred to or from the host
+constexpr std::size_t SlotsPerUnit = 2;
 
-/// Number of floats per voxel in all streamed arrays.
+/// Number of floats per voxel in all arrays that are streamed together.
 std::size_t FloatsOfVoxel(const SweepPlan& plan)
 {
   const int light = plan.angular ? plan.moments.functions : 1;
@@ -25,11 +26,12 @@ std::size_t FloatsOfVoxel(const SweepPlan& plan)
         (plan.octantSource ? 8 : 0)));
 }
 
-/// Number of planes per slot such that all slots fit in the memory not used by rays and scratch; at least one.
+/// Number of planes per slot such that all slots fit in the device memory that the rays and the scratch memory leave
+/// free; at least one.
 int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspace& workspace)
 {
   std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
-  for (const Buffer<float>& slot : workspace.slots) // slots of other axes are reused
+  for (const Buffer<float>& slot : workspace.slots) // the slots of sweeps along other axes are reused
   {
     left += slot.Size() * sizeof(float);
   }
@@ -39,11 +41,12 @@ int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspa
   return static_cast<int>(std::clamp<std::size_t>(fit, 1, most));
 }
 
-/// Piece of the remaining range `left` that a unit crosses next: planes that fit in one slot.
+/// Piece (range of planes that fit in one slot) that a unit of work crosses next.
+/// @param left  planes that the unit of work still has to cross, first and end
 SlicePiece NextPiece(const SweepPlan& plan, bool backward, const cl_int2& left, int thickness, int aligned)
 {
   const int planes = plan.Planes();
-  const int lap = left.s[0] / planes * planes; // first plane of the current lap
+  const int lap = left.s[0] / planes * planes; // first plane of the current lap around a periodic axis
   const int from = left.s[0] - lap;
   const int to = std::min(left.s[1] - lap, planes);
   SlicePiece piece;
@@ -62,12 +65,13 @@ SlicePiece NextPiece(const SweepPlan& plan, bool backward, const cl_int2& left, 
   return piece;
 }
 
-/// Cuts a sweep's launches into shorter ones, [launch][unit], so that in each launch a unit needs at most one slot of
-/// the volume. The choice of units that run concurrently and the order of additions to each plane do not change, so
-/// results are identical bit for bit.
-/// @param schedule  planes of each unit, [launch][unit], first and end
+/// Cuts the launches of a sweep into shorter ones, such that in each launch a unit of work (rays carried by one
+/// work-item) needs only the planes in one slot. The units of work that run concurrently and the order of additions to
+/// each plane do not change, so results are identical bit for bit.
+/// @param schedule  planes of each unit of work, [launch][unit], first and end
 /// @param thickness  planes per slot
 /// @param aligned  pieces end at multiples of this number of planes or at the end of a slab; 1: anywhere
+/// @return pieces, [launch][unit]
 std::vector<std::vector<SlicePiece>> CutIntoPieces(
   const SweepPlan& plan, const std::vector<cl_int2>& schedule, int thickness, int aligned)
 {
@@ -94,7 +98,8 @@ std::vector<std::vector<SlicePiece>> CutIntoPieces(
   return launches;
 }
 
-/// Whether the pieces `first` and `second` contain planes of the same group of `aligned` planes.
+/// Whether two pieces (ranges of planes) access common memory: planes are stored in groups of `aligned` neighbouring
+/// planes, and both pieces contain planes of the same group.
 bool Meet(const SlicePiece& first, const SlicePiece& second, int aligned)
 {
   const auto begin = [aligned](const SlicePiece& piece) { return piece.begin / aligned; };
@@ -103,7 +108,7 @@ bool Meet(const SlicePiece& first, const SlicePiece& second, int aligned)
     begin(second) < end(first);
 }
 
-/// Whether the units that run concurrently in each launch never access the same planes.
+/// Whether the units of work that run concurrently in each launch never access the same planes.
 bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
 {
   for (const std::vector<SlicePiece>& launch : launches)
@@ -122,7 +127,7 @@ bool IsApart(const std::vector<std::vector<SlicePiece>>& launches, int aligned)
   return true;
 }
 
-/// Whether a unit of the next launch accesses planes that some unit crosses in the current launch.
+/// Whether any unit of work in the launch `next` accesses planes that some unit of work crosses in the launch `now`.
 bool Follows(const std::vector<SlicePiece>& now, const std::vector<SlicePiece>& next, int aligned)
 {
   return std::any_of(now.begin(), now.end(), [&](const SlicePiece& before) {
@@ -208,7 +213,7 @@ std::size_t SliceStream::SlotFloats(SlotArray array) const
 const Buffer<float>& SliceStream::Slots(SlotArray array) const
 {
   const Buffer<float>& slots = this->Workspace.slots[static_cast<std::size_t>(array)];
-  // Any buffer serves as the argument: kernels do not access it
+  // This array is not used by the sweep: kernels need an argument but do not access it, so any buffer serves.
   return slots.Size() > 0 ? slots : this->Workspace.slots[static_cast<std::size_t>(SlotArray::Path)];
 }
 
@@ -219,7 +224,8 @@ VolumeArrays SliceStream::Arrays() const
     this->Slots(SlotArray::PartialCurrents) };
 }
 
-/// Number of neighbouring planes whose angular moments share a group of adjacent memory: MomentGroup along x, else 1.
+/// Number of neighbouring planes whose angular moments are interleaved in memory and so are copied together:
+/// MomentGroup if the marching axis is x, else 1.
 int SliceStream::Aligned() const
 {
   return this->HasMoments() && this->Plan.axes.axis == 0 ? MomentGroup : 1;
@@ -284,7 +290,8 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   }
   if (this->Plan.periodic[this->Plan.axes.axis])
   {
-    // CPU kernels store rounding errors of the fluence only, GPU kernels those of all functions.
+    // CPU kernels keep the rounding errors of the summed fluence only, GPU kernels those of the moments of all
+    // functions.
     arrays.push_back(
       { &this->Workspace.lost, SlotArray::Lost, channels, volume.first, true, this->HasMoments() ? 0 : -1 });
   }
@@ -303,7 +310,8 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   return arrays;
 }
 
-/// Rows of floats to copy for a piece, in one part (such as a channel) of an array without moments.
+/// Location in the host array and in the slot of the floats that are copied for a piece (range of planes), in one part
+/// (such as a channel) of an array without angular moments.
 SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
 {
   const int axis = this->Plan.axes.axis;
@@ -319,7 +327,8 @@ SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
     place(inSlot, this->Extent), Count(this->Extent[0]), Count(this->Extent[0]) * Count(this->Extent[1]) };
 }
 
-/// Rows of floats to copy for a piece, in the angular moments of all functions except the first.
+/// Location in the host array and in the slot of the floats that are copied for a piece (range of planes), in the
+/// moments of all angular functions except the first.
 SliceStream::Rows SliceStream::MomentRows(const SlicePiece& piece) const
 {
   const MomentPlaces& host = this->Plan.moments;
@@ -363,10 +372,11 @@ void SliceStream::CopyRows(const Streamed& array, const Rows& rows, std::size_t 
     this->Transfers.enqueueCopyBufferRect(array.host->Handle(), slots, inHost, inSlot, region, rows.hostRow * Float,
       rows.hostLayer * Float, rows.slotRow * Float, rows.slotLayer * Float, after, &this->Last);
   }
-  this->Waiting.clear(); // the queue is in order, so later commands wait for this copy
+  this->Waiting.clear(); // the queue of transfers is in order, so later transfers wait for this copy, too
 }
 
-/// Copies the slices of a launch from the host to its slots, or from the slots back to the host (`back`).
+/// Copies the planes that all units of work cross in a launch from the host to their slots, or back to the host if
+/// `back`.
 void SliceStream::Copy(
   const std::vector<Streamed>& arrays, const std::vector<SlicePiece>& launch, int parity, bool back)
 {
@@ -424,7 +434,8 @@ void SliceStream::Cross(const Schedule& schedule, const SweepVolume& volume, con
     const std::vector<cl::Event> after = { fetched };
     const bool isLast = l + 1 == schedule.pieces.size();
     const bool ahead = !isLast && !Follows(schedule.pieces[l], schedule.pieces[l + 1], this->Aligned());
-    if (ahead) // queued first, since launch() may block until its kernel starts
+    // This transfer is queued before the kernel, since launch() may block until its kernel starts
+    if (ahead)
     {
       fetch(l + 1);
       fetched = this->Last;

@@ -10,27 +10,30 @@
 
 namespace tyndall
 {
-/// Planes of the box that one unit crosses in one launch, all of them in one slot (a device buffer for a few planes).
+/// Planes of the box that one unit of work (rays carried by one work-item) crosses in one launch, all of them in one
+/// slot (a device buffer for a few planes).
 struct SlicePiece
 {
-  cl_int2 range = { { 0, 0 } }; ///< planes of the ray pattern, first and end, as in SweepPlan::schedule
-  /// The planes of `range` as indices in the box, [begin, end); empty: the unit is idle in this launch
+  /// First and end plane, counted from the plane where rays start, as in SweepPlan::schedule
+  cl_int2 range = { { 0, 0 } };
+  /// The planes of `range` as indices in the box, [begin, end); empty: the unit of work is idle in this launch
   int begin = 0, end = 0;
 };
 
 /// Streams a volume in host memory through slots on the device during a sweep (Gruson et al. 2012, section 4.2;
-/// numerics.md, section 4.10). While the units cross the slices in their slots, a second queue copies the previous
-/// slices back to the host and fetches the next ones. The rays stay on the device.
+/// numerics.md, section 4.10). While the units of work (rays carried by one work-item each) cross the slices in their
+/// slots, a second queue copies the previous slices back to the host and fetches the next ones. The rays stay on the
+/// device.
 ///
-/// Each unit has two slots. A slot holds a few planes of every array, [slot][part][z][y][x] with the slot's extents, in
-/// buffers of the workspace.
+/// Each unit of work has two slots. A slot holds a few planes of every array, [slot][part][z][y][x] with the slot's
+/// extents, in buffers of the workspace.
 class SliceStream
 {
 public:
   /// Returns null if the volume is not streamed: because it is in device memory, because the kernels work on host
-  /// memory in place, or because its planes along the axis are not separate in memory (moments along x, if only a part
-  /// of the volume is swept or its slabs do not end between groups of voxels). The sweep then accesses the arrays in
-  /// place.
+  /// memory in place, or because planes along x cannot be copied separately. The latter occurs with angular moments,
+  /// stored in groups of neighbouring voxels along x, if only a part of the grid is swept along y or if units of work
+  /// in the same launch would share a group. The sweep then accesses the arrays in place.
   /// @param plan, workspace  must outlive this object; maps and scratch of the workspace are already allocated
   static std::unique_ptr<SliceStream> Make(Device& device, const SweepPlan& plan, SweepWorkspace& workspace);
 
@@ -41,14 +44,15 @@ public:
   /// Launches of the sweep, cut into pieces that fit in a slot if the volume is streamed.
   struct Schedule
   {
-    std::vector<std::vector<SlicePiece>> pieces; ///< pieces of each launch, [launch][unit]; empty: not streamed
-    /// Argument `schedule` of the kernel `sweep`: planes of each unit, first and end, [launch][unit]; if streamed
-    /// [launch][planes, slots][unit]
+    /// Planes that each unit of work crosses in each launch, [launch][unit]; empty: not streamed
+    std::vector<std::vector<SlicePiece>> pieces;
+    /// Argument `schedule` of the kernel `sweep`, [launch][unit]: first and end plane that each unit of work crosses.
+    /// If streamed, each launch has a second list [unit]: the slot, and the index in the box of the slot's first plane
     Buffer<cl_int2> rows;
   };
   Schedule Cut(const std::vector<cl_int2>& schedule) const;
 
-  /// Slot that holds a unit's piece in a launch.
+  /// Slot that holds the planes that a unit of work crosses in a launch.
   struct SlotPlace
   {
     std::size_t slot;
@@ -60,14 +64,14 @@ public:
   void Describe(SweepInfo& info) const;
   VolumeArrays Arrays() const; ///< device arrays of the slots
 
-  /// Queues a launch that waits for the events `after` (null: none) and signals `done`.
+  /// Function that queues the kernel of one launch, which waits for the events `after` (null: none) and signals `done`.
   using Launch = std::function<void(int launch, const std::vector<cl::Event>* after, cl::Event* done)>;
   /// Runs all launches and their transfers. Later commands in the device's queue wait until all results are on the
   /// host.
   void Cross(const Schedule& schedule, const SweepVolume& volume, const Launch& launch);
 
 private:
-  /// A box of floats to be copied between a host array and a slot, row by row.
+  /// Location of a box of floats in a host array and in a slot, between which it is copied row by row.
   struct Rows
   {
     std::array<std::size_t, 3> count; ///< floats per row, rows per layer, layers
@@ -79,10 +83,13 @@ private:
   {
     const Buffer<float>* host;
     SlotArray slots;
-    int parts;         ///< number of parts, e.g. channels; the host array is [part][stride]
-    std::size_t first; ///< index in the host array of the first float of part 0, and of the angular moments
-    bool comesBack;    ///< whether the sweep adds to the array, so that it is copied back to the host
-    int beams = -1;    ///< number of beams, for arrays with angular moments; -1: an array without moments
+    int parts; ///< number of parts, e.g. channels or components; the host array is [part][stride]
+    /// Index in the host array of the first float of part 0; the location of the angular moments follows from it
+    std::size_t first;
+    bool comesBack; ///< whether the sweep adds to the array, so that it must be copied back to the host
+    /// Number of beams (sources with their own angular distribution), for arrays with angular moments; -1: an array
+    /// without moments
+    int beams = -1;
   };
   std::vector<Streamed> StreamedArrays(const SweepVolume& volume) const;
   const Buffer<float>& Slots(SlotArray array) const;
@@ -103,7 +110,7 @@ private:
   std::array<int, 3> Extent;      ///< extent of a slot, voxels
   std::size_t Stride = 0;         ///< number of floats from one part of a slot to the next
   MomentPlaces Places = {};       ///< memory layout of the moments in a slot
-  std::vector<cl::Event> Waiting; ///< events that the next transfer waits for
+  std::vector<cl::Event> Waiting; ///< events that the next transfer must wait for
   cl::Event Last;                 ///< event of the last transfer
 };
 }
