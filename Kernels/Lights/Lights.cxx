@@ -121,7 +121,8 @@ double AxialIntensity(const Light& lamp)
   const double sine = std::sin(0.5 * HalfAngle(lamp));
   switch (lamp.type)
   {
-    case LightType::Spot: return 1.0 / (4.0 * Pi * sine * sine); // 2 sin^2(angle / 2) instead of 1 - cos(angle)
+    // 2 sin^2(angle / 2) instead of 1 - cos(angle), which is inaccurate for a narrow cone
+    case LightType::Spot: return 1.0 / (4.0 * Pi * sine * sine);
     case LightType::Rectangle: return 1.0 / Pi;
     case LightType::Point: return 1.0 / (4.0 * Pi);
     case LightType::Directional: break;

@@ -70,7 +70,7 @@ struct Illumination
 /// Unit vector along which a light travels; 0 if Light::direction is 0.
 std::array<double, 3> DirectionOf(const Light& light);
 
-/// Sets the fineness of rectangular lights to the value for a quality.
+/// Sets the fineness with which rectangular lights are subdivided to the value for a quality setting.
 void SetFineness(std::vector<Light>& lights, Quality quality);
 
 /// Radiant intensity on the axis, W / sr, of a lamp of 1 W; 0 for a directional light.

@@ -134,7 +134,8 @@ VoxelBox Coarsening::CoarseBox(const VoxelBox& fine) const
   for (int axis = 0; axis < 3; ++axis)
   {
     const long all = this->FineOfAll[axis], fewer = this->CoarseOfAll[axis];
-    // First coarse voxel c whose centre, (2 c + 1) all / (2 fewer), is not below the lower side of a fine voxel.
+    // First coarse voxel c whose centre is not below the lower side of fine voxel `side`. In units of fine voxels, that
+    // centre is at (2 c + 1) all / (2 fewer), where `all` and `fewer` are the numbers of fine and coarse voxels.
     const auto firstFrom = [=](long side) {
       return static_cast<int>((2 * fewer * side - all + 2 * all - 1) / (2 * all));
     };

@@ -20,8 +20,8 @@ std::int32_t BitsOf(float value)
 }
 
 /// Values of one field in a layer of bricks normal to z, which is contiguous in memory. Floats are compared as
-/// integers: non-negative floats have the order of their bits, all non-finite values compare larger, and integer
-/// operations need no branches.
+/// integers, which needs no branches: the bit patterns of non-negative floats, read as integers, have the same order as
+/// the floats, and those of non-finite values are larger.
 class LayerOfBricks
 {
 public:

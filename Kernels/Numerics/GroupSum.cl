@@ -25,7 +25,7 @@
   }
 #endif
 
-// Index of a work-item's first vector in a chunk, and stride to its next vector, if one group sums the chunk and
-// adjacent work-items read adjacent vectors of `width` values.
+// For values in chunks, each summed by one work-group: index of a work-item's first vector of `width` values in the
+// chunk (FIRST_IN_CHUNK), and stride to its next vector (STEP_IN_CHUNK). Adjacent work-items read adjacent vectors.
 #define FIRST_IN_CHUNK(width) (get_local_id(0) * (GROUP == 1 ? 0 : (width)))
 #define STEP_IN_CHUNK(width) (GROUP * (width))

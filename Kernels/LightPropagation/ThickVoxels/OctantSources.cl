@@ -7,12 +7,13 @@
 
 typedef struct
 {
-  float differs, alike; // alpha (antisymmetric) and beta (symmetric) of VoxelResponse.h
+  // Coefficients alpha (antisymmetric in the two faces) and beta (symmetric) of VoxelResponse.h
+  float differs, alike;
   float lost;
 } layer_response;
 
-// Response of a layer, interpolated in a table of VoxelResponse.h. For layers thinner than those of the table the
-// values are proportional to the thickness.
+// Response of a layer as thick as a voxel to light that enters it, interpolated in a table of VoxelResponse.h. For
+// layers thinner than those of the table the values are proportional to the thickness.
 static layer_response response_of(const __global float* values, float albedo, float tau)
 {
   const float depth = clamp(2.0f * (log2(fmax(tau, 1e-30f)) - FirstDepth), 0.0f, ResponseDepths - 1.001f);
@@ -44,7 +45,8 @@ __kernel void take_incoming(OctantSourceInfo info, __global float* restrict curr
   const int axis = d / 2;
   const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
   const float area = info.perRadiance * info.spacing[u] * info.spacing[v];
-  // pattern along u; for faces across x, constant in the row
+  // Number of crossings of the face, as the sum of a term that depends on the position along u and one that depends on
+  // that along v. The latter is constant in the row, as is the former for faces normal to x.
   const __global float* along = pattern + info.pattern[2 * axis];
   const float ofRow = pattern[info.pattern[2 * axis + 1] + (v == 1 ? y : z)];
   const ulong row = 6 * info.first + d * info.stride + ((ulong)z * info.size[1] + y) * info.size[0];
@@ -98,7 +100,8 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
       }
       else if (t > 0.0f)
       {
-        // Light leaving through the box's faces is not recorded by voxel: it is estimated from the layer's response.
+        // The light that leaves through a face of the box is not recorded for each voxel: it is estimated from the
+        // layer's response.
         float shines = source[i];
         for (int octant = 0; octant < 8; ++octant)
         {
@@ -139,8 +142,8 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
 //   beyond    mean incident radiance of the voxels across a subdomain's faces, W / (length^2 sr)
 //   of_lamps  source by face of lamps' light, W / (length^3 sr), used if `lamps` is 1; set to 0
 //   sources   W / (length^3 sr), [octant][stride] from index 8 `first` on, in addition to the uniform source: on entry
-//             that of the sweep, replaced. May be negative for the first orders, where later orders emit that light out
-//             of the voxel
+//             that of the sweep, replaced. May be negative in the first scattering orders, for light that leaves the
+//             voxel only in later orders
 __kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
   const __global float* source, const __global float* values, const __global float* incoming,
   const __global float* beyond, __global float* of_lamps, int lamps, __global float* sources, ulong channel)
@@ -182,7 +185,7 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, con
   {
     const ulong low = 6 * info.first + 2 * axis * info.stride + i, high = low + info.stride;
     const float h = info.spacing[axis], tau = t * h;
-    // Proximity of first scattering to the lower face: 1 - 2 t / tau for mean depth t.
+    // Proximity of first scattering to the lower face, 1 - 2 d / tau, where d is its mean optical depth.
     const float towards = length > 0.0f ? 2.0f * (first_moments[low] - first_moments[high]) / length : 0.0f;
     const float r = clamp(fabs(towards), 0.0f, 0.9999f);
     first_moments[low] = first_moments[high] = 0.0f;
@@ -202,7 +205,8 @@ __kernel void add_lamp(OctantSourceInfo info, const __global float* sigma_t, con
     const float differs = falls * mix(slow.differs, fast.differs, v);
     const float alike = falls * mix(slow.alike, fast.alike, v);
     const float side = towards > 0.0f ? differs : -differs;
-    // Source of a face for coefficient 1: power of first scattering per area of both faces across the axis.
+    // Source of a face per unit of its response coefficient: sigma_s / 2 times the radiance of isotropic light that
+    // carries the power of first collisions through a face.
     const float per_face = 0.5f * M_1_PI_F * s * t * length * h / (info.spacing[0] * info.spacing[1] * info.spacing[2]);
     of_lamps[low] += per_face * (alike + side);
     of_lamps[high] += per_face * (alike - side);

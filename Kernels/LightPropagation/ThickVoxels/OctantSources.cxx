@@ -182,7 +182,8 @@ void OctantSources::Find(const Buffer<float>& source, const BeyondFaces& beyond)
     info.beyond = beyond.info;
     for (cl_int& periodic : info.periodic)
     {
-      periodic = periodic && !beyond.values; // with `beyond`, values across periodic axes are read from it
+      // If `beyond` is given, it also holds the incident radiance of voxels across periodic axes
+      periodic = periodic && !beyond.values;
     }
     With(find, info, this->The.medium.SigmaT(), this->The.medium.SigmaS(), source, this->Diffuse, this->Incoming,
       beyond.values ? *beyond.values : this->Incoming, lamps, cl_int(this->LampsShine), this->Found, cl_ulong(c));
@@ -202,7 +203,8 @@ OctantSourceInfo OctantSources::InfoOf(int channel) const
     info.size[axis] = grid.size[axis];
     info.periodic[axis] = this->The.settings.periodic[axis];
     info.spacing[axis] = static_cast<float>(grid.spacing[axis]);
-    // Nothing varies along this axis, and a swept direction may represent its mirror image.
+    // An axis with a single, periodic voxel has no sources by octant: light does not vary along it, and one swept
+    // direction may represent itself and its mirror image.
     info.leftOut[axis] = this->The.whole.size[axis] == 1 && this->The.settings.periodic[axis];
   }
   info.firstT = this->The.layout.ExtinctionFirst(channel);

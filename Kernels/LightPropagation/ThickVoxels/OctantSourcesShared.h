@@ -7,13 +7,14 @@
 SHARED_BEGIN
 enum
 {
-  ResponseAlbedos = 11,  ///< number of table entries by sqrt(1 - albedo), from 0 to 1 in equal steps
-  ResponseDepths = 23,   ///< number of table entries by log2(optical thickness), two per unit
-  FirstDepth = -4,       ///< log2(optical thickness) of the first entry
-  ResponseProfiles = 17, ///< number of tables by log2(attenuation of a lamp's light per mean free path), two per unit
-  FirstProfile = -3,     ///< log2(attenuation) of the first table
-  /// Number of values per table entry: response antisymmetric in the two faces, symmetric response, removed fraction of
-  /// isotropic light.
+  ResponseAlbedos = 11, ///< number of values of sqrt(1 - albedo) in a table, from 0 to 1 in equal steps
+  ResponseDepths = 23,  ///< number of values of log2(optical thickness) in a table, in steps of 1/2
+  FirstDepth = -4,      ///< log2(optical thickness) of the first of these values
+  /// Number of tables, for values in steps of 1/2 of log2(attenuation of a lamp's light per mean free path)
+  ResponseProfiles = 17,
+  FirstProfile = -3, ///< log2(attenuation per mean free path) of the first table
+  /// Number of values per table entry: coefficient alpha of the response that is antisymmetric in the two faces, beta
+  /// of the symmetric response, and the fraction of isotropic light that collides in the layer.
   ResponseParts = 3,
   ResponseValues = ResponseParts * ResponseAlbedos * ResponseDepths ///< number of values in one table
 };
@@ -23,12 +24,16 @@ typedef struct
 {
   int size[3];
   int periodic[3];
-  int leftOut[3]; ///< axes along which the scene is constant (one periodic voxel)
-  int pattern[6]; ///< offset of the crossing tables: [axis][other axes in order]
-  /// First value of this channel in sigma_t, and in other arrays by voxel; values per channel.
+  /// 1 for axes along which light does not vary, because the domain has one voxel and is periodic
+  int leftOut[3];
+  /// Offsets in the table of crossings, per axis normal to a face: of the term that depends on the position along the
+  /// first, and along the second, of the other two axes
+  int pattern[6];
+  /// Index of this channel's first value in sigma_t, and in other arrays over voxels; number of values per channel.
   ulong firstT, first, stride;
   float spacing[3];
-  float perRadiance; ///< power per area through a face at isotropic radiance 1, by the quadrature, sr
+  /// Power per area through a face at isotropic radiance 1, computed by the quadrature (about pi), sr
+  float perRadiance;
   BeyondFacesInfo beyond;
 } OctantSourceInfo;
 SHARED_END

@@ -15,7 +15,8 @@ namespace
 constexpr int Nodes = 10;              ///< number of quadrature nodes per hemisphere
 constexpr double LeastAlbedo = 1e-3;   ///< smallest albedo, since the response is divided by it
 constexpr double LeastAbsorbed = 1e-5; ///< smallest tabulated value of 1 - albedo
-/// Maximum of beta, which is arbitrary in non-absorbing layers: all power leaves anyway.
+/// Maximum of the coefficient beta. In layers without absorption beta is arbitrary, because all power leaves them
+/// anyway.
 constexpr double MostAlike = 1.0;
 
 /// Response of a layer to incident power 1 at its top: power that leaves through the top, power that leaves through the

@@ -15,8 +15,9 @@ namespace tyndall
 namespace
 {
 constexpr double Rounding = 1e-6; ///< relative difference of radiances that are taken as equal
-/// Largest relative difference between the incident power and the power that rays without fractional moves
-/// (numerics.md, Eq. (21)) carry in. In a box of one voxel they miss up to a fifth of the power through one face.
+/// Largest relative difference between the incident power and the power that rays carry in if each ray moves as a
+/// whole, without fractional moves (moves of only a part of its power; numerics.md, Eq. (21)). In a box of one voxel
+/// such rays miss up to a fifth of the power through one face.
 constexpr double MissedAtMost = 0.3;
 
 int FaceOf(const Direction& direction, int axis)
@@ -29,7 +30,7 @@ bool Enough(double exact, double whole)
   return std::abs(whole - exact) <= MissedAtMost * exact;
 }
 
-/// Incident power, W: `exact`, and `whole`, the power that rays without fractional moves carry in.
+/// Incident power, W: `exact`, and `whole`, the power that rays carry in without fractional moves.
 struct EnteringRays
 {
   Rgb exact = {}, whole = {};
@@ -140,7 +141,7 @@ std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
     const double planes = PlanesOfPattern(n[axis], this->Periodic[axis]);
     if (planes <= 2.0)
     {
-      continue; // with so few planes the rounding to whole rays hardly matters
+      continue; // with so few planes it hardly matters that only whole rays enter through the sides
     }
     for (const Bundle& bundle : BundlesAlong(
            axis, this->TheGrid, this->Periodic, this->Directions.Set(), this->MapResolution, this->Directions.Starts()))
@@ -206,8 +207,9 @@ namespace
 /// Maximum number of rays in the maps of a sweep for one sense of marching: 128 MiB of floats.
 constexpr std::size_t MostRays = std::size_t(1) << 25;
 
-/// Restricts rays to whole moves, as of straight lines. Fractional moves serve to admit exactly the power of boundary
-/// sources; in an emitting medium they would change path lengths in the outermost emitting voxels.
+/// Lets each ray move as a whole, along a straight line. Fractional moves, of a part of a ray's power, serve to admit
+/// exactly the power of boundary sources; in an emitting medium they would change path lengths in the outermost
+/// emitting voxels.
 void MoveAsLines(std::vector<Bundle>& bundles)
 {
   for (Bundle& bundle : bundles)
@@ -222,7 +224,8 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor)
 {
-  // A boundary source of 0 rather than none, so that the maps of the opposite sense of marching are cleared, too.
+  // A boundary source that is 0, rather than none: with none, the maps of rays in the opposite sense of marching would
+  // not be cleared.
   const SweepBoundary dark = [](int, int) { return Rgb{}; };
   const Grid& grid = volume.domain.Whole();
   const int channels = volume.layout.Groups().front().count; // number of channels that are swept together

@@ -34,11 +34,12 @@ public:
   /// Incident power per area through each of the box's faces, W / length^2; 0 where the axis is periodic.
   std::array<Rgb, 6> IncomingPower() const;
 
-  /// Checks that a sweep without fractional moves would carry enough of the incident power. Few rays enter through the
-  /// faces parallel to their marching axis if the box has few planes of voxels across that axis.
+  /// Checks that a sweep without fractional moves (moves of a part of a ray's power) would carry enough of the incident
+  /// power. Few rays enter through the faces parallel to their marching axis if the box has few planes of voxels across
+  /// that axis.
   /// @param channels  number of channels to check
   /// @throws InvalidInput if rays without fractional moves would miss more than 30% of the power that enters through
-  ///   the emitting faces
+  /// the emitting faces
   void CheckRays(int channels) const;
   /// Whether CheckRays() would pass for emission by any of the non-periodic faces.
   static bool HasEnoughRays(const Grid& grid, const PropagationSettings& settings, const SweptDirections& directions);

@@ -10,8 +10,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr double BrightPart = 0.05; ///< fraction of a cell's solid angle in which peaks are sought
-constexpr double Outshines = 4.0;   ///< multiple of the mean radiance of the rest of the cell that a peak exceeds
+constexpr double BrightPart = 0.05; ///< fraction of the solid angle of a direction's cell in which peaks are sought
+/// A peak's radiance exceeds this multiple of the mean radiance in the rest of its cell
+constexpr double Outshines = 4.0;
 constexpr double LeastPower = 1.0 / 500.0;
 constexpr std::size_t MostPeaks = 64;
 
@@ -50,7 +51,8 @@ double SolidAngle(const Environment& environment, std::size_t pixel)
   return (std::cos(top) - std::cos(bottom)) * 2.0 * Pi / environment.width;
 }
 
-/// Peak of a cell: the radiance above the limit in the brightest part of its solid angle.
+/// Peak of a direction's cell: in the brightest part of its solid angle, the radiance in excess of Outshines times the
+/// mean of the rest.
 Peak FindPeak(const Environment& environment, std::vector<Pixel>& cell)
 {
   std::sort(cell.begin(), cell.end(), [](const Pixel& a, const Pixel& b) {

@@ -38,7 +38,8 @@ private:
 /// first face.
 SweepTally TallyOf(const UncollidedImage& image, const Medium& medium, int first, int channels);
 
-/// Value of the argument `peak` of AddNarrowMoments() for a peak that is nowhere negative: exp(-2 s) for the smallest s
-/// at which the peak with moments exp(-s l (l + 1)), l up to `degree`, is nowhere negative.
+/// Value of the argument `peak` of AddNarrowMoments() that reduces the moments of a peak of light about one direction
+/// just enough that it is nowhere negative: exp(-2 s) for the smallest s at which the peak with moments exp(-s l (l +
+/// 1)), l up to `degree`, is nowhere negative.
 double SmoothPeak(int degree);
 }

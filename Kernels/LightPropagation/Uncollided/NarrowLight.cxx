@@ -42,7 +42,7 @@ void RunOnMoments(Device& device, const VolumeLayout& layout, const AngularBasis
   const std::array<int, 3>& size = layout.grid.size;
   device.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(size[0], static_cast<std::size_t>(size[1]) * size[2], layout.channels));
-  device.Finish(); // before the arrays are released
+  device.Finish(); // the kernel must end before the caller releases the arrays
 }
 }
 

@@ -1,4 +1,5 @@
-// Kernel that follows the sweep of a parallel beam: adds its path to a deposit, and computes its first moments.
+// Kernel that follows the sweep of a parallel beam: adds the beam's path integrals to a deposit, and computes its first
+// moments.
 
 #include "LightPropagation/Sweep/BeyondFacesShared.h"
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"

@@ -99,7 +99,7 @@ void AddWithFirstMoments(
       cl_ulong(to.first), cl_ulong(to.stride));
     Launch(volume.device, add, cl::NDRange(grid.VoxelCount(), to.channels));
   }
-  volume.device.Finish(); // before the beam's arrays are released
+  volume.device.Finish(); // the kernels must end before the beam's arrays are released
 }
 
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor)

@@ -125,7 +125,8 @@ static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float 
     edges->x = fmin(edges->x, edges->y);
   }
   const float inside = edges->y - edges->x;
-  // An empty interval is placed in the voxel at the face: a float may not represent its end below n.
+  // An empty interval is moved to the middle of the outermost voxel: just below the face at n, the nearest float may be
+  // n itself, which belongs to a voxel outside the box.
   *edges = inside > 0.0f ? *edges : (float2)(*up ? n - 0.5f : 0.5f);
   return all > 0.0f ? clamp(inside / all, 0.0f, 1.0f) : 0.0f;
 }
@@ -188,7 +189,7 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     {
       continue;
     }
-    // At an edge of the box, half of the power leaves through either face.
+    // Power that leaves along both lateral axes, at an edge of the box, is counted half at each of the two faces.
     const float power = beam->left * goes[k] * (1.0f - 0.5f * goes[1 - k]);
     const int axis = (row->axis + 1 + k) % 3, other = (row->axis + 2 - k) % 3;
     const float moved = tangents[1 - k] * ago;

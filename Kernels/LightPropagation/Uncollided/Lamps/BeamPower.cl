@@ -10,7 +10,7 @@ static float units_of(float sigma, float diagonal)
   return fmax(sigma * diagonal, 1.0f);
 }
 
-#define FIRST_OF_FLUX (1 + 3 * MOMENTS) // index of the first of the sums for the net flux
+#define FIRST_OF_FLUX (1 + 3 * MOMENTS) // index of the net flux among the fixed-point sums of a voxel
 #define FIRST_OF_VACUUM (FIRST_OF_FLUX + 3 * NET_FLUX)
 
 static float corner_angle(float a, float b, float d)
@@ -40,7 +40,7 @@ static float solid_angle_far_away(float a, float b, float width, float height, f
 
 // Solid angle, sr, of a rectangle of this width and height, centred at (a, b), at distance d: in closed form nearby
 // (numerics.md, Eq. (16)), by quadrature far away, where the closed form is a small difference of large angles.
-//   far  squared distance, in units of the longer edge, at which quadrature replaces the closed form
+//   far  squared ratio of distance to longer edge from which on quadrature replaces the closed form
 static float solid_angle(float a, float b, float width, float height, float d, float far)
 {
   return a * a + b * b + d * d < far * fmax(width * width, height * height)
@@ -61,7 +61,7 @@ static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
     rsqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
 }
 
-#define SLICES 512 // number of slices of a beam that the border of the cone crosses
+#define SLICES 512 // number of slices into which a beam is divided if the border of the cone crosses it
 
 // Slice of a pyramid: its rays d = (ahead, u + x, v) at fixed v. Rays in the cone satisfy a x^2 + 2 b x + c <= 0 and
 // along + x slope >= 0 (numerics.md, Eq. (33a)).

@@ -16,8 +16,8 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum distance of a rectangle, in geometric means of its edge and the box's edge, at which the contour integral is
-/// accurate in doubles.
+/// Maximum distance of a rectangle at which the contour integral is accurate in doubles, as a multiple of the geometric
+/// mean of the longest edges of rectangle and box.
 constexpr double Farthest = 1e4;
 
 /// Fraction of a point's light that enters the box: 1 for a point inside; from outside, by the solid angles of the
@@ -119,7 +119,7 @@ double OfSpot(const Grid& grid, const Light& spot, const glm::dvec3& place)
         AngleInCone(Vector(DirectionOf(spot)), half, glm::normalize(corners[i]), glm::normalize(corners[(i + 1) % 4]));
     }
     seen = face % 2 ? -seen : seen; // solid angle as seen from outside the box
-    // Adds the cone if the face encloses the direction opposite to the axis
+    // The face encloses the direction opposite to the cone's axis: the cone's solid angle is added
     angle += seen < -1e-9 * all ? seen + all : seen;
   }
   return angle / all;

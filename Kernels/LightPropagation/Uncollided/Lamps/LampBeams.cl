@@ -150,7 +150,7 @@ static float2 edges_at(float start, float tangent, float open, float width, floa
   return (float2)(middle - half_width, middle + half_width);
 }
 
-// Removes the power of a beam from outside the box that misses the face of the box's first layer.
+// For a beam that starts outside the box: removes the part of its power that misses the face of the box's first layer.
 //   start  position of the beam's centre at that face, voxels
 static void enter_box(
   const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, BeamOnItsWay* beam, lamp_tally* tally)
@@ -160,7 +160,7 @@ static void enter_box(
   leave_sides(lamp, row, true, tangent, (float2)(0.0f), &edges_u, &edges_v, beam, tally);
 }
 
-// Fraction that is inside the box, of the cross-section along u (k 0) or v (1). The cross-section that has already left
+// Fraction of the cross-section along u (k 0) or v (1) that is inside the box. The cross-section that has already left
 // the box is excluded.
 static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2 edges)
 {
@@ -183,8 +183,9 @@ static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start
   return 1.0f - part_inside(lamp, row, 0, tangent.x, edges_u) * part_inside(lamp, row, 1, tangent.y, edges_v);
 }
 
-// Removes the power of a beam that misses the box. Called at the end of the box for a beam that enters through lateral
-// faces: in the last half step a fraction of the waiting power still reaches the box, and the remainder never enters.
+// Removes the part of a beam's power that misses the box. Called where a beam that enters through lateral faces reaches
+// the end of the box: in the last half step a fraction of the waiting power still enters the box, and the remainder
+// never does.
 //   waiting  power that had not reached the box in the middle of the last step, at `here`
 static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float here, float end,
   float waiting, BeamOnItsWay* beam, lamp_tally* tally)

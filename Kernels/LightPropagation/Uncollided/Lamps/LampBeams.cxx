@@ -28,7 +28,8 @@ namespace
 /// Number of rows of beams per launch, such that a launch with rows of a thousand voxels takes well below a tenth of a
 /// second.
 constexpr int RowsPerLaunch = 256;
-constexpr int BeamsOfRow = 64; ///< number of beams in a row below which a launch has more than RowsPerLaunch rows
+/// If rows have fewer than this number of beams, a launch traces proportionally more than RowsPerLaunch rows
+constexpr int BeamsOfRow = 64;
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they are traced in a block
 /// Width of the halo, voxels: a beam may extend one voxel beyond the block, and one more by rounding.
 constexpr int Reach = 2;
@@ -36,7 +37,7 @@ constexpr int Reach = 2;
 constexpr int PassesAtMost = 9; ///< maximum number of passes along periodic axes
 /// Number of passes after which the remaining light of a box that is periodic along all axes is distributed uniformly.
 constexpr int EvenFrom = 3;
-constexpr double LeftAtMost = 5e-5; ///< fraction of the power in transit at which passes end
+constexpr double LeftAtMost = 5e-5; ///< passes end when at most this fraction of the power is in transit
 
 /// Function that traces the beams of a pass and adds their tallies to the shares of FollowInPasses().
 /// @param factor  multiplies the initial power of the beams
@@ -58,7 +59,7 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
     const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
     const double wanted = std::exchange(shares.onTheWay, 0.0);
     pass = pass.Next();
-    // Traces the new beams up to the layer where the pass begins, to find the power that they have left there.
+    // Traces the new beams up to the layer where the pass begins, to determine the power that they still carry there.
     follow({ pass.begin, pass.end, true }, 1.0, {});
     const double found = std::exchange(shares.onTheWay, 0.0);
     if (!(found > 0.0))
@@ -310,8 +311,8 @@ std::size_t LampBeams::BeamsTogether(const BeamRow& row) const
   return static_cast<std::size_t>(std::clamp(LampOnGrid::LayersPerLaunch / layers, 1.0, most));
 }
 
-/// Replaces the sums of the stored voxels by those of this rank's own voxels, adding the contributions of other ranks'
-/// beams. Collective.
+/// Replaces the sums of all stored voxels, to which only this rank's beams have contributed, by sums of this rank's own
+/// voxels, to which the beams of all ranks have contributed. Collective.
 void LampBeams::AddToOwners()
 {
   std::vector<cl_long> found, own;
@@ -377,7 +378,7 @@ LampFactors LampBeams::AddToDeposit(double even)
       this->Sums->AddCellsTo(this->Volume, faceFirst, this->Lamp, factors.out);
     }
     this->Sums->SpreadEvenly(this->Volume, this->Lamp, factors.out * even, extinction);
-    this->TheDevice.Finish(); // before the sums are released
+    this->TheDevice.Finish(); // the kernels must end before the sums are released
   });
   this->Shares.onTheWay += extinction > 0.0 ? 0.0 : even; // the power remains in transit if no voxel removes it
   return factors;

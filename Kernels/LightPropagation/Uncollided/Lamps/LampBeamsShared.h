@@ -21,7 +21,8 @@ typedef struct
   int first[3], stored[3];         ///< voxels that the arrays cover: all, or a block and its halo
   int followed[3], followedEnd[3]; ///< voxels in which beams are traced
   int periodic[3];
-  /// Number of periodic images to either side, per axis, whose light is corrected together with the rectangle's
+  /// Number of periodic images of the rectangle to either side, per axis, whose light in vacuum is corrected together
+  /// with its own
   int images[3];
   float spacing[3];
   float direction[3];       ///< axis of a spot's cone or normal of a rectangle, unit vector in space

@@ -28,8 +28,8 @@ constexpr std::size_t ManyPoints = 64;
 /// Number of times that the full power may cross one voxel without overflow in fixed point.
 constexpr int RoundsAtMost = 64;
 
-/// Moves a rectangle on one end of a periodic axis that emits out of the box to the other end, where it emits into the
-/// box.
+/// Moves a rectangle to the opposite end of a periodic axis if it lies on one end and emits out of the box there; at
+/// the opposite end it emits into the box.
 Light ShiningIn(Light light, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   if (light.type != LightType::Rectangle)
@@ -132,7 +132,8 @@ double LampOnGrid::Share() const
   {
     return std::exp2(std::ceil(std::log2(this->Entering)));
   }
-  // Upper bound of the solid angle of a sphere over pi (radius / distance)^2, at distances of at least twice its radius
+  // Upper bound of the ratio of the solid angle of a sphere to pi (radius / distance)^2, at distances of at least twice
+  // its radius
   constexpr double ofNearBall = 1.1;
   const Grid& grid = this->TheGrid;
   const double radius = 0.5 * std::hypot(grid.Length(0), grid.Length(1), grid.Length(2));
@@ -252,8 +253,8 @@ LampInfo LampOnGrid::Describe(const VoxelBox& stored, const VoxelBox& followed) 
   return info;
 }
 
-/// At this scale RoundsAtMost times the full power along the diagonal of a voxel, the maximum path integral of a
-/// passage, is at most 2^60 units.
+/// Largest scale at which sums of path integrals do not overflow: the path integral of the lamp's full power through a
+/// voxel is at most its diagonal, and RoundsAtMost times that is at most 2^60 units.
 double LampOnGrid::UnitsPerLength() const
 {
   return std::exp2(std::floor(std::log2(0x1p60 / (this->Diagonal() * RoundsAtMost))));

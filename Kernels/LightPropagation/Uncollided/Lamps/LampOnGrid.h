@@ -47,7 +47,8 @@ struct LampShares
       this->out[face] += sums[1 + face];
     }
     this->onTheWay += sums[7];
-    // Counts only rows of the finest level, so that each part of a rectangle counts once.
+    // Counts only rows of the smallest parts of a rectangle, so that power is not counted again for the larger parts
+    // that they make up.
     this->shone += row.skipped > 0 || row.partFrom > 0.0f ? 0.0 : sums[8];
   }
 

@@ -71,7 +71,8 @@ std::vector<std::pair<glm::dvec3, double>> RectangleArea::Points(int perEdge) co
   constexpr double shares[][most] = { { 1.0 }, { 0.5, 0.5 }, { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 },
     { 0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727 } };
   const double longer = std::sqrt(glm::length(this->half[0]) / glm::length(this->half[1]));
-  const auto along = [=](double stretch) { // 1e-9 prevents differences between rotated scenes by rounding
+  // 1e-9 keeps rounding from choosing different numbers of points in scenes that differ by a rotation
+  const auto along = [=](double stretch) {
     return perEdge == 1 ? 1 : static_cast<int>(std::clamp(perEdge * stretch + 0.5 + 1e-9, 1.0, most + 0.5));
   };
   const int counts[] = { along(longer), along(1.0 / longer) };
@@ -197,7 +198,8 @@ private:
   RectangleArea Whole;
   glm::dvec3 Normal;
   double Finest; ///< length of the longer edge of the smallest parts
-  /// Minimum distance of voxels from a part, in its radii: PartDistance, more for a light of large fineness.
+  /// Minimum distance of voxels from the centre of a part that lights them, in radii of the part: PartDistance, more if
+  /// Light::fineness is large.
   double Away;
   int PerEdge;
   double LeastError;

@@ -50,7 +50,7 @@ struct ConeInPlane
   {
   }
 
-  bool hasSides; ///< whether the cone is bounded in the plane; false: it covers all angles
+  bool hasSides; ///< whether the cone's projection has two bounding lines; false: it covers all angles
   double turn, reach;
 };
 
@@ -120,7 +120,8 @@ public:
     return (this->Far > 0.0 || (around && this->Far == 0.0)) && (pass.begin == 0 || around) && this->Near < this->Reach;
   }
 
-  /// Range of tangents, along the k-th axis after the pyramid's, of the beams that are still in the box in a pass.
+  /// Range of tangents, along the k-th axis after the pyramid's axis, of the beams that are still in the box in this
+  /// pass.
   std::array<double, 2> Seen(int k, const Light& light, const Pass& pass) const
   {
     const int aside = (this->Axis + k) % 3;
@@ -196,8 +197,8 @@ public:
     return row;
   }
 
-  /// Number of beams along the k-th axis after the pyramid's. Each beam is at most `width` voxels wide where it leaves
-  /// the box, or where a pass begins.
+  /// Number of beams along the k-th axis after the pyramid's axis. Each beam is at most `width` voxels wide where it
+  /// leaves the box, or where a pass begins.
   int Count(int k, const std::array<double, 2>& seen, const Light& light, const Pass& pass, double width) const
   {
     const int aside = (this->Axis + k) % 3, other = (this->Axis + 3 - k) % 3;
@@ -232,8 +233,8 @@ private:
     return this->Position[aside] < 0.0 || this->Position[aside] > this->TheGrid.size[aside];
   }
 
-  /// Whether the cone is so narrow, and so far from the plane across the pyramid's axis, that its border is near its
-  /// axis' tangent.
+  /// Whether the cone is so narrow, and so far from the plane normal to the pyramid's axis, that the tangents of its
+  /// border differ little from that of its axis.
   static bool IsNarrow(const ConeInPlane& cone)
   {
     constexpr double narrow = 0.1;
@@ -281,7 +282,8 @@ private:
     {
       return { 1.0, -1.0 };
     }
-    if (this->HasBase) // tan a - tan b = sin(a - b) / (cos a cos b)
+    // Relative to the tangent of the cone's axis: tan a - tan b = sin(a - b) / (cos a cos b) keeps its precision
+    if (this->HasBase)
     {
       const double scale = std::sin(cone.reach) / std::cos(cone.turn) * this->PerLayer(k);
       return { -scale / std::cos(cone.turn - cone.reach), scale / std::cos(cone.turn + cone.reach) };
@@ -298,7 +300,7 @@ private:
   const glm::dvec3& Position;
   const double Near, Far; ///< number of layers from the lamp to the box's near face and to its far face
   const double Reach;     ///< maximum number of layers from the lamp to the end of its beams
-  std::array<double, 2> Widest = { 1.0, 1.0 }; ///< absolute tangents at which other pyramids begin
+  std::array<double, 2> Widest = { 1.0, 1.0 }; ///< tangents at which neighbouring pyramids begin, absolute values
   bool HasBase = false;
   std::array<double, 2> Base = {};
 };

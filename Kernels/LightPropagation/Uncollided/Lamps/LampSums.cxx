@@ -11,10 +11,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t GainsPerLaunch = 1 << 16; ///< voxels per launch; keeps it below a tenth of a second
+/// Number of voxels per launch; with more, a launch might take longer than a tenth of a second
+constexpr std::size_t GainsPerLaunch = 1 << 16;
 
-/// Power, as a fraction of the traced power, that the medium removes in voxels with the given sums of path integrals,
-/// times their gains.
+/// Power, as a fraction of the traced power, that the medium removes in the voxels.
+/// @param sums  path integrals of the voxels, in fixed point
+/// @param gains  factors by which the path integrals are multiplied (FitToVacuum)
 double Taken(
   const SweepVolume& volume, const LampOnGrid& lamp, const std::vector<cl_long>& sums, const std::vector<float>& gains)
 {
@@ -97,7 +99,7 @@ void LampSums::AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, cons
   cl::Kernel add = lamp.Kernel(this->TheDevice, "add_fixed_cells", kernel_source::LampSums, volume.deposit);
   With(add, this->OfCells, *volume.deposit.faceOut, cl_ulong(faceFirst), cl_ulong(cells), watts);
   this->TheDevice.Queue().enqueueNDRangeKernel(add, cl::NullRange, cl::NDRange(cells, volume.channels), cl::NullRange);
-  this->TheDevice.Finish(); // before the caller releases the cells
+  this->TheDevice.Finish(); // the kernel must end before the caller releases the cells
 }
 
 void LampSums::SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const

@@ -22,7 +22,7 @@ public:
   }
 
   Buffer<cl_long>& Sums() { return this->Fixed; }
-  /// Escaped power per cell of the faces (BoxFaces.h), in LampPowerUnits; a single value if it is not summed.
+  /// Escaped power per cell of the faces (BoxFaces.h), in LampPowerUnits; a single unused value if it is not summed.
   Buffer<cl_long>& Cells() { return this->OfCells; }
   std::size_t Stride() const { return this->TheStride; }
 
