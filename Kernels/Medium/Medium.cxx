@@ -69,7 +69,7 @@ void CheckMeanCosines(const Medium& medium)
   const Field& g = medium.phase.G();
   if (!g.values)
   {
-    return; // without g by voxel, the phase function has checked its parameters
+    return; // if g is not given by voxel, the phase function has checked it
   }
   CheckComponents(g, "g");
   const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(g.components);

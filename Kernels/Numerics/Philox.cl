@@ -1,6 +1,6 @@
 // Counter-based random numbers: Philox 4x32 with ten rounds (Salmon, Moraes, Dror and Shaw 2011, "Parallel random
-// numbers: as easy as 1, 2, 3", section 3.2). A block is a function of key and counter alone, so the order of
-// evaluation does not matter.
+// numbers: as easy as 1, 2, 3", section 3.2). A block of four random numbers is a function of key and counter alone, so
+// the order of evaluation does not matter.
 
 #pragma once
 

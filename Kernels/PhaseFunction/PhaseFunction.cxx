@@ -74,7 +74,7 @@ double MeanCosineOfSchlick(double k)
 
 double KOfSchlick(double g)
 {
-  double low = 0.0, high = 1.0; // bisection, since the mean cosine grows with k
+  double low = 0.0, high = 1.0; // the parameter k is found by bisection, since the mean cosine grows with k
   for (int i = 0; i < 60; ++i)
   {
     const double k = 0.5 * (low + high);
@@ -279,7 +279,8 @@ PhaseFunction PhaseFunction::Schlick(double g)
 {
   CheckMeanCosine(g);
   PhaseFunction function;
-  function.Which = Kind::Schlick; // also for g = 0, since WithMeanCosine() keeps the kind
+  // Also if g is 0, so that WithMeanCosine(), which keeps the kind of function, yields Schlick's functions
+  function.Which = Kind::Schlick;
   function.The.first = g == 0.0 ? 0.0 : KOfSchlick(g);
   return function;
 }
@@ -306,7 +307,8 @@ PhaseFunction PhaseFunction::Tabulated(std::vector<double> cosines, std::vector<
   double sum = 0.0;
   for (std::size_t row = 0; row < table.cosines.size(); ++row)
   {
-    table.values[row] /= largest > 0.0 ? largest : 1.0; // scaled so that the sum does not overflow
+    // Divided by the largest value, so that the integral does not overflow
+    table.values[row] /= largest > 0.0 ? largest : 1.0;
     sum +=
       row == 0 ? 0.0 : Pi * (table.values[row] + table.values[row - 1]) * (table.cosines[row] - table.cosines[row - 1]);
     table.below.push_back(sum);
@@ -393,7 +395,9 @@ double PhaseFunction::CosineAt(double u) const
     case Kind::HenyeyGreenstein: return CosineOfHenyeyGreenstein(this->The.first, u);
     case Kind::DoubleHenyeyGreenstein:
     {
-      double low = -1.0, high = 1.0; // bisection, since the sum of two functions has no closed inverse
+      // The cosine is found by bisection, since the cumulative distribution of two functions has no inverse in closed
+      // form
+      double low = -1.0, high = 1.0;
       for (int i = 0; i < 60; ++i)
       {
         const double cosine = 0.5 * (low + high);
@@ -462,8 +466,8 @@ DeltaM::DeltaM(const std::vector<double>& all)
 {
   if (this->moments.size() > 1)
   {
-    // The fraction is not negative, as only a forward peak counts as unscattered; and it is so small that the remaining
-    // moments are in [-1, 1].
+    // The fraction treated as unscattered is not negative, as only light near the forward direction counts as
+    // unscattered; and it is limited so that the moments of the remainder are in [-1, 1].
     this->forward = std::max(this->forward, 0.0);
     for (double moment : this->moments)
     {

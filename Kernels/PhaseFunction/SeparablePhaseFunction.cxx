@@ -16,7 +16,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostForSingularValues = 1024; ///< most directions with singular values, as the work grows with its cube
+/// Maximum number of directions for SingularValues: the computation time grows with the cube of their number
+constexpr int MostForSingularValues = 1024;
 /// A column is linearly dependent if less than this fraction of its length remains after projection.
 constexpr double Dependent = 1e-3;
 constexpr double Nothing = 1e-14; ///< eigenvalues below this, relative to the largest, count as zero (rounding)

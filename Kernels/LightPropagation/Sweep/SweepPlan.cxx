@@ -227,7 +227,7 @@ void SweepPlan::LayBundles()
   this->eachWay.outside += this->vector;
 }
 
-/// Parameters of a bundle whose arrays follow those of the bundles laid out so far.
+/// Parameters of a bundle for the kernels; its arrays are placed after those of the bundles described before it.
 BundleInfo SweepPlan::Describe(const Bundle& bundle) const
 {
   const std::array<double, 3>& spacing = this->grid.spacing;

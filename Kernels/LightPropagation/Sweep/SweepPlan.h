@@ -54,7 +54,7 @@ struct SweepPlan : SweepDescription
   PlaneInfo plane = {};
   std::vector<BundleInfo> bundleRows;
   EachWay eachWay = {}; ///< number of floats of each array for one sense of marching
-  /// Values of the angular functions (BundleInfo::coefficients), forward first
+  /// Values of the angular functions (BundleInfo::coefficients), those of rays that march forward first
   std::vector<float> coefficients;
   FunctionOrder order; ///< order of the angular functions for the marching axis
   /// Whether the array of moments holds each row of a plane contiguously, so that rows need not be packed (copied to
@@ -81,8 +81,7 @@ struct SweepPlan : SweepDescription
   /// Number of planes of the grid that rays cross before they reach the swept box.
   /// @param way  sense of marching: 0 forward, 1 backward
   int PlanesBefore(int way) const;
-  /// Number of planes from the start of the ray pattern to the end of the swept box; the maximum over both senses of
-  /// marching.
+  /// Number of planes from where rays start to the end of the swept box; the maximum over both senses of marching.
   int CrossingPlanes() const;
   std::size_t ScratchFloats() const; ///< number of floats of scratch memory per unit
 

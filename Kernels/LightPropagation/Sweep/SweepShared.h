@@ -75,7 +75,8 @@ enum
   (PlaneSource +                                                 \
     (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0) + ((octants) ? WaysAside : 0)) * (channels))
 
-/// Number of ring buffers of rows between the stages of `planes` chained planes, with at most three stages per plane.
+/// Number of ring buffers of rows between the stages of `planes` chained planes, which a bundle crosses together. Each
+/// plane has at most three stages.
 #define RINGS_OF(planes) (3 * (planes)-1)
 
 /// Number of floats that a bundle keeps from one tile of rows to the next: two ring buffers between stages; for
@@ -193,7 +194,7 @@ typedef struct
   /// times this index), and floats from one channel to the next.
   ulong first, stride;
   EachWay eachWay;
-  int empty;  ///< 1: the maps are uninitialised, and are cleared where rays start
+  int empty;  ///< 1: the maps (powers of rays) are uninitialised, and are cleared where rays start
   int shines; ///< 1: the medium has a source (emission or scattered light)
   int border; ///< 1: light is incident on the faces parallel to the marching axis
   /// 1: rays wrap around the marching axis, so sums are added to each plane repeatedly, with compensated summation

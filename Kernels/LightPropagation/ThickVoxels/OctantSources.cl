@@ -36,7 +36,7 @@ static layer_response response_of(const __global float* values, float albedo, fl
 // Converts the power that entered through voxels' faces to mean incident radiance. One work-item per row of voxels and
 // face.
 //   currents  entered power, W, [face][stride] from index 6 `first` on; set to 0
-//   pattern   crossings of faces by rays, see CrossingPattern.h
+//   pattern   power of the rays that cross each face at uniform radiance, relative to its mean (CrossingPattern.h)
 //   incoming  radiance, W / (length^2 sr), laid out as currents; replaced if `fresh` is 1, else added to
 __kernel void take_incoming(OctantSourceInfo info, __global float* restrict currents,
   const __global float* restrict pattern, __global float* restrict incoming, int fresh)
@@ -45,7 +45,7 @@ __kernel void take_incoming(OctantSourceInfo info, __global float* restrict curr
   const int axis = d / 2;
   const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
   const float area = info.perRadiance * info.spacing[u] * info.spacing[v];
-  // Number of crossings of the face, as the sum of a term that depends on the position along u and one that depends on
+  // The crossing pattern of a face is the sum of a term that depends on its position along u and one that depends on
   // that along v. The latter is constant in the row, as is the former for faces normal to x.
   const __global float* along = pattern + info.pattern[2 * axis];
   const float ofRow = pattern[info.pattern[2 * axis + 1] + (v == 1 ? y : z)];
@@ -171,7 +171,8 @@ __kernel void find_octant_sources(OctantSourceInfo info, const __global float* s
   }
 }
 
-// Adds the sources by face of light first scattered from one lamp (numerics.md, Eq. (46h)). One work-item per voxel.
+// Adds the sources by face, e of numerics.md, Eq. (46e), of light first scattered from one lamp (Eq. (46h)). One
+// work-item per voxel.
 //   path, first_moments  deposit of the lamp, as in Sweep/SweepOperator.h; set to 0
 //   of_lamps             source by face, W / (length^3 sr), laid out as first_moments, added to
 //   all_path             path integrals of all lamps, W length, added to

@@ -58,8 +58,8 @@ public:
   const Buffer<float>& LampPath() const { return this->PathOfLamp; }
   /// First moments, as Deposit::firstMoments, to which one lamp adds its deposit before TakeLamp().
   const Buffer<float>& LampMoments() const { return this->MomentsOfLamp; }
-  /// Records the sources by face of the light that is first scattered from one lamp, adds LampPath() to `allPath`, and
-  /// sets LampPath() and LampMoments() to 0.
+  /// Records the sources by face (e of numerics.md, Eq. (46e)) of the light that is first scattered from one lamp, adds
+  /// LampPath() to `allPath`, and sets LampPath() and LampMoments() to 0.
   void TakeLamp(const Buffer<float>& allPath);
   /// Mean incident radiance at voxels' faces, W / (length^2 sr), [channel][face][stride], summed over the calls of
   /// TakeIncoming() since the last Find(). Find() needs that of the ghost cells around a subdomain.
@@ -70,7 +70,8 @@ public:
   void Find(const Buffer<float>& source, const BeyondFaces& beyond = {});
 
 private:
-  /// Crossing pattern of the rays of a SweptDirections (CrossingPattern.h).
+  /// Power of the rays of a set of directions that cross each voxel face at uniform radiance, relative to its mean
+  /// (CrossingPattern.h).
   struct Crossings
   {
     Buffer<float> values;

@@ -26,8 +26,8 @@ typedef struct
   int periodic[3];
   /// 1 for axes along which light does not vary, because the domain has one voxel and is periodic
   int leftOut[3];
-  /// Offsets in the table of crossings, per axis normal to a face: of the term that depends on the position along the
-  /// first, and along the second, of the other two axes
+  /// Offsets in the crossing pattern (CrossingPattern.h), per axis normal to a face: of the term that depends on the
+  /// position along the first, and along the second, of the other two axes
   int pattern[6];
   /// Index of this channel's first value in sigma_t, and in other arrays over voxels; number of values per channel.
   ulong firstT, first, stride;

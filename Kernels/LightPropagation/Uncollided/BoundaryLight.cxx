@@ -204,7 +204,7 @@ void BoundaryLight::CheckRays(int channels) const
 
 namespace
 {
-/// Maximum number of rays in the maps of a sweep for one sense of marching: 128 MiB of floats.
+/// Maximum number of rays whose powers are stored during a sweep, for one sense of marching: 128 MiB of floats.
 constexpr std::size_t MostRays = std::size_t(1) << 25;
 
 /// Lets each ray move as a whole, along a straight line. Fractional moves, of a part of a ray's power, serve to admit

@@ -16,7 +16,7 @@ constexpr double Outshines = 4.0;
 constexpr double LeastPower = 1.0 / 500.0;
 constexpr std::size_t MostPeaks = 64;
 
-/// A pixel of the environment, to be sorted by brightness within its cell.
+/// A pixel of the environment, to be sorted by brightness among the pixels nearest to the same quadrature direction.
 struct Pixel
 {
   std::size_t index;

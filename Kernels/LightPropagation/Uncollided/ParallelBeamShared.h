@@ -5,7 +5,8 @@
 #include "LightPropagation/Sweep/BeyondFacesShared.h"
 
 SHARED_BEGIN
-/// A parallel beam of light through the box, or through a block of it. Arrays are along x, y, z.
+/// A parallel beam of light through the box, or through a block of it. The three elements of an array belong to x, y
+/// and z.
 typedef struct
 {
   int size[3];

@@ -20,8 +20,8 @@ namespace
 constexpr std::size_t TrySamples = 4096;
 constexpr std::size_t ReportEvery = 100000;
 
-/// Photon source of a light, with a sampler of the light's square of the importance map; without one if the map has
-/// none for this light.
+/// Photon source of a light, with a sampler of the square of the importance map that belongs to this light; without a
+/// sampler if the map has no such square.
 struct SpreadSource
 {
   PhotonSource source;
@@ -197,8 +197,8 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
   {
     if (shares[s] > 0)
     {
-      // Every batch needs photons of every light, since the expected value of its light must be the light of all
-      // lights.
+      // Each batch needs at least one photon of each light, since each batch must estimate the light of all lights
+      // without bias.
       tries[s].all = std::max(
         static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits)), static_cast<std::size_t>(settings.batches));
     }

@@ -33,7 +33,7 @@ double RadicalInverse(std::size_t i, std::size_t base)
   return std::min(inverse, 1.0 - 0x1p-53);
 }
 
-/// Stride that visits each of 0 ... count - 1 once, modulo count, with successive values far apart.
+/// Stride by which an index modulo count visits each of 0 ... count - 1 once, with successive values far apart.
 std::size_t Scatter(std::size_t count)
 {
   std::size_t stride = std::max<std::size_t>(static_cast<std::size_t>(0.6180339887498949 * count), 1);
@@ -116,7 +116,8 @@ int FindStep(const double* table, int count, double u, double& part)
 {
   const double wanted = u * table[count];
   int step = static_cast<int>(std::upper_bound(table + 1, table + count, wanted) - table) - 1;
-  while (step > 0 && table[step + 1] == table[step]) // if rounding raised `wanted` to the total
+  // If rounding has raised `wanted` to the total, the last step of nonzero height is meant
+  while (step > 0 && table[step + 1] == table[step])
   {
     --step;
   }

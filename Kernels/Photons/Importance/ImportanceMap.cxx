@@ -12,7 +12,8 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum number of passes that redistribute the density above the cap; each pass leaves fewer cells above the cap.
+/// Maximum number of passes that redistribute the density above the upper limit to other cells; each pass leaves fewer
+/// cells above the limit.
 constexpr int RoundsOfSharing = 64;
 
 std::string LightName(int light)
@@ -55,7 +56,8 @@ std::vector<double> Capped(const float* density, std::size_t cells, double most)
   std::vector<double> capped(density, density + cells);
   const double largest = *std::max_element(capped.begin(), capped.end());
   const auto total = [&] { return std::accumulate(capped.begin(), capped.end(), 0.0); };
-  std::for_each(capped.begin(), capped.end(), [&](double& d) { d /= largest; }); // so that the sum does not overflow
+  // Divided by the largest density, so that the sum does not overflow
+  std::for_each(capped.begin(), capped.end(), [&](double& d) { d /= largest; });
   const double scale = cells / total();
   std::for_each(capped.begin(), capped.end(), [&](double& d) { d *= scale; });
   for (int round = 0; round < RoundsOfSharing; ++round)

@@ -15,10 +15,10 @@ constexpr int EnvironmentLight = -1;
 struct ImportanceMap
 {
   int size = 0;               ///< cells along an edge of each square
-  std::vector<int> lights;    ///< number of the light of each square, as in EmittedPhotons::lights
+  std::vector<int> lights;    ///< number of the light to which each square image belongs, as in EmittedPhotons::lights
   std::vector<float> density; ///< size*size values per light, columns fastest; > 0, in any unit
 
-  int SquareOf(int light) const; ///< index of a light's square; -1 if it has none
+  int SquareOf(int light) const; ///< index of the square image of a light; -1 if it has none
   std::size_t Cells() const { return static_cast<std::size_t>(this->size) * static_cast<std::size_t>(this->size); }
 };
 
@@ -27,15 +27,15 @@ struct ImportanceMap
 ///   (names light, column and row), or if there is not one density per cell
 void Check(const ImportanceMap& map);
 
-/// Importance sampling for one light's square of the map: maps the unit square onto itself so that uniform points are
-/// distributed by the map's density (Pfeuti 2009, section 3.2.3).
+/// Importance sampling by the square image that an ImportanceMap has for one light: maps the unit square onto itself so
+/// that uniform points are distributed by the image's density (Pfeuti 2009, section 3.2.3).
 class ImportanceSampler
 {
 public:
-  /// Builds the sampler of one square of the map.
+  /// Builds the sampler of one square image of the map.
   /// @param density  size*size relative densities, not all zero
   /// @param most     upper limit of the density relative to uniform sampling, at least 1: the excess of a cell is
-  ///   distributed among the other cells in proportion to their densities
+  /// distributed among the other cells in proportion to their densities
   ImportanceSampler(const float* density, int size, double most);
 
   /// A point in the unit square, and the probability density there.

@@ -16,8 +16,8 @@ namespace
 {
 // Constants of the automatic thresholds, which are in proportion to the pilot photons' light (numerics.md, Eq. (96)).
 constexpr double SteepPart = 0.2; ///< fraction of the lit cells whose gradient counts as steep
-/// Smallest difference between cells, relative to the median luminance, that counts as steep; smaller ones are noise,
-/// or extinction in fog.
+/// Smallest difference of luminance between neighbouring cells, relative to the median luminance, that counts as steep;
+/// smaller ones are noise, or extinction in fog.
 constexpr double SteepAtLeast = 0.25;
 constexpr double DimBelow = 0.5;  ///< luminance threshold relative to the median luminance
 constexpr double FewCells = 0.01; ///< smallest fraction of lit cells that must be chosen to justify a map

@@ -116,7 +116,7 @@ std::vector<std::int64_t> SumOfCopies(const Buffer<cl_long>& memory, std::size_t
 }
 
 /// Converts sums of cells' records to pilot light.
-/// @param unit  W length of one unit of power times path
+/// @param unit  value of one fixed-point unit of power times path length, W length
 void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const PackedPhotons& packed, double unit,
   PilotLight& light)
 {

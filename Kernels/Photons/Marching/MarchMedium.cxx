@@ -20,13 +20,15 @@ namespace tyndall
 namespace
 {
 constexpr const char* MultiplyAdds = " -cl-mad-enable";
-constexpr int RoundsAtMost = 64;   ///< maximum length of a path, in multiples of the sum of the domain's edges
-constexpr float DarkUnits = 1e-3f; ///< power, in units, too small to show in any sum; MarchInfo::darkness
-/// Maximum fraction of filled bricks for a layout by bricks; with more filled bricks, it saves little.
+constexpr int RoundsAtMost = 64; ///< maximum length of a path, in multiples of the sum of the domain's edges
+/// Power, in units of PackedPhotons::unit, too small to affect any sum; MarchInfo::darkness
+constexpr float DarkUnits = 1e-3f;
+/// Maximum fraction of filled bricks with which arrays are stored by bricks; with more filled bricks, skipping empty
+/// ones saves little.
 constexpr double FilledAtMost = 0.25;
 
-// Values of `sigma`, the optical thickness of a voxel's diagonal, in PhotonMedium.cl: outside the grid, and upper limit
-// inside.
+// Values of `sigma`, the optical thickness of a voxel's diagonal, in PhotonMedium.cl: value outside the grid, and upper
+// limit inside it.
 constexpr float OutsideOfGrid = -3e38f;
 constexpr float ThickestVoxel = 1e30f;
 
@@ -213,8 +215,8 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& io
   }
   else if (this->IsBlock() && this->hasLevels)
   {
-    // SetNodes later sets the levels of a block of a larger domain. Until then, the level is 0 in all voxels: OwnNodes
-    // needs to know only where the index varies.
+    // In a block of a larger domain, SetNodes sets the octree levels later. Until then, all voxels have level 0, which
+    // suffices for OwnNodes: it only needs to know where the refractive index varies.
     const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0);
     this->PackVoxels(medium, ior, single.data());
   }
@@ -294,7 +296,7 @@ void MarchMedium::PackVoxels(const Medium& medium, const Field& ior, const std::
   With(pack, this->DescribeGrid(), SizeOf(this->block.known.size), before(0), before(1), before(2),
     static_cast<float>(this->Diagonal()), this->sigmaA, this->sigmaS, low, high, this->sigma);
   this->Launch(pack, Range(this->Padded(2)));
-  this->device.Finish(); // before the local buffers `low` and `high` are released
+  this->device.Finish(); // the kernel must end before its arguments `low` and `high` are released
 }
 
 void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high, const std::uint8_t* levels)
@@ -307,7 +309,7 @@ void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high,
   cl::Kernel pack = this->MediumKernel("pack_nodes");
   With(pack, SizeOf(this->block.known.size), low, high, given, this->nodes);
   this->Launch(pack, Range(padded));
-  this->device.Finish(); // before the local buffer of levels is released
+  this->device.Finish(); // the kernel must end before its argument `given` is released
 }
 
 void MarchMedium::FindRanges(Buffer<float>& low, Buffer<float>& high) const

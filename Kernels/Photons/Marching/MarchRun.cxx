@@ -171,7 +171,7 @@ cl::NDRange MarchKernel::Group() const
   return this->Target.shares.workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(this->Medium.device, 2);
 }
 
-// Launches are few and long, because work-items idle at the end of each launch.
+// Divides a march into few, long launches, because work-items idle at the end of each launch.
 Batches PhotonLaunches(
   const MarchMedium& medium, std::size_t photons, std::size_t first, std::size_t whole, int batches)
 {

@@ -19,8 +19,8 @@ namespace tyndall
 struct MarchShares
 {
   bool atomics = false; ///< whether deposits are added by 64-bit atomics
-  /// Number of work-items, which fetch photons from a common counter; 0: one work-item per packet, and all photons of
-  /// a batch add to one copy.
+  /// Number of work-items, which fetch photons from a common counter; 0: one work-item per packet (vector of photons),
+  /// and all photons of a batch add to one copy.
   int workers = 0;
   int copies = 1;
   int batches = 1;

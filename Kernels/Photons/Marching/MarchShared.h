@@ -54,10 +54,12 @@ typedef struct
   /// to batch c % batches.
   int copies, batches;
   int first, count; ///< first photon within each batch, and number of photons in each batch
-  int resumes; ///< 1: photons that arrived from another block or continue from an earlier turn; 0: photons that start
-  int events;  ///< maximum number of path segments per photon in this turn
-  int last;    ///< 1: photons that have not ended after this turn are terminated
-  int writes;  ///< for paths, 1: their vertices are written; 0: vertices are counted
+  /// 1: photons that arrived from another block, or continue after an earlier turn (launch that follows photons over a
+  /// limited number of path segments); 0: photons that start
+  int resumes;
+  int events; ///< maximum number of path segments per photon in this launch
+  int last;   ///< 1: photons that have not ended after this launch are terminated
+  int writes; ///< for paths, 1: their vertices are written; 0: vertices are counted
 } MarchLaunch;
 
 /// Final state of a photon that was followed without scattering. In kernels, the remaining power of each channel
@@ -76,11 +78,12 @@ typedef struct
 /// an undivided grid. Positions are in voxels of the domain, times as in photon_lanes (PhotonSteps.cl).
 typedef struct
 {
-  int voxel[3];      ///< voxel of the domain that the photon enters
-  float wall[3];     ///< time since the step began at which the photon reaches the next wall along each axis
-  float now;         ///< time since the step began
-  float turn;        ///< time since the step began at which the step ends
-  float settled;     ///< time before which a varying index does not start a new step
+  int voxel[3];  ///< voxel of the domain that the photon enters
+  float wall[3]; ///< time since the step began at which the photon reaches the next wall along each axis
+  float now;     ///< time since the step began
+  float turn;    ///< time since the step began at which the step ends
+  /// Time since the step began before which the photon does not start a new step where the refractive index varies
+  float settled;
   float step;        ///< duration of the current step
   float start[3];    ///< position at which the step began
   float velocity[3]; ///< voxels per time, of the current step
@@ -97,7 +100,7 @@ typedef struct
   int counted;    ///< coarse cell that counted the photon last
   int crossings;  ///< number of path segments that were deposited
   int steps;      ///< number of steps of the integrator
-  float power[3]; ///< remaining power, in units
+  float power[3]; ///< remaining power, in units of PackedPhotons::unit
   float owed[3];  ///< Kahan compensation of rounding errors in `power`
 } PhotonOnItsWay;
 
@@ -110,12 +113,13 @@ enum
 typedef struct
 {
   IndexGrid grid;
-  float diagonal;  ///< length of a voxel's diagonal
-  float fluence;   ///< W / length^2 per unit of power times voxel diagonal, divided by 2^exponent
-  int exponent;    ///< binary exponent of that factor, separate because the product may be below the range of float
-  float colour[3]; ///< colour of the single channel, relative to white, if CHANNELS is 1
-  float weight;    ///< photon weight per unit of the voxels' sums of weights
-  int absorption, scattering; ///< components of sigma_a and sigma_s; 0: absent
+  float diagonal; ///< length of a voxel's diagonal
+  float fluence;  ///< W / length^2 per unit of power times voxel diagonal, divided by 2^exponent
+  /// Binary exponent of the factor `fluence`, stored separately because their product may be below the range of float
+  int exponent;
+  float colour[3];            ///< colour of the single channel, relative to white, if CHANNELS is 1
+  float weight;               ///< photon weight per unit of the voxels' sums of weights
+  int absorption, scattering; ///< number of components of sigma_a and sigma_s; 0: absent
   int copies, batches;        ///< copies of the sums, and batches: copy c belongs to batch c % batches
 } LightSumsInfo;
 
@@ -130,7 +134,7 @@ typedef struct
   int resumes;      ///< 1: photons that arrived from other blocks; 0: photons that start
 } ScatterInfo;
 
-/// Final state of a photon that was followed through scatterings; powers are in units.
+/// Final state of a photon that was followed through scatterings; powers are in units of PackedPhotons::unit.
 typedef struct
 {
   int face;              ///< face or other end, as PhotonEnd::face
@@ -152,6 +156,6 @@ typedef struct
   int scatterings;                         ///< number of scatterings of the photon
   float depth;                             ///< scattering optical depth to the next collision
   float dim;                               ///< power below which Russian roulette is played
-  float power, absorbedAtFirst, exchanged; ///< powers in units, see ScatterEnd
+  float power, absorbedAtFirst, exchanged; ///< powers, in units of PackedPhotons::unit, see ScatterEnd
 } ScatteredOnItsWay;
 SHARED_END

@@ -13,7 +13,7 @@ namespace
 {
 struct Span
 {
-  double begin = 0.0, end = 0.0; ///< device times at which the work began and ended, s
+  double begin = 0.0, end = 0.0; ///< device times at which the commands between two events began and ended, s
 };
 
 Span SpanOf(const cl::Event& first, const cl::Event& last)
@@ -22,7 +22,8 @@ Span SpanOf(const cl::Event& first, const cl::Event& last)
     1e-9 * static_cast<double>(last.getProfilingInfo<CL_PROFILING_COMMAND_END>()) };
 }
 
-/// Number of path segments in each turn; the last turn follows photons to their ends.
+/// Number of path segments in each turn (launch that follows photons over a limited number of segments); the last turn
+/// follows photons to their ends.
 class TurnSchedule
 {
 public:
@@ -129,7 +130,7 @@ void MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const 
   const cl::CommandQueue mine = medium.device.AnotherQueue();
   const cl::CommandQueue theirs = turns.sideBySide ? medium.device.AnotherQueue() : mine;
   TurnsOfPhotons all(medium, photons, target, packed.channels);
-  medium.device.Finish(); // finish work queued on the device's own queue
+  medium.device.Finish(); // wait for work queued earlier on the device's own queue
   TurnSchedule turn(turns.stretches, medium.EventLimit(), packed.Count());
   std::size_t left = packed.Count();
   for (; left > 0; ++times.turns)

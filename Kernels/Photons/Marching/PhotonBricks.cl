@@ -1,6 +1,6 @@
-// Marching through a medium stored by bricks of voxels, most of which are empty. A photon crosses an empty brick to
-// its wall in one segment, and deposits to the brick's single record; it crosses a filled brick voxel by voxel.
-// Voxels are addressed by the indices of their records (MarchMedium.h). The index is constant.
+// Marching through a medium stored by bricks of voxels, most of which are empty. A photon crosses an empty brick to its
+// wall in one segment, and deposits to the brick's single record; it crosses a filled brick voxel by voxel. Voxels are
+// addressed by the indices of their records (MarchMedium.h). The refractive index is constant.
 
 #pragma once
 #include "Medium/BrickShared.h"

@@ -12,7 +12,8 @@
 #include "Photons/Marching/PhotonSteps.cl"
 #include "Refraction/Index/SquaredIndex.cl"
 
-#define PHOTON_FLOATS (6 + CHANNELS) // floats per photon: position, unit direction, power in units
+// Floats per photon: position, unit direction, power in units of PackedPhotons::unit
+#define PHOTON_FLOATS (6 + CHANNELS)
 #if CELLS
 // Integers per cell: deposits, number of photons, sums of column and row of their origins and of their squares.
 #define RECORD (CHANNELS + 5)
@@ -24,11 +25,14 @@
 // State of a packet that changes within a step, kept in registers; photon_lanes has the complete state.
 typedef struct
 {
-  integer at, alive, crossings; // at: index of the voxel's extinction; alive: -1, 0 once ended; crossings: segments
-  real wall[3], now;            // times since the step began: arrival at the next wall of each axis, and now
-  real sigma;                   // optical thickness of the voxel's diagonal; sign bit set where the index varies
-  real power[CHANNELS];         // remaining power in units
-  real owed[CHANNELS];          // Kahan compensation: the exact power is `power + owed`
+  // `at`: index of the voxel's extinction; `alive`: -1, 0 for a photon that has ended; `crossings`: number of path
+  // segments
+  integer at, alive, crossings;
+  real wall[3], now; // times since the step began: arrival at the next wall of each axis, and now
+  // Optical thickness of the voxel's diagonal; sign bit set where the refractive index varies
+  real sigma;
+  real power[CHANNELS]; // remaining power, in units of PackedPhotons::unit
+  real owed[CHANNELS];  // Kahan compensation: the exact power is `power + owed`
 #if COUNTS || CELLS
   integer counted; // index of the voxel or coarse cell that counted the photon last
 #endif
@@ -41,7 +45,7 @@ typedef struct
 typedef struct
 {
   integer at;            // index, in the sums, of the voxel's record
-  real amount[CHANNELS]; // power times path integral of transmittance, in units
+  real amount[CHANNELS]; // power times path integral of transmittance, in fixed-point units of the sums
 #if COUNTS || CELLS
   integer entered; // mask of the photons that entered the voxel or coarse cell in this segment
 #endif
@@ -117,7 +121,7 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
 
 typedef long4 __attribute__((aligned(8))) long4_anywhere;
 
-// Adds the deposit of one photon, a[channel] in units, to a voxel's record.
+// Adds the deposit of one photon, a[channel] in fixed-point units of the sums, to a voxel's record.
 static void deposit(__global long* record, const float* a, float4 direction)
 {
 #if CHANNELS == 1 && DIRECTIONS && !ATOMICS
@@ -324,7 +328,7 @@ static void cross_walls(const march_arrays* arrays, const photon_lanes* lanes, p
   flight->sigma = gather(float, arrays->sigma, flight->at);
 }
 
-// Power of each photon's brightest channel, in units.
+// Power of each photon's brightest channel, in units of PackedPhotons::unit.
 static real brightest(const photon_flight* flight)
 {
   real most = flight->power[0];
@@ -337,7 +341,7 @@ static real brightest(const photon_flight* flight)
 
 #if BENDS
 // Mask of the photons that must start a new step, because their step has ended or they have entered a region of varying
-// index.
+// refractive index.
 static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
 {
   const real turn = VECTOR(lanes->turn);

@@ -7,7 +7,7 @@
 #include "Numerics/Numerics.cl"
 
 #define LANES(type, name) type name[REAL_WIDTH] __attribute__((aligned(64)))
-#define LANES_3(type, name) type name[3][REAL_WIDTH] __attribute__((aligned(64))) // along x, y and z
+#define LANES_3(type, name) type name[3][REAL_WIDTH] __attribute__((aligned(64))) // one array per axis x, y, z
 #define VECTOR(array) (*(const real*)(array))
 #define INTEGERS(array) (*(const integer*)(array))
 #define PUT(array, value) (*(real*)(array) = (value))

@@ -85,7 +85,7 @@ static bool follow(
     if (anywhere(special))
     {
 #if !PATHS
-      deposit_all(arrays, lanes, &gain); // before any photon changes direction, since deposits record directions
+      deposit_all(arrays, lanes, &gain); // added before any photon changes direction, since deposits record directions
       owed = false;
 #endif
       land(flight, lanes);
@@ -126,8 +126,8 @@ static void give_up_all(const march_arrays* arrays, photon_lanes* lanes, const p
 }
 
 #if BLOCKS
-// Loads a packet of photons that arrived from other blocks, and ends or turns those that need it. With PATHS, counts
-// their corners.
+// Loads a packet of photons that arrived from other blocks. Photons that are outside, dark or at the limit of path
+// segments end, and photons whose step has ended start the next step. With PATHS, counts their corners.
 static void resume_packet(const march_arrays* arrays, const __global PhotonOnItsWay* arrived, int first, int end,
   photon_lanes* lanes, photon_flight* flight, int* vertices)
 {

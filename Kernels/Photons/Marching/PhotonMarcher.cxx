@@ -58,7 +58,7 @@ bool IsDivided(const Domain& domain)
 
 void Check(const MarchSettings& settings)
 {
-  constexpr double ShortestStep = 0.05; // voxels; positions have too few digits for shorter steps
+  constexpr double ShortestStep = 0.05; // in voxels; the digits of positions do not suffice for shorter steps
   constexpr double LongestStep = 1e4;
   Require(settings.order == 1 || settings.order == 2 || settings.order == 4,
     "The integrator's order is " + std::to_string(settings.order) + "; there are 1, 2 and 4.");
@@ -172,7 +172,7 @@ PhotonMarcher::Implementation::Implementation(Device& device, const Domain& doma
   this->Pilots = std::make_unique<PilotGathering>(this->TheDomain, this->Through.get(), this->Traits, this->Settings);
 }
 
-/// Voxels in which a rank needs the index: its block, and a halo of `reach` voxels.
+/// Box of voxels in which a rank needs the refractive index: its block, and a halo of `reach` voxels.
 VoxelBox PhotonMarcher::Implementation::KnownOf(const VoxelBox& block, int reach) const
 {
   return block.VoxelCount() > 0 ? Grown(block, reach, this->TheDomain.Whole()) : block;

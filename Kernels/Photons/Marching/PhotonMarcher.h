@@ -16,7 +16,7 @@ namespace tyndall
 ///
 /// Paths follow Pfeuti 2009, Eq. 2.7 (numerics.md, Eqs. (89) to (92)), by a symplectic integrator on a tricubic
 /// B-spline of n^2 through the voxel centres, which includes total reflection. There is no refraction at the faces of
-/// the volume: outside, the index is that of the nearest voxels.
+/// the volume: outside, the refractive index is that of the nearest voxels.
 ///
 /// The deposit in a voxel is power times the path integral of transmittance, exact for coefficients constant in the
 /// voxel (Eqs. (97), (98)). Divided by the voxel's volume it is an unbiased estimate of `fluence`, W / length^2, for
@@ -33,8 +33,8 @@ namespace tyndall
 /// some voxels: 20 or more for steps of order 4 in an octree, whose nodes are stored on every rank. Storing light by
 /// bricks requires an undivided grid.
 ///
-/// Kernels are specialised to the scene: without integrator and interpolation if the index is constant, with one
-/// power channel if all photons have one colour and the medium is grey.
+/// Kernels are specialised to the scene: without integrator and interpolation if the refractive index is constant, with
+/// one power channel if all photons have one colour and the medium is grey.
 class PhotonMarcher
 {
 public:

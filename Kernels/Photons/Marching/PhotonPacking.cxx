@@ -523,7 +523,8 @@ PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour
   {
     one.values.insert(one.values.end(), from, from + 6);
     one.values.push_back(static_cast<float>(from[6 + channel] * (colour / larger)));
-    // Powers are not rounded to whole units: photons of equal power would all be rounded in the same direction.
+    // Powers are not rounded to whole units: the powers of equal photons would all be rounded in the same direction,
+    // and the rounding errors would add up.
     one.entered[0] += one.unit * one.values.back();
   }
   return one;

@@ -48,7 +48,7 @@ static float solid_angle(float a, float b, float width, float height, float d, f
     : solid_angle_far_away(a, b, width, height, d);
 }
 
-// Cosine of the angle between a ray of this tangent and the lamp's direction.
+// Cosine of the angle between the lamp's direction and a ray of this tangent (lateral voxels per layer of voxels).
 static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 {
   const int u = (row->axis + 1) % 3;
@@ -73,7 +73,8 @@ typedef struct
 } cone_slice;
 
 // Slice of the pyramid at v.
-// @param v  length, relative to the base of the pyramid
+// @param v  position across the pyramid's axis at a distance of one layer, length, relative to the reference tangent
+// (BeamRow::baseV)
 static cone_slice slice_at(const LampInfo* lamp, const BeamRow* row, float v)
 {
   const int i = row->axis, j = (i + 1) % 3, k = (i + 2) % 3;
@@ -178,7 +179,7 @@ static float2 begin_of(const BeamRow* row, int beam)
   return (float2)(row->startU + beam * row->openU, row->startV);
 }
 
-// Initial power of a beam, as a fraction of the traced power.
+// Initial power of a beam, as a fraction of the traced power (the share of the lamp's power that may reach the box).
 static float power_of_beam(const LampInfo* lamp, const BeamRow* row, int beam)
 {
   const float2 spacing = (float2)(lamp->spacing[(row->axis + 1) % 3], lamp->spacing[(row->axis + 2) % 3]);

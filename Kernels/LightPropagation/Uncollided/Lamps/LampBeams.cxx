@@ -34,7 +34,8 @@ constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they 
 /// Width of the halo, voxels: a beam may extend one voxel beyond the block, and one more by rounding.
 constexpr int Reach = 2;
 
-constexpr int PassesAtMost = 9; ///< maximum number of passes along periodic axes
+/// Maximum number of passes along periodic axes (LampPyramids.h: each traces a range of layers)
+constexpr int PassesAtMost = 9;
 /// Number of passes after which the remaining light of a box that is periodic along all axes is distributed uniformly.
 constexpr int EvenFrom = 3;
 constexpr double LeftAtMost = 5e-5; ///< passes end when at most this fraction of the power is in transit
@@ -142,9 +143,10 @@ private:
   const Domain& TheDomain;
   const SweepVolume& Volume;
   const LampOnGrid Lamp;
-  const Halo Stored;     ///< voxels whose sums this rank holds while beams are traced: its block and the halo
+  const Halo Stored;     ///< voxels in which this rank sums deposits while beams are traced: its block and the halo
   tyndall::Rounds Ranks; ///< exchange of beams between blocks
-  Buffer<float> SigmaT;  ///< sigma_t of the stored voxels; empty on one rank, where that of the volume is used
+  /// Extinction sigma_t of the stored voxels; empty if there is one rank only, which uses that of the volume
+  Buffer<float> SigmaT;
   std::unique_ptr<LampSums> Sums;
   cl::Kernel Kernel;
   LampShares Shares; ///< energy balance of the beams of all ranks, over all passes

@@ -29,7 +29,8 @@ typedef struct
   float cosine, sineSquare; ///< cosine and squared sine of the half angle of a spot's cone
   /// Fraction of the traced power (LampOnGrid::Share) emitted per steradian; at normal emission if LAMBERT
   float intensity;
-  float scale;    ///< fixed-point units per length
+  /// Fixed-point units per unit of the path integral, which is a fraction of the traced power times length
+  float scale;
   float diagonal; ///< diagonal of a voxel, length
   /// Cells of the box's faces, as in BoxFaceLayout: index of the first cell of each face; index step along each axis,
   /// by the axis of the face.
@@ -43,7 +44,8 @@ typedef struct
   /// Reference tangents of the pyramid, to which tangentU and tangentV are relative: those of the axis of a narrow
   /// cone.
   float baseU, baseV;
-  float crossing[3]; ///< cross product of the reference direction and the cone's axis: along the marching axis, u, v
+  /// Components along the marching axis, u and v of the cross product of the reference direction and the cone's axis
+  float crossing[3];
   /// Tangents of the first beam's centre, relative to the base; tangentV is that of all beams
   float tangentU, tangentV;
   float widthU, widthV; ///< width of a beam, in tangents
@@ -54,14 +56,16 @@ typedef struct
   float openU, openV;   ///< width of a beam at the start, voxels
   int skipped;          ///< number of layers that beams cross before they deposit light and are tallied
   int layers;           ///< maximum number of layers that beams cross
-  /// Bits 1, 2: the lamp is outside the box along u, v, so that beams may enter through the faces across u, v
+  /// Bits 1, 2: the lamp is outside the box along u, v, so that beams may enter through the faces normal to u, v
   int beside;
   float share;   ///< fraction of the lamp's power emitted by the point from which the beams originate
   float part[3]; ///< centre of the part of a rectangle that this point represents
-  /// Squared distances from `part` beyond which voxels receive its light, and beyond which beams may reach such voxels.
+  /// Squared distances from `part`: voxels nearer than the first are not lit from this point, and a beam nearer than
+  /// the second crosses no voxel that is.
   float partFrom, partSeen;
   float whole[3]; ///< centre of the larger part of which `part` is a subdivision
-  /// Squared distances from `whole` at which the light of `part` ends, and beyond which beams of `part` light no voxel.
+  /// Squared distances from `whole`: voxels beyond the first are not lit from this point, and a beam beyond the second
+  /// crosses no voxel that is.
   float wholeFrom, wholeSeen;
 } BeamRow;
 
@@ -90,8 +94,9 @@ typedef struct
   /// Size of the whole grid, voxels, and number of periodic images of the lamp to either side that also emit.
   int period[3], images[3];
   float spacing[3];
-  /// Path integral per voxel and per steradian of the visible rectangle, W length, for a lamp of 1 W
+  /// Path integral in a voxel in vacuum, per steradian of the rectangle as seen from the voxel, W length, for a lamp of
+  /// 1 W
   float path;
-  float scale; ///< fixed-point units per length
+  float scale; ///< fixed-point units per unit of the path integral, length
 } RectangleInfo;
 SHARED_END

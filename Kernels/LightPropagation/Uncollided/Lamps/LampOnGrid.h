@@ -140,7 +140,8 @@ public:
   int SumsOfVacuum() const;
   RectangleInfo DescribeRectangle(const VoxelBox& own) const;
 
-  /// Fixed-point units per length (numerics.md, Eq. (36)).
+  /// Fixed-point units per unit of the path integral, which is a fraction of the traced power times length
+  /// (numerics.md, Eq. (36)).
   double UnitsPerLength() const;
   double Diagonal() const; ///< diagonal of a voxel, length
 

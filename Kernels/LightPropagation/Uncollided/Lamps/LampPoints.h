@@ -48,7 +48,7 @@ using Polygon = std::vector<glm::dvec3>; ///< corners of a planar, convex polygo
 struct RectangleArea
 {
   glm::dvec3 middle;
-  std::array<glm::dvec3, 2> half; ///< vectors of half the two edges
+  std::array<glm::dvec3, 2> half; ///< half of each of the two edges, as a vector
 
   RectangleArea(const Light& light, const Grid& grid);
 

@@ -161,7 +161,7 @@ public:
   {
     const double width[] = { (beams.u[1] - beams.u[0]) / beams.countU, (beams.v[1] - beams.v[0]) / beams.countV };
     const double middle[] = { beams.u[0] + 0.5 * width[0], beams.v[0] + (number + 0.5) * width[1] };
-    const auto start = [&](int k) { // computed in doubles: for a distant lamp both terms are large
+    const auto start = [&](int k) { // computed in doubles: for a distant lamp both terms are large and nearly cancel
       return static_cast<float>(this->Position[(this->Axis + 1 + k) % 3] + (this->Base[k] + middle[k]) * this->Near);
     };
     const bool outside = this->Near > 0.0;
