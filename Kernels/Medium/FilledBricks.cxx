@@ -34,7 +34,7 @@ public:
   {
   }
 
-  /// Marks in `bricks` the bricks with any non-zero value, and updates the summary `all` of all values.
+  /// Marks in `bricks` the bricks that have any non-zero value, and includes all values in the summary `all`.
   void Mark(unsigned char* bricks, FilledBricks::Values& all)
   {
     this->Collect();

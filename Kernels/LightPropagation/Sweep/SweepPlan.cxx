@@ -83,7 +83,7 @@ void SortIntoFrames(std::vector<Bundle>& bundles)
   }
 }
 
-/// Maximum length of a ray's path through one plane.
+/// Maximum length of a ray's path through one plane of voxels.
 double LongestWay(const std::vector<Bundle>& bundles)
 {
   double longest = 0.0;
@@ -391,7 +391,7 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t kept = this->angular
     ? together * BUNDLE_FLOATS(this->channels, this->row)
     : together * RINGS_OF(static_cast<std::size_t>(this->plane.chained)) * RingRows * raysOfRow;
-  // With incident radiance per cell, one more row holds the rays that enter through the faces normal to v.
+  // With incident radiance per cell of the faces, one more row holds the rays that enter through the faces normal to v.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const int beams = this->angular ? this->angular->Beams() : 0;
   const std::size_t quantities =
@@ -399,7 +399,7 @@ std::size_t SweepPlan::ScratchFloats() const
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
   // All rows of a plane, even if rowsKept is set: kernels compiled for light per cell of the faces do not use rowsKept.
   const std::size_t planes = quantities * rows * this->row;
-  // Packed rows of the moments of the source and of the path integral
+  // Rows of the moments of the source and of the path integral that are packed (copied to scratch)
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow;
   return ring + planes + rows + packed + 3 * this->vector;
 }

@@ -47,7 +47,7 @@ struct SweepPlan : SweepDescription
   bool backward = false;
 
   int vector = 8; ///< number of floats in a vector of the kernels (SIMD width)
-  int row = 0;    ///< number of floats in a padded row
+  int row = 0;    ///< number of floats in a row of voxels or rays, with its padding
   /// Number of rows of a plane held in scratch if rows are packed (copied there) just before bundles cross them; 0: all
   /// rows
   int rowsKept = 0;
@@ -96,8 +96,8 @@ struct SweepPlan : SweepDescription
   std::vector<cl_int> FunctionPlaces() const;
   /// Arguments of the kernel `sweep` that the plan determines.
   SweepInfo Info() const;
-  /// Lowers the extinction below which a voxel is thin (PlaneInfo::thin) so that it also holds for the longer segments
-  /// of rays that continue beyond the planes of their pattern, along a periodic axis. Call before OwnLight().
+  /// Lowers the extinction below which a voxel counts as thin (PlaneInfo::thin), for rays that continue around a
+  /// periodic axis beyond the planes of their pattern, where their segments may be longer. Call before OwnLight().
   void LetRaysGoOn();
 
 private:

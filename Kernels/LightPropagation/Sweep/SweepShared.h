@@ -88,9 +88,8 @@ enum
 typedef struct
 {
   int members;
-  int map; ///< index of the first float of the bundle's maps (power of its rays)
-  /// Index of the bundle's first value in the array of power per ray incident at faces normal to u, [member][channel]
-  int border;
+  int map;    ///< index of the first float of the bundle's maps (power of its rays)
+  int border; ///< index of the bundle's first value in the incident power at faces normal to u, [member][channel]
   /// Index of the bundle's first float in the rows that enter through faces normal to v, [member][channel][ROW]
   int outside;
   float power;  ///< power of a ray of radiance 1 (numerics.md, Eq. (19)), length^2 sr
@@ -104,7 +103,8 @@ typedef struct
   /// Number of frames, and index of each frame's first member, then the end of the last frame. A frame is a set of at
   /// most four members of the bundle whose directions differ only in signs.
   int frames, firstOfFrame[MaxFrames + 1];
-  /// Bit i: not all angular functions of parity i are zero in the bundle's directions (SweepLayout.cl)
+  /// Bit i is set if any angular function of parity i (even or odd along u and v) is not zero in the bundle's
+  /// directions (SweepLayout.cl)
   int parities;
   /// Index of the bundle's first coefficient, for each sense of marching: values of the angular functions for positive
   /// u and v, [frame][function] in the order of the axis; then values of beams, [member][beam].
@@ -117,7 +117,8 @@ typedef struct
 {
   int stages;
   int moveU[3], moveV[3];
-  float part[3]; ///< fraction of each ray's power that moves; the rest stays
+  /// Fraction of each ray's power that moves sideways; the remainder stays in its column of voxels
+  float part[3];
   float length[3];
 } CrossingInfo;
 
@@ -141,8 +142,9 @@ typedef struct
   int width;
   /// Number of planes packed (copied to scratch) at once: 1 if rows are contiguous in memory, else the vector width
   int block;
-  int together; ///< number of planes packed before any of them is crossed: a multiple of `block`
-  int chained;  ///< number of planes in a chain, which a bundle crosses together, row by row
+  /// Number of planes packed (copied to scratch) before any of them is crossed: a multiple of `block`
+  int together;
+  int chained; ///< number of planes in a chain, which a bundle crosses together, row by row
   /// Number of rows in a tile, on which bundles take turns; 0: each bundle crosses all rows at once
   int tile;
   float vacuum; ///< sigma_t used instead of 0 in vacuum, 1/length; so small that exp(-tau) is 1 in float
@@ -223,7 +225,7 @@ typedef struct
 /// `row` floats for each row of rays: the first `border` floats are padding, then `sizeU` rays follow.
 typedef struct
 {
-  ulong eachWay; ///< floats of the maps for one sense of marching
+  ulong eachWay; ///< number of floats of the maps for one sense of marching
   int bundles, channels;
   int row, border;
   int sizeU, width; ///< number of voxels in a row, and that number rounded up to whole vectors

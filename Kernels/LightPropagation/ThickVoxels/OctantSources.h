@@ -87,7 +87,8 @@ private:
   Scene The;
   Buffer<float> OfSweep, Incoming; ///< see Currents(), CameInThroughFaces()
   Buffer<float> Found;             ///< see Sources()
-  /// See LampPath(), LampMoments(); OfLamps: source by face, [channel][face][stride].
+  /// See LampPath(), LampMoments(); OfLamps: sources by face of the light first scattered from lamps,
+  /// [channel][face][stride].
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps;
   Buffer<float> Diffuse, Falling; ///< tables of VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;

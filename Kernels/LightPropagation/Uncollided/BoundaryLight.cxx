@@ -130,7 +130,8 @@ std::array<Rgb, 6> BoundaryLight::IncomingPower() const
   return power;
 }
 
-/// Incident power through all faces, W: exact, and as carried in by rays without fractional moves.
+/// Incident power through all faces, W: exact, and as carried in by rays without fractional moves (of a part of their
+/// power).
 std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
 {
   EnteringRays entering;

@@ -74,7 +74,8 @@ private:
   double X0, X1, Y0, Y1, Z0;
   double B0, B1, K;
   double Angle = 0.0;
-  bool Small = false; ///< whether the map preserves area: the rectangle is distant, or seen nearly edge-on
+  /// Whether the map preserves area instead of solid angle: the rectangle is distant, or seen nearly edge-on
+  bool Small = false;
 };
 
 /// Faces of the volume that are visible from a point outside it: up to three.

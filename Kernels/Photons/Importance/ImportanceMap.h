@@ -7,7 +7,8 @@
 
 namespace tyndall
 {
-/// Number of the environment and the sky among lights; lights of the illumination are numbered from 0.
+/// Number that stands for the environment and the sky in lists of lights; the lights of the illumination are numbered
+/// from 0.
 constexpr int EnvironmentLight = -1;
 
 /// Relative density of photon origins: for each light a square image over its photon plane or, for lights without

@@ -10,8 +10,8 @@
 
 namespace tyndall
 {
-/// Sums the light of pilot photons in coarse cells (PhotonMarcher::Gather). Each rank starts the photons whose
-/// origins lie in its subdomain; their deposits, integers, are summed over ranks. The map from voxels to cells is
+/// Sums the light of pilot photons in coarse cells (PhotonMarcher::Gather). Each rank starts the photons whose origins
+/// lie in its subdomain; their deposits, which are integers, are summed over ranks. The map from voxels to cells is
 /// kept between calls.
 class PilotGathering
 {

@@ -12,8 +12,8 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum number of compute units of a CPU for private sums: with more, adding up the copies costs more than
-/// atomics.
+/// Maximum number of compute units of a CPU with which each work-item has a private copy of the sums: with more, adding
+/// up the copies costs more than atomics.
 constexpr int PrivateSumsAtMost = 8;
 /// Number of consecutive photons that a work-item fetches at a time; they are neighbours in space.
 constexpr int MarchBlock = 512;

@@ -46,7 +46,7 @@ struct MarchSums
   const Buffer<cl_int>* cells = nullptr;
   const Buffer<cl_long>* sums = nullptr; ///< sums of deposits in fixed point, [copies][records][numbers]
 
-  /// Number of 64-bit numbers in one copy.
+  /// Number of 64-bit numbers in one copy of the sums.
   std::size_t Stride() const { return this->records * static_cast<std::size_t>(this->numbers); }
 };
 

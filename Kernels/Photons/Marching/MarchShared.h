@@ -49,9 +49,9 @@ typedef struct
 /// Parameters of one launch of a kernel of PhotonMarch.cl.
 typedef struct
 {
-  ulong copyStride; ///< number of 64-bit numbers in one copy of the sums
-  /// `copies`: number of copies of the sums. `batches`: number of batches of photons, at most `copies`; copy c belongs
-  /// to batch c % batches.
+  ulong copyStride; ///< number of 64-bit numbers in one copy of the sums of deposits
+  /// `copies`: number of copies of the sums of deposits. `batches`: number of batches of photons, at most `copies`;
+  /// copy c belongs to batch c % batches.
   int copies, batches;
   int first, count; ///< first photon within each batch, and number of photons in each batch
   /// 1: photons that arrived from another block, or continue after an earlier turn (launch that follows photons over a
@@ -59,7 +59,7 @@ typedef struct
   int resumes;
   int events; ///< maximum number of path segments per photon in this launch
   int last;   ///< 1: photons that have not ended after this launch are terminated
-  int writes; ///< for paths, 1: their vertices are written; 0: vertices are counted
+  int writes; ///< if paths are traced, 1: their vertices are written; 0: vertices are only counted
 } MarchLaunch;
 
 /// Final state of a photon that was followed without scattering. In kernels, the remaining power of each channel
@@ -67,7 +67,7 @@ typedef struct
 typedef struct
 {
   int face;      ///< face through which the photon left, -x, +x, ... +z; or StillGoing, Dark, Elsewhere
-  int crossings; ///< number of path segments that were deposited
+  int crossings; ///< number of path segments on which the photon deposited light
   int steps;     ///< number of steps of the integrator
 #ifdef __OPENCL_C_VERSION__
   float power[CHANNELS];
@@ -97,8 +97,8 @@ typedef struct
   ulong mark; ///< mark of the photon, see PhotonMarch.cl
   WayOnward way;
   int batch;      ///< index of the photon's batch
-  int counted;    ///< coarse cell that counted the photon last
-  int crossings;  ///< number of path segments that were deposited
+  int counted;    ///< coarse cell in which the photon was last counted
+  int crossings;  ///< number of path segments on which the photon deposited light
   int steps;      ///< number of steps of the integrator
   float power[3]; ///< remaining power, in units of PackedPhotons::unit
   float owed[3];  ///< Kahan compensation of rounding errors in `power`
@@ -109,25 +109,28 @@ enum
   CountShift = 40 ///< lowest bit of a voxel's photon count, above the bits of its sum of weights
 };
 
-/// Parameters of the conversion of photons' sums to light.
+/// Parameters of the conversion of the sums of photons' deposits to light.
 typedef struct
 {
   IndexGrid grid;
   float diagonal; ///< length of a voxel's diagonal
-  float fluence;  ///< W / length^2 per unit of power times voxel diagonal, divided by 2^exponent
+  /// Factor that converts deposits, in units of power times voxel diagonal, to fluence, W / length^2; divided by
+  /// 2^exponent
+  float fluence;
   /// Binary exponent of the factor `fluence`, stored separately because their product may be below the range of float
   int exponent;
   float colour[3];            ///< colour of the single channel, relative to white, if CHANNELS is 1
   float weight;               ///< photon weight per unit of the voxels' sums of weights
   int absorption, scattering; ///< number of components of sigma_a and sigma_s; 0: absent
-  int copies, batches;        ///< copies of the sums, and batches: copy c belongs to batch c % batches
+  /// Number of copies of the sums of deposits, and number of batches; copy c belongs to batch c % batches
+  int copies, batches;
 } LightSumsInfo;
 
 /// Parameters of a launch that follows photons through scatterings.
 typedef struct
 {
   ulong seed;       ///< seed of the random numbers
-  ulong copyStride; ///< number of 64-bit numbers in one copy of the sums
+  ulong copyStride; ///< number of 64-bit numbers in one copy of the sums of deposits
   /// Maximum number of scatterings of a photon; it is terminated at the next collision.
   int mostScatterings;
   int first, count; ///< first photon of the launch, and number of photons

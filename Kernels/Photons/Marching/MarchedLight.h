@@ -18,7 +18,7 @@ public:
   /// @param medium  referenced, not copied
   explicit MarchedLight(const MarchMedium& medium);
 
-  /// Provides the sums for packed photons, all zero, and describes their layout.
+  /// Provides sums for the deposits of packed photons, all zero, and describes their memory layout.
   /// @throws DeviceError if the sums do not fit into the device's memory
   MarchSums Prepare(const PackedPhotons& packed);
   /// Number of copies of the sums, by ShareSums; the memory of existing sums counts as available.

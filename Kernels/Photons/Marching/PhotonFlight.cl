@@ -34,7 +34,7 @@ typedef struct
   real power[CHANNELS]; // remaining power, in units of PackedPhotons::unit
   real owed[CHANNELS];  // Kahan compensation: the exact power is `power + owed`
 #if COUNTS || CELLS
-  integer counted; // index of the voxel or coarse cell that counted the photon last
+  integer counted; // index of the voxel or coarse cell in which the photon was last counted
 #endif
 #if BRICKS
   integer voxel[3], last;

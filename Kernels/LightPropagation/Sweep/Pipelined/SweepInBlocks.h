@@ -51,7 +51,7 @@ public:
   void Forget() override;
 
   const SweepSchedule& Schedule() const { return this->TheSchedule; }
-  /// Host memory of the rays at the faces of this rank's block, for one set of bundles
+  /// Number of bytes of host memory for the rays at the faces of this rank's block, for one set of bundles
   std::size_t FaceBytes() const;
 
 private:
@@ -126,8 +126,9 @@ private:
   std::vector<Task> Tasks;
 
   // State of the sweep in progress.
-  std::exception_ptr Error;  ///< error on this rank, if any
-  std::vector<float> FaceIn; ///< incident radiance per cell, SweepRequest::faceIn; empty: none, or zero
+  std::exception_ptr Error; ///< error on this rank, if any
+  /// Incident radiance per cell of the domain's faces, SweepRequest::faceIn; empty: none, or zero
+  std::vector<float> FaceIn;
   /// Power that left from this rank's block through each cell of the domain's faces, W; empty: not summed
   std::vector<double> Left;
 };

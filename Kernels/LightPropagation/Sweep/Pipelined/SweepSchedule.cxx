@@ -34,7 +34,8 @@ Bundle MembersThatGo(const Bundle& bundle, int way, int signU, int signV)
   return part;
 }
 
-/// Divides a set of parallel bundles into sets of at most mostRays rays (one bundle with more rays is not divided).
+/// Divides a set of parallel bundles into sets of at most mostRays rays (one bundle with more rays is not divided), and
+/// appends them to `parts`.
 void AddParts(const ParallelBundles& whole, int mostRays, std::vector<ParallelBundles>& parts)
 {
   ParallelBundles part = whole;
@@ -291,7 +292,7 @@ public:
       {
         this->Ready[rank].insert({ -this->Graphs[task].behind[rank], task });
       }
-      // Other events at the same time may make a more urgent task ready.
+      // Tasks are started only after all events at this time, since one of these may make a more urgent task ready.
       if (this->Events.empty() || std::get<0>(this->Events.top()) > now)
       {
         this->StartAll(now);

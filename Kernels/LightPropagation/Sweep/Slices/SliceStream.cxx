@@ -393,7 +393,7 @@ void SliceStream::Copy(
   }
 }
 
-/// Copies one piece of an array from the host to a slot, or back.
+/// Copies one piece (range of planes) of an array from the host to a slot, or back.
 /// @param slot  index of the slot's first float
 void SliceStream::CopyArray(const Streamed& array, const SlicePiece& piece, std::size_t slot, bool back)
 {

@@ -272,7 +272,7 @@ static void leave_end(
 }
 
 // Determines the voxel that contains the beam's centre, or the nearest voxel of the grid.
-// @return whether beams are traced in the voxel at the beam's centre
+// @return whether this launch traces beams in the voxel at the beam's centre; false: it is outside the block
 static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, int* voxel)
 {
   voxel[row->axis] = layer;

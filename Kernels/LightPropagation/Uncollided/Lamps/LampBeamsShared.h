@@ -48,7 +48,7 @@ typedef struct
   float crossing[3];
   /// Tangents of the first beam's centre, relative to the base; tangentV is that of all beams
   float tangentU, tangentV;
-  float widthU, widthV; ///< width of a beam, in tangents
+  float widthU, widthV; ///< width of a beam along u and v, as a difference of tangents
   int count;            ///< number of beams along u
   int outside;          ///< 1: the lamp is outside the box along the marching axis
   float from;           ///< start of the beams: the lamp's position along the axis, or the box's face, voxels

@@ -91,7 +91,7 @@ namespace
 /// Minimum distance of a voxel from the centre of a rectangle's part that lights it, in radii of the part; for nearer
 /// voxels the part is divided.
 constexpr double PartDistance = 2.0;
-/// Number of Gauss points along an edge of a square: of a part, and of a rectangle that is not divided
+/// Number of Gauss points along each edge of a square: of a part of a rectangle, and of a rectangle that is not divided
 constexpr int PointsOfPart = 2, PointsOfAll = 3;
 constexpr double FinestPart = 2.0;   ///< longer edge of the smallest parts, voxels
 constexpr double PartsAcross = 64.0; ///< maximum number of smallest parts along the box's longest edge

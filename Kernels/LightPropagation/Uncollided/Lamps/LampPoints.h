@@ -15,7 +15,7 @@ namespace tyndall
 /// A point source that represents a lamp, or a part of a rectangle.
 struct LampPoint
 {
-  struct Sphere ///< centre and radius, lengths from the grid's corner
+  struct Sphere ///< centre, from the grid's corner, and radius, lengths
   {
     glm::dvec3 middle = glm::dvec3(0.0);
     double radius = 0.0;
@@ -30,7 +30,8 @@ struct LampPoint
   double reach = std::numeric_limits<double>::infinity(); ///< length to which beams from this point are traced
 };
 
-/// Fraction of the box's edge: a lamp nearer to a face is taken to be on it, as for photons.
+/// Distance from a face, as a fraction of the box's edge, below which a lamp is taken to be on the face, as for
+/// photons.
 constexpr double OnBorder = 1e-6;
 
 /// Position of a point in space, voxels from the grid's corner; snapped to a face that is nearer than OnBorder.

@@ -32,7 +32,7 @@ public:
   /// @return fraction of the lamp's power that these voxels then remove; 0 for other lamps
   double FitToVacuum(const SweepVolume& volume, const LampOnGrid& lamp, const VoxelBox& own);
 
-  /// Adds the sums, times the lamp's power, to the arrays of the volume's deposit.
+  /// Adds the sums, which are fractions of the lamp's power, times that power to the arrays of the volume's deposit.
   /// @param volume  its stride is that of the sums
   /// @param factor  multiplies the lamp's power
   void AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const;
