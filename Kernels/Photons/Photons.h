@@ -40,8 +40,9 @@ struct MarchSettings
   /// voxel, summed in the same pass.
   bool counts = false;
   /// Whether batchFluence is returned: separate sums for each of up to MarchedBatchesAtMost batches, which need at
-  /// least as many copies of the sums. Private sums are distributed among compute units by entire copies: to keep all
-  /// compute units busy, use batches of equal size, as many as there are compute units or a multiple of that.
+  /// least as many copies of the sums. With Sums::Private a copy is filled by one compute unit and belongs to one
+  /// batch: to keep all compute units busy, use batches of equal size, as many as there are compute units or a multiple
+  /// of that.
   bool batches = false;
   /// Number of scattering orders that photons are followed through. 1: up to their first collision (the uncollided
   /// flux, without randomness); m: through m - 1 scatterings; 0: until they are absorbed or have escaped.
@@ -114,12 +115,13 @@ struct PhotonLight
   std::size_t missed = 0;   ///< number of photons whose lines miss the volume; their power does not count as entered
   std::size_t deposits = 0; ///< number of path segments deposited in voxels
   std::size_t steps = 0;    ///< number of steps of the integrator
-  double secondsMarching = 0.0; ///< duration of the march, from sorted photons to sums on the device, s
-  double seconds = 0.0;         ///< total time from photons to light
+  /// Duration of the march of uncollided photons, from packed photons to their light on the host, s.
+  double secondsMarching = 0.0;
+  double seconds = 0.0; ///< total duration, from the given photons to the light on the host, s
 };
 
-/// Light of pilot photons in coarse cells that fill the medium's box (Pfeuti 2009, section 3.2.2). In all arrays x
-/// varies fastest.
+/// Light of pilot photons, a small first set by which the final photons are distributed, in coarse cells that fill the
+/// medium's box (Pfeuti 2009, section 3.2.2). In all arrays x varies fastest.
 struct PilotLight
 {
   /// Grid of the coarse cells. Where their number does not divide the number of voxels, some cells are one voxel
@@ -128,8 +130,9 @@ struct PilotLight
   int channels = 1;           ///< number of channels of `fluence`
   std::vector<float> fluence; ///< W / length^2, mean over the voxels of each cell, channels fastest
   std::vector<float> count;   ///< number of photons that crossed each cell, each photon once
-  /// Mean and standard deviation of the origins (column and row on the photon plane) of the photons that crossed each
-  /// cell, 2 values per cell; 0 in cells without photons.
+  /// Mean and standard deviation of the origins of the photons that crossed each cell, 2 values per cell; 0 in cells
+  /// without photons. An origin is the column and row in the square grid on the photon plane, the plane from which the
+  /// light's photons start.
   std::vector<float> originMean, originDeviation;
   double seconds = 0.0; ///< duration, s
 };

@@ -80,13 +80,14 @@ std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vect
 /// Photons that start in this rank's block.
 struct StartingPhotons
 {
-  /// Packed photons that start on this rank. `numbers` are indices among the photons of all ranks; `entered` and
-  /// `missed` are totals over all ranks.
+  /// Packed photons that start on this rank. Its member `numbers` holds indices among the photons of all ranks; its
+  /// members `entered` (power that enters the volume) and `missed` (photons that miss it) are totals over all ranks.
   PackedPhotons packed;
   /// Mark of each photon, if photons are counted: the number that is added to the voxels on its path
   /// (PhotonMarch.cl).
   std::vector<cl_ulong> marks;
-  float weightUnit = 0.0f; ///< photon weight per unit of the voxels' sums of weights, if photons are counted
+  /// If photons are counted: photon weight for which 1 is added to the integer sum of weights of a voxel.
+  float weightUnit = 0.0f;
 };
 
 /// Packs the photons of all ranks as in a serial run, and sends each to the rank in whose block it starts.
@@ -104,7 +105,7 @@ StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon
 std::vector<Photon> ChosenOnEachRank(Communicator& communicator, const std::vector<Photon>& share,
   const PlaceOfShare& place, const std::vector<std::size_t>& chosen);
 
-/// The packed photons that start in a block, by the voxel to which the kernels assign their positions. `entered` and
-/// `missed` remain those of all photons.
+/// Selects the packed photons that start in a block. A photon starts in the voxel to which the kernels, with their
+/// rounding, assign its position. `entered` and `missed` of the result are still totals over all photons.
 PackedPhotons ThoseIn(const VoxelBox& block, const Grid& whole, const PackedPhotons& packed);
 }

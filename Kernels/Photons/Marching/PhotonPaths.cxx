@@ -16,8 +16,8 @@ namespace
 /// A vertex of a path: the photon starts, changes direction or ends there.
 struct PathVertex
 {
-  cl_ulong photon = 0;  ///< index of the photon, which is its mark
-  cl_ulong round = 0;   ///< round in which this part of the path was traced
+  cl_ulong photon = 0;  ///< index of the photon, which the kernel carries as the photon's mark
+  cl_ulong round = 0;   ///< round of exchange between ranks in which this section of the path was traced, from 1
   cl_float4 place = {}; ///< position in voxels, and remaining power
 
   bool operator<(const PathVertex& other) const
@@ -58,7 +58,8 @@ public:
     return this->Trace(PhotonsOnDevice(this->Medium.device, arrived, 1, this->Channels), marks);
   }
 
-  std::vector<PathVertex> vertices; ///< vertices of all paths so far, in order along each section of a path
+  /// Vertices of all paths so far. Those of a path's section, traced in one round, are in order along the path.
+  std::vector<PathVertex> vertices;
 
 private:
   std::vector<PhotonOnItsWay> Trace(const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks);
@@ -140,7 +141,7 @@ std::vector<PathVertex> TraceVertices(const Domain& domain, const MarchMedium* t
 }
 
 /// Builds the path of packed photon i from its vertices.
-/// @param all  vertices of all paths, sorted by photon and round
+/// @param all  vertices of all paths, sorted by photon, then by the round in which they were traced
 PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<PathVertex>& all)
 {
   const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;

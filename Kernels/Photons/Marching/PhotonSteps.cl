@@ -5,7 +5,8 @@
 //   NODE_BRICKS 1: the array `nodes` covers the domain, in the layout of BrickedBytes
 //   DIRECTIONS  1: directions are recorded
 //   MARKS       1: photons carry marks (PhotonMarch.cl)
-//   BRICKS      1: the medium is stored by bricks (PhotonBricks.cl); indices are those of the `copy` records
+//   BRICKS      1: the medium is stored by bricks (PhotonBricks.cl), and a voxel's index in arrays is that of its
+//               record: one record per voxel of a filled brick, one for an entire empty brick
 //   BLOCKS      1: the grid is a block of the domain, and photons march until they leave it; without BRICKS
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It is a sequence of steps,
@@ -33,7 +34,7 @@
 #include "Refraction/Index/SquaredIndex.cl"
 
 #define NEVER 3e38f
-#define AHEAD 4        // prefetch distance, in voxels along the axis of fastest change
+#define AHEAD 4        // prefetch distance, in voxels along the axis with the largest component of velocity
 #define OUTSIDE -3e38f // value of sigma in the padding around the grid
 // Minimum speed, in diagonals per time, of a photon; speed is n, but for rounding and steps across jumps of n.
 #define SLOWEST_PACE 1e-12f
@@ -43,17 +44,20 @@
 typedef struct
 {
   const MarchInfo* info;
-  // Optical thickness of a voxel diagonal, [MEDIUM_CHANNELS][copy]; sign bit set: the index varies in the voxel.
+  // Optical thickness of a voxel diagonal, [MEDIUM_CHANNELS][info->copy], where info->copy is the number of voxels of
+  // the padded grid or, with BRICKS, of records. Sign bit set: the index varies in the voxel.
   const __global float* sigma;
   const __global float* coefficients; // coefficients of the spline of n^2
-  // Octree nodes of the voxels of the padded region `known`. 0: the index is constant in the voxel; 1: it varies,
-  // single voxel; 1 + k: it varies, octree node of 2^k voxels per edge. With NODE_BRICKS: table of bricks, then bricks.
+  // Octree node of each voxel of the region `known` (info->known, padded by one voxel). 0: the index is constant in the
+  // voxel; 1: it varies, and the node is a single voxel; 1 + k: it varies, and the node has 2^k voxels per edge. With
+  // NODE_BRICKS: of each voxel of the domain, stored as a table of bricks, then the bricks (BrickedBytes).
   const __global uchar* nodes;
-  __global long* sums;       // sums of deposits, [copy][RECORD] in fixed point
+  __global long* sums;       // sums of deposits in fixed point, [info->copy][RECORD]
   __global PhotonEnd* ends;  // final states of photons
   __global float4* vertices; // vertices of a path: position in voxels, remaining power; null: vertices are only counted
   const __global ulong* marks; // marks of photons (PhotonMarch.cl), with MARKS
-  // With CELLS: index of the coarse cell of each voxel, [copy]; with BRICKS: first records of bricks, MarchMedium.h.
+  // With CELLS: index of the coarse cell that contains each voxel, [info->copy]. With BRICKS: index of the first record
+  // of each filled brick, or minus the index of the record of an empty one (PhotonBricks in MarchMedium.h).
   const __global int* cells;
 #if BLOCKS
   __global PhotonOnItsWay* gone;     // photons that entered other blocks, in any order
@@ -73,17 +77,17 @@ typedef struct
   LANES_3(float, across); // duration from wall to wall along each axis
   LANES(float, now);      // current time
   LANES(float, turn);     // time at which the step ends; NEVER: n is constant, and the step lasts until n varies
-  LANES(float, settled);  // time before which a varying index does not start a new step
+  LANES(float, settled);  // time until which a varying index in the photon's voxel does not start another step
   LANES(float, pace);     // speed, in diagonals per time
   LANES(float, step);     // duration of the current step
   LANES(int, steps);      // number of steps of the integrator so far
-  LANES(int, crossings);  // number of path segments deposited so far
-  // Remaining power of each channel, in units.
+  LANES(int, crossings);  // number of path segments so far whose light was deposited
+  // Remaining power of each channel, in units of PackedPhotons::unit.
   float power[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
   LANES_3(float, start);        // position at which the step began
   LANES_3(float, velocity);     // velocity in the step, voxels per time
-  LANES_3(float, momentum);     // T of Eq. (90); with order 1 v of Eq. (92), with order 2 equal to the velocity
-  float4 direction[REAL_WIDTH]; // for sums of power (1) and of power times direction (unit vector): 1, x, y, z
+  LANES_3(float, momentum);     // T of Eq. (90), which with order 2 is the velocity; with order 1, v of Eq. (92)
+  float4 direction[REAL_WIDTH]; // (1, unit direction): its product with power is added to the sums of power and of flux
 #if MARKS
   LANES(ulong, mark); // mark of the photon (PhotonMarch.cl)
 #endif
@@ -91,11 +95,13 @@ typedef struct
   // Kahan compensation of the power of photons that continue in another block.
   float owed[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
 #if CELLS
-  LANES(int, counted); // coarse cell that counted the photon last, for photons that continue in another block
+  // Coarse cell in which the photon was counted last, so that it is not counted there again; kept here for photons that
+  // continue in another block.
+  LANES(int, counted);
 #endif
 #endif
 #if BRICKS
-  LANES_3(int, voxel); // current voxel of the domain
+  LANES_3(int, voxel); // indices x, y, z of the current voxel in the domain
   LANES(int, last);    // number of voxels along an edge of the region crossed in one segment, less one; PhotonBricks.cl
   LANES_3(float, inverse); // time to cross a voxel along each axis, with the sign of the velocity
 #endif
@@ -144,8 +150,8 @@ static integer padded(const MarchInfo* info, const integer* voxel)
   return place_in(&info->grid, info->first, 1, voxel);
 }
 
-// Finds the voxels that contain positions p, for photons in the mask. For a photon on a wall, where rounding would
-// decide, this is the voxel with index `at`.
+// Finds the voxels that contain positions p, for photons in the mask. A photon on a wall between two voxels is taken to
+// be in the voxel with index `at`, not in the one that rounding of p would select.
 static void voxels_at(const MarchInfo* info, integer mask, const real* p, integer at, integer* voxel)
 {
   FOR_AXES(a)
@@ -282,7 +288,7 @@ static real looked_ahead(const MarchInfo* info, real way)
 {
   if (LEVELS && ORDER == 2)
   {
-    return way; // not limited, since the step is at most to the wall of a node, and all nodes are known
+    return way; // not limited: a step ends at the wall of its octree node, and the nodes of the entire domain are known
   }
   const float steps = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
   const float most = LEVELS ? greater(steps, (float)(1 << YoshidaLevel)) : steps;
@@ -579,8 +585,8 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
 
 #if BLOCKS
 // Transfer of photons from one block of the domain into another. All coordinates are those of the domain, so a path
-// continues as on an undivided grid. An arriving photon is on the entry wall of its new voxel, and has not yet been
-// terminated or turned in that voxel if it needs to be.
+// continues as on an undivided grid. An arriving photon is on the wall through which it enters its new voxel; whether
+// it ends there or needs a new step, as at any wall, is still to be tested.
 
 // Stores the path state of photon k, which has entered a voxel of another block, in `way`.
 static void hand_way_on(const march_arrays* arrays, const photon_lanes* lanes, int k, __global WayOnward* way)

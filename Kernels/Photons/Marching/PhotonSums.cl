@@ -1,9 +1,11 @@
 // Kernels that convert the sums of photons' deposits to light. The host defines
 //   CHANNELS, DIRECTIONS, COUNTS  as in PhotonMarch.cl
-//   CARRIES                 1: fractions of a unit of a voxel's absorbed power are carried to the next voxel
-//                           of the row. Needed if units are large: half a unit per voxel would be lost otherwise
+//   CARRIES                 1: when the absorbed and scattered power of a voxel is truncated to whole units, the
+//                           fraction is carried to the next voxel of the row. Needed if units are large: half a
+//                           unit per voxel would be lost otherwise
 //   BRICKS                  1: the sums are stored by bricks (MarchMedium.h)
-//   COLOURS                 channels of the output: 3 also if one channel stands for three (CHANNELS 1)
+//   COLOURS                 channels of the output; may be 3 with CHANNELS 1, where one channel stands for all three
+// "Units" are the fixed-point units of power in which deposits are summed, PackedPhotons::unit watts each.
 
 #include "Medium/BrickShared.h"
 #include "Numerics/Numerics.cl"
@@ -13,8 +15,8 @@
 #define component(values, count, voxel, c) \
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
-// Writes the fluence of one channel to the output channels that it stands for.
-//   path  sum of the channel's power times path in diagonals, in units
+// Writes the fluence of channel c to the same channel of the output, or to all output channels if CHANNELS is 1.
+//   path  sum over photons of power (units) times path length (voxel diagonals) in this channel
 static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c, float path)
 {
   if (CHANNELS == COLOURS)
@@ -28,8 +30,9 @@ static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c,
   }
 }
 
-// Power, in units, that is absorbed or scattered in a voxel: the share of one coefficient, sigma_a or sigma_s, in the
-// voxel's sum. In an optically thick voxel, the sum is the power that the photons lost.
+// Power, in units, that is absorbed or scattered in a voxel, from the voxel's sum of deposits; `coefficient` is sigma_a
+// or sigma_s accordingly. In an optically thick voxel the sum is the power that the photons lost, of which the fraction
+// coefficient / extinction is taken.
 static long taken_by(const LightSumsInfo* info, float sum, float coefficient, float extinction, float* carried)
 {
   const float thickness = info->diagonal * extinction;
@@ -59,7 +62,7 @@ static bool take_batch(const LightSumsInfo* info, __global long* record, ulong c
       sum[c] += here[c];
       bits |= here[c];
     }
-    if (bits != 0) // records without deposits, typically half of the memory, need not be written
+    if (bits != 0) // records that are 0 already, typically half of the memory, need not be written
     {
       any = true;
       for (int c = 0; c < RECORD; ++c)
@@ -72,8 +75,8 @@ static bool take_batch(const LightSumsInfo* info, __global long* record, ulong c
 }
 
 #if DIRECTIONS
-// Writes the mean direction of the light. Fractions of units are lost, so directions from a few units of power are
-// coarse; their length is limited to 1.
+// Writes the mean direction of the light, of length at most 1. Sums are whole fixed-point units, so the direction is
+// coarse in a voxel whose sum is only a few units of power.
 static void put_direction(__global float* mean_direction, const long* sum, float total)
 {
   const float3 flow = (float3)(sum[CHANNELS], sum[CHANNELS + 1], sum[CHANNELS + 2]);
@@ -86,7 +89,8 @@ static void put_direction(__global float* mean_direction, const long* sum, float
 }
 #endif
 
-// Absorbed ([0]) and scattered ([1]) power of each channel, in whole units; `carried` are fractions of a unit.
+// Absorbed ([0]) and scattered ([1]) power of each channel: the sum in whole units, and the fraction of a unit that is
+// carried to the next voxel.
 typedef struct
 {
   long units[2][CHANNELS];
@@ -104,7 +108,7 @@ static taken_power nothing_taken()
   return taken;
 }
 
-// Stores the absorbed and scattered powers of a work-item, in units, as [absorbed, scattered][CHANNELS].
+// Stores the absorbed and scattered powers of a work-item's voxels, in units, as [absorbed, scattered][CHANNELS].
 static void store_taken(const taken_power* taken, __global long* to)
 {
   for (int c = 0; c < 2 * CHANNELS; ++c)
@@ -121,8 +125,9 @@ static float thickness_of(const LightSumsInfo* info, float extinction)
   return fmax(info->diagonal * extinction, 1.0f);
 }
 
-// Converts the sums of one record, which stands for a number of `voxels`, to the light of one voxel.
-//   record  index of the record's coefficients
+// Converts the sums of one record to the light of a voxel: their mean over the number of `voxels` that share the
+// record (1, or the voxels of an empty brick).
+//   record  index of sigma_a and sigma_s of the record
 static void finish_record(const LightSumsInfo* info, const __global float* sigma_a, const __global float* sigma_s,
   size_t record, const long* sum, float voxels, __global float* fluence, __global float* mean_direction,
   taken_power* taken)
@@ -133,7 +138,8 @@ static void finish_record(const LightSumsInfo* info, const __global float* sigma
     const float a = component(sigma_a, info->absorption, record, c),
                 s = component(sigma_s, info->scattering, record, c);
     total += sum[c];
-    // Power times path in diagonals, the sum over b of numerics.md, Eq. (98).
+    // Power times path in diagonals: the sum of deposits divided by b of numerics.md, Eq. (98), and by the number of
+    // voxels that share the record.
     put_fluence(info, fluence, c, (float)sum[c] / (thickness_of(info, a + s) * voxels));
     taken->units[0][c] += taken_by(info, sum[c], a, a + s, &taken->carried[0][c]);
     taken->units[1][c] += taken_by(info, sum[c], s, a + s, &taken->carried[1][c]);
@@ -143,13 +149,13 @@ static void finish_record(const LightSumsInfo* info, const __global float* sigma
 #endif
 }
 
-// Converts the sums to light, one row of voxels per work-item: adds up the copies and zeroes them.
+// Converts the sums to light, one row of voxels per work-item: adds up the copies of the sums and sets them to 0.
 //   fluence         COLOURS values per voxel
 //   mean_direction  3 values per voxel: sum of power times direction over sum of power, no longer than 1; 0 in dark
 //                   voxels
 //   photon_count    one value per voxel; photon_weight: mean weight of the counted photons, 0 if there are none
 //   batch_fluence   [voxel][batch][COLOURS] fluence of each batch, as if it carried all the power
-//   taken           [row][absorbed, scattered][CHANNELS] units of power
+//   taken           [row][absorbed, scattered][CHANNELS], power in units
 __kernel void finish_light(LightSumsInfo info, const __global float* sigma_a, const __global float* sigma_s,
   __global long* sums, ulong copyStride, __global float* fluence, __global float* mean_direction,
   __global float* photon_count, __global float* photon_weight, __global float* batch_fluence, __global long* taken)
@@ -217,7 +223,7 @@ static void leave_dark(__global float* fluence, __global float* mean_direction, 
 //   sigma_a, sigma_s  of each record
 //   fluence, mean_direction  of each voxel; in an empty brick only the lowest voxel is written, with the mean over
 //                            the brick, which fill_empty then copies
-//   taken             [brick][absorbed, scattered][CHANNELS] units of power
+//   taken             [brick][absorbed, scattered][CHANNELS], power in units
 __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, const __global float* sigma_a,
   const __global float* sigma_s, __global long* sums, ulong copyStride, __global float* fluence,
   __global float* mean_direction, __global long* taken)

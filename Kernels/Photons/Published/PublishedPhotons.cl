@@ -158,7 +158,7 @@ static float step_length(const PublishedMarchInfo* info, const __global uchar* l
 
 typedef struct
 {
-  float3 position, velocity, power; // position in voxels; n times unit direction; power in units
+  float3 position, velocity, power; // position in voxels; n times unit direction; power in units of TypicalPower
 } published_photon;
 
 static published_photon photon_at(const __global PublishedPlace* place)

@@ -29,14 +29,14 @@ inline const int* WhereIs(const PublishedPhoton& photon)
 
 namespace
 {
-/// Maximum distance in voxels between successive deposits of a step: the next voxel is a neighbour or, if the line
-/// runs along an edge, by rounding the one after it.
+/// Maximum distance in voxels between successive deposits of a step. The next voxel is a neighbour, but where the line
+/// runs along an edge of voxels, rounding may select the neighbour's neighbour.
 constexpr int VoxelsPassed = 2;
 
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;
 
-/// Settings of the march with which photons are packed: always three power channels, and steps of one voxel for the
-/// limit of steps.
+/// Settings of the march with which photons are packed: always three power channels, and a step size of one voxel, from
+/// which the maximum number of steps is computed.
 MarchSettings PackingSettings()
 {
   MarchSettings settings;
@@ -44,8 +44,8 @@ MarchSettings PackingSettings()
   return settings;
 }
 
-/// Mean power of a photon and channel, W, rounded to a power of two: in this unit, colours are far from the limits of
-/// RGBE.
+/// The unit of power of published photons, W: the mean power of a photon in a channel, rounded to a power of two. In
+/// this unit colours are far from the smallest and the largest exponent of RGBE.
 /// @param photons  number of photons
 double TypicalPower(const Rgb& entered, std::size_t photons)
 {
@@ -53,8 +53,8 @@ double TypicalPower(const Rgb& entered, std::size_t photons)
   return mean > 0.0 ? std::exp2(std::round(std::log2(mean))) : 1.0;
 }
 
-/// Photons in the format of the published scheme, before their first step.
-/// @param larger  ratio of the new unit of power to the present one
+/// Converts packed photons to the format of the published scheme, before their first step.
+/// @param larger  ratio of the photons' new unit of power to packed.unit
 std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double larger)
 {
   std::vector<PublishedPhoton> photons(packed.Count());
@@ -230,7 +230,7 @@ private:
       cl::Kernel kernel = this->Kernel("published_index");
       With(kernel, this->Info, n, index);
       this->Launch(kernel, RangeOf(part.known.size));
-      this->TheDevice.Finish(); // before the buffer n is released
+      this->TheDevice.Finish(); // the kernel must have read the buffer n before the destructor releases it
     }
     return index;
   }
@@ -357,8 +357,8 @@ private:
     return rounds.Traffic();
   }
 
-  /// Unpacks the light of the block, not smoothed, into `result`, and sums it over the block's voxels in `loss`.
-  /// Collective.
+  /// Unpacks the light of the block, not smoothed, into `result`, and stores its sum over the block's voxels in
+  /// loss.kept. Collective.
   void Gain(double unit, PhotonLight& result, PackingLoss& loss)
   {
     this->TheDomain.Collective([&] {

@@ -14,7 +14,7 @@ namespace tyndall
 {
 struct PublishedSettings
 {
-  int tries = 10;     ///< maximum number of compare-and-swap attempts for a deposit, after which it is lost
+  int tries = 10;     ///< maximum number of compare-and-swap attempts for a deposit, which is lost if all fail
   bool smooth = true; ///< whether the 3x3x3 Gaussian filter is applied to the light
 };
 
@@ -22,9 +22,9 @@ struct PublishedSettings
 struct PackingLoss
 {
   Rgb deposited = {};       ///< W, sum of all deposits
-  Rgb kept = {};            ///< W, sum over the voxels of the light that they hold
+  Rgb kept = {};            ///< W, the part of `deposited` that the packed light of the voxels still contains
   std::size_t deposits = 0; ///< number of deposits in voxels
-  std::size_t givenUp = 0;  ///< number of deposits that were lost after all attempts
+  std::size_t givenUp = 0;  ///< number of deposits that were lost because all compare-and-swap attempts failed
 
   double Relative() const; ///< fraction of the deposited power that was lost, sum of channels
 };

@@ -28,7 +28,7 @@ typedef struct
 {
   float position[3]; ///< position in voxels of the domain
   float velocity[3]; ///< n times direction; the unit direction alone before the first step
-  float power[3];    ///< power in units, by channel
+  float power[3];    ///< power by channel, in the unit of TypicalPower (PublishedPhotons.cxx)
 } PublishedPlace;
 
 /// A photon between steps, or between blocks, with the complete state on which its further path depends.
@@ -37,10 +37,10 @@ typedef struct
   int voxel[3];            ///< voxel of the domain in which the photon continues, if it is in another block
   int face;                ///< face through which the photon left, or PublishedGivenUp, PublishedElsewhere
   int steps;               ///< number of steps begun; 0: the photon has not started
-  int done;                ///< number of voxels along the last step to which the photon has deposited
+  int done;                ///< number of voxels of the last step in which the photon has deposited its light
   int deposits;            ///< number of deposits of the photon in voxels
-  int givenUp;             ///< number of deposits that were lost after all attempts
+  int givenUp;             ///< number of deposits that were lost because all compare-and-swap attempts failed
   PublishedPlace from, to; ///< ends of the last step
-  float deposited[3];      ///< power of all deposits of the photon, by channel, in units
+  float deposited[3];      ///< power of all deposits of the photon, by channel, in the unit of PublishedPlace::power
 } PublishedPhoton;
 SHARED_END

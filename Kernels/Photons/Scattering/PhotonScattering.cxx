@@ -16,7 +16,7 @@ namespace tyndall
 namespace
 {
 constexpr int Block = 16;         ///< number of consecutive photons that a work-item fetches at a time
-constexpr int TableParts = 65536; ///< number of equal steps of probability in a table of cosines
+constexpr int TableParts = 65536; ///< number of equal intervals of cumulative probability in a table of cosines
 
 /// Methods of sampling the scattering angle; values of the macro PHASE of ScatterPhotons.cl.
 enum PhaseSampling
@@ -87,7 +87,8 @@ std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 
 double ScatteringStepPart(const Field& ior, const std::array<int, 3>& size)
 {
-  constexpr double Seen = 0.5, Least = 0.1; // constants of numerics.md, Eq. (99d)
+  // Eq. (99d) of numerics.md: the fraction is Seen over the largest relative jump of n^2, but at least Least.
+  constexpr double Seen = 0.5, Least = 0.1;
   double jump = 0.0;
   const std::array<std::size_t, 3> stride = { 1, static_cast<std::size_t>(size[0]),
     static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) };
@@ -298,7 +299,8 @@ struct OneChannelMedium
   Medium seen;
 };
 
-/// Adds the light and tallies of one run, times a colour, to all channels of `light`, or to its only one.
+/// Adds the light and tallies of photons that were followed in one channel to every channel of `light`, multiplied by
+/// that channel's factor in `colour`.
 void AddRun(const ScatteredPhotons& found, const Rgb& colour, PhotonLight& light)
 {
   const auto channels = static_cast<std::size_t>(light.light.channels);
@@ -351,8 +353,9 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
   }
 }
 
-/// Factors, by channel, by which the light of one run of photons is multiplied.
-/// @param oneRun  whether there is one run for all channels
+/// Factors by which the light of one run, in which the photons are followed in one channel, counts in red, green and
+/// blue.
+/// @param oneRun  whether the same run serves all channels
 Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int run)
 {
   Rgb colour = {};
@@ -390,7 +393,7 @@ void ScatteredChannels::AddTo(
     double all = 0.0, direct = 0.0;
     for (std::size_t c = 0; c < channels; ++c)
     {
-      const double counts = channels == 1 ? 3.0 : 1.0; // one channel stands for red, green and blue
+      const double counts = channels == 1 ? 3.0 : 1.0; // sum over colours: a single channel is red, green and blue
       all += counts * light.light.fluence[i / 3 * channels + c];
       direct += counts * light.light.fluenceDirect[i / 3 * channels + c];
     }

@@ -55,8 +55,9 @@ struct PhotonScattering
   /// @param stepPart  fraction of MarchSettings::stepSize to use: ScatteringStepPart of the index in the domain
   PhotonScattering(const MarchMedium& through, const Medium& medium, double stepPart);
 
-  /// Ratio of the unit of power for scattered photons to that for uncollided light. Scattered photons may return to a
-  /// voxel; in the larger unit its sum exceeds 2^62 only after this many times the deposits of uncollided light.
+  /// Ratio of the fixed-point unit of power (PackedPhotons::unit) for scattered photons to that for uncollided light.
+  /// Scattered photons may return to a voxel; in the larger unit the voxel's sum exceeds 2^62 only after this many
+  /// times the deposits of uncollided light.
   static constexpr double DepositsPerEvent = 4096.0;
 
   const MarchMedium& through;
@@ -117,8 +118,9 @@ private:
   ScatteredPhotons Found;
 };
 
-/// Scattered light of photons in all channels. There is one run of photons if medium and light have one colour, else
-/// one run per channel with the same random numbers, so that the channels have the same noise.
+/// Scattered light of photons in all channels. If medium and light have one colour, the photons are followed once for
+/// all channels; else they are followed once per channel (a run each) with the same random numbers, so that the
+/// channels have the same noise.
 class ScatteredChannels
 {
 public:

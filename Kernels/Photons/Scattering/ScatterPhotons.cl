@@ -106,7 +106,7 @@ typedef struct
 {
   ScatterEnd end; // final state of the photon if it ended now
   random_numbers random;
-  float dim;   // power, in units, below which Russian roulette is played
+  float dim;   // power below which Russian roulette is played, in units of PackedPhotons::unit
   float depth; // scattering optical depth to the next scattering
   int events;  // number of path segments since the last scattering
 } scattered_flight;
@@ -319,7 +319,8 @@ static void follow(const march_arrays* arrays, const scattering* medium, const S
 }
 
 // Follows photon i of the photons that start or, with how->resumes, of those that arrived from other blocks.
-//   photons  position (voxels), unit direction, power (units) of photons that start; else ScatteredOnItsWay
+//   photons  position (voxels), unit direction and power (units of PackedPhotons::unit) of photons that start; else
+//            ScatteredOnItsWay
 //   numbers  indices of the photons that start
 static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
   const __global float* photons, const __global ulong* numbers, int i)
