@@ -14,7 +14,8 @@
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
-// Indices of the fields of a result that follow its CARRIED smoothed quantities: source level, squared error.
+// Indices of the fields of a result that follow its CARRIED smoothed quantities: the source level, which is the pyramid
+// level from which the light is taken (fractional where levels are blended), and the squared error.
 #define BLENDED CARRIED
 #define SQUARED (BLENDED + 1)
 #define RESULTS (CARRIED + BesideResults)
@@ -25,7 +26,8 @@ typedef struct
   pair carried[CARRIED];
 } light_pair;
 
-// Loads the light of two voxel vectors in both batches, from an array [voxel][batch][channel].
+// Loads the light of 2 REAL_WIDTH successive voxels (a pair of vectors) in each of the two batches, from an array
+// [voxel][batch][channel].
 #if WOVEN && CHANNELS == 1
 inline void load_batches(const __global float* batches, size_t voxel, pair* light)
 {
@@ -46,7 +48,7 @@ inline void load_batches(const __global float* batches, size_t voxel, pair_of_th
 }
 #endif
 
-// Loads two vectors of voxels of the grid, with light multiplied by `scale`.
+// Loads 2 REAL_WIDTH successive voxels of the grid (a pair of vectors), with light multiplied by `scale`.
 inline light_pair load_voxels(
   const __global float* batches, const __global float* directions, int4 size, size_t voxel, float scale)
 {
@@ -461,7 +463,9 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   const size_t field = field_of(size);
   const float unit = 1.0f / scale;
   const size_t fine_field = field_of(fine_size);
-  for (int k = 0; k < 4; ++k) // outer loop, as hardware prefetches a few rows, but not four of every quantity
+  // The loop over the four rows of children is the outer one, so that only one row of each quantity of this level is
+  // read at a time: hardware prefetches a few rows, but not four of every quantity.
+  for (int k = 0; k < 4; ++k)
   {
     const rows_about rows = rows_for_children(size, y, z, k);
     const int fy = min(2 * y + k % 2, fine_size.y - 1), fz = min(2 * z + k / 2, fine_size.z - 1);

@@ -28,8 +28,8 @@ struct ConservativeLevel
   LightRows measured, across;
 };
 
-/// Light of all batches in the grid's voxels on the device: the host's own array, or a copy batch by batch with rows
-/// of a multiple of two vectors.
+/// Light of all batches in the grid's voxels on the device: the host's own array [voxel][batch][channel] or, unless
+/// AreWoven, a copy [batch][voxel][channel] whose rows are padded to a multiple of two vectors.
 class BatchedLight
 {
 public:
@@ -43,13 +43,15 @@ private:
 };
 
 /// Passes of the conservative estimator over the levels of a pyramid (numerics.md, Eqs. (101) to (104)): Build
-/// upwards, Begin at the top, Refine downwards. One object covers the levels of this rank's box up to the shared
-/// level, another one the levels of the domain from the shared level on.
+/// upwards, Begin at the top, Refine downwards. One object covers the levels of this rank's box (its block and halo) up
+/// to the shared level, the coarsest one that ranks compute from their boxes. Another object covers the levels of the
+/// domain from the shared level on, on every rank.
 class ConservativePasses
 {
 public:
   /// Allocates the levels. All arguments are referenced and must outlive this object.
-  /// @param light   light of the box; without arrays for the levels of the domain, of which it has the grid
+  /// @param light   light of the box; for the levels of the domain only its grid is used, the domain's, and its arrays
+  ///   are null
   /// @param result  arrays must have the size of the light's
   /// @param first, top  lowest and highest level of this object
   ConservativePasses(
@@ -97,7 +99,7 @@ private:
 /// described.
 constexpr float Honesty = 0.4f;
 
-/// Number of voxels in the first launch, until its run time is known.
+/// Number of voxels that the first launch of a kernel processes; its run time determines the size of later launches.
 constexpr std::size_t VoxelsOfFirstLaunch = std::size_t(1) << 22;
 
 ConservativeLevel MakeLevel(const Reconstruction& task, const std::array<int, 3>& size, int width)

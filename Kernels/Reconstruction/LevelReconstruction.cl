@@ -19,7 +19,7 @@ typedef struct
   size_t at[4];
   size_t field;
   float y, z;
-  int first; // index of the row's first voxel in the level's voxel grid, a multiple of 8
+  int first; // position along x of the row's first voxel among the voxels that the level covers, a multiple of 8
 } rows_between;
 
 inline rows_between rows_beside(const __global PyramidLevels* where, int level, int y, int z)

@@ -17,7 +17,7 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-// Number of voxels in the first launch, until its run time is known.
+// Number of voxels that the first launch of a kernel processes; its run time determines the size of later launches.
 constexpr std::size_t FirstPart = std::size_t(1) << 18;
 
 /// Methods by which the pyramids are built: of light, of photon counts, of photon weights.
@@ -33,10 +33,12 @@ public:
   /// @param task, result  referenced; the result's arrays must have the size of the box
   LevelPasses(const Reconstruction& task, ReconstructedLight& result);
 
-  void Build(); ///< computes the levels of all pyramids from the voxels up to the shared level
+  /// Computes the levels of all pyramids from the voxels up to the shared level, the coarsest one that a rank computes
+  /// from its own box.
+  void Build();
   /// Cells of the shared level of a pyramid over this rank's box.
   std::vector<float> Shared(std::size_t pyramid) const { return this->Pyramids[pyramid].Read(this->Part.shared); }
-  /// Computes the levels that are coarser than the shared level, the one that all ranks exchange.
+  /// Computes the levels that are coarser than the shared level, whose cells all ranks exchange.
   /// @param cells  cells of the shared level, over the whole domain
   void BuildAbove(std::size_t pyramid, const std::vector<float>& cells);
 
@@ -56,8 +58,9 @@ private:
   std::vector<LightPyramid> Pyramids;
 };
 
-/// Increment of photon weight per level. If it is not given, it is the mean weight of lit voxels, reduced by the
-/// rounding of weights in the march, so that equal weights all reach the first increment. Collective.
+/// Increment of photon weight per level: that of the settings or, if they give none, 0.999 times the mean weight of
+/// voxels with photons. The factor makes up for the rounding of weights in the march: if all weights are equal, none
+/// falls below the first increment. Collective.
 /// @param own  photon weights in the voxels of this rank's block
 double WeightStepOf(const Reconstruction& task, const float* own)
 {
@@ -155,7 +158,7 @@ void LevelPasses::Choose(double weightStep)
   const WholeRows direction(this->Kernels, result.meanDirection, this->Size, 3, "mean directions");
   const WholeRows chosen(this->Kernels, result.mipLevel, this->Size, 1, "levels");
 
-  // Buffers that the estimator does not use are replaced by any pyramid.
+  // The kernel does not read pyramids that the estimator does not use; another pyramid is passed in their place.
   const LightPyramid& light = this->Pyramids.front();
   const LightPyramid& heavy = this->Pyramids.back();
   const LightPyramid& photons = this->Pyramids[std::min<std::size_t>(1, this->Pyramids.size() - 1)];

@@ -91,7 +91,7 @@ __kernel void join_down(
       }
       store_real(sum, x, row);
       if (!mean && x + REAL_WIDTH >= size.x &&
-        2 * size.x > fine_size.x) // counts the last cell once, although a grid of odd size repeats it
+        2 * size.x > fine_size.x) // odd size: the last finer cell, which the padding repeats, must be counted once
       {
         float last = 0.0f;
         for (int k = 0; k < 4; ++k)

@@ -245,7 +245,7 @@ void LightPyramid::BuildAbove(Down down, const std::vector<float>& cells)
   {
     this->Copy(ofAll.Parts[level], this->Parts[shared + level], ofAll.BytesOf(level));
   }
-  this->Kernels.On().Finish(); // before local buffers are released
+  this->Kernels.On().Finish(); // kernels must have read the local buffers before their destructors release them
 }
 
 void LightPyramid::Fill(const WholeRows& voxels, int components, int first)

@@ -119,7 +119,7 @@ struct PartOfPyramid
 {
   std::array<int, 3> whole = {}; ///< number of voxels of the domain along x, y, z
   std::array<int, 3> first = {}; ///< first voxel of the block in the domain, multiples of 8
-  int shared = LevelsAtMost;     ///< highest level that covers only the block
+  int shared = LevelsAtMost;     ///< "shared level": highest level that covers only the block, not the domain
 };
 
 /// A pyramid of volumes: a grid and its means or sums over 2x2x2, 4x4x4, ... voxels, level after level in one buffer,
@@ -165,7 +165,7 @@ private:
   std::vector<std::array<int, 3>> Sizes; ///< number of cells along x, y, z of each level
   int Fields;
   PyramidLevels Where = {};
-  Buffer<PyramidLevels> Told; ///< `Where` on the device
+  Buffer<PyramidLevels> Told; ///< copy of `Where` on the device
   Buffer<float> Memory;
   std::vector<cl::Buffer> Parts; ///< subbuffers of Memory, one per level
 };

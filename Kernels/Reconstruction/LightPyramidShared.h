@@ -13,7 +13,8 @@ enum
 typedef struct
 {
   int4 size[LevelsAtMost + 1]; ///< layout of each level as in LightRows.cl: cells along x, y, z, and floats per row
-  /// Index of the block's first voxel in the level's voxel grid; 0 in levels of the block itself.
+  /// First voxel of the block among the voxels that the level covers: its position in the domain for levels that cover
+  /// the domain, 0 for levels that cover only the block.
   int4 first[LevelsAtMost + 1];
   ulong offset[LevelsAtMost + 1]; ///< offset of each level in the buffer, in floats
 } PyramidLevels;
@@ -31,6 +32,8 @@ enum
 
 enum
 {
-  BesideResults = 2 ///< number of fields of a result after the smoothed quantities: source level, squared error
+  /// Number of fields of a result after the smoothed quantities: the source level (pyramid level from which the light
+  /// is taken), and the squared error.
+  BesideResults = 2
 };
 SHARED_END

@@ -38,8 +38,8 @@ int MarginOf(Estimator estimator)
   return estimator == Estimator::Conservative ? 32 : 16;
 }
 
-/// Number of voxels at whose multiples the boxes of ranks begin. For estimators other than the conservative one it is
-/// 8, the width of a vector.
+/// Alignment of the ranks' boxes: the index of a box's first voxel along each axis is a multiple of this number. For
+/// estimators other than the conservative one it is 8, the width of a vector.
 int EdgeOf(Estimator estimator, int shared)
 {
   return estimator == Estimator::Conservative ? 1 << shared : 8;

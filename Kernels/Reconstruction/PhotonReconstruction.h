@@ -32,8 +32,8 @@ struct ReconstructionSettings
 {
   enum class Estimator
   {
-    /// Light from one level per voxel: the lower one of the level by centre-surround differences and the level by
-    /// photon weight (Pfeuti 2009, section 3.2.4).
+    /// Light from one level per voxel, the lower one of two: the level up to which differences of successive levels do
+    /// not grow, and a level in proportion to the photon weight (Pfeuti 2009, section 3.2.4).
     Published,
     Conservative,   ///< keeps each level's detail as far as independent batches agree on it, and estimates the error
     ConstantRadius, ///< light from the same level for all voxels (Pfeuti 2009, section 4.2)

@@ -229,7 +229,8 @@ MaterialInfo MaterialOf(const Material& material)
 
 constexpr std::size_t WorkGroup = 256; ///< size of work-groups of the kernels of Materials.cl
 
-/// Computes the mean of the materials in each voxel of a box of the grid, slab by slab.
+/// Computes the mean of the materials in each voxel of a box of the grid, slab by slab: a slab is the set of voxel rows
+/// whose samples CountSamplesInside holds at a time.
 class MaterialMixer
 {
 public:
@@ -357,8 +358,8 @@ private:
   cl::Kernel AddObject, AddOutside;
 };
 
-/// The box `part` with the halo on which its values depend: the reach of the filter, one voxel for the gradient, and
-/// one because counts in the outermost voxels of a box are not exact.
+/// The box `part` with the halo on which its values depend: half the width of the filter, one voxel for the gradient,
+/// and one because the counts of samples inside solids are not exact in the outermost voxels of a box.
 VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& settings, bool evenIndex)
 {
   return Grown(part, evenIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);
@@ -390,7 +391,7 @@ double SumOfPart(const std::vector<float>& occupancy, const PartOfBox& part)
   return std::accumulate(summed.begin(), summed.end(), 0.0);
 }
 
-/// Voxelises a part of the box that has voxels.
+/// Voxelises a part of the box; the part must have at least one voxel.
 void Fill(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
   const PartOfBox& part, const Composition& composition, const Monitor& monitor, VoxelizedPart& result)
 {

@@ -57,7 +57,7 @@ struct RefractiveMediumSettings
   int filterSize = 9; ///< width of the filter that smooths n, in voxels; see SmoothIndex
 };
 
-/// A voxelised scene of solids in a box. In all arrays x varies fastest; leftOut explains which arrays are empty.
+/// A voxelised scene of solids in a box. In all arrays x varies fastest; leftOut says which arrays are empty, and why.
 struct RefractiveMedium
 {
   std::vector<float> occupancy;   ///< fraction of the voxel's volume inside any solid, [0, 1]
@@ -99,7 +99,8 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
 RefractiveMedium Voxelize(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
   const Monitor& monitor = {});
 
-/// Findings of the voxelisation of a part of the box, which must be combined with those of all other parts.
+/// What the voxelisation finds out about the solids in a part of the box. Warnings about them require the findings of
+/// all parts (FindingsOfAll).
 struct VoxelFindings
 {
   std::vector<WindingNumbers> windings; ///< winding numbers of each solid's mesh at the samples
@@ -123,16 +124,16 @@ struct VoxelizedPart
 };
 
 /// First of the two steps of Voxelize, for a part of the box, which may have no voxels. Each voxel has the same
-/// values, bit for bit, as if the box were voxelised entirely: a halo of the voxels on which the part depends (half
-/// the filter and two) is voxelised with it.
+/// values, bit for bit, as if the box were voxelised entirely: the halo of voxels on which the part depends, as wide
+/// as half the filter plus two voxels, is voxelised with it.
 /// @throws as Voxelize, for the part
 VoxelizedPart VoxelizePart(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
   const PartOfBox& part, const Monitor& monitor = {});
 
 /// Second step of Voxelize: returns the finished medium of a part of the box.
-/// @param all  findings of all parts together. If unknown, pass the findings of this part with `empty` false: then no
-///   warning is given if nothing is inside solids, and every part has an index array unless no solid differs in n
-///   from the outside
+/// @param all  findings of all parts together. If unknown, pass the findings of this part with `empty` false. Then no
+///   warning is given if nothing is inside solids, and the index array is left out only if n is the same in all solids
+///   and outside
 RefractiveMedium Concluded(VoxelizedPart&& part, const VoxelFindings& all, const std::vector<Solid>& solids,
   const RefractiveMediumSettings& settings);
 

@@ -1,10 +1,10 @@
 // Squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels.
 //
 // n^2 is a tricubic B-spline with the coefficients of numerics.md, Eq. (88): its gradient is continuous and exactly
-// that of the spline, as a symplectic integrator requires. A coefficient may exceed the range of its stencil by at
-// most an eighth, so that the spline is positive where n^2 is. Beyond the grid n^2 is extrapolated linearly, but
-// never below a quarter of its value at the border. The coefficient of voxel (i, j, k) is at index (i + 2, j + 2, k +
-// 2) of an array that is longer by four than the grid along each axis.
+// that of the spline, as a symplectic integrator requires. A coefficient is at least 7/8 of the least and at most 9/8
+// of the largest n^2 in its stencil, so that the spline is positive where n^2 is. Beyond the grid n^2 is extrapolated
+// linearly, but never below a quarter of its value at the border. The coefficient of voxel (i, j, k) is at index
+// (i + 2, j + 2, k + 2) of an array that is longer by four than the grid along each axis.
 
 #pragma once
 #include "Refraction/Index/IndexShared.h"
@@ -39,7 +39,8 @@ static float squared_index_of(const IndexGrid* grid, const __global float* ior, 
   return fmax(value, least);
 }
 
-#define OVERSHOOT 0.125f // maximum excess of a coefficient over the range of its stencil, relative
+// A coefficient is limited to (1 - OVERSHOOT) times the least and (1 + OVERSHOOT) times the largest n^2 of its stencil.
+#define OVERSHOOT 0.125f
 
 // Minimum and maximum without the checks for NaN of fmin and fmax.
 static float lesser_of(float a, float b)

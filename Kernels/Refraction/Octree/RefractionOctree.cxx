@@ -163,7 +163,8 @@ public:
     });
   }
 
-  /// Divides nodes in which one more quantity varies by more than its tolerance. Collective.
+  /// Divides the nodes in which a quantity varies by more than its tolerance, besides those that earlier quantities
+  /// have divided. Collective.
   /// @param values      the quantity, one value per voxel of the block
   /// @param tolerances  tolerance for each level, which must not increase with the level; [0] is not used
   void Restrict(const float* values, const char* what, const std::vector<float>& tolerances)
@@ -193,8 +194,9 @@ public:
   }
 
 private:
-  /// Nodes of one level. In `Pyramid`, the levels up to the shared level have the nodes of this rank's box; they are
-  /// followed by the levels from the shared level on with the nodes of the domain.
+  /// Nodes of one level. The shared level is the highest one that a rank computes from its own box. `Pyramid` holds the
+  /// levels up to the shared one with the nodes of this rank's box, then the levels from the shared one on (which is
+  /// thus present twice) with the nodes of the domain.
   struct NodesOfLevel
   {
     int level;               ///< number of the level, 0 for voxels
@@ -287,13 +289,13 @@ private:
 
   Device& TheDevice;
   const Domain& TheDomain;
-  PyramidLayout Layout;              ///< levels of the domain
+  PyramidLayout Layout;              ///< number of nodes along each axis, for each level of the domain's pyramid
   PyramidBlocks Blocks;              ///< decomposition of the pyramid among ranks
   std::vector<NodesOfLevel> Pyramid; ///< levels of the pyramid, from the voxels up
   std::size_t NodeCount = 0;         ///< number of nodes of all levels above 0
   Buffer<cl_float2> Ranges;          ///< (min, max) of each node for the quantity that is processed
   Buffer<cl_uchar> Nodes, Levels;
-  bool Restricted = false; ///< whether `Levels` hold levels, from an earlier quantity
+  bool Restricted = false; ///< whether `Levels` already holds the levels that earlier quantities allow
 };
 }
 

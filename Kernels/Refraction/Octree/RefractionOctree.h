@@ -39,7 +39,7 @@ struct Octree
   int topLevel = 0;                 ///< highest possible level, ceil(log2(longest edge in voxels))
   double seconds = 0.0;             ///< duration of BuildOctree, s
   std::string device;               ///< name of the device that was used; empty if none was needed
-  std::vector<std::string> leftOut; ///< reasons for skipped steps, for the user
+  std::vector<std::string> leftOut; ///< which parts of the computation were skipped and why, for the user
 };
 
 /// Builds the octree. Collective. Each rank builds three levels in its block; the higher levels, which have a 512th

@@ -55,7 +55,8 @@ inline float gradient_noise(float3 position, uint seed)
   return clamp(mix(value[0], value[1], fade.z), -1.0f, 1.0f);
 }
 
-// The kernels have one work-item per voxel (index i in the slab), and one row of work-items per run of the slab.
+// The kernels have one work-item per voxel (index i in the slab); the second dimension of work-items counts the slab's
+// runs of consecutive voxels (MaterialSlab).
 
 // Adds a material to a voxel by its volume fraction `part`. The mean cosine is weighted by sigma_s (numerics.md, Eq.
 // (3e)) and updated with every material, so that a voxel of a single material gets exactly the material's g.
@@ -78,7 +79,8 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
 }
 
 // Adds one material to the voxels of a slab. A voxel of a single material gets exactly the material's values.
-//   inside    count of each voxel inside the material in units, including fractions of samples: 0 to slab.samples
+//   inside    for each voxel, the samples inside the material, in units of 1 / UnitsOfSample of a sample: 0 to
+//             slab.samples
 //   covered   sum of the counts of all materials added so far
 //   ior       n in the entire box; the other arrays cover the slab
 __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const ushort* inside, __global float* covered,

@@ -11,7 +11,8 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum length in units: a sum of three products of three coordinates then fits 63 bits.
+/// Maximum length of grid and meshes together, in units of the lattice: a sum of three products of three coordinates
+/// then fits 63 bits.
 constexpr double Longest = 1 << 20;
 constexpr int TileColumns = 64;
 constexpr int TileRows = 16;
@@ -28,8 +29,8 @@ struct Interval
   double low, high;
 };
 
-/// Interval of the coordinate `across` that a triangle covers between two values of `up`, slightly widened for
-/// rounding.
+/// Interval that a triangle covers along the axis columns.across where its coordinate along the axis columns.up is
+/// between `low` and `high`; widened by one unit of the lattice for rounding.
 Interval AcrossBetween(
   const std::array<const SampleLattice::Point*, 3>& corners, const SampleColumns& columns, double low, double high)
 {
@@ -152,7 +153,8 @@ LatticeMesh::LatticeMesh(Device& device, const SampleLattice& lattice, const Tri
 std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int firstRow, int endRow) const
 {
   SampleBox rows;
-  rows.first[columns.axis] = 0; // beyond the ends of the columns, crossings count as at the ends
+  // An empty range along the columns means no limit: a crossing beyond a column's end counts as a crossing at its end.
+  rows.first[columns.axis] = 0;
   rows.end[columns.axis] = 0;
   rows.first[columns.across] = 0;
   rows.end[columns.across] = columns.count[0];
@@ -177,7 +179,8 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, const Sam
     {
       continue;
     }
-    // A sample at the upper end is treated as if it were moved slightly further up, outside the triangle.
+    // A sample exactly at the triangle's upper end (`high`) is excluded: the infinitesimal move of samples
+    // (Voxelization.cl) takes it out of the triangle.
     const auto range = [&](int axis, int limitLow, int limitHigh) {
       const auto [low, high] = std::minmax({ (*corners[0])[axis], (*corners[1])[axis], (*corners[2])[axis] });
       return std::array<int, 2>{ std::max(FirstSampleFrom(low, pitch), limitLow),

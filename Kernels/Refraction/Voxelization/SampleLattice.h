@@ -29,7 +29,7 @@ public:
   SampleLattice From(const std::array<int, 3>& voxel) const;
 
   int Samples() const { return this->SamplesOfVoxel; } ///< number of fine voxels per edge of a voxel
-  /// Number of units per edge of a fine voxel: a power of 2, at least 2.
+  /// Number of lattice units per edge of a fine voxel: a power of 2, at least 2.
   int Pitch() const { return this->UnitsOfSample; }
 
   /// Points in units of the lattice, rounded.
@@ -58,7 +58,7 @@ struct SampleColumns
   int samplesOfVoxel;       ///< number of samples per edge of a voxel
   int samples;              ///< number of samples in a column
   std::array<int, 2> count; ///< number of columns per row, and number of rows
-  int pitch;                ///< distance of samples in units; the first sample is half a pitch inside the grid
+  int pitch;                ///< distance of samples, in lattice units; the first one is half a pitch inside the grid
 };
 
 /// A box of samples (fine voxels): indices from `first` to below `end` along each axis.
@@ -76,12 +76,12 @@ public:
   const Buffer<cl_int>& Points() const { return this->DevicePoints; } ///< 3 coordinates per point, units of the lattice
   const Buffer<cl_int>& Triangles() const { return this->DeviceTriangles; } ///< 3 point indices per triangle
 
-  /// Tiles of triangles in which mark_crossings (Voxelization.cl) looks for crossings with the columns of some rows.
-  /// Each tile covers few enough columns that a large triangle does not keep one work-item busy while the others
-  /// wait.
+  /// Divides the triangles into tiles for the kernel mark_crossings (Voxelization.cl), one work-item each. A tile is a
+  /// triangle with a rectangle of columns, in the given rows, that it may cross; it has few enough columns that a large
+  /// triangle does not keep one work-item busy while the others wait.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, int firstRow, int endRow) const;
 
-  /// Tiles of triangles in which mark_crossings looks for crossings in a box of samples.
+  /// Divides the triangles into tiles, as above, of the columns in a box of samples.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, const SampleBox& box) const;
 
 private:

@@ -16,10 +16,10 @@
 #include "Refraction/Voxelization/Voxelization.cl"
 
 #define SAMPLES_OF_VOXEL (SAMPLES * SAMPLES * SAMPLES)
-// Units of corrections per sample; corrections of 80 surfaces through a voxel fit an int at 16 samples per edge, of
-// more surfaces at fewer samples.
+// Corrections of a voxel's volume are integers, in units of 1 / UNITS of a sample's volume. At 16 samples per edge the
+// corrections of 80 surfaces through a voxel fit an int; with fewer samples, those of more surfaces.
 #define UNITS 65536
-// Units of the output counts per sample, equal to UnitsOfSample in C++.
+// Output counts are integers, in units of 1 / UNITS_OF_COUNT of a sample; equal to UnitsOfSample in C++.
 #define UNITS_OF_COUNT (65535 / SAMPLES_OF_VOXEL)
 #define LEAST_WEIGHT (1.0f / 1024.0f)
 
@@ -70,8 +70,8 @@ inline int side_of(
   return inBefore == inAfter ? turned : inBefore ? 1 : -1;
 }
 
-// Samples of a slab. `bits`: inside the mesh that is measured; `claimed`: inside later meshes; `taken`: as in
-// refine_counts. claimed and taken are read only if there are several meshes.
+// Samples of a slab. `bits`: one bit per sample, 1 inside the mesh that is measured; `claimed`: the same, 1 inside
+// later meshes; `taken`: as in refine_counts. claimed and taken are read only if there are several meshes.
 typedef struct
 {
   const SampleRows* rows;
@@ -81,18 +81,20 @@ typedef struct
   int samples; // number of samples in a column
 } mesh_samples;
 
-// Correction of a voxel by one crossing, returned as (index of the voxel in the slab, or -1 if it is outside;
-// correction in UNITS per sample).
-//   excess      `excess` of the sheet in this column, see sheet
-//   scale       UNITS of correction per distance
+// Correction of a voxel's volume by one crossing. Returns the index of the voxel in the slab, or -1 if it is outside,
+// and the correction in 1 / UNITS of a sample.
+//   excess      position of the crossing in the column across, up: `excess` of `sheet` there
+//   scale       factor that converts `twice`, below, to a correction
 //   turned      as in side_of
 inline int2 correction_at(
   const mesh_samples* mesh, const sheet* s, long excess, int across, int up, float scale, int turned)
 {
   const int number = samples_before(excess, s->step, mesh->samples);
-  // Distance from the sample after the crossing back to the crossing, <= 0.
+  // Position of the crossing relative to the sample after it, <= 0. Distances are multiplied by ALONG(normal), so that
+  // the distance of two samples is s->step.
   const long rest = excess - s->tie - number * s->step;
-  const long twice = 2 * rest + s->step; // twice the distance from the border between both samples
+  // Twice the position of the crossing relative to the border between the fine voxels of the samples before and after.
+  const long twice = 2 * rest + s->step;
   const int cell = number - (twice < 0 ? 1 : 0);
   if (rest < -s->step || rest > 0 || cell < 0 || cell >= mesh->samples)
   {
@@ -119,7 +121,7 @@ inline int2 correction_at(
 //   tiles          as in mark_crossings
 //   samples, bits, claimed, taken  as in mesh_samples
 //   orientation    1, -1 or 0, OrientedMesh::orientation
-//   corrections    output, one value per voxel of the slab, x fastest, in UNITS per sample
+//   corrections    output, one value per voxel of the slab, x fastest, in 1 / UNITS of a sample
 __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
   __global const int* triangles, int pitch, int samples, SampleRows rows, __global const uint* bits,
   __global const uint* claimed, __global const ushort2* taken, int orientation, __global int* corrections)
@@ -140,7 +142,7 @@ __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __gl
   const mesh_samples mesh = { &rows, bits, claimed, taken, samples };
   const float scale = weight * (0.5f * UNITS) / (float)s.step;
   const int tileColumns = tile.w >> 16, tileRows = tile.w & 0xffff;
-  int2 sum = (int2)(-1, 0); // index of the voxel of the last crossings, and its correction not yet added
+  int2 sum = (int2)(-1, 0); // index of the last voxel with crossings, and its correction that is still to be added
   for (int j = 0; j < tileRows; ++j)
   {
     long v0 = s.e0.value, v1 = s.e1.value, v2 = s.e2.value, excess = s.excess;
@@ -190,14 +192,15 @@ inline long divided(long number, long by)
   return (number + (number < 0 ? -by : by) / 2) / by;
 }
 
-// Converts counts of samples to units of 1 / UNITS_OF_COUNT of a sample, including the corrections.
+// Converts counts of samples to units of 1 / UNITS_OF_COUNT of a sample, and adds the corrections.
 //
-// With several meshes, the fractions of a sample by which the borders of later meshes reduce or enlarge the rest of
-// the voxel are distributed: a mesh gets a share in proportion to its fraction of the samples that are left. If no
-// samples are left, the mesh gets the units of its samples in the voxel, claimed ones included, less the fraction of
-// the later meshes' units that these samples are of all samples of the voxel.
-//   taken    samples and units of later meshes in each voxel; read only if there are several meshes
-//   counts   counts of the slab's voxels: samples on input, units on output
+// With several meshes, the units that later meshes leave in a voxel differ from those of the samples that they leave,
+// because the later meshes' counts are corrected as well. The difference is distributed: a mesh gets a share of it in
+// proportion to its fraction of the samples that are left. If later meshes have claimed all samples but not all units,
+// the mesh gets the fraction of the units left that is its fraction of all samples of the voxel, claimed ones included.
+//   taken    for each voxel, the samples and the units of later meshes; read only if there are several meshes. The
+//            mesh's own are added
+//   counts   counts of the slab's voxels: in samples on input, in units on output
 __kernel void refine_counts(SampleRows rows, __global const int* corrections, __global ushort2* taken,
   __global const uint* bits, __global ushort* counts)
 {

@@ -86,17 +86,18 @@ std::vector<int> MergedPoints(const std::vector<Point>& points)
   return merged;
 }
 
-/// Use of an edge by one triangle; EdgeUses lists it with the end of the lower index.
+/// Use of an edge by one triangle. The edge's end with the lower point index is not stored: EdgeUses groups uses by it.
 struct EdgeUse
 {
-  int higher;   ///< index of that end of the edge that has the higher index
+  int higher;   ///< point index of the edge's other end, the higher one of the two
   bool upwards; ///< whether the triangle traverses the edge from its lower to its higher index
 };
 
-/// Uses of all edges, sorted by the lower index of their ends.
+/// Uses of all edges, sorted by the lower point index of the edge's two ends.
 struct EdgeUses
 {
-  std::vector<std::size_t> begin; ///< index of each point's first use, and one past the last use
+  /// For each point, the index in `uses` of the first edge whose lower end it is; then the number of uses.
+  std::vector<std::size_t> begin;
   std::vector<EdgeUse> uses;
 };
 

@@ -48,7 +48,7 @@ inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
   const long above = (long)ACROSS(to) - ACROSS(from);
   edge e;
   e.value = above * (up - UP(from)) + right * (across - ACROSS(from));
-  // For a column on the edge, the infinitesimal move of its samples decides.
+  // A column exactly on the edge is on the inner or the outer side according to the infinitesimal move of its samples.
   e.value -= right > 0 || (right == 0 && above > 0) ? 0 : 1;
   e.across = right * pitch;
   e.up = above * pitch;
@@ -113,7 +113,7 @@ typedef struct
   long3 normal;    // normal of the plane, reversed if necessary to point along the columns
   int leaving;     // 1: a line along a column leaves the mesh at the triangle; -1: it enters
   long step;       // increment of `excess` from sample to sample
-  long excess;     // distance, times ALONG(normal), of the column's first sample before the plane, plus `tie`
+  long excess;     // ALONG(normal) times the distance from the column's first sample forward to the plane, plus `tie`
   int tie;         // 1 if a sample on the plane counts as before it, else 0
   long excessAcross, excessUp; // decrements of `excess` to the next column and to the next row
 } sheet;
@@ -135,7 +135,7 @@ inline int start_sheet(
     return 0; // no column crosses it, after the infinitesimal move of the samples
   }
   const int turned = ALONG(normal) > 0 ? 1 : -1;
-  s->leaving = axis == 1 ? -turned : turned; // for this axis, `across` and `along` are exchanged
+  s->leaving = axis == 1 ? -turned : turned; // BY_COLUMNS exchanges x and y for axis 1, which reverses the orientation
   normal *= turned;
   s->normal = normal;
   const long3 facing = FROM_COLUMNS(normal, axis);
@@ -337,7 +337,7 @@ __kernel void fill_columns(int columnCount, int columns, int words, int from_abo
 // Counts the samples of each voxel that are inside the mesh and belong to no later mesh. One work-item per column of
 // voxels.
 //   claimed   samples of later meshes, in the layout of `bits`; the mesh's samples are added. Used only if how.claims
-//   counts    output: counts of the slab's voxels, times how.units
+//   counts    output: number of samples counted in each voxel of the slab, times how.units
 __kernel void count_samples(
   SampleCounts how, __global const uint* bits, __global uint* claimed, __global ushort* counts)
 {

@@ -197,7 +197,7 @@ SampleColumns Along(int axis, const Grid& grid, const SampleColumns& like)
 
 /// Refines counts of samples in voxels to a fraction of a sample, from the exact position of the surface between two
 /// samples (numerics.md, section 11.1). Occupancy from samples alone has terraces where a surface is nearly parallel
-/// to layers of voxels; these are wider than the smoothing of the index, and bend light.
+/// to layers of voxels; these are wider than the filter that smooths the index, and would bend rays.
 class SurfaceFraction
 {
 public:
@@ -230,8 +230,8 @@ public:
     this->ClaimSamples = kernel("claim_samples", 0);
   }
 
-  /// Prepares the measurement of a slab. Must be called before the slab's last mesh is measured, which is the first one
-  /// to be measured.
+  /// Prepares the measurement of a slab. Must be called once per slab, before the meshes are measured in it, which is
+  /// done from the last mesh to the first.
   void Begin()
   {
     if (this->Several)
@@ -272,9 +272,9 @@ public:
     }
   }
 
-  /// Queues the conversion of the slab's counts of the last measured mesh from whole samples to units
-  /// (UnitsOfSample), with the measured difference. Also marks as claimed those of the mesh's samples in the slab's
-  /// rows that lie outside its voxels.
+  /// Queues the conversion of the slab's counts for the mesh that was measured last, from whole samples to units of
+  /// 1 / UnitsOfSample of a sample, and the addition of the measured difference. Also marks as claimed the mesh's
+  /// samples in the rows of samples beside the slab's voxels (SampleSlab), which count_samples does not reach.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts)
   {
     const SampleRows rows = this->RowsOf(slab);
@@ -317,9 +317,11 @@ private:
   std::array<cl::Kernel, 3> MeasureAlong;
   cl::Kernel RefineCounts, ClaimSamples;
   std::array<TilesOnDevice, 3> Tiles;
-  /// Difference between volume and count of each voxel of the slab, in UNITS of SurfaceFraction.cl.
+  /// For each voxel of the slab, the mesh's volume less its count of samples, in 1 / UNITS of a sample
+  /// (SurfaceFraction.cl).
   Buffer<cl_int> Corrections;
-  Buffer<cl_ushort2> Taken; ///< samples and units of later meshes in each voxel of the slab
+  /// For each voxel of the slab, what later meshes hold: samples, and units of 1 / UnitsOfSample of a sample.
+  Buffer<cl_ushort2> Taken;
 };
 
 constexpr int LargestSampleCount = 16;
@@ -425,8 +427,9 @@ private:
   /// Number of rows of samples that are needed on either side of a slab.
   static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
 
-  /// Winding numbers of a mesh at the samples of the own voxels.
-  /// @param rows  flag of each row of own voxels: nonzero if the row may have odd samples
+  /// Winding numbers of a mesh at the samples of the voxels Counted.own.
+  /// @param rows  flag of each row of these voxels: nonzero if it may have odd samples, whose winding number is neither
+  ///   0 nor 1
   WindingNumbers WindingsOf(const OrientedMesh& mesh, const std::vector<cl_int>& rows, const Monitor& monitor) const
   {
     const VoxelBox& own = this->Counted.own;
@@ -520,7 +523,7 @@ private:
   Buffer<cl_uint> Bits, Sums, Claimed;
   Buffer<cl_ushort> Counts;
   std::optional<SurfaceFraction> Fractions; ///< present if the settings request fractions of samples
-  /// For each mesh, a flag per row of voxels: nonzero where FindWindings has to look for odd samples.
+  /// For each mesh, a flag per row of voxels: nonzero where FindWindings has to look for odd samples (WindingNumbers).
   Buffer<cl_int> Odd;
 };
 }

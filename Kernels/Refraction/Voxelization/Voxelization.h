@@ -44,7 +44,8 @@ struct VoxelizationSettings
   std::size_t slabBytes = std::size_t(16) << 20;
 };
 
-/// Number of units in which one sample is counted: counts of a voxel, with fractions of samples, fit 16 bits.
+/// Number of units that one sample counts. Counts are integers in this unit, so that they can include fractions of a
+/// sample; the count of a voxel fits 16 bits.
 constexpr int UnitsOfSample(int samples)
 {
   return 65535 / (samples * samples * samples);
@@ -67,8 +68,8 @@ struct OrientedMesh
 struct SamplesInside
 {
   std::size_t mesh; ///< index of the mesh
-  /// Count of each voxel of the slab in units, 0 to samples^3 UnitsOfSample(samples), x fastest. Overwritten for the
-  /// next mesh.
+  /// Count of each voxel of the slab, in units of 1 / UnitsOfSample(samples) of a sample: 0 to samples^3
+  /// UnitsOfSample(samples), x fastest. Overwritten for the next mesh.
   const Buffer<cl_ushort>& counts;
 
   /// Position of the slab's voxels in the box: `runs` runs of `length` consecutive voxels; the first run begins at

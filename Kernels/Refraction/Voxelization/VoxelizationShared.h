@@ -12,7 +12,7 @@ typedef struct
   ulong first, length, stride; ///< first voxel, voxels per run, distance of runs; in the box
   int nx, ny;                  ///< number of voxels of the box along x and y
   int x0, y0, z0;              ///< first voxel of the box in the grid
-  float samples;               ///< count of a voxel that is entirely inside, in units (UnitsOfSample)
+  float samples;               ///< count of a voxel that is entirely inside: samples^3 UnitsOfSample
 } MaterialSlab;
 
 typedef struct
@@ -40,12 +40,13 @@ typedef struct
 /// Parameters of the kernel count_samples.
 typedef struct
 {
-  int voxels;            ///< number of voxels per column
-  int columns, rows;     ///< numbers of columns of voxels per row, and of rows
-  int words;             ///< number of 32-bit words per column of samples
-  int skipped;           ///< number of rows of samples in the buffer before those of the slab's voxels
-  int claims;            ///< 1: samples that belong to later meshes are not counted
-  int units;             ///< number of units in which one sample is counted
-  int along, across, up; ///< distances of the counts of neighbouring voxels along these axes of the columns
+  int voxels;        ///< number of voxels per column
+  int columns, rows; ///< numbers of columns of voxels per row, and of rows
+  int words;         ///< number of 32-bit words per column of samples
+  int skipped;       ///< number of rows of samples in the buffer before those of the slab's voxels
+  int claims;        ///< 1: samples that belong to later meshes are not counted
+  int units;         ///< number that is added to a voxel's count for each sample: 1 or UnitsOfSample
+  /// Distance, in the array of counts, between voxels that are neighbours in a column, in a row, and in two rows.
+  int along, across, up;
 } SampleCounts;
 SHARED_END
