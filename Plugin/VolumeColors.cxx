@@ -42,7 +42,8 @@ bool IsColoredByThem(vtkSMProxy* representation)
   return name && std::strcmp(name, HintOf(representation)->GetAttributeOrEmpty("array")) == 0;
 }
 
-/// Unit distance of the shown volume's alpha, from the field data that the hint names, in units of length.
+/// Length over which alpha is the opacity of the shown volume (its unit distance), from the field data that the hint
+/// names.
 /// @return 0 if the field data are missing
 double DistanceOf(vtkSMProxy* representation)
 {

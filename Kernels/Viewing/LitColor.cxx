@@ -17,14 +17,16 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t VoxelsOfThread = 16384; ///< smallest number of voxels per thread
-constexpr int ColumnsOfView = 64;             ///< largest number of columns along each edge of a view
+/// Largest number of pixels along each edge of a view from which the exposure is determined: a parallel projection
+/// along an axis of the grid, in which a pixel shows one column of voxels.
+constexpr int ColumnsOfView = 64;
 /// Smallest value of k sigma_t distance of the most opaque voxel (k, distance: LitColor.h), so that 8 bits resolve
 /// opacities.
 constexpr double ResolvedDepth = 2.0;
-/// k is chosen so that blending gives the right display value for this fraction of the largest radiance that a ray
-/// shows of a voxel: the 1/4 of numerics.md, Eq. (112d).
+/// The factor k of LitColor.h is chosen so that a voxel blended over black has the right display value at this fraction
+/// of the largest radiance that a ray can receive from it: the 1/4 of numerics.md, Eq. (112d).
 constexpr double PartOfVeil = 0.25;
-constexpr double AsGoodAsOpaque = 0.95; ///< opacity from which on a voxel counts as opaque
+constexpr double AsGoodAsOpaque = 0.95; ///< opacity of a column of voxels from which on it is taken as 1
 
 /// Source function of the voxels: (sigma_s fluence / (4 pi) + emission) / sigma_t.
 struct SourceFunction
@@ -117,8 +119,8 @@ SeenColumn LookAlong(const SourceFunction& source, double edge, std::size_t firs
   return seen;
 }
 
-/// Calls act(u, v) for those columns of a view along an axis that lie in a box. A view shows a regular subset of the
-/// grid's columns.
+/// Calls act(u, v) for the columns of voxels along an axis that a view (ColumnsOfView) shows and that lie in a box. A
+/// view shows a regular subset of the grid's columns.
 template <class Act>
 void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Act& act)
 {
@@ -138,7 +140,8 @@ void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Ac
   }
 }
 
-/// Radiance and transmittance, within this rank's block, of each column of a view, seen from below and from above.
+/// Radiance and transmittance, within this rank's block, of each column that a view along the axis shows, seen from the
+/// lower and from the upper end of the axis.
 std::vector<SeenColumn> SeenInBlock(const Domain& domain, int axis, const SourceFunction& source)
 {
   const Grid grid = domain.OwnGrid();
@@ -172,7 +175,7 @@ SeenPixels BehindEachOther(
   std::sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b) { return partition.blocks[a].first[axis] < partition.blocks[b].first[axis]; });
   const std::size_t width = static_cast<std::size_t>(partition.whole.size[AcrossAxis(axis).u]);
-  // By position in the plane across the axis: the column seen from below and from above.
+  // For each position in the plane across the axis, the column there as seen from the lower and from the upper end.
   std::map<std::size_t, std::array<SeenColumn, 2>> columns;
   for (int side = 0; side < 2; ++side)
   {

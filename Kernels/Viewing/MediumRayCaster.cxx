@@ -33,8 +33,8 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
     {
       const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
       const float* row = ior.values + grid.IndexOf({ 0, j, k });
-      // All voxels of a row on a y or z face are on the box's faces; of any other row, only its two ends, on the x
-      // faces.
+      // Of a row that lies on a y or z face of the box all voxels are examined; of another row only the first and the
+      // last voxel, which lie on the x faces.
       const int step = wholeRow ? 1 : std::max(size[0] - 1, 1);
       for (int i = 0; i < size[0]; i += step)
       {
@@ -161,7 +161,8 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Fil
 {
   if (this->Traits.PacksOnce())
   {
-    this->PrepareSources({}, {}); // now, because the caller's arrays may not outlive the constructor
+    // Sources are computed here and not in Render, because the caller's arrays may not outlive the constructor.
+    this->PrepareSources({}, {});
   }
 }
 
@@ -249,7 +250,8 @@ void MediumRayCaster::PackForShadowRays()
   this->Samples.Pack(Packing::ForShadowRays, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
 }
 
-/// Completes the sources for camera rays, once the light of all lamps is known: angular moments, and packing.
+/// Completes the sources for camera rays, once the light of all lamps is known: evaluates the angular moments in the
+/// direction of the camera, and packs the samples.
 void MediumRayCaster::FinishSources(const Camera& camera)
 {
   if (this->Traits.ShowsMoments())
@@ -257,7 +259,7 @@ void MediumRayCaster::FinishSources(const Camera& camera)
     this->Sources.SeeMoments(camera);
   }
   this->Samples.Pack(Packing::Scattered, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
-  this->Omitted = this->LeftOutNow(); // not before, since empty bricks are known only now
+  this->Omitted = this->LeftOutNow(); // again: whether there are empty bricks is known only after packing
   this->SourcesReady = true;
   if (this->Traits.PacksOnce())
   {
@@ -290,7 +292,7 @@ Picture MediumRayCaster::Render(
 {
   Require(!block || this->CastsBlocks(),
     "Rays that bend or meet a table cannot be cast through blocks of the medium one by one.");
-  this->Rays.PassOf(camera, block, false); // called for its error if the camera is invalid
+  this->Rays.PassOf(camera, block, false); // throws if the camera is invalid; the result is not used
   Report(monitor, 0.0);
   const bool prepares = this->NeedsSources();
   if (prepares)

@@ -44,8 +44,8 @@ double FilmicInverse(double y)
   return (-b + std::sqrt(b * b + 0.56 * a * y)) / (2.0 * a);
 }
 
-/// Table of display values, 0 to 255, over exposed radiance. The index consists of the leading bits of the float: 4096
-/// entries per factor of two between Darkest and Brightest.
+/// Table of the display value, 0 to 255, as a function of exposed radiance. The index consists of the leading bits of
+/// the float: 4096 entries per factor of two between Darkest and Brightest.
 class ScreenValues
 {
 public:
@@ -99,8 +99,8 @@ void Check(const ToneMapping& settings)
 
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
-  constexpr float Parts = 16.0f; // counts of a fully covered pixel
-  constexpr int Shift = 23 - 8;  // low bits of a float that do not enter the index of its class
+  constexpr float Parts = 16.0f; // what a fully covered pixel adds to the count of its class of luminance
+  constexpr int Shift = 23 - 8;  // number of low bits of a luminance (float) that do not distinguish classes
   std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;
   InThreads(radiance.size() / 3, PixelsOfThread, [&](std::size_t begin, std::size_t end) {

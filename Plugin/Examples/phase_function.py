@@ -19,7 +19,8 @@ from paraview.vtk.vtkRenderingCore import vtkWindowToImageFilter
 from paraview.vtk.vtkViewsContext2D import vtkContextView
 
 LoadPlugin(os.environ["TYNDALL_PLUGIN"], remote=True, ns=globals())
-# As published: directions of equal weights, point values of the phase function, no repair.
+# As published: directions of equal weights, point values of the phase function, and no correction (Repaired) that makes
+# the sum of terms conserve power.
 PUBLISHED = dict(DirectionSet=2, Repaired=0)
 # Colours of Okabe and Ito, which colour-blind readers can tell apart.
 COLORS = ((0, 114, 178), (230, 159, 0), (0, 158, 115), (213, 94, 0))

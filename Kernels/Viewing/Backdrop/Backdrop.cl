@@ -110,7 +110,7 @@ inline face_place face_behind(real3 p, real3 direction, int4 size)
 // Radiance from behind the medium: for rays of the mask `leaves` that leave the box through a reflecting face, the
 // radiance of that face; for all other rays, `behind`.
 //   p     a point, in voxels, from which the ray leaves the box in a straight line
-//   size  voxels of the box whose faces the table describes
+//   size  number of voxels of the box along each axis; `backdrop` has the radiance of the cells of its faces
 inline rgb ground_or_behind(
   const ViewInfo* v, __global const float4* backdrop, real3 p, real3 direction, integer leaves, int4 size, rgb behind)
 {
@@ -118,7 +118,8 @@ inline rgb ground_or_behind(
   const face_place to = face_behind(p, back, size);
   const integer is_ground = leaves & (((integer)v->environment.z >> to.face & (integer)1) != (integer)0);
 #if SHOWN == 2
-  // Reflecting faces are black in the pass for unscattered light: the other pass already shows their light.
+  // A picture of angular moments is the sum of two passes, for scattered and for unscattered light. Reflecting faces
+  // are black in the latter, as the former already shows their light.
   const rgb seen = { (real)0.0f, (real)0.0f, (real)0.0f };
 #else
   const rgb seen = between_four(backdrop + v->backdrop.y, to.at, to.at + to.row, to.a, to.b);

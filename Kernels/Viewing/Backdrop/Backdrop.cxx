@@ -76,9 +76,9 @@ std::vector<cl_float4> GroundLight(const Grid& grid, const SolvedLight& light)
   return WithBorders(grid, cells);
 }
 
-/// Radiance of a white table on a face of the box, W / (length^2 sr), divided by n^2: irradiance by the light in the
-/// voxels at the face, divided by pi. One value per cell of the face, with a border of one cell that repeats the
-/// outermost cells. Computed from fluence and mean direction by numerics.md, Eq. (111).
+/// Radiance, divided by n^2, that a white (diffuse reflectance 1) table reflects, W / (length^2 sr): irradiance by the
+/// light in the voxels at the table's face of the box, divided by pi. One value per cell of the face, with a border of
+/// one cell that repeats the outermost cells. Computed from fluence and mean direction by numerics.md, Eq. (111).
 /// @param ior        refractive index; null: 1
 /// @param fromBelow  whether light may enter through the table's face, because there is an environment
 std::vector<cl_float4> TableLight(
@@ -113,14 +113,15 @@ std::vector<cl_float4> TableLight(
   return lit;
 }
 
-/// Optical thickness of a voxel at which the correction SurfaceLight is complete, in units of ThickAtSurface.
+/// The correction SurfaceLight begins where the optical thickness of a voxel at the face is ThickAtSurface, and is
+/// fully applied from this multiple of it on.
 constexpr double AllOfIt = 2.0;
-/// Optical thickness, in mean free paths, of the medium behind a cell at which the correction SurfaceLight begins and
-/// is complete.
+/// Optical thickness, in mean free paths, of the medium behind a cell of a face at which the correction SurfaceLight
+/// begins (Translucent) and from which on it is fully applied (Opaque).
 constexpr double Translucent = 1.5, Opaque = 3.0;
 constexpr double EnoughLeft = 1e-5; ///< transmittance at which the march for the correction ends
 constexpr int MostSteps = 200;
-/// Smallest step of the march, voxels; smaller steps give equal results.
+/// Smallest step of the march for the correction, voxels; smaller steps give equal results.
 constexpr double FinestStep = 0.1;
 
 /// Extinction and source of one channel, as the march of rays uses them.
@@ -165,7 +166,8 @@ double PartAt(const Medium& medium, const BoxFaceCell& cell, int channel)
   return thick * Between(Translucent, Opaque, all);
 }
 
-/// Coefficients of the three voxels behind a cell of a face, for one channel; the last voxel is continued inwards.
+/// Coefficients of the first three voxels behind a cell of a face, for one channel. Deeper inside, the medium is taken
+/// to have the coefficients of the third voxel.
 struct Column
 {
   std::array<Coefficients, 3> voxels;

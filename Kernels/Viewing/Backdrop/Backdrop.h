@@ -18,12 +18,13 @@ namespace tyndall
 /// @param face  0 to 5: -x, +x, -y, +y, -z, +z
 std::array<int, 2> FaceSize(const Grid& grid, int face);
 
-/// Radiance that rays receive where they leave or enter the medium: environment and sky, ground, table, and correction
-/// for light at the surface of optically thick voxels.
+/// Radiance that rays receive where they leave or enter the medium: of environment and sky, of reflecting faces of the
+/// box (the ground), of the table (the face ViewSettings::tableFace, with diffuse and specular reflectance), and the
+/// correction for light at the surface of optically thick voxels.
 class Backdrop
 {
 public:
-  /// Computes the tables and copies them to the device.
+  /// Computes the tables of numbers from which kernels interpolate this radiance, and copies them to the device.
   /// @throws DeviceError if the tables do not fit the device
   /// @param block  position of the medium in a larger grid; null: the medium is the whole domain
   Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
@@ -35,11 +36,11 @@ public:
   bool HasGround() const { return this->GroundBits != 0; }
   bool HasSurfaceLight() const { return this->HasSurface; }
 
-  /// All tables in one array, at the indices ViewInfo::backdrop; empty if there is none.
+  /// All tables of numbers in one array, at the indices ViewInfo::backdrop; empty if there is none.
   const Buffer<cl_float4>& Tables() const { return this->Cells; }
-  /// Sets the parameters of background, environment, reflecting faces and tables.
-  /// @param sharp  whether the pass is that for unscattered light: with moments, the environment then has its peaks
-  ///   only
+  /// Sets the parameters of background, environment and reflecting faces, and the indices of the tables.
+  /// @param sharp  whether the kernel renders the pass for unscattered light: if light is shown by angular moments,
+  ///   that pass shows only the peaks of the environment
   void Describe(const ViewSettings& settings, bool sharp, ViewInfo& view) const;
 
 private:

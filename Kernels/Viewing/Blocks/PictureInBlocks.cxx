@@ -14,7 +14,7 @@ namespace tyndall
 namespace
 {
 constexpr int TileEdge = 4; ///< edge, in pixels, of a square of pixels whose rays are adjacent in memory
-/// Value, in maxima over the ranks, of a rank without voxels: smaller than that of any rank with voxels.
+/// Value that a rank without voxels contributes to a maximum over the ranks: smaller than that of any other rank.
 constexpr double Unknown = -std::numeric_limits<double>::infinity();
 /// Relative tolerance within which the lights of all ranks must agree; each rank computes them for its own block.
 constexpr double MostApart = 1e-5;
@@ -53,7 +53,8 @@ void Add(const RayOnItsWay& ray, bool tells, Picture& picture)
   }
 }
 
-/// Sorts rays by kind and such that rays of neighbouring pixels are adjacent.
+/// Sorts rays: first the primary ones, then those reflected by the surface, then those mirrored by the table; within
+/// each group such that rays of neighbouring pixels are adjacent.
 /// @param width  width of the picture, pixels
 void InOrder(int width, std::vector<RayOnItsWay>& rays)
 {
@@ -128,8 +129,9 @@ std::vector<SmallLight> LightsOfAll(const Domain& domain, const std::vector<Smal
   require(counts[0] == Unknown || counts[0] == -counts[1]);
   std::vector<SmallLight> lights(counts[0] > Unknown ? static_cast<std::size_t>(counts[0]) : 0);
   const std::size_t numbers = NumbersOfLight * lights.size();
-  std::vector<double> most(
-    2 * numbers, Unknown); // maxima over the ranks of the lights' numbers, and of their negatives
+  // Maxima over the ranks of the numbers that describe the lights, then maxima of these numbers' negatives, which give
+  // the minima.
+  std::vector<double> most(2 * numbers, Unknown);
   for (std::size_t i = 0; own && i < numbers; ++i)
   {
     most[i] = reinterpret_cast<const float*>(own->data())[i];

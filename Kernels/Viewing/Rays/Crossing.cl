@@ -218,8 +218,8 @@ typedef struct
 } sample;
 
 #if PHASE
-// 4 pi times the phase function, averaged over light that is spread about its mean direction (numerics.md, section
-// 14.1), for scattering against v.
+// 4 pi times the phase function for scattering towards the eye, averaged over light that is spread about its mean
+// direction (numerics.md, section 14.1).
 //   v  unit vectors along the rays, away from the eye
 __attribute__((always_inline)) inline rgb scattered_towards_eye(
   const scenery* scene, const corners* at, int4 size, real3 v)

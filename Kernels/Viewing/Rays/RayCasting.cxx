@@ -263,8 +263,8 @@ std::size_t RayCasting::MostSplitOff() const
 std::size_t RayCasting::CountThatFits() const
 {
   const std::size_t limit = this->TheDevice.MemoryLimit(), taken = this->TheDevice.BytesInUse();
-  // Largest number of rays per pixel. Each of them also needs space for the rays that may be split off it, hence the
-  // square below.
+  // Largest number of rays per pixel: the primary one and those split off it. Each of them, when it is marched, also
+  // needs space for as many rays that may be split off it: so memory per pixel is `kinds` squared.
   const std::size_t kinds = 1 + this->MostSplitOff();
   return std::max<std::size_t>((limit - std::min(taken, limit)) / (4 * kinds * kinds * sizeof(RayOnItsWay)), 1);
 }

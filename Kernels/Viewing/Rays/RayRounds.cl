@@ -14,7 +14,8 @@
 // Largest number of rays that are split off one ray: by the surface and by the table.
 #define BORN(s) ((SURFACE > 0) + (s)->o->face.w)
 
-// Initialises the state of a ray that starts here; the caller sets `pixel`, `where`, `at`, `velocity` and `left`.
+// Initialises the state of a ray that is created in this block; the caller sets `pixel`, `where`, `at`, `velocity` and
+// `left`.
 inline void set_off(__global RayOnItsWay* ray, int kind, int state, int met, float entry_square, float far_depth)
 {
   ray->kind = kind;

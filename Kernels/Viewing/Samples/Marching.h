@@ -26,9 +26,9 @@ inline std::string StepOption(double longestSteps)
   return Define("MANY_STEPS", longestSteps > ManySteps);
 }
 
-/// Splits a grid of work, `rows` rows of `cells` cells, into batches: complete rows, or sections of a row where a row
-/// would run too long to be aborted.
-/// @param samples  largest number of samples per cell
+/// Splits the work of a kernel on a 2D grid, `rows` rows of `cells` cells, into batches: complete rows, or sections of
+/// a row where an entire row would run too long to be aborted.
+/// @param samples  largest number of samples of the medium that the kernel takes per cell
 /// @param from, to  progress that is reported at the start and at the end, in [0, 1]
 inline Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples, double from, double to)
 {

@@ -63,7 +63,7 @@ inline real henyey_greenstein(real square, real along)
 #if PHASE == 2
 // 4 pi times Schlick's function of mean cosine |b|, numerics.md, Eq. (108).
 //   square, along  as for henyey_greenstein
-//   rows  table of k/|b| over sqrt(1 - |b|)
+//   rows  table of k / |b| as a function of sqrt(1 - |b|), where k is the parameter of Schlick's function
 inline real schlick(real square, real along, __global const float* rows)
 {
   const real size = lesser(sqrt(square), (real)1.0f);
@@ -76,8 +76,9 @@ inline real schlick(real square, real along, __global const float* rows)
 #if PHASE == 5
 // 4 pi times a tabulated phase function, averaged over the light's directions and interpolated bilinearly.
 //   square, along  m.m and m.v, m the light's mean direction, v the ray's direction away from the eye
-//   rows  table with columns over the cosine c of the scattering angle, sqrt(1 - c) forwards and 2 - sqrt(1 + c)
-//         backwards, and rows of CosineRows + 2 entries over sqrt(1 - |m|)
+//   rows  table with a row for each of equidistant values of sqrt(1 - |m|). The CosineRows + 2 entries of a row are at
+//         equidistant values of a function of the cosine c of the scattering angle: sqrt(1 - c) for c > 0, else
+//         2 - sqrt(1 + c)
 inline real spread_rows(real square, real along, __global const float* rows)
 {
   const real size = lesser(sqrt(square), (real)1.0f);

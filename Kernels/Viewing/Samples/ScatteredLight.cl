@@ -111,7 +111,7 @@ __kernel void pack_samples(PackInfo info, __global const float* restrict absorpt
 #if BRICKED
   int3 sample;
   const int place = place_in_records();
-  // record 0, of all empty bricks, is zero
+  // 0 for record 0, which all empty bricks share: its samples are zero
   const float there = find_sample_in_brick(bricks, size, &sample) ? 1.0f : 0.0f;
 #else
   if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))

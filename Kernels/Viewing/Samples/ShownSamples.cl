@@ -51,7 +51,8 @@ inline float4 triple(__global const float* values, int voxel)
 //   samples  SHOWN 1: diffuse light times albedo; SHOWN 2: ratio of lamps' light scattered more than once to that
 //            scattered once; w: grey extinction
 //   beams    -ln of (lamps' light times albedo)
-//   info     components.straightOn 0: the extinction includes all scattering
+//   info     if its components.straightOn is 0, straight_on is not read, and the extinction includes all scattering;
+//            else it omits the fraction straight_on that the solver treated as unscattered
 __kernel void pack_shown(PackInfo info, __global const float* restrict absorption,
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict straight_on, __global const float* restrict diffuse,

@@ -74,8 +74,8 @@ VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& set
 
 VoxelBox KnownBox(const VoxelBox& own, const VoxelBox& held, const Grid& whole, const ViewSettings& settings)
 {
-  // Layers for the spline of n^2: a voxel centre beyond the point, the spline coefficients of its neighbours, and those
-  // of their neighbours.
+  // Layers of ghost cells for the gradient of n^2 at a point: one for interpolation between voxel centres, one because
+  // the spline at a centre needs its neighbours' coefficients, and one because a coefficient needs their neighbours' n.
   constexpr int OfSpline = 3;
   const double reach = ReachOfSplit(settings);
   const int layers = OfSpline + static_cast<int>(std::ceil(reach > 0.0 ? reach + VoxelsBesideSurface : 0.0));
@@ -130,8 +130,8 @@ std::vector<float> FacesOfBlock(
 
 namespace
 {
-/// Whether a camera ray can pass from block b into block a: tests whether rays can cross, in this direction, the plane
-/// that separates the blocks along each axis that has one.
+/// Whether a camera ray can pass from block b into block a: for each axis along which a plane separates the blocks,
+/// tests whether rays can cross the plane from b to a.
 bool CanHide(const GridBlock& b, const GridBlock& a, const Camera& camera)
 {
   for (int axis = 0; axis < 3; ++axis)

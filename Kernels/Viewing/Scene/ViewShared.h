@@ -11,9 +11,12 @@ enum
   SchlickRows = 1024,
   CosineRows = 2048,
   SpreadRows = 128,
-  AureoleColumns = 1024,     // columns of an aureole table, by cosine of the scattering angle
-  AureoleRows = 64,          // rows of an aureole table, by the square root of the optical length
-  AureoleDepth = 40,         // largest optical length of an aureole table
+  // An aureole table holds the light of a beam that was scattered forwards more than once (AureoleTable in
+  // SeenSources.h) as a function of the cosine of the scattering angle (columns) and of the square root of the optical
+  // length of scattering along the beam (rows); AureoleDepth is the largest optical length.
+  AureoleColumns = 1024,
+  AureoleRows = 64,
+  AureoleDepth = 40,
   SampleEdge = BrickEdge + 1 // number of samples along an edge of a brick of cells (SampleBricks)
 };
 
@@ -115,7 +118,7 @@ typedef struct
 
 enum
 {
-  // States and kinds of a RayOnItsWay.
+  // Values of RayOnItsWay::state (RayGoesOn to RayHasEnded) and of RayOnItsWay::kind (RayIsPrimary to RayIsMirrored).
   RayGoesOn = 0,
   RayIsOut = 1,  // the ray has left the domain and has not yet received the background
   RayMisses = 2, // the ray misses the domain, and has not yet received the background

@@ -82,7 +82,7 @@ ViewedPhase::Formula FormulaOf(const Functions& functions)
                                            : ViewedPhase::Rows;
 }
 
-/// Table of k/g of Schlick's function with mean cosine g, over sqrt(1 - g).
+/// Table of k / g as a function of sqrt(1 - g), where k is the parameter of Schlick's function with mean cosine g.
 std::vector<float> RowsOfSchlick()
 {
   std::vector<float> rows;

@@ -251,8 +251,8 @@ cl::Kernel SeenSources::Kernel(const char* name) const
 
 /// Launches a kernel over a box of voxels, one work-item per packet of voxels of a row, in batches that can be aborted.
 /// @param size     voxels of the box along each axis
-/// @param samples  number of samples for a row of voxels
-/// @param to       progress at the end, in [0, 1]
+/// @param samples  number of samples that the kernel reads for a row of voxels; determines the size of batches
+/// @param to       progress that is reported at the end, in [0, 1]
 /// @param launch   sets the kernel's arguments for a part of the box
 void SeenSources::Launch(cl::Kernel& kernel, const std::array<int, 3>& size, double samples, double to,
   const Monitor& monitor, const std::function<void(const Patch& part)>& launch) const

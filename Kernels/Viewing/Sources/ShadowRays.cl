@@ -153,8 +153,8 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
 }
 
 #if AUREOLE
-// Optical length of scattering `depth` times the value of a table by AureoleTable, interpolated over the cosine of the
-// scattering angle and the square root of the optical length.
+// Product of `depth`, the optical length of scattering along the beam, and the value of a table by AureoleTable at that
+// optical length and at a cosine of the scattering angle.
 inline real aureole_at(real cosine, real depth, __global const float* rows)
 {
   const real deep = sqrt(lesser(depth * (real)(1.0f / AureoleDepth), (real)1.0f)) * (real)(float)AureoleRows;
