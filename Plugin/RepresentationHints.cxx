@@ -251,7 +251,7 @@ void Notice(vtkObject*, unsigned long, void*, void* data)
   {
     ColorBy(representation, array);
   }
-  FollowVolumeColors(representation); // last: the colours of this hint override those of other hints
+  FollowVolumeColors(representation); // called last, because the colours of this hint override those of other hints
   const bool isLineChart = representation->GetProperty("UseIndexForXAxis") && representation->GetProperty("XArrayName");
   if (vtkPVXMLElement* const plotted = isLineChart ? HintFor(shown, "Plotted") : nullptr)
   {

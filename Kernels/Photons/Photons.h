@@ -113,7 +113,7 @@ struct PhotonLight
   /// mean over batches is `fluence`. Empty if not requested.
   std::vector<float> batchFluence;
   std::size_t missed = 0;   ///< number of photons whose lines miss the volume; their power does not count as entered
-  std::size_t deposits = 0; ///< number of path segments deposited in voxels
+  std::size_t deposits = 0; ///< number of path segments whose light was added to the sums of voxels
   std::size_t steps = 0;    ///< number of steps of the integrator
   /// Duration of the march of uncollided photons, from packed photons to their light on the host, s.
   double secondsMarching = 0.0;

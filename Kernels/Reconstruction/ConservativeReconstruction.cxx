@@ -20,9 +20,13 @@ namespace
 /// Buffers of one pyramid level on the device, for levels from 1 on.
 struct ConservativeLevel
 {
-  LightRows light;   ///< fields of the light: each batch, then the smoothed quantities
-  LightRows results; ///< result of the level: smoothed quantities, source level, squared error
-  LightRows gains;   ///< gains of the details of the next finer level, and their errors
+  /// Light of the level, in fields: the light of each batch, then the quantities to be smoothed (channels and flux of
+  /// the mean light).
+  LightRows light;
+  /// Result of the level: smoothed quantities, source level (pyramid level from which the light is taken), squared
+  /// error.
+  LightRows results;
+  LightRows gains; ///< gains of the details of the next finer level, and their errors
   /// Intermediate results for the gains. `measured`: noise and light of the details, from measure_details. `across`:
   /// the same, smoothed along y and z.
   LightRows measured, across;

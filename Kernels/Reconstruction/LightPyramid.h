@@ -145,9 +145,9 @@ public:
   /// Copies a voxel array of 1 or 3 components to the fields of level 0, from field `first` on.
   void Fill(const WholeRows& voxels, int components, int first);
 
-  /// Enqueues the kernels that compute the levels of the block, up to the shared level, from level 0.
+  /// Enqueues the kernels that compute from level 0 the levels that cover the block only, up to PartOfPyramid::shared.
   void Build(Down down);
-  /// Computes the levels of the domain, above the shared level.
+  /// Computes the levels above the shared level (PartOfPyramid::shared), which cover the domain.
   /// @param cells  all cells of the shared level of the domain, in the order of Read
   void BuildAbove(Down down, const std::vector<float>& cells);
   /// Copies all cells of a level to the host, x fastest, with the fields of a cell adjacent.

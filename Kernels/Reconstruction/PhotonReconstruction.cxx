@@ -26,7 +26,7 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-/// Number of pyramid levels that each rank computes from its box.
+/// Number of pyramid levels above the grid that each rank computes from its box (its block and a halo).
 constexpr int LevelsOfBox = 2;
 
 /// Width in voxels of the halo that a rank needs for the pyramid levels of its box. Conservative: per level one cell

@@ -29,7 +29,7 @@ public:
   /// @param result  light of the box
   std::array<float, 3> Conserve(ReconstructedLight& result) const;
 
-  /// Allocates a result with arrays of the size of the box.
+  /// Allocates a result with arrays of the size of the box (block and halo).
   ReconstructedLight MakeRoom() const;
   void Crop(ReconstructedLight& result) const; ///< reduces the result's arrays from the box to the block
 

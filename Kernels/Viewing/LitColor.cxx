@@ -20,8 +20,8 @@ constexpr std::size_t VoxelsOfThread = 16384; ///< smallest number of voxels per
 /// Largest number of pixels along each edge of a view from which the exposure is determined: a parallel projection
 /// along an axis of the grid, in which a pixel shows one column of voxels.
 constexpr int ColumnsOfView = 64;
-/// Smallest value of k sigma_t distance of the most opaque voxel (k, distance: LitColor.h), so that 8 bits resolve
-/// opacities.
+/// LitColor::distance is at least so long that the largest k sigma_t distance of all voxels (LitColor.h) has this
+/// value: then 8 bits resolve the opacities.
 constexpr double ResolvedDepth = 2.0;
 /// The factor k of LitColor.h is chosen so that a voxel blended over black has the right display value at this fraction
 /// of the largest radiance that a ray can receive from it: the 1/4 of numerics.md, Eq. (112d).

@@ -35,7 +35,7 @@ def stage(name, work):
 
 
 def data(name):
-    # Absolute path, so that the state finds the file from any folder.
+    # Absolute path, so that a saved ParaView state finds the file from any folder.
     return os.path.abspath(os.path.join(arguments.data, name))
 
 

@@ -18,7 +18,7 @@ struct PathVertex
 {
   cl_ulong photon = 0;  ///< index of the photon, which the kernel carries as the photon's mark
   cl_ulong round = 0;   ///< round of exchange between ranks in which this section of the path was traced, from 1
-  cl_float4 place = {}; ///< position in voxels, and remaining power
+  cl_float4 place = {}; ///< position in voxels, and remaining power (sum of channels, units of PackedPhotons::unit)
 
   bool operator<(const PathVertex& other) const
   {

@@ -4,7 +4,8 @@
 //   LEVELS      1: there are octree levels
 //   NODE_BRICKS 1: the array `nodes` covers the domain, in the layout of BrickedBytes
 //   DIRECTIONS  1: directions are recorded
-//   MARKS       1: photons carry marks (PhotonMarch.cl)
+//   MARKS       1: each photon carries a number, its mark (PhotonMarch.cl): from it, coarse cells or voxels sum the
+//               photon's origin or weight; with PATHS it is the photon's index
 //   BRICKS      1: the medium is stored by bricks (PhotonBricks.cl), and a voxel's index in arrays is that of its
 //               record: one record per voxel of a filled brick, one for an entire empty brick
 //   BLOCKS      1: the grid is a block of the domain, and photons march until they leave it; without BRICKS
@@ -36,7 +37,8 @@
 #define NEVER 3e38f
 #define AHEAD 4        // prefetch distance, in voxels along the axis with the largest component of velocity
 #define OUTSIDE -3e38f // value of sigma in the padding around the grid
-// Minimum speed, in diagonals per time, of a photon; speed is n, but for rounding and steps across jumps of n.
+// Minimum speed of a photon, in voxel diagonals per unit of t, where dt = ds / n. The speed ds / dt is n, except for
+// rounding and for steps across jumps of n.
 #define SLOWEST_PACE 1e-12f
 #define FASTEST_PACE 1e12f
 
@@ -47,7 +49,7 @@ typedef struct
   // Optical thickness of a voxel diagonal, [MEDIUM_CHANNELS][info->copy], where info->copy is the number of voxels of
   // the padded grid or, with BRICKS, of records. Sign bit set: the index varies in the voxel.
   const __global float* sigma;
-  const __global float* coefficients; // coefficients of the spline of n^2
+  const __global float* coefficients; // B-spline coefficients of n^2 (SquaredIndex.cl)
   // Octree node of each voxel of the region `known` (info->known, padded by one voxel). 0: the index is constant in the
   // voxel; 1: it varies, and the node is a single voxel; 1 + k: it varies, and the node has 2^k voxels per edge. With
   // NODE_BRICKS: of each voxel of the domain, stored as a table of bricks, then the bricks (BrickedBytes).
@@ -55,7 +57,8 @@ typedef struct
   __global long* sums;       // sums of deposits in fixed point, [info->copy][RECORD]
   __global PhotonEnd* ends;  // final states of photons
   __global float4* vertices; // vertices of a path: position in voxels, remaining power; null: vertices are only counted
-  const __global ulong* marks; // marks of photons (PhotonMarch.cl), with MARKS
+  // With MARKS: marks of photons, for their weight (COUNTS), origin (CELLS) or index (PATHS).
+  const __global ulong* marks;
   // With CELLS: index of the coarse cell that contains each voxel, [info->copy]. With BRICKS: index of the first record
   // of each filled brick, or minus the index of the record of an empty one (PhotonBricks in MarchMedium.h).
   const __global int* cells;
@@ -73,8 +76,8 @@ typedef struct
   LANES(int, alive);      // -1 until the photon has ended, then 0
   LANES_3(int, stride);   // change of `at` from a voxel to the next along each axis
   LANES(int, ahead);      // change of `at` to the voxel that is prefetched
-  LANES_3(float, wall);   // time at which the photon reaches the next wall along each axis
-  LANES_3(float, across); // duration from wall to wall along each axis
+  LANES_3(float, wall);   // time at which the photon reaches the next voxel wall along each axis
+  LANES_3(float, across); // time between successive voxel walls along each axis
   LANES(float, now);      // current time
   LANES(float, turn);     // time at which the step ends; NEVER: n is constant, and the step lasts until n varies
   LANES(float, settled);  // time until which a varying index in the photon's voxel does not start another step
@@ -89,7 +92,7 @@ typedef struct
   LANES_3(float, momentum);     // T of Eq. (90), which with order 2 is the velocity; with order 1, v of Eq. (92)
   float4 direction[REAL_WIDTH]; // (1, unit direction): its product with power is added to the sums of power and of flux
 #if MARKS
-  LANES(ulong, mark); // mark of the photon (PhotonMarch.cl)
+  LANES(ulong, mark); // mark of the photon, for its weight (COUNTS), origin (CELLS) or index (PATHS)
 #endif
 #if BLOCKS
   // Kahan compensation of the power of photons that continue in another block.
@@ -283,7 +286,8 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
   }
 }
 
-// Limits a displacement along an axis, in voxels, to the integrator's look-ahead.
+// Limits a displacement along an axis, in voxels, to the distance up to which the integrator may evaluate n^2 ahead of
+// the photon (look-ahead, MarchShared.h).
 static real looked_ahead(const MarchInfo* info, real way)
 {
   if (LEVELS && ORDER == 2)

@@ -72,7 +72,7 @@ std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double large
   return photons;
 }
 
-/// Adds the final state of a photon to the tallies. @param unit  W per unit of power
+/// Adds the final state of a photon to the tallies. @param unit  the photons' unit of power (TypicalPower), W
 void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, PackingLoss& loss)
 {
   result.deposits += static_cast<std::size_t>(photon.deposits);
@@ -153,7 +153,8 @@ public:
     }
   }
 
-  /// Unpacks fluence and mean direction into `result`, three values per voxel. @param unit  W per unit of power
+  /// Unpacks fluence and mean direction into `result`, three values per voxel.
+  /// @param unit  the photons' unit of power (TypicalPower), W
   void Unpack(double unit, PhotonLight& result)
   {
     const double volume = this->TheMedium.grid.VoxelVolume();
@@ -335,7 +336,7 @@ private:
       MarchEventLimit(this->TheDomain.Whole(), PackingSettings()), PackingSettings());
   }
 
-  /// Follows photons to their ends. Collective. @param unit  W per unit of power during the march
+  /// Follows photons to their ends. Collective. @param unit  the photons' unit of power (TypicalPower), W
   RoundsTraffic Follow(
     const PackedPhotons& packed, double unit, PhotonLight& result, PackingLoss& loss, const Monitor& monitor)
   {

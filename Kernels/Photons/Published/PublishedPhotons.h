@@ -26,7 +26,7 @@ struct PackingLoss
   std::size_t deposits = 0; ///< number of deposits in voxels
   std::size_t givenUp = 0;  ///< number of deposits that were lost because all compare-and-swap attempts failed
 
-  double Relative() const; ///< fraction of the deposited power that was lost, sum of channels
+  double Relative() const; ///< power lost relative to power deposited, both summed over the channels
 };
 
 /// Photon marching as published by Pfeuti (2009, section 3.1.5), for comparison (numerics.md, section 12.4).

@@ -30,7 +30,7 @@ struct ScatteredPhotons
 
 /// Sampling of the cosine of the scattering angle (numerics.md, Eq. (99c)): in closed form for isotropic scattering
 /// and for the Henyey-Greenstein and Schlick phase functions, whose parameter may vary by voxel; for other phase
-/// functions from a table of the inverse cumulative distribution at 65536 equal steps of probability.
+/// functions from a table of the inverse cumulative distribution in 65536 equal intervals of probability.
 struct SampledPhase
 {
   /// Prepares the sampling for the phase function of a medium.
@@ -109,7 +109,7 @@ private:
 
   const PhotonScattering& In;
   PackedPhotons Packed;
-  int Numbers; ///< 64-bit numbers in a record of the sums: 1, or 4 with the net flux
+  int Numbers; ///< number of 64-bit integers that are summed per voxel: 1 (power), or 4 with the net flux
   MarchShares Shares;
   Buffer<float> Photons;
   Buffer<cl_ulong> Streams;

@@ -26,7 +26,8 @@
 typedef struct
 {
   const __global float2* optical; // sigma_s and sigma_a times a voxel's diagonal, per voxel of the padded grid
-  // Parameter of the phase function, one value or one per voxel; or table of cosines at equal steps of probability.
+  // Parameter of the phase function, one value or one per voxel; or table of cosines of the scattering angle at
+  // equidistant values of the cumulative probability.
   const __global float* phase;
 #if BLOCKS
   __global ScatteredOnItsWay* gone; // photons that entered other blocks, in any order
@@ -59,7 +60,7 @@ static float cosine_of(const scattering* medium, ulong voxel, float u)
 }
 
 // Rotates the direction `way` by an angle with the given cosine, and by the azimuth `turn`, in [0, 1) full turns
-// (frame without a branch: Duff et al. 2017).
+// (orthonormal frame without a branch: Duff et al. 2017).
 static float3 turned(float3 way, float cosine, float turn)
 {
   const float sine = sqrt(fmax(0.0f, 1.0f - cosine * cosine));
@@ -104,7 +105,7 @@ static bool moves(const photon_lanes* lanes)
 // State of a photon between two scatterings, in addition to its path.
 typedef struct
 {
-  ScatterEnd end; // final state of the photon if it ended now
+  ScatterEnd end; // final state that the photon would have if it ended now
   random_numbers random;
   float dim;   // power below which Russian roulette is played, in units of PackedPhotons::unit
   float depth; // scattering optical depth to the next scattering

@@ -41,7 +41,8 @@ struct Solid
 /// outside the solids is not perturbed.
 struct Perturbation
 {
-  double index = 0.0; ///< amplitude of n: n becomes n + index * noise, noise in [-1, 1]; n must stay above 0
+  /// Amplitude of the change of n: n becomes n + index * noise, noise in [-1, 1]; n must stay above 0.
+  double index = 0.0;
   /// Relative amplitude of sigma_s, in [0, 1]: sigma_s becomes sigma_s (1 + scattering * noise).
   double scattering = 0.0;
   double size = 1.0; ///< size of the noise's features, length, > 0
@@ -70,7 +71,7 @@ struct RefractiveMedium
   /// Mean cosine of the phase function, `components` values per voxel, 0 in voxels that do not scatter; empty if all
   /// scattering materials have the same g.
   std::vector<float> gByVoxel;
-  std::vector<std::string> leftOut;  ///< reasons why arrays are empty, for the user
+  std::vector<std::string> leftOut;  ///< which arrays are empty and why, for the user
   std::vector<std::string> warnings; ///< irregularities of the meshes, one sentence each, for the user
   std::string device;                ///< name of the device
   double seconds = 0.0;              ///< total duration, s
@@ -111,7 +112,7 @@ struct VoxelFindings
 /// Voxels of the box that are computed on one rank; without voxels, nothing is computed.
 struct PartOfBox
 {
-  VoxelBox made; ///< all voxels that are computed
+  VoxelBox made; ///< all voxels that are computed on this rank, ghost cells included
   VoxelBox own;  ///< voxels of `made` that belong to this part and to no other
 };
 

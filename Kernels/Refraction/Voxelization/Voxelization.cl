@@ -242,7 +242,7 @@ __kernel void find_windings(
   int4 of_column = (int4)(0, 0, 0, samples);
   for (int w = words - 1; w >= 0; --w)
   {
-    // The bytes were summed as one integer: a negative byte has borrowed from the next byte.
+    // The signed bytes of a word were summed as one integer: a negative byte has borrowed from the next byte.
     int rest = (int)marks[(ulong)id * words + w];
     int counts[4];
     for (int k = 0; k < 4; ++k)

@@ -310,10 +310,10 @@ private:
 
   Device& TheDevice;
   std::array<int, 3> Size; ///< number of voxels of the grid along each axis
-  SampleColumns Bits;      ///< columns of the samples' bits
+  SampleColumns Bits;      ///< columns of samples in which the bits "inside the mesh" are stored
   int Words;
   bool Several;                         ///< whether there are several meshes
-  std::array<SampleColumns, 3> Columns; ///< columns of samples along x, y and z
+  std::array<SampleColumns, 3> Columns; ///< columns of samples along x, y and z, in which crossings are measured
   std::array<cl::Kernel, 3> MeasureAlong;
   cl::Kernel RefineCounts, ClaimSamples;
   std::array<TilesOnDevice, 3> Tiles;

@@ -8,11 +8,13 @@ SHARED_BEGIN
 /// further one `stride` voxels later.
 typedef struct
 {
-  float4 corner, spacing;      ///< lower corner of the grid, and edges of a voxel, length
-  ulong first, length, stride; ///< first voxel, voxels per run, distance of runs; in the box
-  int nx, ny;                  ///< number of voxels of the box along x and y
-  int x0, y0, z0;              ///< first voxel of the box in the grid
-  float samples;               ///< count of a voxel that is entirely inside: samples^3 UnitsOfSample
+  float4 corner, spacing; ///< lower corner of the grid, and edges of a voxel, length
+  /// Index of the first voxel in the box; number of voxels in a run; number of voxels of the box from the beginning of
+  /// a run to that of the next.
+  ulong first, length, stride;
+  int nx, ny;     ///< number of voxels of the box along x and y
+  int x0, y0, z0; ///< first voxel of the box in the grid
+  float samples;  ///< count of a voxel that is entirely inside: samples^3 UnitsOfSample
 } MaterialSlab;
 
 typedef struct

@@ -62,8 +62,8 @@ inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* backdr
   return behind;
 }
 
-// Interpolation in tables over the cells of the box's faces: [face][row][cell of the row], faces -x to +z, each face
-// with a border of one cell that repeats the outermost cells.
+// Interpolation in tables with a value for each cell of the box's faces: [face][row][cell of the row], faces -x to +z,
+// each face with a border of one cell that repeats the outermost cells.
 
 typedef struct
 {

@@ -23,8 +23,8 @@ std::array<int, 2> FaceSize(const Grid& grid, int face)
 
 namespace
 {
-/// Adds a border of one cell, which repeats the outermost cells, to each face of a table over the cells of the box's
-/// faces (BoxFaces.h).
+/// Adds a border of one cell, which repeats the outermost cells, to each face of a table that has a value for each cell
+/// of the box's faces (BoxFaces.h).
 std::vector<cl_float4> WithBorders(const Grid& grid, const std::vector<cl_float4>& cells)
 {
   std::vector<cl_float4> padded;

@@ -35,7 +35,7 @@ inline rgb table_light(const surroundings* s, __global const float4* backdrop, r
   return between_four(backdrop + s->v->backdrop.w, first, first + row, across, up);
 }
 
-// Mask of those rays of `left_box`, which leave the box, that leave it through the table's face.
+// Of the rays `left_box`, which leave the box, the mask of those that leave it through the table's face.
 inline integer meet_table(const surroundings* s, const ray_packets* t, integer left_box)
 {
   const int axis = s->o->face.x;
@@ -60,8 +60,8 @@ inline void end_on_table(
   *towards = chosen(ends, stretched(*towards, s->o->flip), *towards);
 }
 
-// Result of all marches of a pixel: accumulated radiance divided by n^2, and transmittance and depth along the primary
-// ray.
+// Result of all marches of a pixel (primary, reflected and mirrored rays): accumulated radiance divided by n^2, and
+// transmittance and depth along the primary ray.
 typedef struct
 {
   light l;

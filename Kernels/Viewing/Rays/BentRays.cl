@@ -79,8 +79,8 @@ inline void split_at_surface(
   reflected->at = chosen(meets, at, reflected->at);
   reflected->velocity = chosen(meets, stretched(back, s->v->inverseSpacing), reflected->velocity);
 
-  // Accounts for the medium between the step's start and the surface: for its light, and in the transmittance of the
-  // reflected ray.
+  // Accounts for the medium between the step's start and the surface: adds its light to the radiance, and includes its
+  // transmittance in that of the reflected ray.
   corners around;
   corners_of_samples(s, at, &around);
   const real speed = sqrt(product(t, t));

@@ -55,7 +55,7 @@ std::array<int, 2> PacketPixels(int width)
 }
 
 /// Kernel parameters of the picture, its camera and the phase function.
-/// @param block  block of a larger grid that the medium is; null: the medium is the whole domain
+/// @param block  description of the block, if the medium is a block of a larger grid; null: it is the whole domain
 ViewInfo RayCasting::ViewOf(const Camera& camera, const GridBlock* block) const
 {
   const ViewTraits& traits = this->Traits;
@@ -129,12 +129,14 @@ RayPass RayCasting::PassOf(const Camera& camera, const GridBlock* block, bool sh
   this->Behind.Describe(this->Settings, sharp, pass.view);
   if (this->Traits.ShowsMoments() && sharp == this->Behind.IsSky())
   {
-    // A sky is shown by the pass for scattered light only, a background colour by the pass for unscattered light only.
+    // Of the two passes of a picture of angular moments, only that for scattered light shows a sky, and only that for
+    // unscattered light shows a background colour.
     pass.view.background = { { 0.0f, 0.0f, 0.0f, pass.view.background.s[3] } };
   }
   if (sharp)
   {
-    // The pass for scattered light already includes the table's diffuse radiance.
+    // This is the pass for unscattered light; the pass for scattered light already includes the table's diffuse
+    // radiance.
     pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f;
   }
   return pass;
@@ -226,8 +228,8 @@ Picture RayCasting::Cast(RayPass pass, const std::vector<float>& ends, const std
   const PackedSamples& s = this->Samples;
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
   cl::Kernel cast = this->Kernel(ofBlock);
-  // Each batch consists of complete work-groups of 4 x 4 packets; otherwise the next batch would render the last rows
-  // again.
+  // Each batch consists of complete work-groups of 4 x 4 packets; an incomplete group would be filled up with rows that
+  // the next batch renders again.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
   const std::size_t rows = RoundUp<std::size_t>(view.picture.s[1], group * packet[1]) / (group * packet[1]);

@@ -15,8 +15,8 @@ namespace tyndall
 {
 namespace
 {
-/// Distance in voxels, behind the midpoint of a step, up to which the splitting of a ray at the surface reads samples:
-/// the surface lies between this midpoint and the previous one. 0 without a surface.
+/// Distance in voxels, back along the ray from the midpoint of a step, up to which samples are read when the surface
+/// splits the ray: the surface lies between this midpoint and that of the previous step. 0 without a surface.
 double ReachOfSplit(const ViewSettings& settings)
 {
   return settings.surfaceReflection == SurfaceReflection::None ? 0.0 : settings.stepSize;

@@ -49,7 +49,7 @@ struct SceneOnDevice
 
   /// Angular moments and straightOn as in SolvedLight; empty if moments are not shown.
   Buffer<float> moments, straightOn;
-  std::array<ViewedArray, 5> arrays; ///< the arrays of ViewedFields, in their order
+  std::array<ViewedArray, 5> arrays; ///< sigma_a, sigma_s, emission, fluence and fluenceDirect (ViewedFields)
   ViewedArray meanDirection;
   Buffer<float> phaseRows;   ///< table of the phase function, see Samples/PhaseFunction.cl
   Buffer<float> meanCosines; ///< mean cosine g by voxel, with the components that the picture needs

@@ -8,8 +8,8 @@
 
 namespace tyndall
 {
-/// Light field that a solver computed: `fluence`, `fluence_direct` and further arrays of the data contract. Does not
-/// own its arrays.
+/// Light field that a solver computed: `fluence`, `fluence_direct` and further arrays that the filters store with a
+/// medium. Does not own its arrays.
 struct SolvedLight
 {
   Field fluence;       ///< total fluence, W / length^2; null: dark

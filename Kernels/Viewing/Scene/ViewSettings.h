@@ -43,7 +43,8 @@ struct ViewSettings
   /// Refractive index at which the surface lies, > 0; 0: mean of the smallest and the largest index.
   double surfaceIndex = 0.0;
   double surfaceReflectance = 0.1; ///< reflectance of the surface with SurfaceReflection::Fixed, [0, 1]
-  /// Face of the box (0 to 5: -x, +x, -y, +y, -z, +z) that is a table, seen from inside; -1: none.
+  /// Face of the box (0 to 5: -x, +x, -y, +y, -z, +z) that is a table: rays from inside the box see its diffuse and
+  /// specular reflection. -1: no table.
   int tableFace = -1;
   /// Diffuse reflectance of the table, which the light in the adjacent voxels illuminates, [0, 1]; the sum with
   /// tableReflectance is at most 1.

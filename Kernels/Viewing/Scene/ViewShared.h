@@ -175,7 +175,7 @@ typedef struct
   float4 forward;  ///< view axis, unit vector in world coordinates
   int4 size;       ///< number of voxels along each axis
   int4 bricks;     ///< number of bricks along each axis
-  BlockInfo block; ///< block of the whole grid that the medium is; `first` is 0 if there are no other blocks
+  BlockInfo block; ///< the block, if the medium is a block of a larger grid; else its `first` is 0
   /// First voxel, in the whole grid, of the box for whose voxels optical lengths are computed.
   int4 asked;
   int4 askedSize;              ///< size of the box that begins at `asked`, voxels

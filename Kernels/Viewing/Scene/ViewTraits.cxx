@@ -41,7 +41,7 @@ SeenBricks SeenBricksOf(const FilledBricks& filled, bool everywhere)
     return bricks;
   }
   bricks.seen = filled.filled;
-  for (int axis = 0; axis < 3; ++axis) // the three axes in succession also include diagonal neighbours
+  for (int axis = 0; axis < 3; ++axis) // dilation along the three axes in succession also includes diagonal neighbours
   {
     bricks.seen = Widened(bricks.seen, filled.count, axis);
   }

@@ -54,7 +54,8 @@ public:
   void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths);
 
   /// Six values per voxel: light of the lamps scattered towards the eye, W / (length^2 sr) (3), and irradiance by the
-  /// lamps, W / length^2, or, with AUREOLE, radiance added by repeated forward scattering (3), see ShadowRays.cl.
+  /// lamps, W / length^2, or, if there are AureoleTables, radiance added by repeated forward scattering (3), see
+  /// ShadowRays.cl.
   const Buffer<float>& Direct() const { return this->OfLights; }
   /// Three values per voxel: radiance scattered towards the eye, from the angular moments, W / (length^2 sr).
   const Buffer<float>& Diffuse() const { return this->OfMoments; }
