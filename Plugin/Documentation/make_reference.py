@@ -16,7 +16,10 @@ HERE = pathlib.Path(__file__).resolve().parent
 PROXIES = HERE.parent / "ServerManager"
 REFERENCE = HERE / "reference.md"
 COLUMNS = 120
-NAME = re.compile(r"\b[A-Za-z]+(?:_[A-Za-z0-9]+)+\b")
+NAME = re.compile(r"\b[A-Za-z]+(?:_[A-Za-z0-9]+)+\b|\bior\b|"
+                  r"(?<=array )(?:fluence|emission|radiance|importance|directions|unscattered|color|alpha|depth|g)\b|"
+                  r"(?<=arrays )(?:emission|fluence|radiance|color|occupancy|alpha)\b|(?<=arrays: )(?:fluence|occupancy)\b|"
+                  r"\bfluence(?= and fluence_direct)|(?<=field data )g\b")
 
 HEAD = """# Reference
 
