@@ -164,6 +164,9 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.stepV = step[this->axes.v];
   this->plane.stepP = step[this->axes.axis];
   this->plane.width = width;
+  this->plane.currents = this->partialCurrents;
+  this->plane.quantities = PLANE_COUNT(this->channels, this->angular ? this->angular->Beams() : 0, this->netFlux,
+    this->partialCurrents, this->octantSource);
   this->plane.block = this->axes.u == 0 ? 1 : this->vector;
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;

@@ -90,7 +90,7 @@ typedef struct
   int members;
   int map;    ///< index of the first float of the bundle's maps (power of its rays)
   int border; ///< index of the bundle's first value in the incident power at faces normal to u, [member][channel]
-  /// Index of the bundle's first float in the rows that enter through faces normal to v, [member][channel][ROW]
+  /// Index of the bundle's first float in the rows that enter through faces normal to v, [member][channel][row]
   int outside;
   float power;  ///< power of a ray of radiance 1 (numerics.md, Eq. (19)), length^2 sr
   float cosine; ///< cosine of the angle between the bundle's directions and the marching axis, for the net flux
@@ -140,6 +140,8 @@ typedef struct
   int firstU, firstV, firstP;
   int stepU, stepV, stepP;
   int width;
+  int quantities; ///< number of quantities per voxel of a packed plane
+  int currents;   ///< 1: the power that enters each voxel through each face is summed
   /// Number of planes packed (copied to scratch) at once: 1 if rows are contiguous in memory, else the vector width
   int block;
   /// Number of planes packed (copied to scratch) before any of them is crossed: a multiple of `block`

@@ -103,7 +103,7 @@ static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float*
 {
   for (int v = rows.x; v < rows.y; ++v)
   {
-    const __global float* sigma = ROW_OF(plane, PlaneSigma, v);
+    const __global float* sigma = ROW_IN(layout, plane, PlaneSigma, v);
     integer thick = (integer)0;
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
@@ -136,8 +136,8 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
     find_thin_rows(layout, plane, rows, packed->thin + j * layout->sizeV);
     for (int v = rows.x; v < rows.y; ++v)
     {
-      __global float* row = ROW_OF(plane, 0, v);
-      for (int at = 0; at < ROW; at += REAL_WIDTH)
+      __global float* row = ROW_IN(layout, plane, 0, v);
+      for (int at = 0; at < layout->width; at += REAL_WIDTH)
       {
         // Vacuum is treated as a very thin medium, to avoid 0 / 0.
         const real s = fmax(load_real(at, row + PlaneSigma * ROW), (real)layout->vacuum);
@@ -146,10 +146,11 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
         store_real((real)0.0f, at, row + PlaneTaken * ROW);
       }
       clear(row + PLANE_PATH * ROW, (PLANE_OCTANTS - PLANE_PATH) * ROW);
+      clear(row + PLANE_CURRENTS * ROW, layout->currents * CurrentFaces * CHANNELS * ROW);
       if (!info->shines)
       {
         clear(row + PlaneSource * ROW, (PLANE_PATH - PlaneSource) * ROW);
-        clear(row + PLANE_OCTANTS * ROW, (PLANES - PLANE_OCTANTS) * ROW);
+        clear(row + PLANE_OCTANTS * ROW, (PLANE_CURRENTS - PLANE_OCTANTS) * ROW);
       }
     }
   }
@@ -168,7 +169,7 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
 // a polynomial replaces it.
 static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
-  for (int at = 0; at < ROW; at += REAL_WIDTH)
+  for (int at = 0; at < layout->width; at += REAL_WIDTH)
   {
     const real sigma = load_real(at, row + PlaneSigma * ROW);
     const real taken = load_real(at, row + PlaneTaken * ROW);
@@ -202,8 +203,8 @@ static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* pac
   {
     for (int v = rows.x; v < rows.y; ++v)
     {
-      add_own_light(
-        layout, ROW_OF(packed->planes + j * plane_floats(layout), 0, v), packed->own + (backward ? count - 1 - j : j));
+      add_own_light(layout, ROW_IN(layout, packed->planes + j * plane_floats(layout), 0, v),
+        packed->own + (backward ? count - 1 - j : j));
     }
   }
 #endif
@@ -218,7 +219,10 @@ static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* pac
     unpack(layout, fluxes + ROW, first, count, rows, 1.0f, flux + (axis == 2 ? 1 : 2) * stride, 0);
     unpack(layout, fluxes + 2 * ROW, first, count, rows, backward ? -1.0f : 1.0f, flux + axis * stride, 0);
 #endif
-#if CURRENTS
+    if (!layout->currents)
+    {
+      continue;
+    }
     const int aside[2] = { axis == 0 ? 1 : 0, axis == 2 ? 1 : 2 };
     const __global float* entered = packed->planes + (PLANE_CURRENTS + CurrentFaces * c) * ROW;
     __global float* faces = volume->currents + 6 * c * stride;
@@ -228,7 +232,6 @@ static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* pac
       unpack(layout, entered + (CurrentLowU + side) * ROW, first, count, rows, 1.0f,
         faces + (2 * aside[side / 2] + side % 2) * stride, 0);
     }
-#endif
   }
 }
 
@@ -346,6 +349,8 @@ static void begin_state(sweep_state* state, const SweepInfo* info)
   const PlaneInfo* layout = &info->planes;
   state->sizeU = layout->sizeU;
   state->sizeV = layout->sizeV;
+  state->quantities = layout->quantities;
+  state->currents = layout->currents;
   state->width = layout->width;
   state->shines = info->shines;
   state->border = info->border;

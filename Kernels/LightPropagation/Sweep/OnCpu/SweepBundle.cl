@@ -91,13 +91,11 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
     const real kept = rows->thin ? ray + shines : multiply_add(ray, crossing->keep, shines);
     store_real(multiply_add(ray, crossing->change, kept), x, out + FIRST(m, c));
   }
-#if CURRENTS
   if (rows->entered)
   {
     __global float* here = rows->entered + CurrentFaces * c * ROW;
     store_real(load_real(x, here) + sum, x, here);
   }
-#endif
   if (!rows->deposit)
   {
     return;
@@ -179,11 +177,8 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 #if ANGULAR
 #define CROSS_ROW(thin) CROSS_MOMENTS(state, y, slot, first, thin, in, out, length, bundle)
 #else
-#if CURRENTS
-  __global float* const entered = first && deposit ? ROW_OF(state->planes, PLANE_CURRENTS + CurrentAxis, y) : 0;
-#else
-  __global float* const entered = 0;
-#endif
+  __global float* const entered =
+    state->currents && first && deposit ? ROW_OF(state->planes, PLANE_CURRENTS + CurrentAxis, y) : 0;
 #define CROSS_ROW(thin) CROSS_VOXELS(state, y, deposit, thin, in, out, length, bundle, entered)
 #endif
   if (state->thin[y])
@@ -361,7 +356,6 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
 }
 #endif
 
-#if CURRENTS
 // Adds the power that enters row y, by face, to the partial currents (SweepPartialCurrents.cl); the rays through one
 // face are added together.
 // @param own  rays of row y before the move
@@ -405,7 +399,6 @@ static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, int s, const __glob
     }
   }
 }
-#endif
 
 // Sets `in` to the row from which a stage reads the rays of each member. Tallies the rays that leave the box.
 // @param own  row y as the previous stage left it; null: rays are read from the map and do not move
@@ -534,12 +527,11 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
   TAKE_ROW(state, y, inside, s, map, ring, own, beside, outside, radiance, bundle, crossing, in);
   __global float* out =
     g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
-#if CURRENTS
-  if (inside && (ANGULAR || s > 0)) // at stage 0 without angular moments, CROSS_CHANNEL adds the power
+  // At stage 0 without angular moments, CROSS_CHANNEL adds the power.
+  if (state->currents && inside && (ANGULAR || s > 0))
   {
     COUNT_CURRENTS(state, y, s, in, own, bundle, crossing);
   }
-#endif
   if (crossing->part[s] < 1.0f)
   {
     MOVE_PART(state, crossing->part[s], own, in);
@@ -572,8 +564,8 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
 // read from the map and written to it only once.
 //
 // @param planes   number of planes; 1 if CHAINED is 0
-// @param map      power of the bundle's rays, W, [row][member][channel][ROW], with two rows more than the plane
-// @param outside  row of rays that enter through the faces normal to v, W, [member][channel][ROW]
+// @param map      power of the bundle's rays, W, [row][member][channel][float], with two rows more than the plane
+// @param outside  row of rays that enter through the faces normal to v, W, [member][channel][float]
 // @param radiance power of rays that enter through the faces normal to u, W, [member][channel]
 // @param crossings  sideways moves and segment lengths in the first plane; those in the following planes are
 //   state->allBundles apart

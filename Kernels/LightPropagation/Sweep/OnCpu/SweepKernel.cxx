@@ -57,7 +57,7 @@ cl::Kernel SweepKernel::Make(bool faces, bool periodic, bool sides) const
   const SweepPlan& plan = this->Plan;
   return this->TheDevice.Kernel("sweep", kernel_source::Sweep,
     Define("REAL_WIDTH", plan.vector) + Define("CHANNELS", plan.channels) + Define("ROW", plan.row) +
-      Define("NET_FLUX", plan.netFlux) + Define("CURRENTS", plan.partialCurrents) + Define("ROWS_KEPT", plan.rowsKept) +
+      Define("NET_FLUX", plan.netFlux) + Define("ROWS_KEPT", plan.rowsKept) +
       Define("OCTANT_SOURCE", plan.octantSource) + Define("ANGULAR", plan.angular != nullptr) +
       Define("BEAMS", plan.angular ? plan.angular->Beams() : 0) + Define("FACES", faces) +
       Define("PERIODIC", periodic) + Define("SIDES", sides) + ExactOption(this->TheDevice));

@@ -5,7 +5,6 @@
 //   ANGULAR   1: light is represented by angular moments; 0: fluence only
 //   BEAMS     number of sources with their own angular distribution, besides the moments; if ANGULAR
 //   NET_FLUX  1: the net flux is computed
-//   CURRENTS  1: the power that enters each voxel through each face is computed
 //   OCTANT_SOURCE  1: voxels may have an additional source per octant; only if ANGULAR is 0
 //   PERIODIC  1: the box may be periodic along u or v; SweepInfo tells along which
 //   FACES     1: escaped power may be summed, and incident radiance given, per cell of the box's faces (SweepSides.cl);
@@ -17,7 +16,7 @@
 //
 // Rays carry power (W), so escaped power needs no further factor at any face. A row of a map holds the power of the
 // rays, at the voxels that they enter, for all directions (members) of a bundle and all channels: float
-// [member][channel][ROW].
+// [member][channel][row].
 
 #pragma once
 #include "LightPropagation/Sweep/SweepShared.h"
@@ -36,10 +35,10 @@
 #define PLANE_BEAMS (PlaneSource + CHANNELS)
 #define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
-#define PLANE_CURRENTS (PLANE_FLUX + FLUX * CHANNELS) // power that enters through CurrentFaces, W
 // Additional source, by WaysAside, W / (length^3 sr)
-#define PLANE_OCTANTS (PLANE_CURRENTS + (CURRENTS ? CurrentFaces : 0) * CHANNELS)
-#define PLANES PLANE_COUNT(CHANNELS, BEAMS, NET_FLUX, CURRENTS, OCTANT_SOURCE)
+#define PLANE_OCTANTS (PLANE_FLUX + FLUX * CHANNELS)
+// Power that enters through CurrentFaces, W; only if PlaneInfo::currents
+#define PLANE_CURRENTS (PLANE_OCTANTS + (OCTANT_SOURCE ? WaysAside : 0) * CHANNELS)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 
 // Whether a bundle may cross up to PLANES_CHAINED planes together, row by row, as a chain. Not possible if the rays
@@ -56,10 +55,12 @@
 #define PERIODIC_V (PERIODIC && state->periodicV)
 #define KEPT_ROWS (CHAINED ? ROWS_KEPT : 0)
 
-// Position of a row and quantity in a plane, [row][quantity][ROW]: data used together is contiguous, and no stride is a
-// power of two. If KEPT_ROWS, only the rows that bundles are crossing are stored, in a ring buffer of that many rows.
+// Position of a row and quantity in a plane, [row][quantity][float]: data used together is contiguous, and no stride is
+// a power of two. If KEPT_ROWS, only the rows that bundles are crossing are stored, in a ring buffer of that many rows.
 #define PLACE_OF_ROW(row) (KEPT_ROWS ? (row) & (KEPT_ROWS - 1) : (row))
-#define ROW_OF(planes, quantity, row) ((planes) + (PLACE_OF_ROW(row) * PLANES + (quantity)) * ROW)
+// `layout` is a PlaneInfo or a sweep_state.
+#define ROW_IN(layout, planes, quantity, v) ((planes) + (PLACE_OF_ROW(v) * (layout)->quantities + (quantity)) * ROW)
+#define ROW_OF(planes, quantity, v) ROW_IN(state, planes, quantity, v)
 
 #if ANGULAR
 // Index of voxel x in a row of moments with `higher` functions from the second on, see MomentPlacesShared.h.
@@ -100,6 +101,7 @@ struct plane_place
 typedef struct
 {
   int sizeU, sizeV;                 // number of voxels of the plane along u, v
+  int quantities, currents;         // see PlaneInfo
   int width;                        // sizeU rounded up to whole vectors
   int shines, border, roundAxis;    // flags, see SweepInfo
   int periodicU, periodicV;         // flags, see SweepInfo

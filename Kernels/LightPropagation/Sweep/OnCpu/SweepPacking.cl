@@ -45,7 +45,7 @@ static ulong place_of(const PlaneInfo* layout, int u, int v, int plane)
 // Number of floats of all quantities of a plane.
 static int plane_floats(const PlaneInfo* layout)
 {
-  return PLANES * (KEPT_ROWS ? KEPT_ROWS : layout->sizeV) * ROW;
+  return layout->quantities * (KEPT_ROWS ? KEPT_ROWS : layout->sizeV) * ROW;
 }
 
 // Sets `count` floats, a multiple of the vector width, to zero.
@@ -92,7 +92,7 @@ static BY_ROW void pack(
     {
       const integer beyond = LANES >= layout->sizeU - u;
       const __global float* from = volume + place_of(layout, u, v, first);
-      __global float* here = ROW_OF(to, 0, v) + u;
+      __global float* here = ROW_IN(layout, to, 0, v) + u;
       if (layout->block == 1)
       {
         for (int j = 0; j < count; ++j)
@@ -167,7 +167,7 @@ static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, i
     {
       const ulong at = place_of(layout, u, v, first);
       const int used = min(REAL_WIDTH, layout->sizeU - u);
-      const __global float* here = ROW_OF(from, 0, v) + u;
+      const __global float* here = ROW_IN(layout, from, 0, v) + u;
       if (layout->block == 1 && used == REAL_WIDTH)
       {
         for (int j = 0; j < count; ++j)

@@ -4,7 +4,6 @@
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
-#if CURRENTS
 // Adds the fraction `part` of several rays of row y that enter through `face` to the partial currents. `count` must be
 // a compile-time constant.
 inline __attribute__((always_inline)) void add_currents(
@@ -75,4 +74,3 @@ static BY_ROW void add_through_edge(
     add_current(state, y, u_face, own - du, half_part); // rays that leave the box
   }
 }
-#endif

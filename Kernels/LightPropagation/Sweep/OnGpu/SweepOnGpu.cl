@@ -5,7 +5,8 @@
 // voxel's own work-item adds to its sums, bundle by bundle, so the order of summation is fixed. Physics and numerics
 // are those of SweepBundle.cl.
 //
-// The host defines CHANNELS, NET_FLUX, CURRENTS, OCTANT_SOURCE, ANGULAR as in SweepLayout.cl, and
+// The host defines CHANNELS, NET_FLUX, OCTANT_SOURCE, ANGULAR as in SweepLayout.cl, and
+//   CURRENTS   1: the power that enters each voxel through each face is computed
 //   FUNCTIONS  number of angular functions; 1: fluence only
 //   BEAMS      number of sources with their own angular distribution; only if ANGULAR
 //   SIDES      0: rays that enter and leave through the sides of the box are not stored
