@@ -4,9 +4,6 @@
 //   REAL_WIDTH  number of floats in a vector, 4 or 8; 1: one voxel per work-item, on a GPU
 //   GROUP       number of work-items that sum together (GroupSum.cl)
 //   DOUBLES     1: the device has double precision
-//   PASSING     1: first-scattered light of lamps crosses faces without another collision (LampPassing.h)
-//   MOMENTS     1: sweeps treat forward scattering as unscattered light, or have angular moments
-//   SKIN        1: there are thick voxels next to thinner ones
 //
 // Arrays of the sweeps are [voxel]; reads may extend one vector beyond a row's end. Arrays in rows have the layout of
 // MultigridRows.cl. The low face of the first voxel of a row is processed separately: the voxel before it in memory is
@@ -84,7 +81,7 @@ __kernel void diffusion_flat_source(
       for (int axis = 0; axis < (layout.flatStride > 0 ? 3 : 1); ++axis)
       {
         real current = flat_source_current(sweeps * layout.spacing[axis]);
-        if (MOMENTS)
+        if (layout.moments)
         {
           // A fraction of the current is due to the source's first moment, and is exact. Only the rest of the current
           // is too large because the source is constant in each voxel, Eq. (51).
@@ -241,8 +238,8 @@ static real load_rounded(const __global exact* row, int x, int size)
 // Computes the fluence from which diffusion gives the powers that are compared with the sweep's (m of numerics.md, Eq.
 // (56)): in thin voxels the fluence of the sweep, in optically thick ones the fluence from which its source was
 // computed.
-//   extinction  sigma_t in rows, from diffusion_extinction; if SKIN is 0, in the layout of the sweeps
-//   of_lamps    DiffusionSystem::Arrays::ofLamps, W / (length^3 sr), if PASSING
+//   extinction  sigma_t in rows, from diffusion_extinction; if DiffusionLayout::skin is 0, in the layout of the sweeps
+//   of_lamps    DiffusionSystem::Arrays::ofLamps, W / (length^3 sr), if DiffusionLayout::passing
 //   model       W / length^2, [voxel]
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
   const __global exact* fluence, const __global float* source, const __global float* of_lamps, __global float* model)
@@ -259,13 +256,13 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
     {
       const real solved = load_rounded(fluence + here, x, n);
       real given = solved, longest;
-      if (SKIN)
+      if (layout.skin)
       {
         real sigma_t[7];
         find_extinctions(&layout, y, z, x, extinction, sigma_t);
         const real skin = skin_of(&layout, sigma_t);
         real source_of_fluence = load_real(here + x, source);
-        if (PASSING)
+        if (layout.passing)
         {
           // The lamps' source is subtracted, because the solved fluence does not include it either.
           source_of_fluence -= load_real(here + x, of_lamps);
@@ -308,13 +305,13 @@ static real power_of_faces(
     { load_real(j, of->flatSource), load_real(i, of->flatSource) },
     { load_real(j, of->model), load_real(i, of->model) }, passes, load_real(i, of->low) - load_real(j, of->high),
     (real)0.0f, crossing };
-  if (MOMENTS)
+  if (layout->moments)
   {
     const float per_flux = 1.5f * layout->spacing[axis] * (4.0f * M_PI_F);
     face.driven = passes * per_flux * (load_real(j, of->givenFlux) + load_real(i, of->givenFlux));
   }
   real power = remainder_of(layout, axis, &face) + face.driven;
-  if (PASSING)
+  if (layout->passing)
   {
     power += load_real(j, of->passedHigh) - load_real(i, of->passedLow);
   }
@@ -324,7 +321,7 @@ static real power_of_faces(
 // Computes the power of power_of_faces() through the voxels' low faces, W, in rows; 0 at the box's boundary.
 //   currents  power that entered voxels in the sweep, W, [-x, +x, -y, +y, -z, +z][stride]
 //   passed    power of lamps' first-scattered light that leaves through each face, in the layout of `currents`, if
-//             PASSING
+//             DiffusionLayout::passing
 //   pattern   tables of the crossing pattern (CrossingPattern.h)
 __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, const __global float* conductance,
@@ -334,8 +331,8 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
 {
   const ulong stride = layout.stride;
   currents += 6 * (ulong)layout.first;
-  passed += PASSING ? 6 * (ulong)layout.first : 0;
-  given_flux += MOMENTS ? 3 * (ulong)layout.first : 0;
+  passed += layout.passing ? 6 * (ulong)layout.first : 0;
+  given_flux += layout.moments ? 3 * (ulong)layout.first : 0;
   const int n = layout.size[0];
   FOR_ROWS(layout.rows)
   {
@@ -344,10 +341,10 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
     for (int axis = 0; axis < 3; ++axis)
     {
       const __global float* low = currents + 2 * axis * stride;
-      const __global float* passed_low = passed + (PASSING ? 2 * axis * stride : 0);
+      const __global float* passed_low = passed + (layout.passing ? 2 * axis * stride : 0);
       const face_arrays arrays = { sigma_t + layout.firstT, sigma_a + layout.first,
         flat_source + (ulong)axis * layout.flatStride, model, low, low + stride, passed_low,
-        passed_low + (PASSING ? stride : 0), given_flux + (MOMENTS ? axis * stride : 0) };
+        passed_low + (layout.passing ? stride : 0), given_flux + (layout.moments ? axis * stride : 0) };
       const __global float* passes = conductance + axis * layout.rows.floats + row;
       const __global float* along_x = pattern + layout.pattern[2 * axis];
       const float of_row = pattern[layout.pattern[2 * axis + 1] + (axis == 2 ? y : z)];

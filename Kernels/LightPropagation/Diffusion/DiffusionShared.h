@@ -34,6 +34,10 @@ typedef struct
 {
   int size[3];
   int periodic[3];
+  int passing;    ///< 1: first-scattered light of lamps crosses faces without another collision (LampPassing.h)
+  int moments;    ///< 1: sweeps treat forward scattering as unscattered light, or have angular moments
+  int faces;      ///< 1: sweeps tally outgoing and reflected power by cell of the box's faces
+  int skin;       ///< 1: there are thick voxels next to thinner ones
   int linear;     ///< 1: light varies linearly between voxel centres; 0: it is constant in each voxel
   int stride;     ///< stride between channels in the solver's arrays, voxels
   int flatStride; ///< stride between axes in flat_source; 0 if voxels are cubes, so that axes share one array

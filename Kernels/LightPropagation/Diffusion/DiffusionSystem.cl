@@ -1,9 +1,6 @@
 // Kernels of the diffusion system of one channel (DiffusionSystem.h): its equations at the box's faces, and quantities
 // derived from its solution. Kernels that process all voxels in every iteration are in DiffusionRows.cl. Options:
 //   DOUBLES  1: the device has double precision
-//   PASSING  1: first-scattered light of lamps crosses faces without another collision (LampPassing.h)
-//   FACES    1: sweeps tally outgoing and reflected power by cell of the box's faces
-//   MOMENTS  1: sweeps treat forward scattering as unscattered light, or have angular moments
 //
 // Faces d of a voxel are -x, +x, -y, +y, -z, +z. tau is the optical length of a voxel along an axis.
 
@@ -38,11 +35,7 @@ __kernel void diffusion_border_loss(
     {
       const float passes = pass_boundary(&layout, way_to_boundary(&layout, s * layout.spacing[d / 2], s, a));
       const float leaves = face_area(&layout, d / 2) * passes;
-#if FACES
-      taken += reflecting_face(&layout, d, passes).ofMedium * leaves;
-#else
-      taken += leaves;
-#endif
+      taken += layout.faces ? reflecting_face(&layout, d, passes).ofMedium * leaves : leaves;
     }
   }
   loss[RowsLead + z * layout.rows.plane + y * layout.rows.pitch + x] += taken;
@@ -79,7 +72,8 @@ typedef struct
   // Net flux of the known source (emission and first collisions) over 4 pi, [axis][stride].
   const __global float* givenFlux;
   ulong stride;
-  const __global float* faces; // if FACES: rows of power by cell of the box's faces, W (DiffusionShared.h)
+  const __global float*
+    faces; // if DiffusionLayout::faces: rows of power by cell of the box's faces, W (DiffusionShared.h)
 } diffusion_arrays;
 
 // Index of the cell of face d of the box at a voxel (Medium/BoxFaces.h).
@@ -102,23 +96,24 @@ static int face_cells(const DiffusionLayout* layout)
   return 2 * (n[1] * n[2] + n[0] * n[2] + n[0] * n[1]);
 }
 
-// Incident power per area through a cell of face d of the box, W / length^2: boundary source and, if FACES, reflected
-// power of a row (FaceCame or FaceGiven) of `faces`.
+// Incident power per area through a cell of face d of the box, W / length^2: boundary source and, if
+// DiffusionLayout::faces, reflected power of a row (FaceCame or FaceGiven) of `faces`.
 static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* arrays, int row, int d, const int* at)
 {
-#if FACES
+  if (!layout->faces)
+  {
+    return layout->incoming[d];
+  }
   const int cell = cell_of_face(layout, at, d);
   return layout->incoming[d] + arrays->faces[row * face_cells(layout) + cell] / face_area(layout, d / 2);
-#else
-  return layout->incoming[d];
-#endif
 }
 
 // Fluence difference over half a voxel along an axis that is equivalent to the net flux of the known source, which is
 // emission and first collisions (numerics.md, Eq. (53a)).
 static float drive(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, int i)
 {
-  return MOMENTS ? 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i] : 0.0f;
+  return layout->moments ? 1.5f * layout->spacing[axis] * (4.0f * M_PI_F) * arrays->givenFlux[axis * arrays->stride + i]
+                         : 0.0f;
 }
 
 // Fluence difference equivalent to the known source's net flux, as for drive(), but between the centres of voxel i and
@@ -170,13 +165,13 @@ static float model_of_boundary(
   const float area = face_area(layout, axis);
   const float driven = drive_out(layout, arrays, d, i);
   const float light = arrays->model[i] + driven;
-#if FACES
-  const face_factors factors = reflecting_face(layout, d, passes);
-  *dark = area * (factors.ofMedium * passes * driven - factors.ofLight * coming_in(layout, arrays, FaceGiven, d, at));
-#else
   *dark = -passes / a * incoming * area;
-  *dark += MOMENTS ? passes * driven * area : 0.0f;
-#endif
+  *dark += layout->moments ? passes * driven * area : 0.0f;
+  if (layout->faces)
+  {
+    const face_factors factors = reflecting_face(layout, d, passes);
+    *dark = area * (factors.ofMedium * passes * driven - factors.ofLight * coming_in(layout, arrays, FaceGiven, d, at));
+  }
   const float net = passes * (light - incoming / a);
   if (!layout->linear)
   {
@@ -192,7 +187,7 @@ static float model_of_boundary(
 static float passing(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, const int* next, bool border)
 {
-  if (!PASSING)
+  if (!layout->passing)
   {
     return 0.0f;
   }
@@ -202,13 +197,13 @@ static float passing(
 // Fraction of the medium's outgoing power through face d of the box that escapes after reflection.
 static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i)
 {
-#if FACES
+  if (!layout->faces)
+  {
+    return 1.0f;
+  }
   const float tau = arrays->sigma_t[i] * layout->spacing[d / 2];
   const float way = way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]);
   return reflecting_face(layout, d, pass_boundary(layout, way)).ofMedium;
-#else
-  return 1.0f;
-#endif
 }
 
 // Remainder of the net outgoing power through all faces of the box at voxel i: power of the sweep minus that of
@@ -236,9 +231,10 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
       const float through = exp(-fmin(tau, 80.0f));
       seeming[d] = through * arrays->currents[(d ^ 1) * arrays->stride + i] +
         (1.0f - through) * layout->halfRange * face_area(layout, axis) * fmax(arrays->model[i], 0.0f);
-#if FACES
-      seeming[d] = arrays->faces[FaceLeft * face_cells(layout) + cell_of_face(layout, at, d)];
-#endif
+      if (layout->faces)
+      {
+        seeming[d] = arrays->faces[FaceLeft * face_cells(layout) + cell_of_face(layout, at, d)];
+      }
       expected += model[d];
       sum += seeming[d];
       in += entered;
@@ -263,16 +259,16 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
     const float net = seeming[d] - arrays->currents[d * arrays->stride + i] - model[d];
     share[d] = *transport_weight > 0.0f && is_border(layout, at, d) ? *transport_weight * net : 0.0f;
   }
-#if FACES
+  if (!layout->faces)
+  {
+    return *transport_weight > 0.0f ? *transport_weight * (left - expected) : 0.0f;
+  }
   float remainder = 0.0f;
   for (int d = 0; d < 6; ++d)
   {
     remainder += is_border(layout, at, d) ? part_that_leaves(layout, arrays, d, i) * share[d] : 0.0f;
   }
   return remainder;
-#else
-  return *transport_weight > 0.0f ? *transport_weight * (left - expected) : 0.0f;
-#endif
 }
 
 // Power of the medium that reaches face d of the box from inside in the solution, before reflection, W, without the
@@ -291,16 +287,16 @@ static exact power_of_border(const DiffusionLayout* layout, const diffusion_arra
   const int axis = d / 2;
   const float tau = arrays->sigma_t[i] * layout->spacing[axis];
   const float passes = pass_boundary(layout, way_to_boundary(layout, tau, arrays->sigma_t[i], arrays->sigma_a[i]));
-#if FACES
+  if (!layout->faces)
+  {
+    const exact light = fluence + drive_out(layout, arrays, d, i);
+    return passes * face_area(layout, axis) * (light - layout->incoming[d] / layout->halfRange) + share +
+      passing(layout, arrays, d, i, next, true);
+  }
   const float area = face_area(layout, axis);
   const face_factors factors = reflecting_face(layout, d, passes);
   const exact ofMedium = sent_by_medium(layout, arrays, fluence, d, i, next, passes, share);
   return factors.ofMedium * ofMedium - factors.ofLight * area * coming_in(layout, arrays, FaceGiven, d, at);
-#else
-  const exact light = fluence + drive_out(layout, arrays, d, i);
-  return passes * face_area(layout, axis) * (light - layout->incoming[d] / layout->halfRange) + share +
-    passing(layout, arrays, d, i, next, true);
-#endif
 }
 
 // Net outgoing power through face d of voxel i in the solution, W; `share` is from remainder_of_borders(), and is used
@@ -321,7 +317,6 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
     remainder_of_face(layout, arrays, d, i, next[d], at) + passing(layout, arrays, d, i, next, false);
 }
 
-#if FACES
 // Outgoing power through face d of the box in the solution, W: all power that reaches the face from inside, including
 // light that the face reflected earlier (J_out of numerics.md, Eq. (76c)).
 static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
@@ -334,15 +329,14 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   const exact given = face_area(layout, d / 2) * coming_in(layout, arrays, FaceGiven, d, at);
   return (ofMedium + given * (1 - passes_in)) / (1 - albedo * (1 - passes_in));
 }
-#endif
 
 #define ARRAYS_OF_CHANNEL                                                                                         \
   sigma_t += layout.firstT;                                                                                       \
   sigma_a += layout.first;                                                                                        \
   swept += layout.firstT;                                                                                         \
   currents += 6 * (ulong)layout.first;                                                                            \
-  passed += PASSING ? 6 * (ulong)layout.first : 0;                                                                \
-  given_flux += MOMENTS ? 3 * (ulong)layout.first : 0;                                                            \
+  passed += layout.passing ? 6 * (ulong)layout.first : 0;                                                         \
+  given_flux += layout.moments ? 3 * (ulong)layout.first : 0;                                                     \
   source += layout.first;                                                                                         \
   path += layout.first;                                                                                           \
   const ulong stride = layout.stride;                                                                             \
@@ -400,7 +394,7 @@ __kernel void diffusion_border_balance(DiffusionLayout layout, const __global fl
 }
 
 // Computes the power through the box's faces in the solution: writes BorderNet to the array `borders` of
-// diffusion_border_balance and, if FACES, the row FaceLeaves of `faces`.
+// diffusion_border_balance and, if DiffusionLayout::faces, the row FaceLeaves of `faces`.
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* passed, const __global float* given_flux, __global float* faces, const __global exact* fluence,
   __global exact* borders)
@@ -408,8 +402,8 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   BORDER_VOXEL(layout)
   const diffusion_arrays arrays = { .sigma_t = sigma_t + layout.firstT,
     .sigma_a = sigma_a + layout.first,
-    .passed = passed + (PASSING ? 6 * (ulong)layout.first : 0),
-    .givenFlux = given_flux + (MOMENTS ? 3 * (ulong)layout.first : 0),
+    .passed = passed + (layout.passing ? 6 * (ulong)layout.first : 0),
+    .givenFlux = given_flux + (layout.moments ? 3 * (ulong)layout.first : 0),
     .stride = layout.stride,
     .faces = faces };
   const int at[3] = { x, y, z };
@@ -421,10 +415,11 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
     {
       __global exact* face = borders + BorderValues * cell_of_face(&layout, at, d);
       face[BorderNet] = power_of_border(&layout, &arrays, fluence[i], d, i, next, at, 0.0f);
-#if FACES
-      faces[FaceLeaves * face_cells(&layout) + cell_of_face(&layout, at, d)] =
-        (float)power_leaving(&layout, &arrays, fluence[i], d, i, next, at, (float)face[BorderWholeShare]);
-#endif
+      if (layout.faces)
+      {
+        faces[FaceLeaves * face_cells(&layout) + cell_of_face(&layout, at, d)] =
+          (float)power_leaving(&layout, &arrays, fluence[i], d, i, next, at, (float)face[BorderWholeShare]);
+      }
     }
   }
 }
@@ -518,7 +513,7 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
   const ulong begin = layout.first;
   sigma_t += layout.firstT;
   sigma_a += layout.first;
-  passed += PASSING ? 6 * (ulong)layout.first : 0;
+  passed += layout.passing ? 6 * (ulong)layout.first : 0;
   const int at[3] = { x, y, z };
   int next[6];
   find_neighbours(layout.size, x, y, z, i, next);
@@ -533,7 +528,7 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
       const float area = face_area(&layout, d / 2);
       const float beyond = sigma_t[j] * layout.spacing[d / 2];
       float out = conductance_at(&layout, conductance, d, at) * (float)(fluence[i] - fluence[j]) / area;
-      out += PASSING ? (passed[d * stride + i] - passed[(d ^ 1) * stride + j]) / area : 0.0f;
+      out += layout.passing ? (passed[d * stride + i] - passed[(d ^ 1) * stride + j]) / area : 0.0f;
       const float weight = open[d] * area;
       const float there = (float)fluence[j] + 1.5f * out * way_to_boundary(&layout, beyond, sigma_t[j], sigma_a[j]);
       shining += weight * (there + 2.0f * out);

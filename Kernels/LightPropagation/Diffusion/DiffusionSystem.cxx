@@ -37,6 +37,9 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
   this->Layout.linear = linear;
   std::copy(pattern.first.begin(), pattern.first.end(), this->Layout.pattern);
   this->Layout.halfRange = static_cast<float>(halfRange);
+  this->Layout.passing = arrays.passed != nullptr;
+  this->Layout.moments = this->HasMoments();
+  this->Layout.faces = arrays.faces != nullptr;
   this->Layout.absorbingWeight = this->HasMoments() ? 0.0f : 3.0f;
   this->Layout.floor = static_cast<float>(Floor);
   std::copy(incoming.begin(), incoming.end(), this->Layout.incoming);
@@ -70,22 +73,15 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
   this->FindSkins();
 }
 
-std::string DiffusionSystem::Options() const
-{
-  return ExactOption(this->TheDevice) + Define("PASSING", this->Inputs.passed != nullptr) +
-    Define("MOMENTS", this->HasMoments());
-}
-
 cl::Kernel DiffusionSystem::Kernel(const char* name) const
 {
-  return this->TheDevice.Kernel(
-    name, kernel_source::DiffusionSystem, this->Options() + Define("FACES", this->Inputs.faces != nullptr));
+  return this->TheDevice.Kernel(name, kernel_source::DiffusionSystem, ExactOption(this->TheDevice));
 }
 
 cl::Kernel DiffusionSystem::RowsKernel(const char* name) const
 {
   return this->TheDevice.Kernel(
-    name, kernel_source::DiffusionRows, this->Options() + RowOptions(this->TheDevice) + Define("SKIN", this->AnySkin));
+    name, kernel_source::DiffusionRows, ExactOption(this->TheDevice) + RowOptions(this->TheDevice));
 }
 
 void DiffusionSystem::Run(cl::Kernel& kernel)
@@ -115,7 +111,7 @@ cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
   return kernel;
 }
 
-/// Finds the rows of voxels that have thick voxels next to thinner ones, and sets Skins and AnySkin.
+/// Finds the rows of voxels that have thick voxels next to thinner ones, and sets Skins and Layout.skin.
 void DiffusionSystem::FindSkins()
 {
   this->Skins =
@@ -126,7 +122,7 @@ void DiffusionSystem::FindSkins()
   With(kernel, this->Layout, extinction, this->Skins);
   this->RunRows(kernel);
   const std::vector<cl_int> rows = this->Skins.Read();
-  this->AnySkin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != 0; });
+  this->Layout.skin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != 0; });
 }
 
 /// Copies sigma_t to rows of the solver's layout, in a scratch array of the solver that the next solve overwrites.
@@ -141,7 +137,7 @@ const Buffer<float>& DiffusionSystem::ExtinctionInRows()
 
 void DiffusionSystem::ShapeSource()
 {
-  if (!this->AnySkin)
+  if (!this->Layout.skin)
   {
     return;
   }
@@ -154,7 +150,7 @@ void DiffusionSystem::ShapeSource()
 void DiffusionSystem::FindModel()
 {
   const Arrays& inputs = this->Inputs;
-  const Buffer<float>& extinction = this->AnySkin ? this->ExtinctionInRows() : *inputs.sigma_t;
+  const Buffer<float>& extinction = this->Layout.skin ? this->ExtinctionInRows() : *inputs.sigma_t;
   cl::Kernel model = this->RowsKernel("diffusion_model");
   With(model, this->Layout, extinction, *inputs.path, this->Next.Handle(), *inputs.source,
     inputs.ofLamps ? *inputs.ofLamps : *inputs.source, this->Model);

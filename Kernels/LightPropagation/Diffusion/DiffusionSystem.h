@@ -176,7 +176,6 @@ private:
   const Buffer<float>& Passed() const { return this->Inputs.passed ? *this->Inputs.passed : this->Model; }
   void FindSkins();
   const Buffer<float>& ExtinctionInRows();
-  std::string Options() const;
   cl::Kernel Kernel(const char* name) const;
   cl::Kernel RowsKernel(const char* name) const; ///< kernel of DiffusionRows.cl
   void Run(cl::Kernel& kernel);                  ///< runs a kernel with one work-item per voxel
@@ -193,7 +192,6 @@ private:
   MultigridSolver& Solver;
   Buffer<float> FlatSource, Pattern, Model;
   Buffer<cl_int> Skins; ///< by row of voxels: 1 if it has thick voxels next to thinner ones
-  bool AnySkin = false;
   AndersonMixing Mixing;
   ExactValues Borders;
   ExactValues Next, Solution; ///< input of the next sweep, and the last solution, in the layout of State()
