@@ -3,15 +3,20 @@
 #include "Device/PoclCache.h"
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <new>
+#include <stdexcept>
 #include <string>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 // Solves and renders small scenes, so that the cache of OpenCL's compiler contains the kernels that the first solve in
@@ -45,6 +50,39 @@ Note NoteOfAll()
   return { tyndall::PreparePocl().folder + "/tyndall-prepared", LibraryVersion() + (device ? device : "") + "\n" };
 }
 
+/// Scenes that two processes prepare: each takes the next one that none has taken. OpenCL compilers hold a lock, so
+/// that threads of one process would compile one after another.
+class ScenesInTurn
+{
+public:
+  explicit ScenesInTurn(int count)
+    : Count(count)
+    , Next(static_cast<std::atomic<int>*>(
+        mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)))
+  {
+    if (this->Next == MAP_FAILED)
+    {
+      throw std::runtime_error("there is no memory that two processes share");
+    }
+    new (this->Next) std::atomic<int>(0);
+  }
+
+  /// @return whether none of the scenes that this process took reported an error
+  bool PrepareThem() noexcept
+  {
+    bool prepared = true;
+    for (int scene = (*this->Next)++; scene < this->Count; scene = (*this->Next)++)
+    {
+      prepared = PrepareScene(scene) && prepared;
+    }
+    return prepared;
+  }
+
+private:
+  int Count;
+  std::atomic<int>* Next;
+};
+
 /// Sets the lowest priority for this process, and ends it when the parent process ends.
 void ServeParent(pid_t parent)
 {
@@ -67,22 +105,33 @@ int main(int argc, char* argv[])
   {
     const Note note = NoteOfAll();
     const int all = PreparedSceneCount(), wanted = argc > 1 ? std::atoi(argv[1]) : all;
-    for (int scene = 0; scene < std::min(wanted, all) && !note.IsThere(); ++scene)
+    if (note.IsThere())
     {
-      if (!PrepareScene(scene))
-      {
-        return 1;
-      }
-      if (scene + 1 == all)
-      {
-        note.Write();
-      }
+      return 0;
     }
+    ScenesInTurn scenes(std::min(wanted, all));
+    const pid_t helper = wanted > 1 ? fork() : -1;
+    if (helper == 0)
+    {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      // Without destructors of libraries' static objects, which would wait for threads that fork() does not copy.
+      std::_Exit(scenes.PrepareThem() ? 0 : 1);
+    }
+    bool prepared = scenes.PrepareThem();
+    if (helper > 0)
+    {
+      int status = 0;
+      prepared = waitpid(helper, &status, 0) == helper && status == 0 && prepared;
+    }
+    if (prepared && wanted >= all)
+    {
+      note.Write();
+    }
+    return prepared ? 0 : 1;
   }
   catch (const std::exception& error)
   {
     std::cerr << error.what() << '\n';
     return 1;
   }
-  return 0;
 }

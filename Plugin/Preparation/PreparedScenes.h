@@ -2,12 +2,12 @@
 
 #include <string>
 
-/// Number of prepared scenes. Scenes are such that the kernels of typical user scenes are compiled: several classes of
-/// grid sizes, and a density field with default filter settings.
+/// Number of prepared scenes. Together they compile the kernels of typical scenes of users: clouds in white and in
+/// coloured light on several classes of grid sizes, and photons through glass.
 int PreparedSceneCount();
 
-/// Runs the default pipeline on a prepared scene, from density to medium, light and picture. All filters have default
-/// settings, except the medium's preset and unit of length.
+/// Runs the pipeline of a prepared scene up to its picture: density, medium and maps, or mesh, octree and photons. Most
+/// settings of the filters are the defaults.
 /// @param number  number of the scene, from 0, most likely scenes first
 /// @return whether the scene was prepared without an error of a filter
 bool PrepareScene(int number);
