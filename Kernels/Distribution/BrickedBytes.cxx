@@ -62,16 +62,16 @@ BrickedBytes::BrickedBytes(const std::array<int, 3>& size)
   this->Bricks.assign(this->Count[0] * this->Count[1] * this->Count[2], NotYet);
 }
 
-void BrickedBytes::Put(const VoxelBox& box, const std::vector<std::uint8_t>& numbers)
+void BrickedBytes::Put(const VoxelBox& part, const VoxelBox& box, const std::vector<std::uint8_t>& numbers)
 {
-  const auto begin = [&](int axis) { return box.first[axis] / Edge * Edge; };
-  for (int z = begin(2); z < EndOf(box, 2) && !numbers.empty(); z += Edge)
+  const auto begin = [&](int axis) { return part.first[axis] / Edge * Edge; };
+  for (int z = begin(2); z < EndOf(part, 2) && part.VoxelCount() > 0; z += Edge)
   {
-    for (int y = begin(1); y < EndOf(box, 1); y += Edge)
+    for (int y = begin(1); y < EndOf(part, 1); y += Edge)
     {
-      for (int x = begin(0); x < EndOf(box, 0); x += Edge)
+      for (int x = begin(0); x < EndOf(part, 0); x += Edge)
       {
-        this->PutInBrick(Common({ { x, y, z }, { Edge, Edge, Edge } }, box), box, numbers);
+        this->PutInBrick(Common({ { x, y, z }, { Edge, Edge, Edge } }, part), box, numbers);
       }
     }
   }
@@ -133,11 +133,18 @@ BrickedBytes BytesOfBoxes(Communicator& communicator, const BlockPartition& part
   BrickedBytes bytes(partition.whole.size);
   for (int rank = 0; rank < communicator.Ranks(); ++rank)
   {
-    if (const VoxelBox part = Common(partition.blocks[rank], wanted[self]); part.VoxelCount() > 0)
+    const VoxelBox part = Common(partition.blocks[rank], wanted[self]);
+    if (part.VoxelCount() == 0)
     {
-      bytes.Put(part,
-        rank == self ? NumbersOf(part, block, own)
-                     : NumbersIn(communicator.Receive<std::uint32_t>(rank, MessageTag::RunsOfBytes)));
+      continue;
+    }
+    if (rank == self)
+    {
+      bytes.Put(part, block, own);
+    }
+    else
+    {
+      bytes.Put(part, part, NumbersIn(communicator.Receive<std::uint32_t>(rank, MessageTag::RunsOfBytes)));
     }
   }
   return bytes;

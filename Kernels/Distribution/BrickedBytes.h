@@ -20,8 +20,9 @@ public:
 
   explicit BrickedBytes(const std::array<int, 3>& size);
 
-  /// Stores the bytes of a box, x fastest. Each voxel must be stored once; the order of boxes does not matter.
-  void Put(const VoxelBox& box, const std::vector<std::uint8_t>& numbers);
+  /// Stores the bytes of the voxels of `part`. Each voxel must be stored once; the order of boxes does not matter.
+  /// @param numbers  one byte per voxel of `box`, which contains `part`, x fastest
+  void Put(const VoxelBox& part, const VoxelBox& box, const std::vector<std::uint8_t>& numbers);
 
   std::uint8_t At(const std::array<int, 3>& voxel) const
   {
