@@ -90,8 +90,11 @@ void SolveCloud(const Scene& scene, vtkCommand* listener)
   medium->SetPreset(scene.preset);
   medium->SetMillimetresPerUnit(1e4); // unit of length 10 m, with which the preset CLOUD is optically thick
   light->SetInputConnection(medium->GetOutputPort());
+  vtkNew<vtkLightRig> sun;
   if (scene.coloured)
   {
+    sun->SetSunPower(4.0, 3.7, 3.2);
+    light->SetLightsConnection(sun->GetOutputPort());
     light->SetSkyColor(0.03, 0.06, 0.13);
   }
   picture->SetInputConnection(light->GetOutputPort());
