@@ -26,12 +26,13 @@ namespace
 /// the processor's cache when, after the test for infinity and NaN, its extremes and norms are computed.
 constexpr std::size_t BlockValues = 8192;
 constexpr std::size_t ThreadValues = 65536; ///< minimum number of values that one thread processes
-/// Minimum number of lanes. Each lane holds the smallest and largest of every Width-th value of a block, so that the
-/// loop over lanes has no dependences and is vectorised; 32 lanes suffice for vector units of any width.
+/// Minimum number of lanes. Of n lanes, lane k holds the smallest and the largest of the values k, k + n, k + 2 n, ...
+/// of a block, so that the loop over lanes has no dependences and is vectorised; 32 lanes suffice for vector units of
+/// any width.
 constexpr std::size_t Lanes = 32;
 
-/// Whether any floating-point number is infinite or NaN: all bits of its exponent (mask `exponent`) are 1. The loop is
-/// written for vectorisation.
+/// Whether any of `count` floating-point numbers is infinite or NaN: all bits of its exponent (mask `exponent`) are 1.
+/// The loop is written for vectorisation.
 template <class Bits>
 bool HasExponent(const void* values, std::size_t count, Bits exponent)
 {
@@ -83,8 +84,8 @@ public:
   {
     const std::size_t components = this->Lowest.size();
     this->FindExtremesOfLanes(values, count);
-    // Bounds of the tuples' squared norms, from the extremes of the components. Rounding is monotonic, so they hold for
-    // the rounded norms as well.
+    // Bounds of the squared norms of the block's tuples, from the extremes of their components. Rounding is monotonic,
+    // so they hold for the rounded norms as well.
     double least = 0.0, most = 0.0;
     for (std::size_t c = 0; c < components; ++c)
     {
@@ -174,7 +175,7 @@ private:
     this->LargestSquare = largest;
   }
 
-  std::vector<T> Lowest, Highest; ///< smallest and largest value of each component
+  std::vector<T> Lowest, Highest; ///< smallest and largest value of each component so far
   double LeastSquare = std::numeric_limits<double>::max(), LargestSquare = 0.0;
   std::size_t Width; ///< number of lanes (see Lanes), a multiple of the number of components
   std::vector<T> LaneLowest, LaneHighest;

@@ -170,8 +170,8 @@ struct Choice
 /// The name that ParaView's panel passes if the input has no array of the default name (none_string of the proxies).
 const char* const NothingChosen = "(by name)";
 
-/// Text that NoteChoices records after an array's name if the point array of that name takes precedence over the cell
-/// array.
+/// Text that follows the array's name in the field data of NoteChoices if the point array of that name takes precedence
+/// over the cell array.
 const char* const OfPoints = "points";
 
 std::string ChoiceFact(const std::string& quantity)
@@ -179,8 +179,8 @@ std::string ChoiceFact(const std::string& quantity)
   return quantity + "_array";
 }
 
-/// Replaces the default array of a quantity, `choice`, by the array that the filter upstream used for the quantity, if
-/// that filter recorded it (NoteChoices) and the image still has it.
+/// Replaces `choice`, the default array of a quantity such as sigma_a, by the array that the filter upstream used for
+/// that quantity, if that filter recorded it in field data (NoteChoices) and the image still has it.
 void FollowFilterBefore(vtkImageData* image, Choice& choice)
 {
   auto* const said =
@@ -464,7 +464,7 @@ std::string Described(const Grid& grid)
 
 bool AreSameVoxels(const Grid& a, const Grid& b)
 {
-  constexpr double part = 1e-3; // largest accepted distance between corresponding corners, in voxel edges
+  constexpr double part = 1e-3; // largest accepted distance between the grids' corresponding corners, in voxel edges
   bool agree = a.size == b.size;
   for (int axis = 0; axis < 3; ++axis)
   {

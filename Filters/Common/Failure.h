@@ -50,7 +50,7 @@ constexpr const char* EmptyFact = "nothing_in_file";
 /// not wait for that rank again.
 constexpr const char* MissingFact = "rank_missing";
 
-/// Ends the work of Guarded (Pieces/GuardedWork.h) without an error if field data of the input say that the filter
-/// upstream failed, was aborted, or read an empty file. Called for empty inputs.
+/// Ends a filter's work (Guarded) by an exception that is not reported as an error, if field data of the input say that
+/// the filter upstream failed, was aborted, or read an empty file. Called for empty inputs.
 void StopIfUpstreamFailed(vtkDataObject* input);
 }

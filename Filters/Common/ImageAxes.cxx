@@ -49,7 +49,9 @@ constexpr double Aslant = 1e-6; ///< tolerance of direction cosines: an axis is 
 vtkSmartPointer<vtkIdList> OrderOf(const AxisWays& ways, const std::array<vtkIdType, 3>& count)
 {
   const std::array<vtkIdType, 3> stride = { 1, count[0], count[0] * count[1] };
-  std::array<vtkIdType, 3> counts, first, step; // numbers of values, first index and stride along each world axis
+  // Along each world axis: number of values, index of the first one in the given image, index difference between
+  // neighbours.
+  std::array<vtkIdType, 3> counts, first, step;
   for (int axis = 0; axis < 3; ++axis)
   {
     const int world = ways.world[axis];
@@ -253,7 +255,7 @@ void SetDirection(vtkImageData* image, const Rotation& direction)
 
 using Turn = std::function<OwnAxes::Vec(const OwnAxes::Vec&)>;
 
-/// Index of the first component of the position, and of the direction, of a lamp in field data LampsApartFact.
+/// Index of the first component of a lamp's position, and of its direction, in a tuple of field data `lamps_apart`.
 constexpr int LampPlace = 1, LampDirection = 4;
 
 vtkSmartPointer<vtkDataArray> NewLike(vtkDataArray* array)
@@ -266,8 +268,8 @@ vtkSmartPointer<vtkDataArray> NewLike(vtkDataArray* array)
   return made;
 }
 
-/// Applies `turn` to the vectors of each tuple, which lie in components `first` to `last` - 1, three components per
-/// vector.
+/// Applies `turn`, which transforms directions or positions, to the vectors in components `first` to `last` - 1 of each
+/// tuple, three components per vector.
 void TurnComponents(vtkDataArray* from, int first, int last, const Turn& turn, vtkDataArray* to)
 {
   auto* const floats = vtkArrayDownCast<vtkFloatArray>(from);
@@ -324,8 +326,8 @@ bool IsOfVectors(vtkDataArray* array)
   return array && array->GetName() && array->GetNumberOfComponents() % 3 == 0;
 }
 
-/// Transforms the vectors in an image's field data: directions by `way`, positions of lamps (LampsApartFact) by
-/// `place`.
+/// Transforms the vectors in an image's field data: directions by the rotation `way`, positions of lamps
+/// (`lamps_apart`) by the transformation `place`.
 /// @param note  whether the copies record the modification times of the original arrays (TimeBeforeTurning)
 void TurnFacts(vtkImageData* image, const Turn& place, const Turn& way, bool note)
 {

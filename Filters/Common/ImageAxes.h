@@ -71,7 +71,8 @@ struct OwnAxes
 ///   if the image is null or empty
 OwnAxes OwnAxesOf(vtkImageData* image);
 
-/// The medium axes in which a filter works, as recorded by NoteOwnAxes before the work starts.
+/// The medium axes in which a filter works, as recorded by NoteOwnAxes before the work starts; the scene's axes if none
+/// are recorded.
 OwnAxes OwnAxesOf(vtkAlgorithm* filter);
 void NoteOwnAxes(vtkAlgorithm* filter, const OwnAxes& axes);
 

@@ -48,7 +48,8 @@ namespace tyndall
 {
 namespace
 {
-/// Key in a port's information: the images of this port are pictures (TakePictures).
+/// Key in a port's information: the images of this port are pictures, which have no position in the scene
+/// (TakePictures).
 vtkInformationIntegerKey* ForPictures()
 {
   static auto* const key = vtkInformationIntegerKey::MakeKey("FOR_PICTURES", "Tyndall");
@@ -582,7 +583,7 @@ void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
   auto* const pieces = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
   if (filter->IsA("vtkParticipatingMedium"))
   {
-    return; // this filter works cell by cell: a duplicate gets the same medium as the cell that it copies
+    return; // this filter works cell by cell: a duplicate (ghost cell) gets the same medium as the cell that it copies
   }
   bool divided = false;
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)

@@ -35,7 +35,8 @@ void TakeOneImage(vtkInformation* port);
 void TakePictures(vtkInformation* port);
 
 bool TakesPictures(vtkInformation* port);
-bool IsForImagesOfScene(vtkInformation* port); ///< whether the port is for images that are not pictures (TakePictures)
+/// Whether the port is for images that have a position in the scene, which pictures do not (TakePictures).
+bool IsForImagesOfScene(vtkInformation* port);
 
 /// In FillInputPortInformation: declares that the filter reads these arrays of the image as voxel values.
 /// @param chosen  default names of the arrays that SetInputArrayToProcess selects, by index; "": the active scalars
@@ -45,7 +46,8 @@ void ReadsVoxels(
 constexpr const char* AnyArray = "";
 struct VoxelArrays
 {
-  std::vector<std::string> chosen, named; ///< parameters of ReadsVoxels; both empty: the port is not read as voxels
+  /// Names of arrays, as passed to ReadsVoxels; both empty: the port is not read as voxels.
+  std::vector<std::string> chosen, named;
 };
 VoxelArrays VoxelArraysOf(vtkInformation* port);
 

@@ -130,7 +130,7 @@ struct IlluminationInput
 ///   shape
 UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium);
 
-/// Reads the angular moments of scattered light from an image.
+/// Reads the angular moments of scattered light from an image; empty if one of the arrays is missing.
 /// @throws InvalidInput if an array has the wrong shape
 MomentsInput ReadMoments(vtkImageData* image);
 

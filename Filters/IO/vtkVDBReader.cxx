@@ -146,7 +146,7 @@ void TellTimes(vtkInformation* info, int files)
 
 struct vtkVDBReader::Internals
 {
-  /// The file whose grids were listed last, and its path.
+  /// The file whose grids are listed (null: none, or it cannot be read), and the path of the last file that was listed.
   std::unique_ptr<VDBFile> File;
   std::string Path;
   std::string Summary;
@@ -495,10 +495,10 @@ const char* vtkVDBReader::GetCurrentFileName()
   return this->Internal->Path.c_str();
 }
 
-/// The last file whose time is not later than the requested time.
+/// Index of the last file of the series whose time is not later than the requested time; 0 if no time is requested.
 int vtkVDBReader::FileAskedFor(vtkInformation* output) const
 {
-  constexpr double rounding = 1e-6; // tolerance for times that are results of computations
+  constexpr double rounding = 1e-6; // tolerance of the requested time, which may be the result of a computation
   const double time = output->Has(Pipeline::UPDATE_TIME_STEP()) ? output->Get(Pipeline::UPDATE_TIME_STEP()) : 0.0;
   return time > 0.0 ? static_cast<int>(std::min(time + rounding, std::max(this->GetNumberOfFileNames() - 1.0, 0.0)))
                     : 0;

@@ -46,7 +46,8 @@ constexpr std::tuple<ValueKind<bool, vtkUnsignedCharArray>, ValueKind<Int32, vtk
   ValueKind<Mat4s, vtkFloatArray, 16>, ValueKind<Mat4d, vtkDoubleArray, 16>>
   Kinds;
 
-/// Calls `act` with one ValueKind after the other until `act` returns true.
+/// Calls `act` with one ValueKind (a type of metadata and its type of VTK array) after the other until `act` returns
+/// true.
 template <typename Do>
 void ForKinds(const Do& act)
 {
