@@ -355,7 +355,9 @@ void SetGrid(vtkImageData* image, const Grid& grid)
   image->SetDirectionMatrix(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
 }
 
-/// Number of the light of each layer of an importance map, from field data `light`; without it, 0, 1, ...
+/// Index of the light of each layer of an importance map, from field data `light`: 0, 1, ... in the order of the
+/// scene's lights, -1 for the environment or sky, -2 for the box's faces. Without that field data layer k is of light
+/// k.
 /// @throws InvalidInput if `light` has not one light number for each layer
 std::vector<int> LightsOf(vtkImageData* image, int layers)
 {
@@ -389,7 +391,7 @@ bool Shines(const Illumination& illumination, int light)
 }
 
 /// Checks the lights of an importance map.
-/// @param lights  number of the light of each layer
+/// @param lights  index of the light of each layer, as LightsOf returns it
 /// @throws InvalidInput if the map has a layer of a light that the scene does not have, or two layers of one light
 void CheckLights(const std::vector<int>& lights, const Illumination& illumination)
 {

@@ -74,8 +74,8 @@ public:
 
   enum ThresholdKinds
   {
-    OWN = 0,      ///< the thresholds are GradientThreshold and LuminanceThreshold, as published
-    AUTOMATIC = 1 ///< the thresholds follow from statistics of the pilot light and scale with it
+    OWN = 0,      ///< cells are chosen by GradientThreshold and LuminanceThreshold, as published
+    AUTOMATIC = 1 ///< both thresholds follow from statistics of the pilot light and scale with it
   };
 
   ///@{
@@ -175,7 +175,8 @@ private:
 
   int MemoryBudget = 0;
 
-  std::shared_ptr<tyndall::Device> Within; ///< device limited by MemoryBudget; null if that is 0; outlives Kept
+  /// Device limited by MemoryBudget; null if that is 0; outlives Kept, the cached medium.
+  std::shared_ptr<tyndall::Device> Within;
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   bool Even = false;

@@ -40,8 +40,8 @@ enum InputPort
   InputPortCount
 };
 
-/// Whether EmptySpace selects storage of light by bricks. The medium's field data `active_part` may be out of date, but
-/// affects only how light is stored, not its values.
+/// Whether EmptySpace selects storage of light by bricks of 8^3 voxels. The medium's field data `active_part` may be
+/// out of date, but affects only how light is stored, not its values.
 bool ByBricks(vtkPhotonMarcher* filter, vtkImageData* medium)
 {
   constexpr double mostActive = 0.25;
@@ -152,8 +152,9 @@ struct vtkPhotonMarcher::MarchInput
   std::vector<tyndall::Photon> photons; ///< this rank's share of the photons
 };
 
-/// Result of a march: fluence and related arrays, packing loss of the published scheme, and the photons' paths, which
-/// are computed by the conservative scheme's integrator.
+/// Result of a march: fluence and related arrays, packing loss (fraction of the deposited power that the published
+/// scheme's 64 bits per voxel did not keep; 0 for the other scheme), and the photons' paths, which are computed by the
+/// conservative scheme's integrator.
 struct vtkPhotonMarcher::Marched
 {
   tyndall::PhotonLight light;
@@ -264,7 +265,8 @@ bool vtkPhotonMarcher::WantsBlocks(
 }
 
 /// Frees the device memory of a cached medium that is out of date before upstream filters run. Requests this rank's
-/// piece of each input with BLOCKS, else the complete inputs.
+/// Frees the device memory of a cached medium that is out of date before upstream filters run. Requests this rank's
+/// piece of each input if photons are marched through the pieces (BLOCKS), else the complete inputs.
 int vtkPhotonMarcher::RequestUpdateExtent(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
@@ -296,7 +298,7 @@ vtkSmartPointer<vtkImageData> OctreeOf(const tyndall::PieceBlocks& pieces, vtkIm
 
 /// Finds this rank's block of the medium and share of the photons. Collective.
 /// @return false, on all ranks, if the first rank is to march through the whole medium: pieces of the octree differ
-///   from those of the medium, or light is stored by bricks
+///   from those of the medium, or light is stored by bricks of 8^3 voxels
 bool vtkPhotonMarcher::FindInput(const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs, MarchInput& input)
 {
   const tyndall::Domain& domain = pieces.GetDomain();
@@ -497,7 +499,8 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =
     tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
-  if (trapped > 0.01 && this->MaximumOrders < 2) // with more orders, left-over power is that of the omitted orders
+  // If MaximumOrders is above 1, the power left over is that of the scattering orders above it.
+  if (trapped > 0.01 && this->MaximumOrders < 2)
   {
     vtkWarningMacro(
       << std::lround(100.0 * trapped)

@@ -299,7 +299,8 @@ private:
   int MemoryBudget = 0;
   std::string Device;
 
-  std::shared_ptr<tyndall::Device> Within; ///< device limited by MemoryBudget; null if that is 0; outlives Kept
+  /// Device limited by MemoryBudget; null if that is 0; outlives Kept, the cached medium.
+  std::shared_ptr<tyndall::Device> Within;
   std::unique_ptr<tyndall::KeptMarcher> Kept;
 
   vtkIdType Deposits = 0;

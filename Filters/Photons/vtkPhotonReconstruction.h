@@ -63,17 +63,18 @@ public:
 
   enum Schemes
   {
-    PUBLISHED = 0,       ///< the lower of two levels: one by centre-surround differences, one by photon weight
-    CONSERVATIVE = 1,    ///< weights each level's detail by how well batches agree on it; estimates the error
+    PUBLISHED = 0, ///< the lower of two pyramid levels: one by centre-surround differences, one by photon weight
+    /// Weights the detail of each pyramid level by how well the photon batches agree on it; estimates the error.
+    CONSERVATIVE = 1,
     CONSTANT_RADIUS = 2, ///< pyramid level Level in all voxels
-    NEAREST_PHOTONS = 3  ///< the lowest level whose cell contains at least NearestPhotons photons
+    NEAREST_PHOTONS = 3  ///< the lowest pyramid level whose cell contains at least NearestPhotons photons
   };
 
   enum Conservation
   {
     NEVER = 0,
     ALWAYS = 1,
-    BY_SCHEME = 2 ///< with Scheme CONSERVATIVE only; the other schemes are for comparison with publications
+    BY_SCHEME = 2 ///< fluence is scaled with Scheme CONSERVATIVE; other schemes are for comparison with publications
   };
 
   ///@{

@@ -52,8 +52,9 @@ struct OctreeRoots
   /// @param largest  largest level of all nodes
   OctreeRoots(const Grid& whole, int topLevel, int largest);
 
-  VoxelBox Of(const VoxelBox& block) const;       ///< roots whose first voxel is in the block, in units of roots
-  VoxelBox VoxelsOf(const VoxelBox& roots) const; ///< voxels of a box of roots that lie within the grid
+  /// Range of the roots whose first voxel is in the block; its indices count roots.
+  VoxelBox Of(const VoxelBox& block) const;
+  VoxelBox VoxelsOf(const VoxelBox& roots) const; ///< voxels of a range of roots that lie within the grid
 
   Grid grid;
   int level;
@@ -104,12 +105,14 @@ vtkSmartPointer<vtkDoubleArray> Borders(const Grid& grid, int axis, int rootLeve
   return borders;
 }
 
-/// Description of a tree in breadth-first order, as vtkHyperTree needs it.
+/// Description of a tree in breadth-first order, as vtkHyperTree needs it. A vertex of the tree is a cube of voxels, an
+/// inner node or a leaf.
 struct Tree
 {
-  std::vector<unsigned char> levels;  ///< octree level of each vertex
-  std::vector<unsigned char> outside; ///< whether each vertex is outside the grid
-  std::vector<unsigned char> refined; ///< whether each vertex is refined; without the deepest level, where none is
+  std::vector<unsigned char> levels;  ///< octree level of each vertex (cube of 2^level voxels per edge)
+  std::vector<unsigned char> outside; ///< whether each vertex (cube of voxels) is outside the grid
+  /// Whether each vertex (cube) has children; the deepest vertices, which have none, are left out.
+  std::vector<unsigned char> refined;
   vtkIdType nodes = 0;
 };
 
@@ -136,7 +139,7 @@ public:
   }
 
 private:
-  /// Appends the vertices of one depth to the tree.
+  /// Appends the vertices (cubes of 2^level voxels per edge) of one depth to the tree.
   /// @param vertices  the lowest voxel of each vertex
   /// @return the lowest voxels of the children of all vertices
   std::vector<Voxel> DescribeDepth(const std::vector<Voxel>& vertices, int level, Tree& tree) const
@@ -442,7 +445,7 @@ int vtkRefractionOctree::RequestData(
   work.wantsPieces = [&](vtkInformationVector**) { return tyndall::EachAsksForItsPiece(request, outputs); };
   work.work = [&](const tyndall::PieceBlocks& pieces, vtkInformationVector** inputs) {
     this->Build(pieces, vtkImageData::GetData(inputs[0]), outputs);
-    if (isAlone && !tyndall::IsFirstPiece(request, outputs)) // all trees are in the first piece
+    if (isAlone && !tyndall::IsFirstPiece(request, outputs)) // all trees belong to the first piece
     {
       nodes->Initialize();
       this->NodeCount = 0;

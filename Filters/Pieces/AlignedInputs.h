@@ -45,7 +45,7 @@ private:
   void NoteAveragedArrays();
 
   vtkAlgorithm* Filter;
-  OwnAxes Axes;                          ///< axes of the image at port 0
+  OwnAxes Axes;                          ///< axes of the image at port 0, in which the filter works
   vtkSmartPointer<vtkDataObject> Medium; ///< image at port 0 before its transformation to Axes; null: none
 };
 }

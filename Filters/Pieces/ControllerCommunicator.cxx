@@ -28,7 +28,8 @@ namespace tyndall
 {
 double SecondsToWait()
 {
-  // Default and longest timeout, seconds. Three years, the longest, are still within the range of the clock.
+  // Default and longest timeout for waiting on another rank, seconds. Three years, the longest, are still within the
+  // range of the clock.
   constexpr double usual = 600.0, longest = 1e8;
   const char* const said = std::getenv("TYNDALL_RANKS_WAIT");
   const double seconds = NumberIn(said ? said : "").value_or(0.0);
@@ -39,7 +40,7 @@ double SecondsToWait()
 namespace
 {
 constexpr int FirstOfAll = 1000000; ///< first message tag of communicators, above the tags of VTK and of Ranks.cxx
-constexpr double Grace = 1.0;       ///< time for which messages sent before a stop are still received, seconds
+constexpr double Grace = 1.0;       ///< time after a request to stop for which messages are still received, seconds
 
 /// Keeps messages whose sends are not complete when an error occurs: MPI may read their memory until the process ends.
 template <class Messages>
@@ -264,7 +265,8 @@ private:
   std::thread Watch; // last member: the thread uses the other members
 };
 
-/// Parcels in a rank's DIY block: before the exchange the parcels to send, afterwards the received parcels.
+/// Parcels (one array of bytes for each rank of the exchange) in a rank's DIY block: before the exchange the parcels to
+/// send, afterwards the received parcels.
 struct Parcels
 {
   std::vector<std::vector<char>> ofRanks;
@@ -294,7 +296,8 @@ diy::Master& MasterOf(vtkMPIController* controller)
   return *static_cast<diy::Master*>(kept);
 }
 
-/// Exchanges one parcel with each rank of `with`; parcels become DIY's queues without a copy. Collective.
+/// Exchanges one parcel (array of bytes) with each rank of `with`; parcels become DIY's queues without a copy.
+/// Collective.
 std::vector<std::vector<char>> Exchange(
   diy::Master& master, const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {

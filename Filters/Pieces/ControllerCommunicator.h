@@ -85,8 +85,8 @@ private:
 #endif
 
 #ifdef TYNDALL_HAS_DIY
-/// Sends one parcel to each rank of `with` and receives one from each, by DIY with one block per rank. Collective.
-/// Parcels may have any length: DIY splits messages into parts of 2 GiB.
+/// Sends one parcel (array of bytes) to each rank of `with` and receives one from each, by DIY with one block per rank.
+/// Collective. Parcels may have any length: DIY splits messages into parts of 2 GiB.
 ///
 /// DIY has no timeout, so ranks agree beforehand that none has failed (Communicator::Exchange). If a rank times out, or
 /// lacks memory for what it receives, it ends its process and MPI then ends all ranks, so that none waits forever.

@@ -123,7 +123,7 @@ private:
   std::array<Arrays, Kinds> Own; ///< arrays of this rank's piece; null if it has none
   vtkSmartPointer<vtkImageData> Whole;
   std::vector<Piece> Pieces;
-  /// Assignment of cells, and of points, to pieces; on ranks that gather the image.
+  /// Assignment of cells, and of points, to pieces; null with one rank, and on ranks that do not gather the image.
   std::array<std::unique_ptr<PieceLayout>, Kinds> Layouts;
   std::array<std::vector<unsigned char>, Kinds> Hidden;
 };

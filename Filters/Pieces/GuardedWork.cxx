@@ -290,7 +290,8 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
 
 namespace
 {
-/// Adds the names of averaged arrays to field data `settings_used`, for filters that do not write these themselves.
+/// Adds the names of point arrays that were averaged to cells to field data `settings_used`, for filters that do not
+/// write these field data themselves.
 void TellAveraged(vtkAlgorithm* filter, vtkInformationVector* outputs)
 {
   std::vector<std::string> settings;
@@ -344,7 +345,8 @@ int GuardedWithInputs(vtkAlgorithm* filter, vtkInformation* request, vtkInformat
   });
 }
 
-/// Completes the outputs on this rank: adds the names of averaged arrays, and rotates images back to the scene axes.
+/// Completes the outputs on this rank: adds the names of point arrays that were averaged to cells, and rotates images
+/// back to the scene axes.
 void Complete(vtkAlgorithm* filter, WholeInputs& inputs, vtkInformationVector* outputs)
 {
   TellAveraged(filter, outputs);

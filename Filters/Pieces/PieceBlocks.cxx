@@ -33,7 +33,7 @@ constexpr Extent Nothing = { 0, 0, 0, 0, 0, 0 };
 struct Piece
 {
   Extent given = Nothing;
-  Extent own = Nothing; ///< extent without duplicate cells
+  Extent own = Nothing; ///< extent of the cells that are not duplicates; all 0: there are none
   AskedPiece asked;
   std::array<double, 6> place = {}; ///< origin and spacing
 };

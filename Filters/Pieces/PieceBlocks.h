@@ -61,11 +61,12 @@ public:
   /// Selects the values of the subdomain's voxels from the values of all voxels of an image.
   std::vector<float> OwnOf(vtkImageData* given, std::vector<float>&& values) const;
 
-  /// Crops an output, whose arrays cover the image given to the constructor, to Held().
+  /// Crops an output, whose arrays cover the image given to the constructor, to this rank's subdomain and its ghost
+  /// cells, Held().
   void KeepHeld(vtkImageData* output) const;
 
-  /// Extends values from the voxels Own() to the voxels Held(): ghost values are received from the ranks that own these
-  /// cells. Values stay empty if they are empty on all ranks. Collective.
+  /// Extends values from the voxels of this rank's subdomain to the voxels of its output, Held(): ghost values are
+  /// received from the ranks that own these cells. Values stay empty if they are empty on all ranks. Collective.
   /// @param components  values per voxel, the same on all ranks
   void SpreadToHeld(std::vector<float>& values, int components) const;
 

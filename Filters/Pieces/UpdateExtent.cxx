@@ -175,7 +175,7 @@ Part PartAskedFor(vtkInformation* information, const Extent& image)
   part.divided = information->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()) > 1;
   if (const int* const parts = information->Get(PartsOfRanks()))
   {
-    part.isOfRank = part.divided; // if not divided, each rank is asked for the complete output
+    part.isOfRank = part.divided; // if the output is not divided, each rank is asked for all of it
     const Extent own = part.divided ? PartOfRank(information, parts[0]) : AskedPiece::Nothing;
     part.piece = { own, own };
     return part;

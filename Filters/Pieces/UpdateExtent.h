@@ -64,7 +64,7 @@ ValueBox PointBoxOf(const std::array<int, 6>& extent);
 ValueBox CellBoxOf(const std::array<int, 6>& extent);
 
 /// Smallest extent that contains all cells, or all points if `flags` belong to points, that vtkGhostType does not flag
-/// as duplicates. Inverted if there are none.
+/// as duplicates. Inverted (first index above the last) if there are none.
 std::array<int, 6> ExtentWithoutDuplicates(
   const std::array<int, 6>& extent, vtkUnsignedCharArray* flags, bool flagsPoints);
 
@@ -150,7 +150,8 @@ private:
   bool All;
 };
 
-/// Extent to which KeepWhatIsAskedFor will crop an image in RequestData; inverted if the extent is empty.
+/// Extent to which KeepWhatIsAskedFor will crop an image in RequestData; inverted (first index above the last) if it is
+/// empty.
 std::array<int, 6> ExtentAskedFor(vtkInformation* information, const std::array<int, 6>& image);
 
 /// Crops an output to the requested extent or piece, and flags its ghost cells (vtkGhostType), so that sums over pieces

@@ -108,7 +108,7 @@ std::string ActiveName(vtkDataSetAttributes* attributes)
   return active && active->GetName() ? active->GetName() : "";
 }
 
-/// Summarizes the data of a connection; the key is not computed.
+/// Summarizes the data of a connection, without the hash `key` of their content.
 InputSummary Summarize(vtkInformation* connection)
 {
   InputSummary summary;
