@@ -49,8 +49,8 @@ private:
 class LastOutputs
 {
 public:
-  /// Cache key, of all that the outputs depend on: the time of the last property change, the filter's own axes, and
-  /// hashes of the inputs' content.
+  /// Cache key, of all that the outputs depend on: the time of the last property change, the axes in which the filter
+  /// works (OwnAxes), and hashes of the inputs' content.
   using Key = std::vector<std::uint64_t>;
   static Key KeyOf(vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports);
 
@@ -74,8 +74,8 @@ public:
 private:
   Key MadeOf;
   std::array<int, 6> Told = {};                        ///< whole extent of output 0 when the outputs were computed
-  OwnAxes Axes, AxesBefore;                            ///< axes of Outputs and of Before
-  std::vector<vtkSmartPointer<vtkDataObject>> Outputs; ///< outputs for the key MadeOf, by port
+  OwnAxes Axes, AxesBefore;                            ///< axes of the grids in Outputs, and in Before
+  std::vector<vtkSmartPointer<vtkDataObject>> Outputs; ///< outputs for the cache key MadeOf, by port
   std::vector<vtkSmartPointer<vtkDataObject>> Before;  ///< outputs of the last complete solve, for GiveBefore, by port
 };
 }

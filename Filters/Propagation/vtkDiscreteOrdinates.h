@@ -77,7 +77,7 @@ public:
   enum Schemes
   {
     PUBLISHED = 0,   ///< explicit steps, as Gong et al. describe them
-    CONSERVATIVE = 1 ///< exponential steps that conserve energy; light of lamps along exact rays
+    CONSERVATIVE = 1 ///< attenuates exponentially in each voxel and conserves energy; light of lamps along exact rays
   };
 
   enum Scatterings

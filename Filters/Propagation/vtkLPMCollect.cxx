@@ -55,7 +55,7 @@ int ReadCount(vtkImageData* image, const char* name)
 }
 
 /// Settings with which vtkLPMPropagate made an image, read from the image's field data, and number of channels of the
-/// image's arrays T.
+/// image's arrays T (`T_xmin` to `T_zmax`, the deposits of the rays).
 struct Told
 {
   tyndall::PropagationSettings settings;

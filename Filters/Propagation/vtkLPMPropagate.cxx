@@ -49,8 +49,8 @@ int ChannelsOf(const tyndall::FloatField& unscattered, int storedDirections)
 }
 
 /// Propagates one scattering order.
-/// @return the arrays T of the six cube faces, -x to +z: channels vary fastest, then directions of the face, then
-///   voxels
+/// @return the arrays T (deposits of the rays in the voxels) of the six cube faces, -x to +z: channels vary fastest,
+///   then directions of the face, then voxels
 std::array<std::vector<float>, 6> PropagateAll(
   tyndall::ParallelPropagation& propagation, std::size_t voxels, const tyndall::Monitor& monitor)
 {
@@ -116,7 +116,8 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 
-/// Propagates one scattering order through the complete medium, and writes the arrays T to the output.
+/// Propagates one scattering order through the complete medium, and writes the rays' deposits to the output, arrays
+/// `T_xmin` to `T_zmax`.
 void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* output)
 {
   vtkImageData* image = vtkImageData::GetData(inputs[MEDIUM]);

@@ -87,7 +87,8 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: number of the scattering order, from 0; memory of the arrays T in bytes.
+  /// Results of the last update: number of the scattering order, from 0; memory of the output arrays `T_xmin` to
+  /// `T_zmax` in bytes.
   vtkGetMacro(Order, int);
   vtkGetMacro(Bytes, double);
   ///@}

@@ -166,7 +166,8 @@ int vtkScatteringSolver::RequestData(
   }
   else if (!this->HasSolved && vtkImageData::GetData(outputs, 0)->GetNumberOfCells() > 0)
   {
-    this->Solved->Keep({}, {}, outputs); // this rank's piece of a serial solve, for RestoreLightBefore
+    // Caches this rank's piece of the first rank's solution, for RestoreLightBefore.
+    this->Solved->Keep({}, {}, outputs);
     this->SolvedInPieces = true;
   }
   return done;
@@ -386,7 +387,7 @@ void vtkScatteringSolver::Color(
   }
   vtkImageData* const output = vtkImageData::GetData(outputs, 0);
   const tyndall::SolverScene scene(pieces, this, vtkImageData::GetData(inputs[MEDIUM]));
-  vtkSmartPointer<vtkImageData> own; // owns the array of `fluence` if it was cropped
+  vtkSmartPointer<vtkImageData> own; // owns the array of `fluence`; null if the subdomain has no voxels
   tyndall::FloatField fluence;
   domain.Collective([&] {
     own = pieces.OwnImage(output);

@@ -236,7 +236,7 @@ private:
   void RestoreLightBefore(vtkInformationVector* outputs);
 
   std::unique_ptr<tyndall::LastOutputs> Solved;
-  bool SolvedInPieces = false; ///< whether Solved holds only this rank's piece of the outputs
+  bool SolvedInPieces = false; ///< whether the cached outputs (Solved) are only this rank's piece
   bool HasSolved = false;      ///< whether this rank solved in the last update, or had a valid cached solution
   // State of the current update:
   bool OverRanks = false;           ///< whether several ranks take part in the update

@@ -85,7 +85,8 @@ vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* mesh)
   return filter->GetOutput();
 }
 
-/// Collects triangles of a mesh as a solid, with only the points that these triangles use, renumbered from 0.
+/// Collects those triangles of a mesh that make up one solid (closed surface of one material), with only the points
+/// that these triangles use, renumbered from 0.
 class SolidBuilder
 {
 public:

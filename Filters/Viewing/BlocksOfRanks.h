@@ -50,6 +50,7 @@ public:
 
   /// Exchanges the pixels that the ranks rendered of their blocks (ExchangePixels), for a camera in the scene's
   /// coordinates. Collective, also for ranks without a block.
+  /// @return the pixels in `wanted` of all blocks; no value, on all ranks, if `failed` is true on any
   std::optional<SeenBlocks> Exchange(
     const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera) const;
 

@@ -39,9 +39,10 @@ struct AskedView
 {
   Camera camera;                ///< camera in the scene's coordinates; replaces the filter's camera
   std::array<int, 2> size = {}; ///< columns and rows of pixels; replaces ImageSize
-  std::vector<float> ends;      ///< length at which each ray ends (MediumRayCaster::Render)
-  double exposure = 0.0;        ///< exposure by which BackgroundColor is converted to radiance; 0: not known yet
-  /// Block that the medium is of a larger grid (MediumRayCaster::Render); none: the medium is a whole grid.
+  /// Distance along the view axis at which an opaque surface ends each pixel's ray, length; empty: no ray ends.
+  std::vector<float> ends;
+  double exposure = 0.0; ///< exposure by which BackgroundColor is converted to radiance; 0: not known yet
+  /// Position of the medium in the larger grid of which it is a block; no value: the medium is a whole grid.
   std::optional<GridBlock> block;
 };
 }

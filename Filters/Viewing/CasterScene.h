@@ -32,8 +32,8 @@ enum ViewedArrays
 constexpr const char* ViewedNames[ViewedArrayCount] = { "sigma_a", "sigma_s", "emission", "fluence", "fluence_direct",
   "ior", "mean_direction" };
 
-/// Values on the boundary faces of the whole grid, one tuple per voxel face (BoxFaces.h) or per face of the box; empty
-/// if unknown.
+/// Values on the boundary faces of the whole grid: one tuple per face of a boundary voxel (ordered by face of the box,
+/// -x to +z, and within it with the lower axis fastest), or one tuple per face of the box; empty if unknown.
 struct FaceValues
 {
   std::vector<float> values;
@@ -81,11 +81,12 @@ struct SceneSource
   vtkImageData* image; ///< this rank's piece, or the complete image
   ViewSettings settings;
   const BlocksOfRanks& blocks;
-  /// Block of a larger grid that `image` is, if it is rendered without the other blocks; else null.
+  /// Position of `image` in the larger grid of which it is a block, if it is rendered without the other blocks; else
+  /// null.
   const GridBlock* alone = nullptr;
 
   const Domain& Over() const { return this->blocks.Over(); }
-  /// Block of the domain that the image is; null if the image is the complete grid.
+  /// Position of `image` in the larger grid of which it is a block; null if it is the complete grid.
   const GridBlock* Block() const
   {
     return this->alone ? this->alone : this->Over().IsSerial() ? nullptr : &this->blocks.Own();

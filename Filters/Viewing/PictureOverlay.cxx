@@ -92,7 +92,7 @@ void PictureOverlay::Draw(
   {
     state->vtkglDisable(GlDepthTest);
   }
-  else // the depth test is per sample: an edge may cover some samples of a pixel
+  else // blends where the depth test passes, per sample: an object's edge may cover some samples of a pixel
   {
     state->vtkglEnable(GlDepthTest);
     state->vtkglDepthFunc(over == Over::Background ? GlLessOrEqual : GlGreater);

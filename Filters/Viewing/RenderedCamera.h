@@ -10,7 +10,7 @@ class vtkRenderer;
 
 namespace tyndall
 {
-constexpr float Endless = 1e30f; ///< length of a ray that meets no opaque surface (MediumRayCaster::Render)
+constexpr float Endless = 1e30f; ///< value of EndsOf for a ray that meets no opaque surface
 
 /// Camera of a renderer, for the tile or eye that is being drawn, in the coordinates of a volume of the scene.
 class RenderedCamera
@@ -22,8 +22,8 @@ public:
 
   const Camera& AsSeen() const { return this->Seen; }
 
-  /// Lengths, in the volume's coordinates, at which opaque surfaces end the rays (MediumRayCaster::Render), one per
-  /// pixel; empty if no ray meets a surface.
+  /// Distances along the view axis, in the volume's unit of length, at which opaque surfaces end the rays, one per
+  /// pixel: argument `ends` of MediumRayCaster::Render. Empty if no ray meets a surface.
   /// @param depths    depth buffer of the renderer, values in [0, 1], rows from bottom to top
   /// @param buffer    columns and rows of the depth buffer
   /// @param size      columns and rows of the picture; the depth of a ray is that at the centre of its pixel

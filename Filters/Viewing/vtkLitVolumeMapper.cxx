@@ -45,7 +45,7 @@ constexpr int ExposedSize[2] = { 64, 48 };
 constexpr double ExposedFrom[4][3] = { { 1, 1, 1 }, { -1, -1, 1 }, { -1, 1, -1 }, { 1, -1, -1 } };
 
 /// Pixels to blend over the scene, red, green, blue, alpha: tone-mapped radiance and the medium's alpha.
-/// @param ends  lengths of rays (RenderedCamera::EndsOf)
+/// @param ends  distances at which surfaces end the rays (RenderedCamera::EndsOf); empty: no ray ends
 /// @param background  whether the background is visible: pixels whose rays meet no surface are then opaque
 std::vector<std::uint8_t> PixelsOf(
   const tyndall::Picture& picture, const std::vector<float>& ends, bool background, const tyndall::ToneMapping& tones)
@@ -342,7 +342,7 @@ void vtkLitVolumeMapper::AgreeOnExposure()
 void vtkLitVolumeMapper::AgreeOnExposure(tyndall::Communicator& others)
 {
   this->CommonExposure = this->ExposureOfPieces(others);
-  if (this->CommonExposure == 0.0) // pieces are rendered alone: geometric mean of their exposures
+  if (this->CommonExposure == 0.0) // if pieces are rendered alone: the geometric mean of their exposures
   {
     const double own = this->EstimateExposure();
     const std::vector<double> all = others.Sum({ own > 0.0 ? std::log(own) : 0.0, own > 0.0 ? 1.0 : 0.0 });

@@ -68,9 +68,9 @@ public:
   /// then call AgreeOnExposure when the medium has changed, and SeePieces before each frame; both are collective. The
   /// composited picture equals that of one mapper with the whole medium.
   ///
-  /// If rays bend or meet a table (TableFace of the ray caster), or the pieces do not tile one grid, each mapper
-  /// renders its piece alone. It then divides radiance by alpha before tone mapping and multiplies the pixel value by
-  /// alpha, so that no seam is visible.
+  /// If rays bend or a face of the box is a reflecting table (TableFace of the ray caster), or the pieces do not tile
+  /// one grid, each mapper renders its piece alone. It then divides radiance by alpha before tone mapping and
+  /// multiplies the pixel value by alpha, so that no seam is visible.
   void SetPiece(vtkMultiProcessController* ranks, vtkImageData* surrounded);
   void AgreeOnExposure();
   void SeePieces(vtkRenderer* renderer, vtkVolume* volume);

@@ -49,8 +49,8 @@ struct ViewSettings;
  * or the arrays chosen by SetInputArrayToProcess 0 to 6, the phase function (see below), and, optional, field data
  * `surface_radiance`, as vtkLightPropagationMaps writes it if voxels at the faces of the box are optically thick: where
  * rays enter such voxels, it replaces the light at the voxels' centres (not with ShadowRays and lights,
- * SingleScatteringOnly, `mean_direction`, a table, or bent rays). It is used only with the array `fluence` of the same
- * image, not if another array is chosen as fluence.
+ * SingleScatteringOnly, `mean_direction`, TableFace, or bent rays). It is used only with the array `fluence` of the
+ * same image, not if another array is chosen as fluence.
  * Input 1, optional: lights as vtkLightRig makes them, for shadow rays.
  * Input 2, optional: the environment behind the medium, vtkImageData in latitude-longitude layout, point array
  * `radiance`.
@@ -98,10 +98,10 @@ struct ViewSettings;
  *
  * If ranks of a parallel pipeline run the filter together, each requests its piece of the medium with one layer of
  * ghost cells, casts rays through it, and returns the requested part of the picture, which equals that of a serial run,
- * to rounding. Rays that bend, are reflected or meet a table continue from rank to rank, and lamps cast shadows across
- * pieces; data that a piece needs beyond its ghost cells (for the index, angular moments, light at the surface of thick
- * voxels) are gathered from other ranks. Every rank gathers the whole medium if properties differ between ranks, or
- * pieces overlap without ghost flags.
+ * to rounding. Rays that bend, are reflected or meet the table (TableFace) continue from rank to rank, and lamps cast
+ * shadows across pieces; data that a piece needs beyond its ghost cells (for the index, angular moments, light at the
+ * surface of thick voxels) are gathered from other ranks. Every rank gathers the whole medium if properties differ
+ * between ranks, or pieces overlap without ghost flags.
  *
  * @sa vtkLightPropagationMaps vtkPhotonMarcher vtkLightRig vtkEnvironmentReader
  * @par Thanks

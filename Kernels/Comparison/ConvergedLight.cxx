@@ -75,8 +75,8 @@ ReferenceLight Climb(Device& device, const ComparedScene& scene, const Rung& run
   return reference;
 }
 
-/// Predicts run times of converged runs from NominalSeconds and from the number of sweeps that a run with few
-/// directions took.
+/// Predicts run times of converged runs from NominalSeconds (run times per ray and voxel on slow cores) and from the
+/// number of sweeps that a run with few directions took.
 class Forecast
 {
 public:
@@ -115,7 +115,7 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
     {
       return Climb(device, scene, rung, OfPart(monitor, 0.2, 1.0));
     }
-    catch (const DeviceError&) // the run does not fit the device; a cheaper one may
+    catch (const DeviceError&) // the run does not fit the device; a cheaper candidate may
     {
       if (last)
       {
@@ -123,7 +123,7 @@ ReferenceLight ByPropagation(Device& device, const ComparedScene& scene, double 
       }
     }
   }
-  return {}; // never reached, since the last rung returns or throws
+  return {}; // never reached, since the last candidate of Ladder returns or throws
 }
 
 ReferenceLight ByPhotonsAlways(

@@ -35,8 +35,8 @@ constexpr double Enough = 0.1;
 
 constexpr double TypicalSweeps = 20.0;
 
-/// Light propagation maps for the forecast: with few directions and, if the time and the device allow, the finest maps
-/// that are compared.
+/// Light propagation maps for the forecast of whether photons are the better reference: with few directions and, if the
+/// time and the device allow, the finest maps that are compared.
 struct ForecastMaps
 {
   std::optional<LightField> coarse, finest;

@@ -21,7 +21,7 @@ public:
   int Channels() const { return this->OfVoxel; } ///< largest number of channels of any set that was added
   std::vector<float> Values() const;
 
-  /// Sum of the squared standard errors of the means; needs at least two sets.
+  /// Sum of the squared standard errors of the means over voxels and channels; needs at least two sets.
   double Variance() const;
   double SumOfSquares() const; ///< sum of the squared means over voxels and channels
   /// Relative standard error: ratio of the root mean squares of the standard errors and of the means.

@@ -36,9 +36,9 @@ public:
   WhileCompiling& operator=(const WhileCompiling&) = delete;
 };
 
-/// Callback during compilation. During the lifetime of this object, its `call` runs about ten times a second in the
-/// thread that created it, whenever that thread waits for a device's compiler (seconds, if the kernels are not cached).
-/// If a thread has several listeners, the latest one is called.
+/// Callback during compilation. During the lifetime of this object, its `call` runs every 150 ms in the thread that
+/// created it, whenever that thread waits for a device's compiler (seconds, if the kernels are not cached). If a thread
+/// has several listeners, the latest one is called.
 class CompilationListener
 {
 public:
@@ -68,7 +68,7 @@ public:
   }
 
 private:
-  /// Time between calls; programs are read from the compiler's cache within less.
+  /// Time between two calls of the listener; a program that is in the compiler's cache is read in less.
   static constexpr std::chrono::milliseconds Patience{ 150 };
 
   Call TheCall;

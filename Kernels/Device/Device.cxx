@@ -36,7 +36,7 @@ struct Shared
 {
   std::mutex Guard; ///< protects all members of this structure
   std::map<std::string, std::shared_ptr<Device>> Devices;
-  std::optional<PoclCache> Cache; ///< cache folder of PoCL; set once PoCL has been asked for devices
+  std::optional<PoclCache> Cache; ///< cache folder of PoCL; no value until PoCL has been asked for devices
   std::vector<std::string> Warnings;
 };
 
@@ -366,7 +366,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
     try
     {
       Allocation allocation = this->Whole->Allocate(bytes, flags, what, residence);
-      // the device `Whole` is itself a view and placed the buffer in host memory
+      // the device `Whole` is itself a view, with a memory budget, and placed the buffer in host memory
       if (allocation.onHost)
       {
         this->Memory.GiveBack(bytes);
