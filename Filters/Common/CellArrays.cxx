@@ -150,7 +150,8 @@ vtkSmartPointer<vtkFloatArray> WithoutHidden(
 
 /// Converts a cell or point array to floats, one value per cell and component; point arrays are averaged to cells.
 /// @param empty  value of hidden cells
-/// @throws InvalidInput as CheckShape
+/// @throws InvalidInput if the array does not have one tuple for each cell or point, or has a number of components that
+///   is not allowed
 FloatField ToField(vtkImageData* image, const Found& found, const std::string& name, Components components, float empty)
 {
   CheckShape(found.array, name, found.ofPoints ? image->GetNumberOfPoints() : image->GetNumberOfCells(), components);
@@ -194,8 +195,8 @@ void FollowFilterBefore(vtkImageData* image, Choice& choice)
   }
 }
 
-/// The array that is selected under the number `index`; if none is, the array that the filter upstream used for the
-/// quantity, or else the default array `otherwise`.
+/// The array that is selected under the number `index` of SetInputArrayToProcess; if none is, the array that the filter
+/// upstream used in place of the default array `otherwise`, or else the default array.
 /// @param image  the filter's input; null: the array of the filter upstream is not looked up
 Choice ChoiceOf(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise)
 {

@@ -369,7 +369,7 @@ vtkSmartPointer<vtkImageData> VoxelsOfPiece(vtkImageData* piece, const OnRanks& 
   const vtkSmartPointer<vtkImageData> voxels = PointsAsVoxels(piece);
   if (Alike(summaries) || std::all_of(summaries.begin(), summaries.end(), [&](const InputSummary& summary) {
         return !summary.isThere || summary.points == summaries[static_cast<std::size_t>(rank)].extent;
-      })) // each rank has the complete image
+      })) // each rank has the complete image, so that no voxel is a duplicate
   {
     return voxels;
   }

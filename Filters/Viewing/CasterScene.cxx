@@ -137,8 +137,9 @@ void KeepFacesOf(const GridBlock& block, const std::array<int, 3>& size, ViewedI
   }
 }
 
-/// Values of an array in this rank's wanted box, gathered from the blocks of all ranks. Collective.
-/// @param wanted  boxes by rank, in voxels of the whole grid; empty if a rank has no block
+/// Values of an array in the box of voxels that this rank needs for rendering, gathered from the blocks of all ranks.
+/// Collective.
+/// @param wanted  needed box of each rank, in voxels of the whole grid; empty if a rank has no block
 /// @param field   the array on this rank's input image, ghost cells included
 std::vector<float> SpreadTo(const std::vector<VoxelBox>& wanted, const BlocksOfRanks& blocks, const Field& field)
 {
@@ -160,7 +161,9 @@ std::vector<float> SpreadTo(const std::vector<VoxelBox>& wanted, const BlocksOfR
   return ValuesInBox(domain.Comm(), domain.Partition(), wanted, values, components);
 }
 
-/// Inputs of the ray caster in this rank's wanted box, gathered from the blocks of all ranks. Collective.
+/// Inputs of the ray caster in the box of voxels that this rank needs for rendering, gathered from the blocks of all
+/// ranks. Collective.
+/// @param wanted  needed box of each rank, in voxels of the whole grid; empty if a rank has no block
 /// @param image  this rank's input image, whose field data describe the phase function
 ViewedInputs SpreadTo(
   const std::vector<VoxelBox>& wanted, const BlocksOfRanks& blocks, vtkImageData* image, const ViewedInputs& inputs)
@@ -198,7 +201,7 @@ ViewedInputs SpreadTo(
 /// Gathers the halo that this rank needs to render its block. Collective.
 /// @param viewed  inputs in this rank's piece; set to the inputs in the voxels held[rank]
 /// @param held  set to the voxels that the ray caster of each rank holds, by rank
-/// @param ior   set to the refractive index in the voxels BlockOfScene::known if it varies, else unchanged
+/// @param ior   set to the refractive index in the voxels of the box BlockOfScene::known if it varies, else unchanged
 /// @return this rank's block, and properties of the scene that all ranks share
 BlockOfScene FetchHalo(
   const SceneSource& source, ViewedInputs& viewed, std::vector<VoxelBox>& held, std::vector<float>& ior)

@@ -11,7 +11,8 @@ namespace
 {
 constexpr int Lattices[] = { 18, 6 }; ///< numbers of directions of the two lattices that are compared
 
-/// Computes uncollided light by photons and scattered light by the lattice, so that the run time covers both.
+/// Computes uncollided light by photons and scattered light by the lattice Boltzmann method, so that the run time
+/// covers both.
 LightField SolveWithPhotons(
   Device& device, const ComparedScene& scene, int photons, const LatticeSettings& settings, const Monitor& monitor)
 {

@@ -44,7 +44,7 @@ struct ForecastMaps
   std::optional<LightField>& Best() { return this->finest ? this->finest : this->coarse; }
 };
 
-/// Run time of propagation by NominalSeconds, seconds.
+/// Run time of light propagation maps, seconds, predicted from NominalSeconds.
 /// @param sweeps  number of sweeps
 double SecondsOf(const PropagationSettings& settings, const ComparedScene& scene, double sweeps)
 {
@@ -54,7 +54,8 @@ double SecondsOf(const PropagationSettings& settings, const ComparedScene& scene
     settings.mapResolution * static_cast<double>(scene.medium.grid.VoxelCount());
 }
 
-/// Computes the maps for the forecast that fit the device and take at most `seconds` together, by NominalSeconds.
+/// Computes those light propagation maps for the forecast that fit the device and take at most `seconds` together, by
+/// NominalSeconds.
 ForecastMaps FindMaps(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
@@ -91,7 +92,7 @@ ForecastMaps FindMaps(
   return maps;
 }
 
-/// Run time per photon by NominalSeconds, seconds. It follows from the mean path length of a photon: the volume
+/// Run time per photon, seconds, predicted from NominalSeconds and the mean path length of a photon: the volume
 /// integral of the fluence, divided by the entered power.
 /// @param light  estimate of the light
 double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
@@ -123,7 +124,7 @@ struct Pilot
 {
   MeansOfSets means;
   std::size_t photons = 0; ///< photons per set
-  double seconds = 0.0;    ///< run time per photon, by NominalSeconds
+  double seconds = 0.0;    ///< predicted run time per photon (NominalSeconds)
 };
 
 /// Pilot run with a few photons, in at least four sets.

@@ -341,8 +341,8 @@ std::size_t RunInTurns(
   return count;
 }
 
-/// Reference by ConvergedLight within half of the time budget; empty, with a warning, if the machine is too slow for
-/// any.
+/// Reference light, computed by ConvergedLight within half of the time budget; empty, with a warning, if the machine is
+/// too slow for any reference.
 /// @param budget  time budget of the comparison, seconds
 ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const ComparedSettings& tried, double budget,
   std::vector<std::string>& warnings, const Monitor& monitor)

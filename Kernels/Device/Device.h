@@ -152,7 +152,7 @@ inline std::string Define(const char* name, int value)
 }
 
 /// Work-group size for work-items that each process a row or more. CPU: 1, so that all threads receive work. GPU: the
-/// driver's choice, since groups of one work-item would leave most lanes idle.
+/// driver's choice, since groups of one work-item would leave most lanes of its vector units idle.
 /// @param dimensions  dimensions of the range, 1 to 3
 inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
 {
