@@ -71,8 +71,8 @@ constexpr int LampComponents = 13;
 
 // Names of arrays and field data that vtkLPMPropagate writes and vtkLPMCollect reads.
 
-/// Names of the cell arrays with the temporary buffers T (Gruson et al. 2012, Eq. 6), one for each face, -x to +z,
-/// towards which light travels.
+/// Names of the cell arrays with the temporary buffers T, the deposits of the rays (Gruson et al. 2012, Eq. 6): one
+/// array for the ray directions towards each face of a cube, -x to +z.
 constexpr const char* const NamesOfT[6] = { "T_xmin", "T_xmax", "T_ymin", "T_ymax", "T_zmin", "T_zmax" };
 
 /// Names of field data, all set by vtkLPMPropagate: rays per voxel edge, number of stored directions, number of the

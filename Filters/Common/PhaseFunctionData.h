@@ -67,7 +67,8 @@ FloatField ReadMeanCosines(vtkImageData* medium, const Field& sigma_s);
 /// Reads the phase function of a medium from field data and the cell array `g`.
 /// @param g        values of the cell array; empty: there is none. Referenced, not owned
 /// @param sigma_s  voxels that do not scatter are ignored when deciding whether g varies
-/// @throws InvalidInput as Functions(), and naming the first voxel whose g is outside (-1, 1)
+/// @throws InvalidInput if a parameter of the phase function is out of range, or naming the first voxel whose g is
+///   outside (-1, 1)
 PhaseOfMedium ReadPhase(vtkImageData* medium, const Field& g, const Field& sigma_s);
 
 /// Adds everything that ReadPhase reads to a cache key.

@@ -64,6 +64,6 @@ void WritePilotLight(Importance&& importance, vtkImageData* output);
 /// layers are lights 0, 1, ...).
 /// @return the map; empty (evenly distributed photons) if `image` is null, has no cells, or its field data `even` is 1
 /// @throws InvalidInput if layers are not square, if `light` is not one whole number per layer, lists a light twice or
-///   a light that does not exist, or as Check of an ImportanceMap
+///   a light that does not exist, or if a value of `importance` is not above 0 or not finite
 ImportanceMap ReadImportanceMap(vtkImageData* image, const Illumination& illumination);
 }

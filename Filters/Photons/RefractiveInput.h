@@ -26,7 +26,8 @@ struct RefractiveInput
 /// Reads the medium of an image (see ReadMedium), its refractive index from cell array `ior` (1 component, optional) or
 /// the array that SetInputArrayToProcess(RefractiveIndex, ...) selects, and the optional cell array `octree_level` of
 /// `octree` or, if that is null, of the medium.
-/// @throws InvalidInput as ReadMedium, and if the voxels of `octree` differ from the medium's or `octree` has no levels
+/// @throws InvalidInput if the medium is invalid (ReadMedium), the voxels of `octree` differ from the medium's, or
+///   `octree` has no levels
 RefractiveInput ReadRefractiveMedium(vtkAlgorithm* filter, vtkImageData* medium, vtkImageData* octree = nullptr);
 /// Reads the medium, refractive index and octree of this rank's block of a domain. Collective.
 /// @param medium, octree  images of the block; null if it has no voxels

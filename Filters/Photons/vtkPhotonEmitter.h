@@ -22,10 +22,10 @@ class vtkPolyData;
  * Input 2, optional: the environment, as vtkEnvironmentReader makes it. The refractive index outside the box is taken
  * as constant.
  * Input 3, optional: an importance map, the relative density of photons, as vtkPhotonImportance makes it: vtkImageData
- * of n x n x lights cells, cell array `importance` (1 component, >= 0, of any scale), field data `light` (number of the
- * light of each layer; missing: 0, 1, ...). The photons of a light without a layer are evenly distributed, and so are
- * all photons if field data `even` is 1. The power of a photon is inversely proportional to the density of photons, so
- * that the power density is unchanged.
+ * of n x n x lights cells, cell array `importance` (1 component, above 0, of any scale), field data `light` (number of
+ * the light of each layer; missing: 0, 1, ...). The photons of a light without a layer are evenly distributed, and so
+ * are all photons if field data `even` is 1. The power of a photon is inversely proportional to the density of photons,
+ * so that the power density is unchanged.
  *
  * Output: vtkPolyData, one vertex per photon, point data
  *

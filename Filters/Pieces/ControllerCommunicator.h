@@ -51,7 +51,7 @@ class ControllerCommunicator : public Communicator
 public:
   /// @param controller    must outlive the communicator
   /// @param patience      timeout of a receive, seconds
-  /// @param conversation  number >= 0, the same on all ranks, that selects the tags
+  /// @param conversation  number >= 0, the same on all ranks, that selects the range of message tags
   explicit ControllerCommunicator(vtkMPIController* controller, double patience = SecondsToWait(),
     std::function<bool()> stopped = {}, int conversation = 0);
   /// Waits until pending sends are complete, unless an error is being thrown.

@@ -28,8 +28,8 @@ namespace tyndall
 class PieceBlocks
 {
 public:
-  /// Makes a serial domain: its one subdomain is the complete image, duplicate cells included. The grid is not checked
-  /// (GridOf).
+  /// Makes a serial domain: its one subdomain is the complete image, duplicate cells included. Does not check the grid,
+  /// which GridOf does.
   explicit PieceBlocks(vtkImageData* whole);
   /// Makes the domain of all ranks, with one subdomain per rank. Collective.
   /// @param asked  information of the output that is made; null: there is no such output, and subdomains are the pieces

@@ -41,7 +41,8 @@ bool EachAsksForItsPiece(vtkInformation* request, vtkInformationVector* outputs)
 ///   all ranks threw. An abort (Aborted) and a failure upstream (InputFailed) are not errors of this filter
 void OnAllRanks(vtkMultiProcessController* controller, const std::function<void()>& act);
 /// Runs long work on the first rank only, while the other ranks wait. Collective.
-/// @throws on every rank what `work` threw, as Throw does (Common/Failure.h)
+/// @throws on every rank what `work` threw on the first one: Aborted, InputFailed, InputIsEmpty, or InvalidInput for
+///   any other exception
 void OnFirstRank(vtkMultiProcessController* controller, const std::function<void()>& work);
 
 /// Runs long work on each rank, as OnAllRanks does, and stops it on all ranks if it ends early on one: the filter's

@@ -23,7 +23,7 @@ class BlocksOfRanks
 {
 public:
   /// Creates the serial case: one block, the complete image.
-  /// @throws InvalidInput as GridOf
+  /// @throws InvalidInput if the image has no valid grid (GridOf)
   explicit BlocksOfRanks(vtkImageData* whole);
   /// Creates the distributed case, from the pieces of all ranks. Collective.
   /// @param communicator  must outlive this object
@@ -43,8 +43,8 @@ public:
   const std::vector<VoxelBox>& Given() const { return this->Pieces.HeldByRanks(); }
   /// Whether the boxes `held`, by rank, equal the boxes Given().
   bool AreGiven(const std::vector<VoxelBox>& held) const;
-  /// Voxels that each rank needs to render its block (HeldBox), by rank; Given() if the input image of each rank
-  /// contains these voxels.
+  /// Voxels that each rank needs to render its block (HeldBox), by rank. If the input image of each rank contains them,
+  /// the voxels of the input images, Given(), instead.
   /// @param moments, surface  whether the light has angular moments, or radiance at the faces
   std::vector<VoxelBox> HeldFor(const ViewSettings& settings, bool moments, bool surface) const;
 

@@ -55,7 +55,7 @@ struct ViewedInputs
 
 /// Reads the input of the ray caster from an image.
 /// @param whole  grid of the domain, of which the image is a block; field data on light at faces are for the whole grid
-/// @throws InvalidInput as ReadChosenCells and Check
+/// @throws InvalidInput if an array has the wrong shape, or the medium is invalid
 ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const Grid& whole);
 
 /// Hash of the presence and components of the arrays that the filter reads, and of the field data that it uses: both

@@ -27,8 +27,9 @@ public:
   /// Relative standard error: ratio of the root mean squares of the standard errors and of the means.
   double RelativeError() const;
 
-  /// Lower estimate of the squared error of other light on the same voxels: its squared distance from the means, minus
-  /// the expectation of that distance due to the photons' noise and twice its standard deviation.
+  /// Lower estimate of the squared error of other light on the same voxels: its squared distance from the means,
+  /// reduced by the value that is expected from the photons' noise alone and by twice the standard deviation of that
+  /// value; at least 0.
   double SquaredErrorOf(const std::vector<float>& other, int channels) const;
 
 private:
@@ -63,10 +64,10 @@ struct PhotonForecast
 };
 
 /// Compares a few photons with the finest light propagation maps on the scene's own grid. The mean square of their
-/// difference, minus the photons' variance and twice its standard deviation, is taken as the maps' squared error.
-/// Photons are forecast to be better if the standard error of as many photons as the time allows is at most a third of
-/// the maps' error, or if even maps of few directions take more than a quarter of the time. All times are
-/// NominalSeconds.
+/// difference, reduced by the photons' variance and by twice the standard deviation of that variance, is taken as the
+/// maps' squared error. Photons are forecast to be better if the standard error of as many photons as the time allows
+/// is at most a third of the maps' error, or if even maps of few directions take more than a quarter of the time. All
+/// times are NominalSeconds.
 /// @param seconds  time for forecast and reference together
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor);

@@ -105,8 +105,8 @@ public:
   /// queued commands, e.g. a blocking read.
   void AwaitFirstRuns();
 
-  /// Calls tyndall::TakePages for the memory of a buffer of `bytes` bytes that will be written completely. Does nothing
-  /// if the device has its own memory, or for a few pages.
+  /// Allocates the memory pages of a buffer of `bytes` bytes that will be written completely (tyndall::TakePages). Does
+  /// nothing if the device has its own memory, or for a few pages.
   void TakePages(const cl::Buffer& memory, std::size_t bytes) const;
 
   /// Adds `seconds`, the estimated run time of work that was queued, and waits for all queued work once the sum reaches

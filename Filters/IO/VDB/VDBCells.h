@@ -42,7 +42,8 @@ struct VoxelOptions
 {
   /// Value of inactive voxels, unless field data `background` of the array state another value.
   double Background = 0.0;
-  /// Largest difference between numbers that count as equal: from the background, or from each other within a block.
+  /// Largest difference between numbers that count as equal: from the background, or from the first value of a block of
+  /// 8^3 voxels.
   double Tolerance = 0.0;
   bool Half = false; ///< whether real numbers are stored in 16 bits; numbers that do not fit are an error
   /// Flag of each cell, not 0 if the cell becomes background whatever its value; null: no such cells.
