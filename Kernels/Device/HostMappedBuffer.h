@@ -140,7 +140,8 @@ private:
     void operator()(T* pages) const { std::free(pages); }
   };
   std::unique_ptr<T, Free> Pages;
-  std::unique_ptr<HostMappedBuffer<T>> Mapped; // declared after Pages, since it must be destroyed before them
+  // Declared after Pages, the memory that it wraps, since it must be destroyed first.
+  std::unique_ptr<HostMappedBuffer<T>> Mapped;
   Buffer<T> Whole;
 };
 }

@@ -18,7 +18,8 @@ const char* const WideVectors = "#ifdef __clang__\n#pragma clang diagnostic igno
 
 std::atomic<bool> AnyCompiled{ false };
 
-/// Advice for the message of a failure that states no reason; empty if the platform's cache folder is not known.
+/// Advice, for the message of a failure that states no reason, to delete the folder of compiled kernels; empty if that
+/// folder is not known.
 std::string AdviceOnCache(const std::string& folder)
 {
   return folder.empty()

@@ -153,7 +153,7 @@ public:
   }
   void Forget(const std::string& path) { this->IsNew = this->Known.erase(path) > 0 || this->IsNew; }
 
-  /// Writes the notes to a new file and renames it, since other processes may write at the same time.
+  /// Writes the recorded states to a new file and renames it, since other processes may write at the same time.
   void Write() const
   {
     if (!this->IsNew)
@@ -180,8 +180,8 @@ private:
   bool IsNew = false;
 };
 
-/// Inspection of PoCL's cache folder with as few system calls as possible: it checks noted files, and program folders
-/// that have changed since they were noted.
+/// Inspection of PoCL's cache folder with as few system calls as possible: it checks the files whose state an earlier
+/// inspection recorded, and the program folders that have changed since then.
 class CacheInspection
 {
 public:
@@ -189,7 +189,7 @@ public:
   /// whether the file was removed.
   using Report = std::function<bool(const std::string& path, const std::string& how)>;
 
-  /// Reads the notes of the folder.
+  /// Reads the states of files that earlier inspections recorded in the folder.
   /// @param folder  name of PoCL's cache folder without a trailing slash
   explicit CacheInspection(const std::string& folder)
     : Folder(folder)
@@ -390,7 +390,8 @@ const std::time_t Begun = std::time(nullptr);
 bool EndedWhileBuilding(const std::string& folder)
 {
   constexpr std::int64_t second = 1000000000, apart = 10 * second, old = 3600 * second;
-  std::vector<std::pair<std::string, int>> ended; // names and file descriptors of the marks of ended processes
+  // Names and descriptors of the files that mark unfinished builds of ended processes.
+  std::vector<std::pair<std::string, int>> ended;
   std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = 0;
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none))

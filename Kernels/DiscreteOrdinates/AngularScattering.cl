@@ -1,10 +1,10 @@
-// Scattering of radiance between the directions in each voxel, by N terms or by the full matrix (numerics.md, Eqs.
-// (D7), (D8)). Radiance is [group of eight directions][voxel][8 directions]; successive groups are `stride` voxels
-// apart, which is at least the number of voxels. The host defines
+// Scattering of radiance between the directions in each voxel, by the N terms of a separable phase function or by its
+// full matrix (numerics.md, Eqs. (D7), (D8)). Radiance is [group of eight directions][voxel][8 directions]; successive
+// groups are `stride` voxels apart, which is at least the number of voxels. The host defines
 //
 //   REAL_WIDTH  number of moments in a vector
 //   GROUPS      number of groups of eight directions
-//   TERMS       number of terms of the phase function
+//   TERMS       N, number of terms of the phase function
 //   ROWS        number of vectors of REAL_WIDTH for the moments of a voxel: fluence, the terms, net flux
 //   FLUX        1: net flux is computed; it follows the terms among the moments
 //   POSITIVE    1: negative sources are set to 0, and positive ones scaled to conserve the scattered power

@@ -83,9 +83,9 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
   this->LoadPhase(groups, phase);
 }
 
-/// Loads the factors of the scattering sum into each outgoing direction: for PairSums::Terms those of the terms,
-/// [group][term][lane]; for PairSums::Matrix the matrix, [group][incident direction][lane]; for PairSums::Passes its
-/// rows, one array each.
+/// Loads the factors of the scattering sum into each outgoing direction, which has a group and a lane, its place among
+/// the eight directions of the group. PairSums::Terms: factors of the terms, [group][term][lane]; PairSums::Matrix: the
+/// matrix, [group][incident direction][lane]; PairSums::Passes: the rows of the matrix, one array each.
 void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
 {
   const auto ofMatrix = [&](int to, std::size_t from) {

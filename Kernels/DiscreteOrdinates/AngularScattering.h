@@ -66,8 +66,10 @@ private:
   bool Positive, NetFlux;
   int GroupCount, TermCount, Width, Rows;
   std::size_t Voxels;
-  std::vector<std::array<int, 2>> Lanes; ///< group and lane of each direction (OrdinateGroups)
+  /// By direction: its group, and its place among the eight directions of the group.
+  std::vector<std::array<int, 2>> Lanes;
   Buffer<float> Moments, Weights, Spread, Angles;
-  std::vector<Buffer<float>> MatrixRows; ///< rows of the matrix, for PairSums::Passes
+  /// Rows of the phase function's matrix, one per outgoing direction; only for PairSums::Passes.
+  std::vector<Buffer<float>> MatrixRows;
 };
 }

@@ -141,7 +141,7 @@ void ChannelArrays::AddLamps(
 
 /// Adds the uncollided light that empty voxels emit, and its first-collision source, which is computed from the mean
 /// direction of this light in each voxel.
-/// @param volume  its deposit has no arrays but the path integrals, which are 0 on entry
+/// @param volume  medium, and arrays to which the sweep adds light: path integrals alone, which are 0 on entry
 SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScattering& scattering,
   const Buffer<float>& sigma_s, const LampTarget& target, const Monitor& monitor) const
 {

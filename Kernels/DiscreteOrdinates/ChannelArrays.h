@@ -26,8 +26,8 @@ public:
   /// @param scene, angles  must outlive this
   ChannelArrays(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, bool netFlux);
 
-  /// Selects the transport of the emission of empty voxels: as uncollided light along a separate quadrature, added by
-  /// AddLamps() (UncollidedEmission.h), instead of by EmitEvenly(). Collective.
+  /// Selects the transport of the emission of empty voxels (sigma_t = 0): as uncollided light along a separate
+  /// quadrature, added by AddLamps() (UncollidedEmission.h), instead of by EmitEvenly(). Collective.
   void TakeVacuumApart(PropagationSettings settings);
   /// Sets Emits() and Scatters() to whether voxels of any rank emit or scatter. To be called before all other methods.
   /// Collective.
@@ -54,7 +54,8 @@ public:
   /// @param lamps  true: `values` is fluence of uncollided light of lamps, all of whose scattering counts; false: other
   ///   fluence, whose scattering into the forward peak does not count as scattering
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
-  /// Scattered power of the absolute difference of two fluences, W; `others` empty: 0. Collective.
+  /// Power, W, that the medium would scatter if the fluence were the absolute difference of two fluences; empty
+  /// `others` count as 0. Collective.
   double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
   /// Writes the isotropic emission of the voxels to `source`, W / (length^3 sr). Collective if any voxel emits.
   /// @param ledger  receives the power of all emission

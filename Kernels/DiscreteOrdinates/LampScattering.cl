@@ -9,7 +9,7 @@
 //           0: light has the direction of the lamp's ray through the centre of the voxel
 #include "DiscreteOrdinates/OrdinatesShared.h"
 
-#define MOST_TILT 0.98f // largest |t| in Eq. (D12); equal to MostTilt in LampScattering.cxx
+#define MOST_TILT 0.98f // largest |t| in the factor 1 + t cosine of Eq. (D12); equal to MostTilt in LampScattering.cxx
 
 // Direction of a lamp's light in voxel i; 0 in the voxel that contains the lamp, where light is isotropic.
 inline float3 from_lamp(const LampInRays* lamp, ulong i)

@@ -19,10 +19,12 @@ namespace tyndall
 {
 namespace
 {
-constexpr double MostTilt = 0.98; ///< largest |t| in Eq. (D12); equal to MOST_TILT in LampScattering.cl
-constexpr double Least = 1e-9;    ///< smallest value of the tabulated phase function, 1/sr
+/// Largest |t| in the factor 1 + t cosine of Eq. (D12); equal to MOST_TILT in LampScattering.cl.
+constexpr double MostTilt = 0.98;
+constexpr double Least = 1e-9; ///< smallest value of the tabulated phase function, 1/sr
 constexpr int TableSize = 1024;
-constexpr int MeansDegree = 256; ///< highest degree of Legendre moments; higher ones vanish in the mean over a cell
+/// Highest degree of the Legendre moments; higher ones vanish in the mean over a direction's solid angle.
+constexpr int MeansDegree = 256;
 
 /// Phase function averaged over the solid angle of one direction, 1/sr, at equidistant angles from 0 to pi. All values
 /// are positive, so that normalisation does not divide by 0 for narrow peaks.
@@ -69,9 +71,9 @@ LampScattering::LampScattering(
   this->Table = Buffer<float>(device, this->ByAngle, "the phase function");
 }
 
-/// Phase function between a ray and each direction, 1/sr, [group][lane], corrected so that its integral over the
-/// directions is 1 and its mean cosine is exact, as far as that keeps all values positive (part_i of numerics.md, Eq.
-/// (D12)).
+/// Phase function between a ray and each direction, 1/sr, [group][direction of the group], corrected so that its
+/// integral over the directions is 1 and its mean cosine is exact, as far as that keeps all values positive (part_i of
+/// numerics.md, Eq. (D12)).
 std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) const
 {
   const auto cosine = [&](int g, int lane) {

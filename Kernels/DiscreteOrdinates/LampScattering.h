@@ -20,7 +20,7 @@ struct LampTarget
   const Buffer<float>& source;
   Buffer<float>& scale;        ///< factor of `source` by voxel; on return 1, because `source` has been multiplied by it
   const Buffer<float>& direct; ///< uncollided fluence, W / length^2; the lamp's is added to it
-  const OrdinatesLight& light; ///< the lamp's fluence and net flux are added to its sums over orders
+  const OrdinatesLight& light; ///< sums over scattering orders, to which the lamp's fluence and net flux are added
 };
 
 /// First-collision source of uncollided light: proportional to the phase function between the ray and each direction,
@@ -52,7 +52,8 @@ private:
   Grid TheGrid;
   const OrdinateGroups& Groups;
   double MeanCosine;
-  std::vector<float> ByAngle; ///< phase function averaged over a cell, 1/sr, at equidistant angles from 0 to pi
+  /// Phase function averaged over the solid angle of one direction, 1/sr, at equidistant angles from 0 to pi.
+  std::vector<float> ByAngle;
   Buffer<float> Omegas, Table;
 };
 }

@@ -17,7 +17,7 @@ OrdinateGroups::OrdinateGroups(std::vector<Direction> directions)
     const int octant = (omega[0] > 0.0) + 2 * (omega[1] > 0.0) + 4 * (omega[2] > 0.0);
     (inside ? octants[octant] : along).push_back(static_cast<int>(d));
   }
-  for (const int d : along) // each such direction joins the octant whose last group has the most free lanes
+  for (const int d : along) // each such direction joins the octant whose last group of eight has the most free places
   {
     const auto fits = [&](int octant) {
       bool same = true;

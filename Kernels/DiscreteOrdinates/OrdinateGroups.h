@@ -23,13 +23,14 @@ constexpr std::size_t OrdinateStride(std::size_t voxels)
 struct OrdinateGroup
 {
   std::array<bool, 3> up = {}; ///< whether the components of the directions along x, y and z are positive
-  /// Indices of the directions; the last one is repeated to fill all lanes.
+  /// Indices of the directions; the last one is repeated to fill all eight places.
   std::array<int, OrdinateLanes> direction = {};
   int count = 0; ///< number of distinct directions
 };
 
 /// Directions sorted into groups, which define the memory layout of radiance: [group][voxel, x fastest, padded to
-/// OrdinateStride][lane], so that the radiance of a voxel and a group is one vector, and a row of voxels is contiguous.
+/// OrdinateStride][direction of the group], so that the radiance of a voxel and a group is one vector, and a row of
+/// voxels is contiguous.
 class OrdinateGroups
 {
 public:
@@ -40,12 +41,12 @@ public:
   int Count() const { return static_cast<int>(this->Groups.size()); }
   std::size_t Lanes() const { return this->Groups.size() * OrdinateLanes; }
   const Direction& Of(int group, int lane) const { return this->Directions[this->Groups[group].direction[lane]]; }
-  /// Solid angle of a lane, sr; 0 for a repeated direction.
+  /// Solid angle of the direction at place `lane` (0 to 7) of a group, sr; 0 for a repeated direction.
   double Weight(int group, int lane) const
   {
     return lane < this->Groups[group].count ? this->Of(group, lane).weight : 0.0;
   }
-  /// Table [group][lane] of the values of a function of group and lane.
+  /// Table [group][lane] of the values of a function of group and lane (place in the group, 0 to 7).
   std::vector<float> Table(const std::function<double(int group, int lane)>& value) const;
 
 private:

@@ -29,9 +29,10 @@ namespace tyndall
 /// starts.
 struct OrdinatesGuess
 {
-  bool keeps = false;        ///< whether the light of this solve is kept for the next
-  bool begins = false;       ///< whether this solve begins from the guess
-  std::vector<float> values; ///< OrdinatesResult::left of the previous solve
+  bool keeps = false;  ///< whether the light of this solve is kept for the next
+  bool begins = false; ///< whether this solve begins from the guess
+  /// Scattered fluence left by the previous solve (OrdinatesResult::left), W / length^2, by voxel.
+  std::vector<float> values;
   double firstScattered = 0.0;
   double rate = 0.0;
 };
@@ -42,7 +43,8 @@ struct OrdinatesScene
   const Domain& domain;
   const Medium& medium; ///< medium of this rank's block
   int channel = 0;
-  /// Lamps of the scene and peaks of the environment, with the power of this channel in all three components.
+  /// Lamps of the scene and parallel beams that represent peaks of the environment, with the power of this channel in
+  /// all three components.
   std::vector<Light> lamps;
   IncomingRadiance incoming;          ///< boundary source; empty: no light is incident
   std::array<Rgb, 6> faceAlbedo = {}; ///< albedo of this channel in all three components
@@ -50,7 +52,7 @@ struct OrdinatesScene
   OrdinatesGuess guess;
 };
 
-/// Sums a tally over all ranks. Collective.
+/// Sums the incident and escaped powers of a sweep over all ranks. Collective.
 SweepTally SumOf(const Domain& domain, const SweepTally& own);
 
 /// Directions of a solve, and the phase function between them: its separable form for second and later scattering
@@ -149,7 +151,8 @@ void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles
 /// the result.
 IncomingRadiance IncomingOf(const FarLight& far, const Illumination& shining, int channel);
 
-/// Lamps of the scene and peaks of the environment, with the power of one channel in all three components.
+/// Lamps of the scene and parallel beams that represent peaks of the environment, with the power of one channel in all
+/// three components.
 std::vector<Light> LampsOf(const FarLight& far, const Illumination& shining, int channel);
 
 /// Copies the result of one channel to `light`.

@@ -65,11 +65,15 @@ public:
 private:
   struct Octant
   {
-    ParallelBundles way; ///< marching axis and signs of the octant; its list of rays is empty
+    /// Marching axis of the octant and signs of its directions; its list of rays is not used and empty.
+    ParallelBundles way;
     int first = 0, groups = 0;
     std::vector<BlockContact> senders, receivers;
-    std::vector<BlockContact> aroundFrom, aroundTo; ///< contacts across the ends of periodic axes
-    std::vector<std::vector<float>> waiting;        ///< radiance received from aroundFrom, incident in the next sweep
+    /// Faces shared with other blocks across the ends of periodic axes: blocks from which radiance wraps around, and to
+    /// which.
+    std::vector<BlockContact> aroundFrom, aroundTo;
+    /// By element of aroundFrom: radiance received from that block, incident in the next sweep; empty: none.
+    std::vector<std::vector<float>> waiting;
   };
   using Faces = std::array<std::vector<float>, 3>;
 

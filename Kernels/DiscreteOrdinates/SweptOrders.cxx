@@ -14,7 +14,8 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 10000;
-/// Limit on the ratio of successive orders with which the geometric series is extrapolated, so that its sum is bounded.
+/// Largest ratio of successive scattering orders with which the later orders are extrapolated as a geometric series, so
+/// that its sum is bounded.
 constexpr double FastestSeries = 0.99;
 
 PairSums SumsOf(const OrdinatesSettings& settings)

@@ -125,8 +125,9 @@ __kernel void fill_face(__global float* face, const __global float* values, int 
 
 // Adds the reflected radiance of the cells of the two faces perpendicular to an axis to the incident radiance along
 // every incident direction.
-//   face  [group][cell][8], as in fill_face
-//   in    radiance by cell of the box faces; the cells of the two faces begin at `low` and `high`
+//   face  incident radiance, W / (length^2 sr), [group][cell][8]
+//   in    reflected radiance, W / (length^2 sr), by cell of the box faces; the cells of the two faces begin at `low`
+//         and `high`
 __kernel void enter_by_cells(
   __global float* face, const __global float* in, const __global int* up, int axis, ulong low, ulong high)
 {
@@ -135,6 +136,7 @@ __kernel void enter_by_cells(
 }
 
 // Adds the outgoing power of each cell of the two faces perpendicular to an axis to `out`.
+//   face    outgoing radiance, W / (length^2 sr), [group][cell][8]
 //   out     W, by cell of the box faces; the cells of the two faces begin at `low` and `high`
 //   across  [group][3][8]: power that a radiance of 1 W / (length^2 sr) along the direction carries through a cell
 //           perpendicular to each axis, W

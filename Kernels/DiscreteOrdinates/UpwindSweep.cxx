@@ -184,8 +184,8 @@ void UpwindSweep::LeaveByCells() const
   }
 }
 
-/// Sets the incident radiance of the boundary source. Periodic faces already hold the radiance that left at their other
-/// end.
+/// Sets the incident radiance of the boundary source. Periodic faces already hold the radiance that left at the other
+/// end of the axis.
 void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
 {
   for (int axis = 0; axis < 3; ++axis)

@@ -92,7 +92,8 @@ public:
 
 private:
   bool IsCarried(int axis) const { return !this->At.unvarying[axis]; }
-  std::array<int, 2> FaceSize(int axis) const; ///< number of rows of a group, and of voxels in a row
+  /// For a group of directions: number of rows of a face perpendicular to `axis`, and of voxels in a row.
+  std::array<int, 2> FaceSize(int axis) const;
   void LoadDirections();
   bool IsCounted(int face) const { return !(this->At.inner >> face & 1); }
   void FillFace(int axis, const IncomingRadiance& incoming, FacePowers& powers);

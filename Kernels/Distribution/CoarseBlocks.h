@@ -59,7 +59,8 @@ private:
   Communicator& TheCommunicator;
   BlockPartition FinePartition, CoarsePartition;
   Coarsening Whole;
-  /// boxes of fine voxels of Own() and of coarse voxels of Seen(), by rank
+  /// By rank: box of the fine voxels that its coarse voxels overlap (Own()), and box of the coarse voxels between which
+  /// its fine voxels are interpolated (Seen()).
   std::vector<VoxelBox> AroundBoxes, SeenBoxes;
   bool AnyStraddles = false;
   Coarsening OwnPart, SeenPart;

@@ -225,7 +225,8 @@ void Communicator::RequireParcels(const std::vector<int>& with, const std::vecto
   }
 }
 
-/// Exchanges parcels by Swap, and counts messages and bytes. A rank's parcel for itself is neither sent nor counted.
+/// Exchanges parcels (the bytes that this rank sends to one other rank) by Swap, and counts messages and bytes. A
+/// rank's parcel for itself is neither sent nor counted.
 std::vector<std::vector<char>> Communicator::CountAndExchange(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {

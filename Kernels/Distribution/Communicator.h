@@ -105,9 +105,9 @@ protected:
   virtual void Give(int to, int tag, std::vector<char> bytes) = 0;
   virtual std::vector<char> Take(int from, int tag) = 0;
 
-  /// Exchanges parcels with other ranks; this default implementation sends messages. Collective; called directly after
-  /// all ranks have agreed that none has failed.
-  /// @param with  ranks to exchange with, this rank not among them
+  /// Exchanges parcels, i.e. the bytes for one other rank each, with other ranks; this default implementation sends
+  /// messages. Collective; called directly after all ranks have agreed that none has failed.
+  /// @param with  ranks to exchange with, this rank not among them; parcels are in the same order
   virtual std::vector<std::vector<char>> Swap(const std::vector<int>& with, std::vector<std::vector<char>> parcels);
 
 private:

@@ -8,9 +8,10 @@
 
 namespace tyndall
 {
-/// Levels of a pyramid over a distributed grid. Each rank computes the levels up to the level `shared` for its box,
-/// which is its block and a margin around it, and contributes its cells of the shared level; every rank that has voxels
-/// computes the levels above, which are small. On one rank the box is the whole grid.
+/// Levels of a pyramid over a distributed grid: the grid itself, and ever coarser grids whose cells each join several
+/// cells of the level below. Each rank computes the levels up to the level `shared` for its box, which is its block and
+/// a margin around it, and contributes its cells of the shared level; every rank that has voxels computes the levels
+/// above, which are small. On one rank the box is the whole grid.
 class PyramidBlocks
 {
 public:

@@ -62,8 +62,8 @@ std::vector<std::string> ShareLines(Communicator& communicator, bool found, cons
   return shared;
 }
 
-/// Whether the lights that the ranks kept come from the same solve: compares the powers and rates of the whole domain,
-/// which each rank stores with its light.
+/// Whether the lights that the ranks kept come from the same solve: compares the first-scattered power and the ratio of
+/// successive iterations, which each rank stores with its light and which are those of the whole domain.
 bool IsOfOneSolve(Communicator& communicator, const KeptLight& kept)
 {
   std::vector<double> values(kept.firstScattered.begin(), kept.firstScattered.end());

@@ -14,9 +14,10 @@ namespace tyndall
 namespace
 {
 /// Decrease of fluence along an axis is attributed to attenuation only if light travels along that axis, since light
-/// also decreases at shadow edges: the estimated first moment along the axis is multiplied by a weight that depends on
-/// the component of the mean direction along it. The weight is 0 up to the first value, and grows linearly to 1 at the
-/// second, so that rounding errors cannot switch it on or off.
+/// also decreases at shadow edges: the estimated first moment of collisions along the axis (their mean distance from
+/// the voxel's centre) is multiplied by a weight that depends on the component of the mean direction along it. The
+/// weight is 0 up to a component of SaysNothing, and grows linearly to 1 at SaysAll, so that rounding errors cannot
+/// switch it on or off.
 constexpr double SaysNothing = 0.15, SaysAll = 0.25;
 
 /// Mean of exp(-k x) over x from 0 to 1.

@@ -19,8 +19,10 @@ namespace tyndall
 struct Uncollided
 {
   std::vector<float> fluence, netFlux;
-  std::vector<float> firstMoments; ///< as LightField::firstMoments, with the channels of `image`; empty: unknown
-  UncollidedImage image;           ///< `escaped` is set on the lowest rank that has voxels, and 0 on all other ranks
+  /// Mean positions of collisions relative to the voxels' centres, times fluence, by voxel, channel and face
+  /// (LightField::firstMoments), W / length^2; empty: not known.
+  std::vector<float> firstMoments;
+  UncollidedImage image; ///< `escaped` is set on the lowest rank that has voxels, and 0 on all other ranks
   /// Incident power that neither collided nor escaped, W; set on the same rank as `escaped`.
   Rgb lost = {};
 

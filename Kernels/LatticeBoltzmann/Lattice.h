@@ -17,30 +17,32 @@ namespace tyndall
 class Lattice
 {
 public:
-  /// @param voxels  coefficients of all known voxels of the box
+  /// @param voxels  coefficients of the box's own voxels and its ghost voxels
   Lattice(Device& device, const LatticeBox& box, const LatticeSettings& settings, const LatticeVoxels& voxels);
 
   /// Queues `steps` lattice steps. Before the first call densities are zero, except for incident light.
   /// @param writes  whether the last step writes the fluence
   void Step(int steps, bool writes);
-  std::vector<float> Fluence() const { return this->Shown.Read(); } ///< fluence, W / length^2, by own voxel
-  /// Fluence at the given own voxels, W / length^2.
+  /// Fluence, W / length^2, by voxel of this rank's block (own voxel).
+  std::vector<float> Fluence() const { return this->Shown.Read(); }
+  /// Fluence at the voxels of this rank's block with the given indices, W / length^2.
   std::vector<float> FluenceAt(const Buffer<cl_int>& voxels) const;
 
   /// Makes Step() use `queue` instead of the device's queue.
   void StepOn(const cl::CommandQueue& queue) { this->Queue = queue; }
-  /// replaces the array LatticeVoxels::source on the device; values are by known voxel
+  /// replaces the isotropic source on the device (LatticeVoxels::source); values are by own and ghost voxel
   void SetSource(const std::vector<float>& source);
-  /// Sets the source to scatters times fluence plus `emits`. Queued. Arrays are in the layout of the lattice unless
-  /// stated otherwise.
+  /// Sets the source to scatters times fluence plus `emits`. Queued. Arrays are in the layout of LatticeInfo (rows of
+  /// voxels with a halo) unless stated otherwise.
   /// @param scatters  fraction of the fluence that is scattered in a step through a voxel, times the conversion from
   ///   the unit of `fluence` to that of the lattice
   /// @param emits  source without that scattered light, W / length^2 per step
-  /// @param fluence  uncollided fluence, [voxel][channels], of which `channel` is used
+  /// @param fluence  uncollided fluence, [voxel][channel], of which `channel` is used
   void SetSourceOf(
     const Buffer<float>& scatters, const Buffer<float>& emits, const Buffer<float>& fluence, int channels, int channel);
 
-  /// Densities after the last step, W / length^2, [direction][stride].
+  /// Densities after the last step, W / length^2, [direction][voxel] in the layout of LatticeInfo, `stride` values per
+  /// direction.
   const Buffer<float>& Densities() const { return this->Now; }
   const LatticeInfo& Info() const { return this->TheInfo; }
 
@@ -52,10 +54,10 @@ public:
   /// Computes the net flux, W / length^2, [x, y, z][voxel].
   std::vector<float> NetFlux();
 
-  /// Copies values by known voxel to a device array in the layout of the lattice; 0 outside the box.
+  /// Copies values by own and ghost voxel to a device array in the layout of LatticeInfo; 0 outside the box.
   Buffer<float> Placed(const std::vector<float>& values, const char* what) const;
-  /// Array in the layout of the lattice: inside(known voxel) in the box and its ghost voxels, outside(face) beyond the
-  /// box's faces, where at edges of the box the mean over faces is taken.
+  /// Array in the layout of LatticeInfo: inside(index) at the own and ghost voxels, and outside(face) in the layer of
+  /// values beyond the box's faces; at edges of the box the mean of outside() over the faces.
   template <class Inside, class Outside>
   std::vector<float> Arrange(const Inside& inside, const Outside& outside) const;
 
@@ -77,8 +79,8 @@ private:
   LatticeInfo TheInfo = {};
   std::string Options;
   Buffer<float> Resistance, Turning, Kept, Squared, Albedo, Source, Endless, Shown;
-  /// Densities before and after a step. If the lattice steps in blocks, Next holds the light that blocks receive from
-  /// each other.
+  /// Densities before (Now) and after a step (Next). If the lattice steps in blocks, Next holds the light that blocks
+  /// receive from each other.
   Buffer<float> Now, Next;
   Buffer<float> Sends; ///< if the lattice steps in blocks: light that blocks send to each other
 };

@@ -82,8 +82,9 @@ struct LatticeBox
   }
 
   Grid known;
-  VoxelBox own;                      ///< box of the own voxels, in voxels of `known`
-  int innerFaces = 0;                ///< bits of the faces -x, +x, ... +z of `own` beyond which ghost voxels lie
-  std::array<bool, 3> periodic = {}; ///< axes that wrap around within the known voxels
+  VoxelBox own;       ///< box of the own voxels, in voxels of `known`
+  int innerFaces = 0; ///< bits of the faces -x, +x, ... +z of `own` beyond which ghost voxels lie
+  /// Periodic axes whose two ends both lie within `known`; a block with ghost voxels has none.
+  std::array<bool, 3> periodic = {};
 };
 }

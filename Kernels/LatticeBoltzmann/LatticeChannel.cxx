@@ -32,8 +32,8 @@ public:
   Settling(Device& device, Lattice& lattice, const Grid& grid, const LatticeSettings& settings);
 
   /// Takes the steps.
-  /// @param before  steps and time that count towards the limits
-  /// @param rows  receives one convergence row per check of the probes
+  /// @param before  steps taken and time spent before, which count towards the limits of the settings
+  /// @param rows  receives one convergence row each time the fluence at the probes (Settling::Probes) is compared
   /// @return fluence after the last step
   /// @throws InvalidInput if densities have overflowed (explicit collisions in optically thick voxels)
   std::vector<float> Run(const StepsBefore& before, const Monitor& monitor, std::vector<ConvergenceRow>& rows);
@@ -53,7 +53,7 @@ private:
 
 namespace
 {
-constexpr int StepsPerLook = 16;   ///< least number of steps between two readings of the probes
+constexpr int StepsPerLook = 16;   ///< least number of steps between two readings of the fluence at the probes
 constexpr int MostSteps = 200000;  ///< largest number of steps if the settings set no limit
 constexpr double Slowest = 0.9999; ///< largest ratio of successive changes from which an error can be estimated
 }
@@ -154,7 +154,7 @@ class LatticeAccount
 {
 public:
   /// All arguments must outlive this object.
-  /// @param direct, voxels  uncollided light and coefficients, by known voxel
+  /// @param direct, voxels  uncollided light and coefficients, by own and ghost voxel
   LatticeAccount(const LatticeProblem& problem, const LatticeSettings& settings, const Uncollided& direct,
     const LatticeVoxels& voxels, Lattice& lattice, int channel)
     : TheMedium(problem.TheMedium())

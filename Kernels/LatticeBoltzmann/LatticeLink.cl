@@ -4,10 +4,12 @@
 //   BENDS       1: the refractive index varies
 //   REFLECTS    1: a face of the box reflects light
 //   PUBLISHED   1: collisions as in the paper
-//   ENDLESS     1: some lines of links are endless (LatticeVoxels.h); no light is sent along these lines
+//   ENDLESS     1: some lines of links close around periodic axes and have almost no extinction, so that light
+//               on them would never end; no light is sent along these endless lines
 //
-// Densities are [direction][stride], W / length^2: light that leaves a voxel along the link of the direction in a step.
-// Their sum over directions is the fluence. The halo around the box holds incident light.
+// Densities are [direction][voxel], W / length^2, with `stride` values per direction: light that leaves a voxel along
+// the link of the direction in a step. Their sum over directions is the fluence. The halo around the box holds incident
+// light.
 #pragma once
 #include "LatticeBoltzmann/LatticeShared.h"
 
@@ -48,9 +50,9 @@ __constant char Ways[18][3] = LATTICE_WAYS;
     return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                                   \
   }
 
-// Total weight of the open directions of a voxel (LatticeVoxels::OpenWeight): isotropic light is emitted along open
-// directions only, not along endless lines (LatticeVoxels.h). DEFINE_SENT: weight of direction i in isotropic light,
-// relative to the open directions.
+// Total weight of the open directions of a voxel, along which it emits isotropic light. The others are those of endless
+// lines, which close around periodic axes and have almost no extinction (LatticeVoxels::endless). DEFINE_SENT: weight
+// of direction i in isotropic light, relative to the open directions.
 //   closed  bit mask of the direction pairs whose line is endless
 #define DEFINE_OPEN(name, type, whole)                                                    \
   static type name(whole closed)                                                          \

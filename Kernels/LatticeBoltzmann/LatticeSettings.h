@@ -66,7 +66,7 @@ void Check(const LatticeSettings& settings);
 std::string NotInBlocks(const LatticeSettings& settings);
 
 /// Settings for the light propagation maps that compute the uncollided light of a lattice solve.
-/// @param angularDegree  as in PropagationSettings
+/// @param angularDegree  degree of the angular moments of scattering; -1: chosen by the solver; 0: isotropic
 PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDegree = -1);
 
 /// Sets directions and tolerance for a quality, unless they differ from their defaults. No quality removes the error of

@@ -18,12 +18,12 @@ SHARED_BEGIN
 enum
 {
   LatticeFirst = 16, ///< index of a row's first voxel, chosen so that rows are aligned for vector loads
-  /// stands for a face number where another block, rather than a face of the grid, lies beyond the face
+  /// stands for the number (0 to 5) of a face of the grid where another block lies beyond the voxel instead
   OtherBlock = 6
 };
 
-/// Memory layout of a lattice: voxels with a halo of one layer, in rows of `row` values, the first voxel at
-/// LatticeFirst.
+/// Memory layout of a lattice: voxels with a halo of one layer, in rows of `row` values; the first voxel of a row is at
+/// index LatticeFirst.
 typedef struct
 {
   int size[3]; ///< number of voxels along each axis
@@ -33,17 +33,18 @@ typedef struct
   int offset[18];    ///< index offset from a voxel to its neighbour along each direction
   float albedo[6];   ///< albedo of the faces -x, +x, ... +z
   float incoming[6]; ///< fluence / n^2 of the diffuse light outside each face, W / length^2
-  ulong stride;      ///< stride of the densities between directions
+  ulong stride;      ///< number of values from the densities of one direction to those of the next
   int steps;         ///< number of steps in a block between exchanges of light
 } LatticeInfo;
 
-/// Parameters of a sweep along the lines of links of a pair of opposite directions (LatticeLines.cl).
+/// Parameters of a sweep along the lines of links (rows of voxels along a link vector) of a pair of opposite directions
+/// (LatticeLines.cl).
 typedef struct
 {
   /// layout of the lattice, with the incident light at its faces; that is 0 in a sweep of collided light alone
   LatticeInfo lattice;
   int pair;   ///< directions 2 pair and 2 pair + 1
-  int writes; ///< 1: the sweep also writes densities, in the layout of step_lattice
+  int writes; ///< 1: the sweep also writes densities, in the layout of `lattice`
 } LinePass;
 SHARED_END
 

@@ -101,7 +101,7 @@ __kernel void step_lattice(LatticeInfo lattice, LINKS, const __global float* tur
   }
 }
 
-// Computes source = emits + scatters times one channel of a fluence, [voxel][channels] (Lattice::SetSourceOf). One
+// Computes source = emits + scatters times one channel of a fluence, [voxel][channel] (Lattice::SetSourceOf). One
 // work-item per row of voxels.
 __kernel void source_of_fluence(LatticeInfo lattice, const __global float* scatters, const __global float* emits,
   const __global float* fluence, int channels, int channel, __global float* source)

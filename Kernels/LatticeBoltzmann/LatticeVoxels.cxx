@@ -14,9 +14,9 @@ namespace tyndall
 {
 namespace
 {
-/// A closed line of links counts as endless if its voxels remove, on average, less than this fraction of the light per
-/// step. The second value applies if all axes are periodic: all lines then close, and in thin media light must travel
-/// many times around a line before it is removed.
+/// A closed line of links, which returns to its first voxel around periodic axes, counts as endless if its voxels
+/// remove, on average, less than this fraction of the light per step. The second value applies if all axes are
+/// periodic: all lines then close, and in thin media light must travel many times around a line before it is removed.
 constexpr double LeastEnding = 1e-3, LeastEndingInClosedBox = 1e-12;
 
 /// Probability that diffuse light that starts between two points reaches the farther point before the nearer one, and
@@ -295,7 +295,7 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
       const double part = nearer > 0.0 ? this->PartWithin(i, face) : 0.0;
       parts[face] = part > 0.0 ? nearer / normal * PartThatCrosses(2.0 * normal * part, decays / part) : 0.0;
     }
-    // Limits the sum over faces to the source of the voxel, in voxels lit through several faces.
+    // Divisor of the fractions that cross the faces: in voxels lit through several faces it keeps their sum at 1.
     const double all = std::max(std::accumulate(parts.begin(), parts.end(), 0.0), 1.0);
     for (std::size_t face = 0; face < 6; ++face)
     {

@@ -21,7 +21,7 @@ double LatticeWeight(int directions, int i);
 /// the link vector.
 double LatticeSquares(int directions);
 
-/// Coefficients of the lattice step for one channel, by known voxel (numerics.md, Eqs. (L2) to (L6)).
+/// Coefficients of the lattice step for one channel, by own and ghost voxel (numerics.md, Eqs. (L2) to (L6)).
 struct LatticeVoxels
 {
   /// Fraction of the density that a step's collision makes isotropic; published scheme: fraction that is scattered.

@@ -16,7 +16,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostSteps = 10000;
-/// Ratio of a step's change to that of the first step above which the radiance counts as diverging.
+/// The radiance counts as diverging when a step changes it by more than this factor times the change by the first step.
 constexpr double WithoutEnd = 1e4;
 
 /// One explicit step of the radiance along every direction, whose length is the shortest voxel edge (Gong et al., Eqs.
@@ -95,8 +95,8 @@ public:
 private:
   cl::Kernel Kernel(const char* name) const { return this->TheDevice.Kernel(name, kernel_source::PublishedOrders, ""); }
 
-  /// Power that a radiance of 1 W / (length^2 sr) along a direction carries through a voxel face perpendicular to
-  /// `axis`, W.
+  /// Power that a radiance of 1 W / (length^2 sr) along a direction (at place `lane`, 0 to 7, of its group) carries
+  /// through a voxel face perpendicular to `axis`, W.
   double Across(int group, int lane, int axis) const
   {
     return this->Groups.Weight(group, lane) * std::abs(this->Groups.Of(group, lane).omega[axis]) *

@@ -22,9 +22,10 @@
 
 namespace tyndall
 {
-/// Synthetic uncollided light in place of that of photons not yet marched, from which LatticeProblem chooses units and
-/// channels. Its fluence has the order of magnitude of the photons' fluence. It varies from voxel to voxel, and between
-/// channels if photons differ in colour, so that the problem keeps all channels that the photons need.
+/// Stand-in for the uncollided light of photons that have not been marched yet, because LatticeProblem chooses units
+/// and channels from such light. Its fluence has the order of magnitude of the photons' fluence. It varies from voxel
+/// to voxel, and between channels if photons differ in colour, so that the problem keeps all channels that the photons
+/// need.
 struct PhotonsToCome
 {
   /// @param given  number of channels that the photons' light will have
@@ -54,7 +55,7 @@ struct PhotonChannelMap
 /// For each voxel, the fraction of a channel's fluence that is scattered in a step, multiplied by `unit`: the argument
 /// `scatters` of Lattice::SetSourceOf.
 /// @param unit  conversion factor from the photons' fluence to that of the lattice
-/// @param begins  LatticeVoxels::begins
+/// @param begins  by voxel: fraction of the source that is not absorbed in its first step (LatticeVoxels::begins)
 std::vector<float> ScattersOf(const Medium& medium, int channel, double unit, const std::vector<double>& begins);
 
 /// Lattice solve interleaved with photons: photons march while lattice steps diffuse the light deposited so far
@@ -69,7 +70,8 @@ public:
     const Illumination& illumination, const LatticeSettings& settings);
 
   /// Marches the photons, and solves for the light.
-  /// @param marcher  set up for the medium of this object, one scattering order and no batches
+  /// @param marcher  made for the medium of this object, with settings that end photons at their first scattering (one
+  ///   order) and do not divide them into batches
   LightField Solve(PhotonMarcher& marcher, const std::vector<Photon>& photons, const Monitor& monitor);
 
 private:

@@ -25,16 +25,16 @@ public:
   LatticeDiffusion(
     Device& device, const LatticeProblem& problem, const LatticeSettings& settings, const LatticeVoxels& voxels);
 
-  /// Solves the diffusion system with `residual` as right-hand side, until its own residual has fallen to a tenth.
-  /// Collective.
-  /// @param residual  by own voxel
+  /// Solves the diffusion system with `residual` as right-hand side, until the residual of that system has fallen to a
+  /// tenth. Collective.
+  /// @param residual  of the transport equation, by own voxel
   /// @param unit  root mean square of `residual` over all ranks, > 0
   /// @return the solution, fluence / n^2, by own voxel
   Values Solve(const Values& residual, double unit);
 
 private:
-  /// Matrix in arrays by voxel with ghosts: conductances, by axis, of the low faces of the block's voxels and of the
-  /// ghosts above them, and losses of the block's voxels.
+  /// Diffusion matrix, in arrays over the block's voxels and their ghost voxels: conductances, by axis, of the low
+  /// faces of the block's voxels and of the ghosts above them, and losses of the block's voxels.
   struct Matrix
   {
     std::array<std::vector<float>, 3> conductance;

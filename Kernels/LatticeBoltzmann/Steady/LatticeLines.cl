@@ -158,8 +158,8 @@ typedef struct
   exact sends, returns;
 } Behind;
 
-// Computes U and R of a voxel. The light that arrives in it from below is arrived + back * (light that the voxel sends
-// down).
+// Computes U (sends) and R (returns) of a voxel (see Behind). The light that arrives in it from below is arrived + back
+// * (light that the voxel sends down).
 static Behind pass_voxel(exact straight, exact source, exact arrived, exact back)
 {
   const Behind behind = { straight * (arrived + back * source) + source, straight * straight * back };
@@ -182,7 +182,8 @@ typedef struct
   exact up_arrives, lower, up;
 } Crossed;
 
-// Computes the light at a link from the light `down` that the voxel above sends down, and U and R of the voxel below.
+// Computes the light at a link from `down`, the light that the voxel above sends down, and `below`: what the voxel
+// below sends up if none arrives from above, and the fraction of arriving light that it returns.
 static Crossed cross_down(Link link, Behind below, exact down)
 {
   const exact up = (below.sends + below.returns * link.down * down) / (1 - below.returns * (1 - link.up));
@@ -190,14 +191,16 @@ static Crossed cross_down(Link link, Behind below, exact down)
   return crossed;
 }
 
-// Lower end of a line or piece: light that arrives in the first voxel from below; fraction of the light sent down by
-// the first voxel that returns to it; and, at a cut, the fraction of the light sent up the cut that the link transmits.
+// Lower end of a line, or of the piece of a line in one block: light that arrives in the first voxel from below;
+// fraction of the light sent down by the first voxel that returns to it; and, if the line is cut there because it is
+// closed or comes from another block, the fraction of the light sent up the cut that the link transmits.
 typedef struct
 {
   exact arrived, back, part;
 } Beginning;
 
-// Lower ends at a face of the grid, and at a cut, where the light sent up the cut is unknown during the upward pass.
+// Lower ends at a face of the grid, and at a cut (below the first voxel of a closed line, or towards another block),
+// where the light sent up is unknown during the upward pass.
 static Beginning begin_at_border(Border low)
 {
   const Beginning begin = { low.in, low.back, 0 };
@@ -209,8 +212,8 @@ static Beginning begin_at_cut(Link link)
   return begin;
 }
 
-// A closed line is cut below its first voxel, and so is a line that comes from another block. This is the light that
-// the first voxel sends down to the cut, as a linear function of the light x sent up the cut and of the light B that
+// A closed line is cut below its first voxel, and so is a line that comes from another block. Cut is the light that the
+// first voxel sends down to the cut, as a linear function of the light x sent up the cut and of the light B that
 // arrives from above at the last voxel: sent + round x + gives_back B.
 typedef struct
 {
@@ -218,7 +221,8 @@ typedef struct
 } Cut;
 
 // State of the upward pass at the last voxel that it has reached: place and index of the voxel, number of voxels so
-// far, the fraction of light sent up the cut that this voxel sends up (part), and the light sent down to the cut (Cut).
+// far, the fraction of the light sent up the cut below the first voxel that this voxel sends up (part), and the light
+// that the first voxel sends down to that cut (cut).
 typedef struct
 {
   Place place;
@@ -228,9 +232,10 @@ typedef struct
   Cut cut;
 } Top;
 
-// Upward pass of one line or piece in direction i.
+// Upward pass of one line, or of the piece of a line in one block, in direction i.
 //   is_cut  true: the line is cut below its first voxel
-//   behind  [voxel][2], U and R
+//   behind  [voxel][2]: U, light that the voxel sends up if none arrives from above; R, fraction of light from above
+//           that it sends back up
 //   share   [voxel], if the line is cut: T, the fraction of light sent up the cut that the voxel sends up
 static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begin, bool is_cut, __global exact* behind,
   __global exact* share)
@@ -274,15 +279,15 @@ static Top go_up(LatticeInfo lattice, MEDIUM, Place place, int i, Beginning begi
   }
 }
 
-// Index of a voxel in the densities of one direction, in the layout of step_lattice.
+// Index of a voxel in the densities of one direction, which include a halo (LatticeInfo).
 static ulong density_at(LatticeInfo lattice, const int* at)
 {
   return (ulong)(at[2] + 1) * lattice.layer + (ulong)(at[1] + 1) * lattice.row + at[0] + LatticeFirst;
 }
 
-// Downward pass of one line or piece, after go_up().
+// Downward pass of one line, or of the piece of a line in one block, after go_up().
 //   comes     light that arrives from above at the last voxel
-//   round     light sent up the cut, if the line is cut; else 0
+//   round     light sent up the cut, if the line is cut below its first voxel; else 0
 //   first     light that arrives in the first voxel from below, and the fraction of the light it sends down that
 //             returns
 //   sum       [voxel], W / length^2; the light that arrives in the voxel from above and from below is added to it
@@ -318,8 +323,8 @@ static void go_down(LatticeInfo lattice, MEDIUM, Top top, int i, exact comes, ex
 }
 
 // Solves all lines of the directions 2 pair and 2 pair + 1. One work-item per line.
-//   behind    [voxel][2], scratch
-//   share     [voxel], scratch: T of go_up() for closed lines
+//   behind    [voxel][2], scratch: U and R of go_up()
+//   share     [voxel], scratch: in closed lines, the fraction of light sent up the cut that the voxel sends up
 //   sum       [voxel], W / length^2; the light that arrives in the voxel from above and from below is added to it
 //   endless   [voxel], with ENDLESS: bit mask of the direction pairs whose line is endless; such lines carry no light
 __kernel void sweep_lines(LinePass pass, MEDIUM, __global exact* behind, __global exact* share, __global exact* sum,
@@ -390,12 +395,12 @@ typedef struct
   Place place; // first voxel of the piece
   bool is_cut; // whether another piece precedes this piece
   Link link;   // link to the preceding piece; not used if no piece precedes
-  Border low;  // boundary condition at the grid's face, if no piece precedes it
+  Border low;  // boundary condition at the grid's face, if the piece begins there
 } Piece;
 
-// Finds the first voxel and the lower end of the work-item's piece.
-//   below    [piece][2], of the voxel before the piece: passes and squared
-//   endless  as in sweep_lines
+// Finds the first voxel and the lower end of the work-item's piece, the segment of a line of links in this block.
+//   below    [piece][2], of the voxel before the piece: `passes` (link transmission) and `squared` (n^2)
+//   endless  [voxel], with ENDLESS: bit mask of the direction pairs whose line is endless
 // @return false: no piece begins here, or its line is endless
 static bool begin_piece(
   LatticeInfo lattice, MEDIUM, int pair, const __global exact* below, const __global float* endless, Piece* piece)
@@ -488,7 +493,8 @@ __kernel void pieces_up(LinePass pass, MEDIUM, const __global exact* below, cons
 
 // Downward pass of the pieces along a pair of directions, after pieces_up. One work-item per piece; arrays as in
 // sweep_lines, and
-//   joined     [piece][3]: x, B, and the light that the first voxel of the next piece sends down (ComesToPiece)
+//   joined     [piece][3]: light sent up the cut before the piece, light arriving from above at its last voxel, and
+//              light that the first voxel of the next piece sends down
 //   densities  if pass.writes, also the densities that the voxels before and after the piece send into it
 __kernel void pieces_down(LinePass pass, MEDIUM, const __global exact* below, const __global float* endless,
   const __global exact* behind, const __global exact* share, const __global exact* joined, __global exact* sum,

@@ -20,7 +20,7 @@ constexpr int PairsAtOnce = 3;
 /// those in `sent`, the first SweepValues change from sweep to sweep, and are sent in every sweep.
 constexpr std::size_t PieceValues = 8, JoinedValues = 3, SweepValues = 2;
 
-/// Extracts the values of own voxels from those of known voxels.
+/// Extracts the values of own voxels from those of known voxels (own and ghost voxels).
 std::vector<float> OwnOf(const LatticeBox& box, const std::vector<float>& known)
 {
   if (box.IsAll() || known.empty())
@@ -114,8 +114,8 @@ void LinesOfLinks::LoadCutLines()
   }
 }
 
-/// Finds, for a pair of opposite directions, the lines whose pieces this rank joins (those that begin in its block),
-/// and the pieces that it exchanges with other ranks.
+/// Finds, for a pair of opposite directions, the lines whose pieces (segments in one block each) this rank joins (those
+/// that begin in its block), and the pieces that it exchanges with other ranks.
 LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
 {
   const int self = this->TheDomain.Rank();
@@ -193,8 +193,8 @@ LinesOfLinks::Values LinesOfLinks::Below(const PiecesOfLines& pieces, int pair) 
   return below;
 }
 
-/// Sends the linear responses of pieces (PieceOfLine), which do not change between sweeps, to the ranks that join the
-/// pieces.
+/// Sends the linear responses of pieces of lines to light at their ends (PieceOfLine), which do not change between
+/// sweeps, to the ranks that join the pieces.
 void LinesOfLinks::ExchangeParts()
 {
   this->Failure = {};
@@ -218,7 +218,7 @@ void LinesOfLinks::ExchangeParts()
   this->TheDomain.Collective([&] { this->Failure.Throw(); });
 }
 
-/// Sends values of pieces to other ranks; after a failure sends empty messages, so that no rank waits.
+/// Sends values of pieces of lines to other ranks; after a failure sends empty messages, so that no rank waits.
 /// @param part  which values of each piece are sent
 /// @param values  values of all pieces of this rank, by number; if `part.of` is 0, only those of the pieces in `to`, in
 ///   their order
@@ -241,7 +241,7 @@ void LinesOfLinks::Send(const std::vector<Shared>& to, int tag, Part part, const
   }
 }
 
-/// Receives values of pieces from other ranks.
+/// Receives values of pieces of lines from other ranks.
 /// @return `width` values of each piece, consecutively; undefined after a failure
 LinesOfLinks::Values LinesOfLinks::Receive(const std::vector<Shared>& from, int tag, std::size_t width)
 {
@@ -288,7 +288,8 @@ void LinesOfLinks::GoUp(int pair, Slot& slot, Part part)
   this->Send(sentTo, 2 * pair, part, values);
 }
 
-/// Joins the pieces of the lines that begin in this rank's block, and sends each piece's owner the light at its ends.
+/// Joins the pieces of each line that begins in this rank's block, i.e. solves for the light at their ends, and sends
+/// each piece's owner the light at its ends.
 void LinesOfLinks::Join(int pair)
 {
   const Pair& of = this->Pairs[pair];

@@ -38,13 +38,15 @@ public:
   Values Sweep(const Values& even, bool withIncident, bool writes, const Monitor& monitor);
 
 private:
-  /// Pieces whose values this rank exchanges with another rank, in an order that both ranks know.
+  /// Pieces (segments of lines in one block) whose values this rank exchanges with another rank, by number in their
+  /// block, in an order that both ranks know.
   struct Shared
   {
     int rank = 0;
     std::vector<std::size_t> pieces;
   };
-  /// A line whose pieces this rank joins: for each of its pieces, the index among all pieces that this rank receives.
+  /// A line whose pieces (segments in one block each) this rank joins: for each piece, its index among all pieces whose
+  /// values this rank receives.
   struct Line
   {
     std::vector<std::size_t> places;
@@ -53,15 +55,16 @@ private:
   struct Pair
   {
     std::array<std::size_t, 2> range = {}; ///< range of work-items of the kernels
-    std::vector<Shared> sentTo;            ///< this rank's pieces, by the rank that joins the pieces of their lines
+    /// Pieces of lines in this rank's block, by the rank that joins the pieces of their lines.
+    std::vector<Shared> sentTo;
     /// pieces of the lines that this rank joins, by the rank in whose block each lies
     std::vector<Shared> receivedFrom;
     std::vector<Line> lines;
-    std::vector<PieceOfLine> parts; ///< responses of the received pieces, in one array
+    std::vector<PieceOfLine> parts; ///< linear responses of the received pieces to light at their ends
     ExactValues below;
   };
   /// Values of a piece that are sent: `count` values, from index `first` on, of the `of` values that an array has for
-  /// each piece.
+  /// each piece of a line.
   struct Part
   {
     std::size_t first = 0, count = 0, of = 0;

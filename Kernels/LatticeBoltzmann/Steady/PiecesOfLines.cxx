@@ -45,8 +45,8 @@ int PiecesOfLines::RankAt(const Voxel& voxel) const
   return static_cast<int>(std::find_if(blocks.begin(), blocks.end(), holds) - blocks.begin());
 }
 
-/// Piece of a rank's block with the given first voxel.
-/// @param first  in the whole grid
+/// The piece of a line in a rank's block that begins with the voxel `first`.
+/// @param first  indices of the voxel in the whole grid
 PiecesOfLines::Piece PiecesOfLines::PieceAt(int rank, const Voxel& first) const
 {
   const VoxelBox& block = this->Partition.blocks[rank];
@@ -61,7 +61,7 @@ PiecesOfLines::Piece PiecesOfLines::PieceAt(int rank, const Voxel& first) const
   return { rank, at(this->Still[0]) * range + (first[b] == this->Entry(block, b) ? at(a) : size + at(b)) };
 }
 
-/// Moves from the first voxel of a piece to that of the next piece.
+/// Moves from the first voxel of a piece of a line to that of the line's next piece.
 /// @return whether there is a next piece
 bool PiecesOfLines::MoveOn(int rank, Voxel& voxel) const
 {
@@ -175,9 +175,9 @@ double Inverse(double rest)
   return rest > 0.0 ? 1.0 / rest : 0.0;
 }
 
-/// Response of the pieces joined so far: light that the last piece sends up (sends) and light that the first piece
-/// sends down (cut), as linear functions of the light sent down to the last piece and, for a closed line, of the light
-/// that wraps around it.
+/// Response of the pieces of a line that have been joined so far: light that the last piece sends up (sends) and light
+/// that the first piece sends down (cut), as linear functions of the light sent down to the last piece and, for a
+/// closed line, of the light that wraps around it.
 struct WayUp
 {
   WayUp(const PieceOfLine& piece, const SentByPiece& sent, bool closed)
@@ -186,7 +186,8 @@ struct WayUp
   {
   }
 
-  /// Joins the next piece. @return light sent up into `piece`, as a function of the light sent down to its last voxel
+  /// Joins the next piece of the line. @return light sent up into `piece`, as a function of the light sent down to its
+  /// last voxel
   Linear Add(const PieceOfLine& piece, const SentByPiece& sent)
   {
     // Factor from light sent up by the last piece so far to light that comes down to it again: the light transmitted

@@ -35,12 +35,13 @@ public:
   /// @param partition  must outlive this
   PiecesOfLines(const BlockPartition& partition, const std::array<bool, 3>& periodic, int pair);
 
-  /// Calls visit(rank, line) for each line that has several pieces or is closed, with the rank in whose block the line
-  /// begins; in the same order on all ranks.
+  /// Calls visit(rank, line) for each line of links that has several pieces (crosses faces of blocks) or is closed,
+  /// with the rank in whose block the line begins; in the same order on all ranks.
   void ForLines(const std::function<void(int rank, const Line& line)>& visit) const;
 
-  std::array<std::size_t, 2> Range(int rank) const; ///< range of work-items for the pieces of a rank's block
-  /// Calls visit(piece number, its first voxel in the whole grid) for each piece of a rank's block.
+  /// Two-dimensional range of work-items, one for each possible piece of a line in a rank's block.
+  std::array<std::size_t, 2> Range(int rank) const;
+  /// Calls visit(piece number, its first voxel in the whole grid) for each piece of a line in a rank's block.
   template <class Visit>
   void ForPieces(int rank, const Visit& visit) const;
 
@@ -79,15 +80,16 @@ void PiecesOfLines::ForPieces(int rank, const Visit& visit) const
 /// medium alone.
 struct PieceOfLine
 {
-  double passes = 0.0;    ///< fraction of x that the last voxel sends up
-  double returns = 0.0;   ///< fraction of B that the last voxel sends up
-  double givesBack = 0.0; ///< fraction of x that the first voxel sends down
-  double comesDown = 0.0; ///< fraction of B that the first voxel sends down; 0: the piece ends at a face of the grid
-  double up = 0.0;        ///< fraction of light that the link before the piece transmits upwards
-  double down = 0.0;      ///< fraction of light that the link before the piece transmits downwards
+  double passes = 0.0;    ///< fraction of the light x from below that the last voxel sends up
+  double returns = 0.0;   ///< fraction of the light B from above that the last voxel sends up
+  double givesBack = 0.0; ///< fraction of the light x from below that the first voxel sends down
+  /// Fraction of the light B from above that the first voxel sends down; 0: the piece ends at a face of the grid.
+  double comesDown = 0.0;
+  double up = 0.0;   ///< fraction of light that the link before the piece transmits upwards
+  double down = 0.0; ///< fraction of light that the link before the piece transmits downwards
 };
 
-/// Light that a piece sends for x = B = 0 (PieceOfLine), from its own sources, W / length^2.
+/// Light that a piece of a line sends from its own sources, if no light arrives at its ends, W / length^2.
 struct SentByPiece
 {
   double up = 0.0;   ///< light that the last voxel sends up
@@ -104,7 +106,7 @@ struct ComesToPiece
 /// Solves for the light at the ends of all pieces of a line (numerics.md, Eqs. (L10) and (L15)). All terms are
 /// positive, so that there is no cancellation.
 /// @param pieces, sent  in upward order
-/// @param closed  whether the last piece continues in the first
+/// @param closed  whether the line returns from its last piece to the first one
 std::vector<ComesToPiece> JoinLine(
   const std::vector<PieceOfLine>& pieces, const std::vector<SentByPiece>& sent, bool closed);
 }

@@ -51,7 +51,7 @@ double SteadyLattice::Dot(const Values& a, const Values& b) const
   return this->TheDomain.Sum(std::inner_product(a.begin(), a.end(), b.begin(), 0.0));
 }
 
-/// Light that collisions emit isotropically, W / length^2 (e of Eq. (L7)), for a given fluence / n^2.
+/// Light that collisions emit isotropically, W / length^2 (e of Eq. (L7)), for a given fluence / n^2, by own voxel.
 /// @param withSources  whether to include the sources
 std::vector<double> SteadyLattice::EvenOf(const Values& scaled, bool withSources) const
 {
