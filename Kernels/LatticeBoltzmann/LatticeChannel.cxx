@@ -33,7 +33,8 @@ public:
 
   /// Takes the steps.
   /// @param before  steps taken and time spent before, which count towards the limits of the settings
-  /// @param rows  receives one convergence row each time the fluence at the probes (Settling::Probes) is compared
+  /// @param rows  receives one convergence row each time the fluence at the probes, evenly spread voxels, is
+  ///   compared
   /// @return fluence after the last step
   /// @throws InvalidInput if densities have overflowed (explicit collisions in optically thick voxels)
   std::vector<float> Run(const StepsBefore& before, const Monitor& monitor, std::vector<ConvergenceRow>& rows);

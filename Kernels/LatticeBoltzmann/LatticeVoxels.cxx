@@ -295,7 +295,7 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
       const double part = nearer > 0.0 ? this->PartWithin(i, face) : 0.0;
       parts[face] = part > 0.0 ? nearer / normal * PartThatCrosses(2.0 * normal * part, decays / part) : 0.0;
     }
-    // Divisor of the fractions that cross the faces: in voxels lit through several faces it keeps their sum at 1.
+    // Divisor of the fractions that cross the faces: in voxels lit through several faces it limits their sum to 1.
     const double all = std::max(std::accumulate(parts.begin(), parts.end(), 0.0), 1.0);
     for (std::size_t face = 0; face < 6; ++face)
     {

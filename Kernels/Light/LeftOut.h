@@ -33,14 +33,18 @@ extern const char* const DarkOutside;     ///< text if neither environment nor s
 extern const char* const EvenOutside; ///< text if boundary light is isotropic, so that it needs no separate quadrature
 extern const char* const
   ThinVoxels; ///< text if all voxels are optically thin: the position of scattering within a voxel does not matter
-extern const char* const NotByOctant;   ///< text if Source By octant was requested but cannot be used in this scene
+/// Text if "By octant" was requested for the setting Source but cannot be used in this scene.
+extern const char* const NotByOctant;
 extern const char* const NotSideBySide; ///< text if the device does not run two queues concurrently
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 /// Text that many directions carry no incident light.
 /// @param lit  fraction of the rays that carry incident light
 std::string DarkDirections(double lit);
 std::string MirrorImages(int classes, int directions);
-std::string TwoAxes(int polarNodes);          ///< text that the scene is uniform along two axes
-std::string DirectionsAlongSlab(int perFace); ///< text that the number of directions was changed to perFace, for a slab
+/// Text that the scene varies along one axis only, so that it was solved as plane-parallel layers.
+/// @param polarNodes  number of polar cosines of that solve
+std::string TwoAxes(int polarNodes);
+/// Text that a slab was solved with another number of directions than set: perFace per cube face.
+std::string DirectionsAlongSlab(int perFace);
 }
 }

@@ -71,9 +71,11 @@ struct SolveReport
   /// Number of polar quadrature nodes of a plane-parallel solve (PropagationSettings::polarNodes); 0: rays were traced
   /// through voxels.
   int polarNodes = 0;
-  /// Number of directions per face that was used, if the solver chooses it (PropagationSettings::adaptDirections).
+  /// Number of directions per face of the cube that was used, if the solver chooses it
+  /// (PropagationSettings::adaptDirections).
   int directionsPerFace = 0;
-  int uncollidedDirections = 0;     ///< directions per face for uncollided boundary light; 0: as directionsPerFace
+  /// Directions per face of the cube for uncollided boundary light; 0: as directionsPerFace.
+  int uncollidedDirections = 0;
   std::vector<std::string> leftOut; ///< parts of the computation that the scene did not need (LeftOut.h)
   int solves = 1;                   ///< number of solves, including those on coarser grids (TargetError.h)
   /// Run time of all solves, s; 0 if there was only one, whose time is in `convergence`.
@@ -110,8 +112,9 @@ struct LightField : SolveReport
   /// Fraction of scattered light that is treated as unscattered (delta-M; numerics.md, Eq. (8a)); 1 or 3 per voxel.
   std::vector<float> straightOn;
   std::vector<Light> lampsApart; ///< lamps whose first-collision source is not included in scatteredMoments
-  /// Outgoing radiance at the box's faces, W / (length^2 sr), [cell][SurfaceCosines][channel] (BoxFaces.h); empty if no
-  /// boundary voxel is optically thick, or if the solver did not compute this radiance.
+  /// Outgoing radiance at the box's faces, W / (length^2 sr), [cell][cosine][channel] for the polar cosines
+  /// SurfaceCosines (BoxFaces.h); empty if no boundary voxel is optically thick, or if the solver did not compute this
+  /// radiance.
   std::vector<float> surfaceRadiance;
   EnergyBalance balance;
   /// Escaped power through faces -x, +x, -y, +y, -z, +z, W: power that leaves, less the power the faces reflect.

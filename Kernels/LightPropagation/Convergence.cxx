@@ -11,12 +11,13 @@ namespace tyndall
 {
 namespace
 {
-/// Safety factor on the remainder that RestOfOrders::After() estimates after a warm start, since the error of an
-/// initial guess decreases unevenly.
+/// Safety factor on the sum of later orders that RestOfOrders::After() estimates after a warm start, since the error of
+/// an initial guess decreases unevenly.
 constexpr double WarmMargin = 1.5;
 /// Safety factor on the error that RestOfChanges::After() estimates, since changes decrease unevenly.
 constexpr double MarginOfChanges = 1.5;
-/// Fraction of the incoming power above which left-over power adds a warning, unless the tolerance is larger.
+/// Fraction of the incoming power above which power that was still in transport when the solver stopped adds a warning,
+/// unless the tolerance is larger.
 constexpr double MuchLeftOver = 0.01;
 /// Relative decrease per order below which light that wraps around periodic axes counts as endless.
 constexpr double SlowestFall = 1e-4;
@@ -114,7 +115,7 @@ double ImbalanceOf(const EnergyBalance& balance)
 }
 
 /// Fraction of the incoming power that is impossible, even if the balance holds: absorbed or escaped power below 0, or
-/// more power left over than incoming.
+/// more power still in transport than incoming.
 double ImpossiblePart(const EnergyBalance& balance)
 {
   return LargestPart(balance, [&](std::size_t c, double in) {
@@ -182,7 +183,7 @@ void Judge(LightField& light, Balancing balancing, const ThickestVoxel& thickest
   throw InvalidInput((std::isnan(error) ? "The light is not a number, " : "The light does not balance: " + part) + why);
 }
 
-/// Fraction of the incoming power that is left over.
+/// Fraction of the incoming power that was still in transport when the solver stopped.
 double LeftOver(const EnergyBalance& balance)
 {
   const double all = Sum(balance.entered) + Sum(balance.emitted);

@@ -33,7 +33,8 @@ public:
 private:
   int Orders = 0;
   bool Warm = false;
-  /// Whether the next order may be compared with Last: false before the first order and after BeginWarm().
+  /// Whether the next order may be compared with Last, the magnitude of the last order: false before the first order
+  /// and after BeginWarm().
   bool Compares = false;
   double Last = 0.0, LastRatio = 0.0, Least = 0.0;
 };

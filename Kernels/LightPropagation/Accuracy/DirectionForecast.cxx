@@ -11,7 +11,7 @@ namespace tyndall
 {
 namespace
 {
-/// largest number of directions per face with rays that start in the middle of voxels; with more, rays start at
+/// largest number of directions per cube face with rays that start in the middle of voxels; with more, rays start at
 /// staggered positions
 constexpr int LargestUnstaggered = 100;
 /// Measured cost of a direction of uncollided light, relative to a direction of a sweep.

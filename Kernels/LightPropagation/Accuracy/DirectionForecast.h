@@ -45,7 +45,7 @@ private:
   /// ratio of the root-mean-square difference between the two solutions to the error that a solution with 9 directions
   /// has on the finer grid
   double Fallen;
-  /// Errors of uncollided and of scattered light with 9 directions per face, relative to the fluence.
+  /// Errors of uncollided and of scattered light with 9 directions per cube face, relative to the fluence.
   double OfUncollided = 0.0, OfScattered = 0.0;
   bool Separated = false;
   double Sweeps = 1.0;

@@ -18,18 +18,19 @@ namespace tyndall
 {
 namespace
 {
-constexpr double Aim = 0.95;          ///< estimated error at which the search ends (Goal), relative to the target
-constexpr double DirectionPart = 0.9; ///< fraction of Goal that is allowed for the angular error
-/// Smallest allowance for the angular error, relative to Goal, if the error in voxel size leaves less. Voxels are
-/// halved only if the error in voxel size exceeds the same limit.
+constexpr double Aim = 0.95;          ///< Goal: estimated error at which the search ends, as a fraction of the target
+constexpr double DirectionPart = 0.9; ///< angular error that is allowed, as a fraction of Goal
+/// Smallest angular error that is allowed if the error in voxel size leaves less, as a fraction of Goal, the error at
+/// which the search ends. Voxels are halved only if the error in voxel size exceeds the same limit.
 constexpr double LeastRoom = 0.3;
-/// Error in voxel size, relative to Goal, above which more directions do not help.
+/// Error in voxel size above which more directions do not help, as a multiple of Goal, the error at which the search
+/// ends.
 constexpr double MuchTooCoarse = 1.5;
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
 /// Order of convergence in voxel size; measured: clouds 1.7, lamps in fog 1.4 to 1.7.
 constexpr double OrderOfClouds = 1.7, OrderBesideLamps = 1.4;
-/// Fraction of the error due to uncollided light above which one more solve measures that error.
+/// One more solve measures the error of uncollided light if that is more than this fraction of the whole angular error.
 constexpr double MuchUncollided = 0.3;
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
@@ -135,6 +136,7 @@ private:
   }
 
   /// Solves on the scene's grid and, for the error estimate, on the coarse grid.
+  /// @param from, to  range of the progress that these solves report
   void SolveAlong(const PropagationSettings& settings, double from, double to)
   {
     this->Used = settings;
@@ -155,7 +157,8 @@ private:
       this->Forecast->PartOfDifference(settings, other.settings), order);
   }
 
-  /// Angular error that Goal allows in addition to an error in voxel size and the residual; 0 if it is below LeastRoom.
+  /// Angular error that Goal (the error at which the search ends) allows in addition to an error in voxel size and the
+  /// residual; 0 if it is below the fraction LeastRoom of Goal.
   double RoomBeside(double inSpace) const
   {
     const double others = std::hypot(inSpace, this->Parts.residual);
@@ -197,7 +200,8 @@ private:
   /// @param other  fluence of that coarse solution
   /// @param error  predicted angular error
   /// @param order  order of convergence in voxel size
-  /// @return whether the light meets Goal; then the error in voxel size need not be separated
+  /// @return whether the error is at most Goal, at which the search ends; then the error in voxel size need not be
+  ///   separated
   bool IsMetAtMost(const std::vector<float>& other, double error, double order)
   {
     ErrorParts parts = WriteErrorEstimate(this->Light, this->Blocks, other, other, 0.0, order);

@@ -20,7 +20,7 @@ constexpr int FewestParts = 48;
 /// A point that is equally near to two directions is moved to either side by this relative distance, so that each gets
 /// half of its light.
 constexpr double BorderTolerance = 1e-9;
-/// Smallest eigenvalue that KeepFlux() inverts, relative to the largest.
+/// Smallest eigenvalue of the matrix of KeepFlux() that is inverted, relative to the largest; the others are left out.
 constexpr double LeastMode = 1e-3;
 
 int CellsPerEdge(int perFace, const std::string& name)
@@ -34,7 +34,8 @@ int CellsPerEdge(int perFace, const std::string& name)
   return n;
 }
 
-/// Tangent at position twicePosition / 2 along a face's edge of n cells; exactly odd about the middle.
+/// Coordinate on a cube's face at distance 1 from its centre, -1 to 1, of the point twicePosition / 2 cells along the
+/// face's edge of n cells; exactly odd about the middle.
 double Tangent(bool equiangular, int n, double twicePosition)
 {
   const double fromMiddle = (twicePosition - n) / n; // in [-1, 1]
@@ -54,9 +55,9 @@ double SolidAngle(double s0, double s1, double t0, double t1)
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
 }
 
-/// Index, among a face's directions, of the one whose cell contains the tangents (s, t), for a quadrature whose cells
-/// do not form a grid. The set has the face's symmetry, so in each orbit the nearest direction is the one in the same
-/// eighth of the face.
+/// Index, among a face's directions, of the one whose cell contains the point (s, t) of the face, each coordinate from
+/// -1 to 1, for a quadrature whose cells do not form a grid. The set has the face's symmetry, so in each orbit
+/// (directions that are equivalent by symmetry) the nearest direction is the one in the same eighth of the face.
 int NearestOnFace(const DirectionSet& set, double s, double t)
 {
   const bool exchanged = std::abs(s) > std::abs(t);
@@ -250,8 +251,8 @@ DirectionSet EquiangularDirections(int perFace, const std::string& name)
   const int n = set.cellsPerEdge;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
-    // Computed for the cell's mirror image in the first octant of the face, with sorted indices, so that the weights of
-    // equivalent cells agree to the last bit.
+    // Each weight is computed for the cell's mirror image in the first octant of the face, with sorted indices, so that
+    // the weights of equivalent cells agree to the last bit.
     const int i = static_cast<int>(d) % n;
     const int j = static_cast<int>(d) / n % n;
     const int u = std::min(std::max(i, n - 1 - i), std::max(j, n - 1 - j));

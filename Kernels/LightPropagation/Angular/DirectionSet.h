@@ -9,8 +9,8 @@
 
 namespace tyndall
 {
-/// Orbit of a direction under the rotations and reflections of the cube: on each face, the tangents (+-across, +-along)
-/// and (+-along, +-across).
+/// Orbit of a direction under the rotations and reflections of the cube: on each face, the points (tangents) (+-across,
+/// +-along) and (+-along, +-across).
 struct DirectionOrbit
 {
   double across = 0.0, along = 0.0; ///< tangents of one direction of the orbit, 0 <= across <= along < 1
@@ -31,7 +31,8 @@ struct DirectionSet
   /// Orbits of the directions, in FittedDirections only; otherwise empty. With orbits, cells are not a grid: a cell
   /// consists of all directions that are nearest to its own direction (see Nearest).
   std::vector<DirectionOrbit> orbits = {};
-  std::vector<std::array<double, 2>> tangents = {}; ///< tangents of one face's directions; empty without orbits
+  /// Points (s, t) of a face, -1 to 1, through which its directions point; empty without orbits.
+  std::vector<std::array<double, 2>> tangents = {};
 
   int PerFace() const { return this->cellsPerEdge * this->cellsPerEdge; }
 };

@@ -90,7 +90,7 @@ const std::vector<FittedSet>& FittedSets()
   return sets;
 }
 
-/// Tangents (s, t) of an orbit's directions through one face of the cube: 1, 4 or 8.
+/// Points (s, t) of one face of the cube, -1 to 1, through which an orbit's directions point: 1, 4 or 8.
 std::vector<std::array<double, 2>> TangentsOf(const DirectionOrbit& orbit)
 {
   std::vector<std::array<double, 2>> all;

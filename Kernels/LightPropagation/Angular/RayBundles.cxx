@@ -10,8 +10,8 @@ namespace
 /// Distance from a voxel's border, voxels, below which a position counts as on the border, so that rounding does not
 /// decide ties.
 constexpr double OnBorder = 1e-9;
-/// Minimum number of planes of a ray pattern along a periodic axis: rays cross shorter axes several times before the
-/// pattern repeats.
+/// Minimum number of planes of voxels after which the ray pattern along a periodic axis repeats: rays cross shorter
+/// axes several times before it does.
 constexpr int FewestPlanes = 128;
 
 bool Same(double a, double b)
@@ -48,7 +48,7 @@ int Sign(double x)
   return x < 0.0 ? -1 : 1;
 }
 
-/// Adds direction `d` to the bundle with the same segments and power, or to a new bundle.
+/// Adds direction `d` to the bundle of directions whose rays have the same segments and power, or to a new bundle.
 /// @param part  fraction of the direction's power that marches along this axis
 void Sort(
   std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid, const DirectionSet& set, int d, double part)
@@ -81,9 +81,10 @@ void Sort(
   bundles.push_back(fresh);
 }
 
-/// Moves the starts of bundles apart. If all rays start in the middle, they cross the box's sides in the same pattern,
-/// however many directions there are. The starts follow the low-discrepancy sequence of the plastic number, which fills
-/// a square evenly (Roberts 2018), in the order of the bundles' tangents, which is the same along every axis.
+/// Gives the rays of each bundle (directions whose segments have the same lengths) a starting position of their own
+/// within voxels. If all rays start in the middle, they cross the box's sides in the same pattern, however many
+/// directions there are. The positions follow the low-discrepancy sequence of the plastic number, which fills a square
+/// evenly (Roberts 2018), in the order of the bundles' tangents, which is the same along every axis.
 void Stagger(std::vector<Bundle>& bundles)
 {
   std::vector<Bundle*> inOrder;
@@ -123,7 +124,8 @@ struct Position
   }
 };
 
-/// Move of a straight ray in plane `plane`, if it crosses a voxel's border there; all of its power moves.
+/// Sideways move of a straight ray, with all of its power, in plane `plane` of voxels; none if the ray stays in its
+/// column of voxels there.
 Move WholeMove(double start, double tangent, int plane)
 {
   const Position now(start + tangent * plane);
@@ -131,14 +133,15 @@ Move WholeMove(double start, double tangent, int plane)
   return next.voxel > now.voxel ? Move{ std::min(1.0, (1.0 - now.rest) / tangent), 1.0 } : Move();
 }
 
-/// Index of the plane that contains a depth, counted in planes from the start; the end of a plane belongs to it.
+/// Index of the plane of voxels that contains a depth, which is counted in planes from the start of the ray; the end of
+/// a plane belongs to it.
 int PlaneAt(double depth)
 {
   return std::max(static_cast<int>(std::ceil(depth - OnBorder)) - 1, 0);
 }
 
-/// Adds a move at `depth`, in planes from the start. If the plane already has a move, that one is shifted to the end of
-/// the previous plane.
+/// Adds a sideways move of rays at `depth`, counted in planes of voxels from the start. If the plane already has a
+/// move, that one is shifted to the end of the previous plane.
 void Insert(std::vector<Move>& moves, double depth, double part)
 {
   int plane = std::min(PlaneAt(depth), static_cast<int>(moves.size()) - 1);
@@ -163,9 +166,9 @@ void Insert(std::vector<Move>& moves, double depth, double part)
   }
 }
 
-/// Moves along one axis, by plane, of rays that start at `start` in their voxel and move by `tangent` voxels per plane.
-/// Over all planes they move by tangent x planes voxels: the integer part as moves of a ray's complete power, the
-/// remainder as one move of that fraction of the power (numerics.md, Eq. (21)).
+/// Sideways moves along one axis, by plane of voxels, of rays that start at `start` in their voxel and move by
+/// `tangent` voxels per plane. Over all planes they move by tangent x planes voxels: the integer part as moves of a
+/// ray's complete power, the remainder as one move of that fraction of the power (numerics.md, Eq. (21)).
 std::vector<Move> Moves(double start, double tangent, int planes)
 {
   std::vector<Move> moves(planes);
@@ -198,8 +201,8 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   return moves;
 }
 
-/// Adds moves along u and v to a bundle, unless both axes are periodic. A bundle's members may exchange these axes, so
-/// both have moves if only one axis is periodic.
+/// Adds the sideways moves of its rays along u and v to a bundle, unless both axes are periodic. A bundle's members
+/// (its directions) may exchange these axes, so both have moves if only one axis is periodic.
 void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& periodic, int planes)
 {
   if (!periodic[axes.u] || !periodic[axes.v])
@@ -209,8 +212,8 @@ void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& 
   }
 }
 
-/// Copies of each bundle, with moves, for every point of the finer lattice of mapResolution x mapResolution rays per
-/// voxel.
+/// Copies of each bundle of directions, with the sideways moves of its rays, for every point of the finer lattice of
+/// mapResolution x mapResolution rays per voxel.
 std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
   const std::array<bool, 3>& periodic, int mapResolution)
 {

@@ -13,10 +13,10 @@ namespace tyndall
 /// (numerics.md, section 4.2).
 ///
 /// Rays march along an axis of the grid, plane by plane of voxels. All rays of one direction start at the same position
-/// in their voxels, so they cross each plane in the same pattern of at most three voxels per ray, and the map of all
-/// rays shifts as one. Directions that are mirror images of each other (and, if voxels are square across the axis,
-/// directions with exchanged tangents) have segments of the same lengths. They form a Bundle, for which transmittance
-/// is computed once.
+/// in their voxels, so they cross each plane in the same pattern of at most three voxels per ray, and the light
+/// propagation map, i.e. the radiance of all rays in a plane, shifts as one. Directions that are mirror images of each
+/// other (and, if voxels are square across the axis, directions with exchanged tangents) have segments of the same
+/// lengths. They form a Bundle, for which transmittance is computed once.
 ///
 /// Guarantees: every voxel is crossed by every segment, so that a source emits all of its power (Eq. (20)); one
 /// sideways move of the pattern is made by only a fraction of each ray's power, so that exactly the power of a
@@ -95,8 +95,8 @@ enum class RayStarts
   Staggered
 };
 
-/// Bundles of all directions of `set` that march along `axis`, forward and backward, with mapResolution x mapResolution
-/// rays per voxel and direction.
+/// Bundles (directions whose segments have the same lengths) of all directions of `set` that march along `axis`,
+/// forward and backward, with mapResolution x mapResolution rays per voxel and direction.
 std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const DirectionSet& set, int mapResolution, RayStarts starts = RayStarts::Middle);
 
@@ -106,8 +106,8 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bo
 std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const std::array<double, 3>& omega, int mapResolution);
 
-/// Copies of `bundles` reduced to members that march one way along the axis (0 forward, 1 backward) and whose direction
-/// is lit; bundles without such members are omitted.
+/// Copies of `bundles` reduced to members (directions) that march one way along the axis (0 forward, 1 backward) and
+/// whose direction is lit; bundles without such members are omitted.
 std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit);
 
 /// Number of rays of all bundles per voxel, forward and backward.

@@ -21,11 +21,11 @@ class DirectionSymmetry
 public:
   DirectionSymmetry(const Grid& grid, const std::array<bool, 3>& periodic, const DirectionSet& set);
 
-  /// Whether any class has more than one direction.
+  /// Whether any two directions carry the same light, i.e. share a class.
   bool Any() const { return this->Count() < static_cast<int>(this->ClassOf.size()); }
   int Count() const; ///< number of classes
 
-  /// Copies of `bundles` restricted to representative directions, each with the power of all directions of its class.
+  /// Copies of `bundles` restricted to one direction of each class, with the power of all directions of its class.
   std::vector<Bundle> Standing(const std::vector<Bundle>& bundles) const;
 
   /// Indices of all directions in the class of `direction`, including itself.
@@ -34,12 +34,12 @@ public:
 private:
   bool IsRepresentative(int direction) const { return direction >= 0 && this->AllOf(direction).front() == direction; }
 
-  std::vector<int> ClassOf;              ///< index of each direction's class
+  std::vector<int> ClassOf;              ///< by direction: index of its class, the directions that carry the same light
   std::vector<std::vector<int>> Classes; ///< indices of each class's directions; the representative first
 };
 
-/// A quadrature together with its rays: bundles that sweep a box along each axis. If several directions carry the same
-/// light (DirectionSymmetry), only one direction of each class is swept.
+/// A quadrature together with its rays: bundles of directions (RayBundles.h) that sweep a box along each axis. If
+/// several directions carry the same light (DirectionSymmetry), only one direction of each class is swept.
 class SweptDirections
 {
 public:
@@ -50,10 +50,11 @@ public:
   /// number of rays, for each direction, that start along one edge of a voxel
   int RaysPerEdge() const { return this->MapResolution; }
   const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
-  /// Whether only one direction of each class is swept; not if the net flux is requested, which differs between mirror
-  /// images.
+  /// Whether only one direction of each class, whose directions carry the same light, is swept; not if the net flux is
+  /// requested, which differs between mirror images.
   bool MergesMirrors() const { return this->Merges; }
-  /// Values of the basis in the directions; for a representative direction, the mean over its class.
+  /// Values of the basis in the directions; for a representative direction, the mean over its class, the directions
+  /// that carry the same light.
   AngularValues Values(const AngularBasis& basis) const;
   /// Mean of `values`, one per direction, over the class that `direction` represents.
   double Mean(int direction, const std::vector<double>& values) const;
@@ -61,7 +62,8 @@ public:
   std::vector<int> AllOf(int direction) const;
 
   std::vector<Bundle> Along(int axis) const;
-  /// Bundles along `axis` that march one way (0 forward, 1 backward), restricted to directions for which isLit is true.
+  /// Bundles of directions along `axis` that march one way (0 forward, 1 backward), restricted to directions for which
+  /// isLit is true.
   std::vector<Bundle> LitAlong(int axis, int way, const std::function<bool(int)>& isLit) const;
 
 private:

@@ -206,7 +206,8 @@ void CoarseDiffusion::Solve(Channel& channel, const Buffer<float>& source, doubl
 
 /// Computes the source scattered from the path integrals, times `sign`.
 /// @param adds  whether to add to `source` rather than replace it
-/// @return sums of the tally of scatter_row
+/// @return sums over rows and ranks: of the source, of its absolute value, and, by face of the box, of the correction
+///   of scattered power there
 CoarseDiffusion::Sums CoarseDiffusion::Scatter(
   const Channel& channel, const Buffer<float>& source, double sign, bool adds) const
 {
@@ -218,7 +219,7 @@ CoarseDiffusion::Sums CoarseDiffusion::Scatter(
 
 /// Adds the path integrals of the last sweep and of all later orders to the fluence, and sets the path integrals to
 /// minus those of all later orders.
-/// @return sums of the tally of add_found or add_guess
+/// @return sums over rows and ranks: absorbed power, and that absorbed from the later orders alone
 CoarseDiffusion::Sums CoarseDiffusion::AddLaterOrders(
   const Channel& channel, const Buffer<float>* guess, const Buffer<float>& fluence) const
 {

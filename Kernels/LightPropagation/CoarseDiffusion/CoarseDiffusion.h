@@ -33,7 +33,7 @@ public:
   };
   /// @param domain, medium, path  must outlive this object
   /// @param layout  layout of the rank's block
-  /// @param path  path integrals of the sweeps, W length, [channel][stride]
+  /// @param path  path integrals of the sweeps, W length, [channel][voxel]
   CoarseDiffusion(Device& device, const Domain& domain, const VolumeLayout& layout, const MediumOnDevice& medium,
     const Buffer<float>& path, const Settings& settings);
 
@@ -52,7 +52,7 @@ public:
 
   /// Computes the next source from a sweep's path integrals. Adds the path integrals, and the cells' solution for all
   /// later orders, to `fluence`. Sets the path integrals to minus those of the solution, to which the next sweep adds.
-  /// All arrays are [channel][stride].
+  /// All arrays are [channel][voxel].
   /// @param source  W / (length^3 sr), replaced
   /// @param onTheWay  power in flight around periodic axes, W by channel; added to the right-hand side, uniformly over
   ///   the box
@@ -65,7 +65,9 @@ public:
 private:
   struct Sums
   {
-    double first = 0.0, second = 0.0; ///< first two values of the tally of the kernel that was run
+    /// First two sums of the kernel: source and its absolute value, or power absorbed from all light and from later
+    /// orders.
+    double first = 0.0, second = 0.0;
     std::array<double, 6> byFace = {};
   };
   struct Channel

@@ -30,7 +30,7 @@ public:
   /// Whether MakeSweep can restrict a sweep to a box of voxels (SweepRequest::box); true for a serial domain.
   bool SweepsParts() const { return this->TheDomain.IsSerial(); }
   /// Fetches from the neighbouring ranks the values of the voxels just outside the faces of this block. Collective.
-  /// @param byFaces  values of this block by voxel face, [channel][face][stride]
+  /// @param byFaces  values of this block by voxel face, [channel][face][voxel]
   BeyondFaces FetchBeyond(const Buffer<float>& byFaces);
   /// Describes to an uncollided source (UncollidedSource.h) the medium through which it transports its light, and the
   /// arrays `deposit` to which it adds that light.

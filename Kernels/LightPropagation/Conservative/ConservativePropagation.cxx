@@ -143,7 +143,7 @@ bool HasColouredStraightOn(const TransportParts& parts)
 }
 
 /// Computes LightField::scatteredMoments, in the solver's units. Overwrites parts.Path.
-/// @param shown  IterationResult::shown
+/// @param shown  angular moments of the scattered radiance (IterationResult::shown)
 std::vector<float> MomentsForPictures(const TransportParts& parts, const Buffer<float>& shown, int harmonics)
 {
   const VolumeLayout& layout = parts.Layout;
@@ -167,7 +167,7 @@ std::vector<float> MomentsForPictures(const TransportParts& parts, const Buffer<
 
 /// Sets LightField::scatteredMoments and straightOn, from which a camera renders scattered light in any direction
 /// (numerics.md, section 14.7). Number of harmonics and channels are equal on all ranks. Collective.
-/// @param shown  IterationResult::shown
+/// @param shown  angular moments of the scattered radiance (IterationResult::shown)
 void AddShown(const TransportParts& parts, const Buffer<float>& shown, LightField& light)
 {
   const Domain& domain = parts.TheDomain();

@@ -23,9 +23,9 @@ struct Aside
   AsidePlanes planes;
 };
 
-/// Adds to `power` the power of the rays of a bundle that enter through faces parallel to the marching axis, counted as
-/// SweepBorder counts it. Along a short periodic axis the ray pattern repeats only after several laps around the axis
-/// (SweepPlan::LayLaps); the power is then the average over laps.
+/// Adds to `power` the power of the rays of a bundle of directions that enter through faces parallel to the marching
+/// axis, counted as SweepBorder counts it. Along a short periodic axis the ray pattern repeats only after several laps
+/// around the axis (SweepPlan::LayLaps); the power is then the average over laps.
 void AddAside(const Bundle& bundle, const Aside& aside, ByPlane& power)
 {
   const PlaneAxes& axes = aside.axes;

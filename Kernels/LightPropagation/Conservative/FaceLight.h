@@ -108,7 +108,8 @@ private:
   std::vector<float> Uncollided;
   std::vector<double> AllSwept, AllUncollided;
   Rgb LastMagnitude = {};
-  Buffer<float> Leaving, Entering; ///< see Out() and In(), [channel][cell]
+  /// Outgoing power of sweeps, W, and reflected radiance, W / (length^2 sr), [channel][cell].
+  Buffer<float> Leaving, Entering;
 };
 
 /// Power that radiance 1 carries into the box through each cell of its faces along the rays of sweeps, W by cell. It

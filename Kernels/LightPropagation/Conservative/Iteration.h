@@ -17,7 +17,8 @@ struct IterationResult
   EnergyLedger ledger;
   ConvergenceRecord convergence;
   std::vector<float> fluenceDirect, surfaceRadiance; ///< as in LightField
-  std::vector<float> firstMoments;                   ///< as in LightField; empty: not requested
+  /// Mean positions of collisions relative to the voxels' centres (LightField::firstMoments); empty: not requested.
+  std::vector<float> firstMoments;
   /// Power that left through each cell of the box faces, W, [channel][cell], if requested.
   std::vector<double> leftByCell;
   /// Angular moments of the scattered radiance of all light except uncollided light of lamps, in the layout of a source

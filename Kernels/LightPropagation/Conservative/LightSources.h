@@ -70,9 +70,10 @@ public:
   /// Boundary sources. FineBoundary: transported along the quadrature Fine; null if there are none. UsualBoundary:
   /// carried by sweeps along the usual quadrature; with DSA all boundary light, else all that is not in FineBoundary.
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary;
-  std::vector<Light> Lamps; ///< lamps of the scene, and peaks of the environment
+  std::vector<Light> Lamps; ///< lamps of the scene, and parallel beams that represent peaks of the environment
   Environment FarAway;      ///< the environment without its peaks
-  SplitEmission Emission;   ///< emission of the medium
+  /// Emission of the medium: localised emission, which is traced along exact rays, and the rest.
+  SplitEmission Emission;
   /// Quadrature for the emission of empty voxels, until its first collision; null: no empty voxel emits, or that
   /// emission is swept along the usual quadrature.
   std::unique_ptr<const SweptDirections> OfVacuum;
@@ -93,7 +94,7 @@ public:
   Sources OtherSources() const;
   /// Source of the emission of empty voxels, if it is swept along OfVacuum; else none.
   Sources VacuumSources() const;
-  /// Emission without localised emission, W / (length^3 sr), [channel][stride].
+  /// Emission without localised emission, W / (length^3 sr), [channel][voxel].
   /// @param emptyVoxels  true: emission of the empty voxels that are swept along OfVacuum; false: of all other voxels
   std::vector<float> EmissionOf(bool emptyVoxels) const;
   void CountEmission(EnergyLedger& ledger) const; ///< adds all emission of the medium to the ledger; collective

@@ -12,8 +12,8 @@ namespace
 /// voxel is passed one voxel farther by the next call.
 constexpr int MostTurns = 50;
 
-/// One channel of fluence on this rank. Where negative fluence is raised, the voxel absorbs additional power; it owes
-/// this power until the power has been subtracted from what its neighbours absorb.
+/// One channel of fluence on this rank, in which negative values are raised. A raised voxel absorbs additional power;
+/// it owes this power until the power has been subtracted from what its neighbours absorb.
 class OwedPower
 {
 public:

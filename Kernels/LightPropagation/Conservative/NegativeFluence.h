@@ -14,8 +14,8 @@ namespace tyndall
 /// @param around   halo of one voxel around this rank's block
 /// @param layout   layout of this rank's block
 /// @param sigma_a  absorption of this rank's block, 1/length
-/// @param fluence  W / length^2, [channel][stride]; changed; empty on a rank without voxels
-/// @param instead  replacement values, W / length^2, >= 0, [channel][stride]; empty: 0
+/// @param fluence  W / length^2, [channel][voxel]; changed; empty on a rank without voxels
+/// @param instead  replacement values, W / length^2, >= 0, [channel][voxel]; empty: 0
 void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
   std::vector<float>& fluence, const std::vector<float>& instead = {});
 

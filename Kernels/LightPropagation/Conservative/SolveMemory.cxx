@@ -21,7 +21,9 @@ struct SolveExtent
   IterationScheme how = IterationScheme::SourceIteration;
   bool byOctant = false; ///< uses sources by octant (OctantSources)
   bool byCells = false;  ///< stores light by cell of the box faces
-  bool ofBlock = false;  ///< solves on several ranks, where a rank sweeps its block one bundle of rays at a time
+  /// Solves on several ranks, where a rank sweeps its block one bundle of rays (directions with equal segments) at a
+  /// time.
+  bool ofBlock = false;
 };
 SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how)
 {
@@ -61,7 +63,7 @@ std::size_t ArraysOfOrders(const SolveExtent& solve)
   }
 }
 
-/// Voxels of the largest plane perpendicular to an axis.
+/// Number of voxels in the largest plane of voxels perpendicular to an axis.
 std::size_t LargestPlane(const SolveExtent& solve)
 {
   const std::array<int, 3>& n = solve.size;
@@ -81,9 +83,9 @@ std::size_t MostBesidePlanes(const SolveExtent& solve)
   return most;
 }
 
-/// Bytes of ray state in a sweep. CPU: rays of all bundles along one axis, in both directions, and the planes being
-/// crossed. GPU: rays of all axes (of a rank's block: of one bundle) on both sides of a plane, their sources, and the
-/// light that enters and leaves sideways.
+/// Bytes of ray state in a sweep. CPU: rays of all bundles (groups of directions with equal segments) along one axis,
+/// in both directions, and the planes being crossed. GPU: rays of all axes (of a rank's block: of one bundle) on both
+/// sides of a plane, their sources, and the light that enters and leaves sideways.
 std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
 {
   const std::size_t directions = Count(std::max(solve.settings.directionsPerFace, 1));
@@ -106,7 +108,8 @@ std::size_t BytesOf(const Device& device, const SolveExtent& solve)
 }
 
 /// Memory budget of a device, whatever the solve needs.
-/// @param asked  settings.memoryBudget, bytes
+/// @param asked  settings.memoryBudget, bytes; 0: nine tenths of the free memory, or no limit if the device shares the
+///   host's memory
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)
 {
   MemoryBudget budget;

@@ -1,8 +1,8 @@
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
 // Adds the path integrals of a sweep to the fluence of all voxels outside a box. One work-item per voxel and channel.
-//   path     W length, [channel][stride]
-//   fluence  W / length^2, [channel][stride]; path integrals per volume are added to it
+//   path     W length, [channel][voxel], `stride` values per channel
+//   fluence  W / length^2, [channel][voxel]; path integrals per volume are added to it
 //   first, filled  first voxel and size of the box
 __kernel void add_outside(const __global float* path, __global float* fluence, ulong stride, float per_volume,
   int3 size, int3 first, int3 filled)

@@ -19,7 +19,7 @@ namespace tyndall
 namespace
 {
 constexpr int MostOrders = 100000;
-/// smallest ratio of successive orders assumed in the estimate of the remainder, with coarse-mesh DSA
+/// with coarse-mesh DSA: smallest ratio of successive orders assumed in the estimate of the orders not yet computed
 constexpr double FallByCells = 0.3;
 }
 

@@ -77,10 +77,11 @@ private:
   const PropagationSettings& Settings;
   std::optional<OrderSweeps> Sweeps; ///< always set after construction
   std::optional<EscapeCorrection> Escaping;
-  std::optional<OrdersByCells> Cells;   ///< coarse-mesh DSA; unset for plain source iteration
-  std::optional<OctantSources> AtFaces; ///< sources by octant of optically thick voxels
+  std::optional<OrdersByCells> Cells; ///< coarse-mesh DSA; unset for plain source iteration
+  /// Sources by octant of optically thick voxels; unset: all sources are uniform in their voxels.
+  std::optional<OctantSources> AtFaces;
   WarmStart Warm;
-  /// Uncollided fluence, W / length^2, [channel][stride], if light is kept for the next solve.
+  /// Uncollided fluence, W / length^2, [channel][voxel], if light is kept for the next solve.
   std::vector<float> Direct;
   /// Angular moments of the scattered light, summed over orders, W length, if light is kept.
   Buffer<float> Moments;

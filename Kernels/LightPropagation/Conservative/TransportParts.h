@@ -54,9 +54,9 @@ public:
   LightSources Lights;
   BlockTransport Transport;
 
-  /// Arrays over voxels, [channel][stride]: source of the next sweep, W / (length^3 sr); path integrals, W length; net
-  /// flux times the voxel's volume, [channel][x, y, z][stride], empty if not requested; fluence, W / length^2. With
-  /// angular moments, Source and Path are [function][channel][stride], and Source ends with the sources of beams.
+  /// Arrays over voxels, [channel][voxel]: source of the next sweep, W / (length^3 sr); path integrals, W length; net
+  /// flux times the voxel's volume, [channel][x, y, z][voxel], empty if not requested; fluence, W / length^2. With
+  /// angular moments, Source and Path are [function][channel][voxel], and Source ends with the sources of beams.
   Buffer<float> Source, Path, Flux, Fluence;
 
   const Domain& TheDomain() const { return this->Problem.TheDomain(); }
@@ -73,12 +73,13 @@ public:
   /// Uncollided light of one source in arrays of the host, as AddUncollided() deposits it.
   struct UncollidedPath
   {
-    std::vector<float> path; ///< path integrals, W length, in the layout of Deposit::path
+    /// Path integrals, W length, [channel][voxel]; with angular moments [function][channel][voxel].
+    std::vector<float> path;
     SweepTally tally;
   };
   struct UncollidedFlux : UncollidedPath
   {
-    std::vector<float> flux; ///< net flux, W length, in the layout of Deposit::flux; empty: not requested
+    std::vector<float> flux; ///< net flux, W length, [channel][x, y, z][voxel]; empty: not requested
   };
   UncollidedPath FindUncollidedPath(const UncollidedSource& source, const Monitor& monitor);
   UncollidedFlux FindUncollided(const UncollidedSource& source, const Monitor& monitor);

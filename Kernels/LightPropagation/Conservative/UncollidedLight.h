@@ -33,9 +33,9 @@ public:
   UncollidedLight(
     TransportParts& parts, const BlockWithGhosts& block, const GhostedMedium& medium, const Monitor& monitor);
 
-  /// Path integrals of all uncollided light of this object, W length, [channel][stride].
+  /// Path integrals of all uncollided light of this object, W length, [channel][voxel].
   const std::vector<float>& Path() const { return this->Lengths; }
-  /// Path integrals of the light of lamps alone, W length, [channel][stride]; empty if there are no lamps.
+  /// Path integrals of the light of lamps alone, W length, [channel][voxel]; empty if there are no lamps.
   const std::vector<float>& PathOfLamps() const { return this->LengthsOfLamps; }
   /// Whether the first-scattered light of lamps that leaves its voxel without another collision enters the diffusion
   /// systems as power through voxel faces (LampPassing.h). True if voxels are optically thick, there are lamps, and the

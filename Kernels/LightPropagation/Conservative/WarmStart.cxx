@@ -45,7 +45,7 @@ std::vector<std::string> WarmStart::LeftOut() const
 }
 
 /// Sum of sigma_s times `values` over the voxels of all ranks, by channel.
-/// @param values  [channel][stride]
+/// @param values  [channel][voxel]
 Rgb WarmStart::ScatteredOf(const std::vector<float>& values) const
 {
   Rgb sums = {};

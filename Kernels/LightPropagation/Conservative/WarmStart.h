@@ -28,9 +28,9 @@ public:
 
   /// Computes the initial guess: the kept light, scaled by the ratio of first-scattered powers of this solve and the
   /// previous one, Eq. (46a). Must be called if Keeps().
-  /// @param direct  uncollided fluence, W / length^2, [channel][stride]
+  /// @param direct  uncollided fluence, W / length^2, [channel][voxel]
   void Prepare(const std::vector<float>& direct);
-  /// Path integrals of the initial guess on the device, W length, [function][channel][stride].
+  /// Path integrals of the initial guess on the device, W length, [function][channel][voxel].
   const Buffer<float>& Guess() const { return this->Path; }
   const std::vector<float>& Guessed() const { return this->Scaled; } ///< Guess() in host memory
   /// Power scattered from the initial guess, W by channel, summed over ranks.
@@ -46,9 +46,9 @@ public:
   Rgb MagnitudeOf(const Buffer<float>& source) const;
 
   /// Light to keep for the next solve: total fluence minus `base`.
-  /// @param base  the part of the fluence that the next solve computes anew, W / length^2, [channel][stride]
-  /// @param moments  higher angular moments minus those of `base`, in the layout of Guess(); the first function is not
-  ///   read. Empty: isotropic
+  /// @param base  the part of the fluence that the next solve computes anew, W / length^2, [channel][voxel]
+  /// @param moments  higher angular moments minus those of `base`, [function][channel][voxel]; the first function is
+  ///   not read. Empty: isotropic
   /// @param rate  ratio of the last two changes of the iteration
   KeptLight Leave(const std::vector<float>& base, const std::vector<float>& moments, const Rgb& rate) const;
 

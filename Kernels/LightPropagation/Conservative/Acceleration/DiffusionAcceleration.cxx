@@ -21,8 +21,8 @@ constexpr int MostSweeps = 200;
 
 /// Scales the net flux in `ofLight` down to the fluence where its magnitude exceeds it: in absorbing voxels the mean of
 /// the powers through opposite faces exceeds the net flux.
-/// @param fluence  W / length^2, [channel][stride]
-/// @param ofLight  net flux times the voxel's volume, [channel][x, y, z][stride]; changed
+/// @param fluence  W / length^2, [channel][voxel]
+/// @param ofLight  net flux times the voxel's volume, [channel][x, y, z][voxel]; changed
 void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& ofLight)
 {
   const std::size_t stride = layout.Stride();
@@ -250,7 +250,7 @@ void DiffusionAcceleration::ScatterFound()
   });
 }
 
-/// Fluence of the last sweep plus uncollided fluence, W / length^2, [channel][stride]; not negative.
+/// Fluence of the last sweep plus uncollided fluence, W / length^2, [channel][voxel]; not negative.
 std::vector<float> DiffusionAcceleration::SweptFluence() const
 {
   const double perVolume = 1.0 / this->Parts.Layout.grid.VoxelVolume();
@@ -429,7 +429,8 @@ void DiffusionAcceleration::BeginWarm()
   });
 }
 
-/// Initial guess of a channel in the layout of its diffusion system (DiffusionSystem::State), W / length^2.
+/// Initial guess of a channel's diffusion system, W / length^2: fluence by voxel with ghost cells; with angular
+/// moments, followed by the moments of degree 1, [x, y, z][voxel].
 /// @param fluence  path integrals of the guess with ghost cells, W length
 std::vector<double> DiffusionAcceleration::GuessOf(int c, const std::vector<float>& fluence) const
 {
@@ -474,7 +475,7 @@ void DiffusionAcceleration::WriteFluence()
   }
 }
 
-/// Fluence of the diffusion systems plus uncollided fluence, W / length^2, [channel][stride].
+/// Fluence of the diffusion systems plus uncollided fluence, W / length^2, [channel][voxel].
 std::vector<float> DiffusionAcceleration::FluenceOfSystems()
 {
   const VolumeLayout& layout = this->Parts.Layout;

@@ -58,7 +58,7 @@ private:
   const PropagationSettings& Settings;
   SystemArrays Arrays;
   std::optional<UncollidedLight> Uncollided;
-  std::vector<float> UncollidedFluence; ///< fluence of uncollided light, W / length^2, [channel][stride]
+  std::vector<float> UncollidedFluence; ///< fluence of uncollided light, W / length^2, [channel][voxel]
   std::unique_ptr<SweepOperator> Swept; ///< sweep of scattered and boundary light along the usual quadrature
   std::vector<std::unique_ptr<DiffusionSolver>> Systems; ///< diffusion systems, by channel
   /// Power through each cell of the box faces; unset unless faces reflect or face power is requested.
@@ -69,7 +69,8 @@ private:
   RestOfChanges Rest;
   double Residual = 1.0;
   WarmStart Warm;
-  /// Fluence and moments of the first iteration: `base` of WarmStart::Leave; empty if no light is kept.
+  /// Fluence and angular moments of the first iteration, which the next solve computes anew, so that they are
+  /// subtracted from the light kept for it; empty if no light is kept.
   std::vector<float> First, FirstMoments;
 
   IterationResult Result;

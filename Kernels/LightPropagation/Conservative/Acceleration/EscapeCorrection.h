@@ -18,7 +18,7 @@ class EscapeCorrection
 public:
   /// @param layout, scattering, sigma_t  layout and coefficients of the medium; must outlive this object
   /// @param fine, usual  path integrals of the uncollided light of a sky of radiance 1 along the finer and the usual
-  ///   quadrature (TransportParts::FindEvenSky), W length, [channel][stride]
+  ///   quadrature (TransportParts::FindEvenSky), W length, [channel][voxel]
   EscapeCorrection(Device& device, const VolumeLayout& layout, const TruncatedScattering& scattering,
     const Buffer<float>& sigma_t, const std::vector<float>& fine, const std::vector<float>& usual);
 
@@ -34,7 +34,7 @@ private:
   const VolumeLayout& Layout;
   const Buffer<float>& SigmaT;
   /// Additional escaped power of each voxel for a source of 1 W / (length^3 sr), divided by sigma_t: W length,
-  /// [channel][stride].
+  /// [channel][voxel].
   Buffer<float> Extra;
 };
 }

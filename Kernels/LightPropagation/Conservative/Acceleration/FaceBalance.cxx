@@ -51,7 +51,7 @@ void FaceBalance::FindOwnCells(const BlockWithGhosts& block)
   const Grid& held = block.WithGhosts().grid;
   ForBoxFaceCells(held, [&](const BoxFaceCell& cell) {
     const std::array<int, 3> voxel = held.VoxelAt(cell.voxel);
-    if (block.IsOwn(voxel)) // at an own voxel, a face of the block with its ghost cells is a face of the box
+    if (block.IsOwn(voxel)) // a face of the block with its ghost cells is a face of the box only at an own voxel
     {
       const BoxFaceLayout layout = LayoutOfFace(this->Faces.Box(), cell.face);
       std::size_t place = layout.first;

@@ -84,8 +84,9 @@ public:
 
   /// Reads the outgoing power of the last sweep, and writes Rows().
   void TakeSwept();
-  /// The array DiffusionSystem::Arrays::faces of a channel: power, W, by cell of the faces of the block with ghost
-  /// cells; 0 at ghost cells.
+  /// Power in one channel by cell of the faces of the block with ghost cells, W, [FaceCame ... FaceLeaves][cell]
+  /// (DiffusionShared.h): reflected into the last sweep, reflected uncollided, outgoing in the sweep, and outgoing in
+  /// the diffusion solution. 0 at ghost cells.
   const Buffer<float>& Rows(int channel) const { return this->OfBlock[channel]; }
   /// Reads the outgoing power of the diffusion solution, which the diffusion systems wrote to Rows().
   /// @param lit  by channel: whether its diffusion system was solved; equal on all ranks
@@ -125,7 +126,8 @@ private:
   const std::size_t Cells,
     HeldCells; ///< number of cells of the box faces, and of the faces of the block with ghost cells
   std::vector<OwnCell> OwnCells;
-  std::vector<Buffer<float>> OfBlock; ///< see Rows(), by channel
+  /// By channel: power by cell of the faces of the block with ghost cells, as Rows() returns it.
+  std::vector<Buffer<float>> OfBlock;
   Rgb PowerGivenBack = {};
   std::vector<double> CameBack, GivenBackByCell, LeftUncollided;
   std::vector<float> LeftSwept;        ///< outgoing power of the last sweep, W

@@ -33,8 +33,8 @@ public:
   /// Copies the moments of degree 1 back to the array of the block.
   void TakeFirstDegree(Buffer<float>& own) const;
 
-  /// One channel of angular moments in the layout of DiffusionSystem::State. The moments of degree 1 are 0 in ghost
-  /// cells.
+  /// One channel of angular moments as a diffusion system holds them, with ghost cells: degree 0 by voxel, followed by
+  /// degree 1, [x, y, z][voxel]. The moments of degree 1 are 0 in ghost cells.
   /// @param values  moments of the block, in the layout of path integrals
   /// @param fluence  moment of degree 0 with ghost cells, in the unit of `values`
   std::vector<double> StateOf(int channel, const std::vector<float>& values, std::vector<double> fluence) const;
@@ -67,7 +67,8 @@ public:
   /// Emission plus first-collision source of the block, W / (length^3 sr).
   const Buffer<float>& Given() const { return this->TheGiven; }
 
-  /// Partial currents of the sweep in the block, W (Deposit::partialCurrents).
+  /// Partial currents of the sweep in the block: power that enters each voxel through each of its faces, W,
+  /// [channel][-x, +x, -y, +y, -z, +z][voxel].
   Buffer<float>& PartialCurrents() { return this->TheCurrents; }
   /// Copies the path integrals and partial currents of the last sweep to the arrays with ghost cells.
   void TakeSwept();
@@ -81,7 +82,8 @@ public:
   void TakeSource() { this->SourceWithGhosts.FillOwn(); }
 
   /// Arrays with ghost cells that the diffusion system of a channel reads.
-  /// @param faces  DiffusionSystem::Arrays::faces
+  /// @param faces  power by cell of the box's faces (FaceBalance::Rows); null: no face reflects, and power by cell is
+  ///   not requested
   DiffusionSystem::Arrays OfChannel(int channel, const UncollidedLight& light, const Buffer<float>* faces) const;
 
 private:
@@ -89,7 +91,8 @@ private:
   const BlockWithGhosts TheBlock;
   const GhostedMedium Coefficients;
   MomentsWithGhosts OfPath;
-  /// Arrays of the block without ghost cells, as in DiffusionSystem::Arrays.
+  /// Arrays of the block without ghost cells: emission and first-collision source, W / (length^3 sr); its net flux over
+  /// 4 pi, if there are angular moments; partial currents of the sweep, W.
   Buffer<float> TheGiven, GivenFlux, TheCurrents;
   GhostedBuffer GivenWithGhosts, GivenFluxWithGhosts, SourceWithGhosts, CurrentsWithGhosts;
 };
