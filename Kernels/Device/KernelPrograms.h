@@ -20,7 +20,7 @@ public:
   /// @param cacheFolder  as in Device's constructor
   KernelPrograms(const cl::Context& context, const cl::Device& device, std::string deviceName, std::string cacheFolder);
 
-  /// Returns a kernel, and builds its program if necessary: Device::Kernel of the device and of its views.
+  /// Returns a kernel of a program, which is built unless it is in the cache. Device::Kernel calls this function.
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options);
 
   /// Whether a program was compiled since the last call, in a build so slow that it notified a CompilationListener.

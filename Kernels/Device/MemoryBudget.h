@@ -38,7 +38,7 @@ public:
   std::size_t Limit() const { return this->Most; }
   std::size_t InUse() const { return this->Taken; }
   std::size_t Left() const { return this->Most - this->Taken; }
-  std::size_t Peak() const { return this->Largest; } ///< largest value of InUse() since ResetPeak()
+  std::size_t Peak() const { return this->Largest; } ///< largest number of bytes in use since ResetPeak()
   void ResetPeak() { this->Largest = this->InUse(); }
 
   /// Reserves bytes.

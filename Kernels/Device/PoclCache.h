@@ -52,7 +52,7 @@ public:
 
 private:
   std::string File;
-  int Descriptor = -1; ///< descriptor of the file, which is locked as long as the process lives
+  int Descriptor = -1; ///< descriptor of the file, which is locked as long as the process lives; -1: no file
 };
 
 /// Renames damaged files in PoCL's cache folder to *.damaged, so that PoCL compiles their programs again. Files count

@@ -17,7 +17,7 @@ class PyramidBlocks
 public:
   /// Determines the boxes of all ranks and their cells of the shared level.
   /// @param domain  must outlive this object
-  /// @param shared  index of the shared level
+  /// @param shared  index of the shared level, the highest one that ranks compute for their own boxes
   /// @param margin  width of the margin, voxels
   /// @param edge  number of voxels, a multiple of the edge of a cell of the shared level; boxes begin and, except at
   ///   the grid's end, end at multiples of it
@@ -28,7 +28,8 @@ public:
   const VoxelBox& Box() const { return this->Boxes[static_cast<std::size_t>(this->TheDomain.Rank())]; }
   /// Grid of `size` voxels along each axis, with origin and spacing of the domain's grid.
   Grid GridOf(const std::array<int, 3>& size) const;
-  /// The cells of the shared level that this rank computes: those whose first voxel lies in its box.
+  /// The cells of the shared level (the highest level that ranks compute for their own boxes) that this rank computes:
+  /// those whose first voxel lies in its box.
   VoxelBox BoxCells() const { return this->CellsIn(this->Box()); }
   /// All cells of the shared level of the whole domain.
   VoxelBox AllCells() const { return { {}, this->Cells.whole.size }; }
@@ -53,8 +54,9 @@ private:
 
   const Domain& TheDomain;
   int SharedLevel;
-  std::vector<VoxelBox> Boxes; ///< boxes by rank, see Box()
+  std::vector<VoxelBox> Boxes; ///< by rank: its box, which is its block and a margin around it
   bool AnyMargin = false;      ///< whether some rank's box is larger than its block
-  BlockPartition Cells;        ///< partition of the cells of the shared level among the ranks that contribute them
+  /// Partition of the cells of the shared level, the highest one that ranks compute for their boxes, among the ranks.
+  BlockPartition Cells;
 };
 }

@@ -16,7 +16,8 @@ namespace tyndall
 /// Counts of the travellers (photons, rays or beams) that Rounds has sent between ranks.
 struct RoundsTraffic
 {
-  /// Travellers sent by this rank; a traveller counts each time that it enters another rank's block.
+  /// Number of travellers (photons, rays or beams) sent by this rank; a traveller counts each time that it enters
+  /// another rank's block.
   std::size_t handed = 0;
   std::size_t bytes = 0; ///< size of the travellers sent by this rank, bytes
   int rounds = 0;        ///< number of rounds of tracing and exchange, until no traveller was left
@@ -43,13 +44,13 @@ public:
   {
   }
 
-  /// Function that traces the travellers that arrived in a round (in the first round: those that start in this block),
-  /// and returns the travellers that continue in other blocks.
+  /// Function that traces the travellers (photons, rays or beams) that arrived in a round (in the first round: those
+  /// that start in this block), and returns the travellers that continue in other blocks.
   template <class OnItsWay>
   using Follow =
     std::function<std::vector<OnItsWay>(int round, std::vector<OnItsWay>&& arrived, const Monitor& monitor)>;
 
-  /// Repeats rounds until no traveller is left on any rank. Collective.
+  /// Repeats rounds of tracing and exchange until no traveller (photon, ray or beam) is left on any rank. Collective.
   /// @throws on every rank, the error that `follow` throws on one rank
   template <class OnItsWay>
   void UntilAllEnd(const Follow<OnItsWay>& follow, const Monitor& monitor)
@@ -81,7 +82,7 @@ public:
   const RoundsTraffic& Traffic() const { return this->Handed; }
 
 private:
-  /// Sorts travellers by the neighbouring rank whose block they enter.
+  /// Sorts travellers (photons, rays or beams) by the neighbouring rank whose block they enter.
   template <class OnItsWay>
   std::vector<std::vector<OnItsWay>> Sorted(const std::vector<OnItsWay>& gone)
   {

@@ -41,7 +41,7 @@ struct LatticeBox
   std::size_t Count() const { return this->own.VoxelCount(); }
   bool IsAll() const { return this->Count() == this->known.VoxelCount(); }
 
-  /// Index, among the known voxels, of the own voxel with index `voxel` among the own voxels.
+  /// Index, among the known voxels (own and ghost voxels), of the voxel with index `voxel` in this rank's block.
   std::size_t Known(std::size_t voxel) const
   {
     if (this->IsAll())
@@ -52,7 +52,7 @@ struct LatticeBox
     grid.size = this->own.size;
     return this->Known(grid.VoxelAt(voxel));
   }
-  /// Index, among the known voxels, of the voxel at given indices along the axes.
+  /// Index, among the known voxels (own and ghost voxels), of the voxel at given indices along the axes.
   /// @param at  indices relative to the first own voxel; may be those of a ghost voxel
   std::size_t Known(std::array<int, 3> at) const
   {
@@ -63,7 +63,8 @@ struct LatticeBox
     return this->known.IndexOf(at);
   }
 
-  /// Index of the known voxel across a face -x, +x, ... +z of a known voxel; Outside if there is none.
+  /// Index of the neighbour of a known voxel (own or ghost voxel) across its face -x, +x, ... +z, among the known
+  /// voxels; Outside if there is none.
   std::size_t Beyond(std::size_t voxel, std::size_t face) const
   {
     return this->Beyond(this->known.VoxelAt(voxel), face);

@@ -44,7 +44,7 @@ LightField BeginLight(const LatticeProblem& problem, const LatticeSettings& sett
 /// and doubts. Collective.
 /// @param illumination  as the user gave it
 /// @param thickest  sigma_t h of the thickest voxel of all ranks
-/// @param lost  Uncollided::lost of this rank, W
+/// @param lost  incident power that neither collided nor escaped, on this rank (Uncollided::lost), W
 void FinishLight(LightField& light, const Device& device, const LatticeProblem& problem,
   const Illumination& illumination, const LatticeSettings& settings, double thickest, const Rgb& lost = {});
 }

@@ -33,7 +33,7 @@ public:
   const Domain& TheDomain() const { return this->Scene.TheDomain(); } ///< domain in the problem's unit of length
   const LatticeBox& Box() const { return *this->OwnBox; }
   const Medium& OwnMedium() const { return this->Scene.TheMedium(); } ///< medium of this rank's block, without a halo
-  // Fields over the known voxels: the block and its halo.
+  // Fields over the known voxels: the block and its halo of ghost voxels.
   const Medium& TheMedium() const { return this->Known; }
   const Field& Index() const { return this->KnownIndex; } ///< refractive index; null values: 1
   const Illumination& TheIllumination() const { return this->Shining; }

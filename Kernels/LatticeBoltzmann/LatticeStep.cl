@@ -149,7 +149,8 @@ __kernel void flux_lattice(LatticeInfo lattice, LINKS, const __global float* fro
   }
 }
 
-// Copies densities to the halo across a periodic axis. One work-item per value of a plane and direction.
+// Copies densities to the halo across a periodic axis. One work-item per direction and
+// per value of a plane perpendicular to the axis.
 //   u, v   strides within the plane
 //   along  stride along the periodic axis
 //   n      voxels along the periodic axis

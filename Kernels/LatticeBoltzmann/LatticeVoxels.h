@@ -57,7 +57,8 @@ struct LatticeVoxels
   double OpenWeight(std::size_t voxel) const;
 
   bool Reflects() const; ///< whether a face has an albedo above 0
-  /// sum of the isotropic sources of all known voxels and of the incident light at the faces; 0 if there is no light
+  /// sum of the isotropic sources of all own and ghost voxels and of the incident light at the faces; 0 if there is no
+  /// light
   double Given() const;
 
   /// Diffusive resistances (Eq. (L12)): difference of fluence / n^2 that drives a flux of 1 W / length^2 from a voxel's

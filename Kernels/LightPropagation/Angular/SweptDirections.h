@@ -28,14 +28,15 @@ public:
   /// Copies of `bundles` restricted to one direction of each class, with the power of all directions of its class.
   std::vector<Bundle> Standing(const std::vector<Bundle>& bundles) const;
 
-  /// Indices of all directions in the class of `direction`, including itself.
+  /// Indices of all directions that carry the same light as `direction`, including itself.
   const std::vector<int>& AllOf(int direction) const { return this->Classes[this->ClassOf[direction]]; }
 
 private:
   bool IsRepresentative(int direction) const { return direction >= 0 && this->AllOf(direction).front() == direction; }
 
-  std::vector<int> ClassOf;              ///< by direction: index of its class, the directions that carry the same light
-  std::vector<std::vector<int>> Classes; ///< indices of each class's directions; the representative first
+  std::vector<int> ClassOf; ///< by direction: index of its class, the directions that carry the same light
+  /// By class of directions that carry the same light: their indices, the representative first.
+  std::vector<std::vector<int>> Classes;
 };
 
 /// A quadrature together with its rays: bundles of directions (RayBundles.h) that sweep a box along each axis. If

@@ -10,7 +10,8 @@ namespace tyndall
 /// Diffusion matrix on the cells of coarse-mesh DSA (numerics.md, Eq. (76d)), for MultigridSolver.
 struct CoarseMatrix
 {
-  /// Conductances of low faces, and absorbed power per fluence, length^2, in the row layout of the solver
+  /// Conductances of the cells' low faces, and absorbed power per fluence, length^2, in the memory layout of
+  /// MultigridSolver.
   std::vector<float> conductance, loss;
   /// Escaped power per fluence through each cell of the box's faces (BoxFaces.h), length^2.
   std::vector<double> borders;
