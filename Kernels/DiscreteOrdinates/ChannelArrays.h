@@ -69,7 +69,7 @@ public:
   const Medium& TheMedium;
   const std::size_t Voxels;
   const VolumeLayout Layout;
-  Buffer<float> SigmaT, SigmaS; ///< coefficients without the forward peak, 1/length
+  Buffer<float> SigmaT, SigmaS; ///< sigma_t and sigma_s without the forward peak of the phase function, 1/length
   /// factor by which the sources of all directions of a voxel are to be multiplied, initially 1
   Buffer<float> Scale;
   Buffer<float> Direct; ///< uncollided fluence, W / length^2
@@ -78,10 +78,8 @@ public:
   const std::unique_ptr<FaceLight> Faces;
 
 private:
-  double ScatteredAway() const
-  {
-    return 1.0 - this->Angles.phase.Peak();
-  } ///< fraction of the scattered power that is not scattered into the forward peak
+  /// Fraction of the scattered power that is not scattered into the forward peak of the phase function.
+  double ScatteredAway() const { return 1.0 - this->Angles.phase.Peak(); }
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
   std::unique_ptr<SweepOperator> SweepOf(
     const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request);

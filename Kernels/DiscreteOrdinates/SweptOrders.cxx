@@ -276,8 +276,8 @@ private:
     {
       return true;
     }
-    // Least number of orders: the remainder is estimated from the ratio of successive orders, which is known after
-    // three; a warm start uses the ratio that the previous solve found.
+    // Least number of orders: the sum of the later orders is estimated from the ratio of successive orders, which is
+    // known after three; a warm start uses the ratio that the previous solve found.
     const int least = this->IsWarm() ? 2 : 3;
     return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
                                             : orders >= least && this->Record.Residual() <= this->Settings.tolerance;
@@ -289,7 +289,8 @@ private:
   const std::optional<LightOfCells> Cells;
   std::unique_ptr<OrdinateSweep> Sweep;
   AngularScattering Scattering;
-  Buffer<float> Radiance, Source; ///< Source: empty if scattering works in place in Radiance
+  /// Radiance of all directions, and its scattering source; Source is empty if the source overwrites Radiance.
+  Buffer<float> Radiance, Source;
   OrdinatesRecord Record;
   OrdinatesResult Result;
   /// Scattered fluence from which a warm start begins, W / length^2; empty once its source has been subtracted.

@@ -24,14 +24,14 @@ public:
   PyramidBlocks(const Domain& domain, int shared, int margin, int edge);
 
   int Shared() const { return this->SharedLevel; }
-  /// The voxels for which this rank computes the lower levels: its block and its margin.
+  /// The voxels for which this rank computes the levels up to the shared one: its block and its margin.
   const VoxelBox& Box() const { return this->Boxes[static_cast<std::size_t>(this->TheDomain.Rank())]; }
   /// Grid of `size` voxels along each axis, with origin and spacing of the domain's grid.
   Grid GridOf(const std::array<int, 3>& size) const;
   /// The cells of the shared level (the highest level that ranks compute for their own boxes) that this rank computes:
   /// those whose first voxel lies in its box.
   VoxelBox BoxCells() const { return this->CellsIn(this->Box()); }
-  /// All cells of the shared level of the whole domain.
+  /// All cells of the shared level, the highest one that ranks compute for their own boxes, of the whole domain.
   VoxelBox AllCells() const { return { {}, this->Cells.whole.size }; }
 
   /// Values of the voxels of this rank's box, gathered from the ranks that own them. Collective.
@@ -40,7 +40,8 @@ public:
   /// @return pointer to the values: in `storage`, or `own`
   const float* Gather(const float* own, int components, std::vector<float>& storage) const;
 
-  /// Values of all cells of the shared level, gathered from the BoxCells of all ranks. Collective.
+  /// Values of all cells of the shared level (the highest one that ranks compute for their own boxes), gathered from
+  /// the BoxCells of all ranks. Collective.
   /// @param made  values of this rank's BoxCells, `components` per cell, x fastest
   /// @return `components` per cell, x fastest; empty on a rank without voxels
   std::vector<float> GatherCells(const std::vector<float>& made, int components) const;

@@ -19,8 +19,8 @@ struct RoundsTraffic
   /// Number of travellers (photons, rays or beams) sent by this rank; a traveller counts each time that it enters
   /// another rank's block.
   std::size_t handed = 0;
-  std::size_t bytes = 0; ///< size of the travellers sent by this rank, bytes
-  int rounds = 0;        ///< number of rounds of tracing and exchange, until no traveller was left
+  std::size_t bytes = 0; ///< size of the travellers (photons, rays or beams) sent by this rank, bytes
+  int rounds = 0;        ///< number of rounds of tracing and exchange, until no photon, ray or beam was left
 };
 
 /// Traces travellers (photons, rays, or beams of a lamp) through a distributed grid in rounds: each rank follows its

@@ -168,8 +168,8 @@ public:
   {
   }
 
-  /// Adds scattered and uncollided fluence, net flux, face powers, and all terms of the energy balance but leftOver, to
-  /// `light`.
+  /// Adds scattered and uncollided fluence, net flux, face powers, and all terms of the energy balance but leftOver
+  /// (power still in transport), to `light`.
   /// @param fluence  lattice fluence by own voxel
   void AddTo(LightField& light, const std::vector<float>& fluence) const;
 
@@ -263,8 +263,8 @@ void LatticeAccount::AddFlux(LightField& light) const
   {
     const std::size_t known = this->Box.Known(i);
     const double tau = this->Edge() * this->TheMedium.sigma_a.At(known, static_cast<int>(this->Channel));
-    // The net flux of the densities is that after a step; multiplied by this factor, it is the mean over the step, as
-    // is the fluence.
+    // The densities yield the net flux at the end of a step; multiplied by this factor, it is the mean over the step,
+    // as is the fluence.
     const double mean = tau > 1e-6 ? this->Voxels.lost[known] / tau : 1.0;
     for (std::size_t a = 0; a < 3; ++a)
     {

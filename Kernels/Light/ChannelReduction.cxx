@@ -35,7 +35,8 @@ void KeepOne(std::vector<float>& values, std::size_t width)
   values.shrink_to_fit();
 }
 
-/// Applies change(power) to each power by channel, and multiplies powers summed over channels by `scale`.
+/// Applies change(power) to each power by channel of a LightField, and multiplies its powers summed over channels by
+/// `scale`.
 template <class Change>
 void ChangePowers(LightField& light, const Change& change, double scale)
 {

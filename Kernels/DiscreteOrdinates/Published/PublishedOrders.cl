@@ -53,7 +53,8 @@ __kernel void move_on(const __global float* before, __global float* after, const
   ((__global float8*)after)[group * stride + i] = sum;
 }
 
-// Sums the radiance in the voxels at the exit face of each group along the rows of the face.
+// Sums the radiance in the voxels at the face through which the directions of each group leave the box, along the rows
+// of that face.
 //   sums  [group][row][8]; successive voxels of a row are `along` apart, rows of `count` voxels `between` apart
 __kernel void sum_leaving(const __global float* radiance, __global float* sums, const __global int* up, ulong stride,
   int axis, ulong last, ulong between, ulong along, int count)

@@ -103,8 +103,8 @@ private:
       this->TheGrid.VoxelVolume() / this->TheGrid.spacing[axis];
   }
 
-  /// Radiance in the voxels at the exit face, perpendicular to an axis, of each group, summed along the rows of the
-  /// face.
+  /// For each group of directions, the radiance in the voxels at the face, perpendicular to an axis, through which they
+  /// leave the box, summed along the rows of the face.
   std::vector<float> SumsLeaving(const Buffer<float>& radiance, int axis) const
   {
     const std::array<std::size_t, 3> strides = this->TheGrid.Strides();

@@ -31,10 +31,10 @@ struct PhotonsToCome
   /// @param given  number of channels that the photons' light will have
   PhotonsToCome(const PackedPhotons& packed, int given, const Grid& grid);
 
-  UncollidedImage Image() const; ///< image that refers to the arrays of this object
+  UncollidedImage Image() const; ///< this uncollided light by voxel; refers to the arrays of this object
 
   int channels;
-  std::vector<float> fluence; ///< fluence of the synthetic light, [voxel][channel]
+  std::vector<float> fluence; ///< fluence of the stand-in light, [voxel][channel]
   std::array<Rgb, 6> escaped = {};
 };
 

@@ -151,8 +151,8 @@ static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
   return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
 }
 
-// Light that a voxel sends up from itself and all voxels below it: U (sends), if no light arrives from above, and R
-// (returns), the fraction of light arriving from above.
+// Light that a voxel sends up, from itself and all voxels below it: U (sends), if no light arrives from above, and R
+// (returns), the fraction of light arriving from above that is sent up again.
 typedef struct
 {
   exact sends, returns;

@@ -43,7 +43,7 @@ public:
 
 private:
   /// ratio of the root-mean-square difference between the two solutions to the error that a solution with 9 directions
-  /// has on the finer grid
+  /// per cube face has on the finer grid
   double Fallen;
   /// Errors of uncollided and of scattered light with 9 directions per cube face, relative to the fluence.
   double OfUncollided = 0.0, OfScattered = 0.0;

@@ -13,8 +13,9 @@ namespace tyndall
 /// +-along) and (+-along, +-across).
 struct DirectionOrbit
 {
-  double across = 0.0, along = 0.0; ///< tangents of one direction of the orbit, 0 <= across <= along < 1
-  double weight = 0.0;              ///< weight of each direction of the orbit, sr
+  /// Point of a face through which one direction of the orbit points, 0 <= across <= along < 1.
+  double across = 0.0, along = 0.0;
+  double weight = 0.0; ///< weight of each direction of the orbit, sr
   /// Offset that Nearest() adds to the cosine to a direction of this orbit, so that each cell's solid angle equals its
   /// weight.
   double reach = 0.0;
@@ -28,8 +29,9 @@ struct DirectionSet
   /// Whether cells subtend equal angles at the cube's centre; false: cells have equal size on the face.
   bool equiangular = false;
   std::vector<Direction> directions; ///< 6 n n directions with weights in sr
-  /// Orbits of the directions, in FittedDirections only; otherwise empty. With orbits, cells are not a grid: a cell
-  /// consists of all directions that are nearest to its own direction (see Nearest).
+  /// Orbits (sets of directions that are equivalent by symmetry), in FittedDirections only; otherwise empty. With
+  /// orbits, cells are not a grid: a cell consists of all directions that are nearest to its own direction (see
+  /// Nearest).
   std::vector<DirectionOrbit> orbits = {};
   /// Points (s, t) of a face, -1 to 1, through which its directions point; empty without orbits.
   std::vector<std::array<double, 2>> tangents = {};
@@ -75,7 +77,8 @@ DirectionSet DirectionsForVoxels(int perFace, const std::array<double, 3>& spaci
 double HalfRangeFlux(const DirectionSet& set);
 
 /// Unit vector from the cube's centre through a point of face `face`.
-/// @param s, t  tangents along the axis (cyclically) after the face's normal, and along the one after that
+/// @param s, t  coordinates of the point, -1 to 1: along the axis (cyclically) after the face's normal, and along the
+///   one after that
 std::array<double, 3> DirectionThroughFace(int face, double s, double t);
 
 /// Index of the direction of `set` whose cell contains `omega` (of any length except 0).

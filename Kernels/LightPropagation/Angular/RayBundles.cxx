@@ -181,7 +181,7 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   const double part = std::min(all - whole, 1.0);
   const auto wholeAt = [&](int k, double more) { return (k + more - start) / tangent; };
   const auto partAt = [&](int before) { return (before + part * (1.0 - start)) / tangent; };
-  // The partial move is placed as late as possible without two moves in one plane.
+  // The move of only a fraction of the power is placed as late as possible without two moves in one plane.
   const auto hasRoom = [&](int before) {
     const int plane = PlaneAt(partAt(before));
     return (before == 0 || PlaneAt(wholeAt(before, 0.0)) < plane) &&

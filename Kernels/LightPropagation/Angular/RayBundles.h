@@ -39,7 +39,8 @@ struct PlaneCrossing
   std::array<Segment, 3> segments;
 };
 
-/// One direction of a bundle, its mirror image, and the map from the bundle's frame to the plane's axes.
+/// One direction of a bundle (directions whose segments have the same lengths), its mirror image, and the map from the
+/// bundle's frame to the plane's axes.
 struct Member
 {
   int direction = 0; ///< index in the direction set of the direction that marches forward along the axis; -1: none
@@ -47,7 +48,8 @@ struct Member
   int uFromU = 1, uFromV = 0, vFromU = 0, vFromV = 1; ///< signed permutation from the bundle's axes to the plane's
 };
 
-/// A move of all rays of a bundle by one voxel along u or v, at some depth of a plane.
+/// Sideways move of all rays of a bundle by one voxel along u or v, the axes across the marching axis, at some depth of
+/// a plane of voxels.
 struct Move
 {
   double depth = 2.0; ///< position of the move: 0 at the plane's entry, 1 at its exit; above 1: no move

@@ -73,9 +73,10 @@ private:
   struct Channel
   {
     CoarseCells box = {};
-    std::unique_ptr<MultigridSolver> solver; ///< null except on the first rank
-    std::vector<double> borders;             ///< CoarseMatrix::borders
-    std::vector<double> found;               ///< solution after the last scattering order, W / length^2, by cell
+    std::unique_ptr<MultigridSolver> solver; ///< solver of the diffusion on cells; null except on the first rank
+    /// Escaped power per fluence through each cell of the box's faces, length^2 (CoarseMatrix).
+    std::vector<double> borders;
+    std::vector<double> found; ///< solution after the last scattering order, W / length^2, by cell
     ExactValues foundOnDevice;
   };
   void MakeBoxes(const VolumeLayout& layout, const Settings& settings);

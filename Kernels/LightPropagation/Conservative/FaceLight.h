@@ -80,9 +80,9 @@ public:
   FaceLight(
     Device& device, const Grid& grid, int channels, std::vector<double> powerIn, const std::array<Rgb, 6>& albedo);
 
-  /// Outgoing power of sweeps, W, [channel][cell]; for Deposit::faceOut.
+  /// Outgoing power of sweeps, W, [channel][cell]; sweeps add to it (Deposit::faceOut).
   const Buffer<float>& Out() const { return this->Leaving; }
-  /// Reflected radiance, W / (length^2 sr), [channel][cell]; for SweepRequest::faceIn.
+  /// Reflected radiance, W / (length^2 sr), [channel][cell], incident in the next sweep (SweepRequest::faceIn).
   const Buffer<float>& In() const { return this->Entering; }
 
   /// Moves the power in Out() to the uncollided light, which did not leave along the rays of sweeps, and clears Out().

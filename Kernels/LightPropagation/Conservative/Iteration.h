@@ -16,7 +16,9 @@ struct IterationResult
 {
   EnergyLedger ledger;
   ConvergenceRecord convergence;
-  std::vector<float> fluenceDirect, surfaceRadiance; ///< as in LightField
+  /// Uncollided fluence, W / length^2, and outgoing radiance at the box's faces, W / (length^2 sr), as in LightField;
+  /// empty: not computed.
+  std::vector<float> fluenceDirect, surfaceRadiance;
   /// Mean positions of collisions relative to the voxels' centres (LightField::firstMoments); empty: not requested.
   std::vector<float> firstMoments;
   /// Power that left through each cell of the box faces, W, [channel][cell], if requested.

@@ -77,8 +77,8 @@ Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& s
   return part;
 }
 
-/// Boundary source that is transported along the usual quadrature: `shining` without the radiance that AlongFiner()
-/// returns.
+/// Boundary source that is transported along the quadrature of scattered light: `shining` without the radiance that
+/// AlongFiner() returns.
 Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& shining)
 {
   Illumination part = shining;

@@ -56,8 +56,8 @@ public:
   LightSources(const LightSources&) = delete; // light sources refer to directions that this object owns
   LightSources& operator=(const LightSources&) = delete;
 
-  /// Sets OfVacuum, if empty voxels emit and need a separate quadrature. Collective; call before any method that
-  /// concerns emission.
+  /// Sets OfVacuum, the quadrature for the emission of empty voxels, if these emit and need one of their own.
+  /// Collective; call before any method that concerns emission.
   void FindVacuum();
 
   const PropagationProblem& Problem;
@@ -68,7 +68,8 @@ public:
   /// Rays of the quadrature Finer; null if that is the quadrature of scattered light.
   std::unique_ptr<const SweptDirections> Fine;
   /// Boundary sources. FineBoundary: transported along the quadrature Fine; null if there are none. UsualBoundary:
-  /// carried by sweeps along the usual quadrature; with DSA all boundary light, else all that is not in FineBoundary.
+  /// carried by sweeps along the quadrature of scattered light; with DSA all boundary light, else all that is not in
+  /// FineBoundary.
   std::unique_ptr<const BoundaryLight> UsualBoundary, FineBoundary;
   std::vector<Light> Lamps; ///< lamps of the scene, and parallel beams that represent peaks of the environment
   Environment FarAway;      ///< the environment without its peaks
@@ -79,10 +80,10 @@ public:
   std::unique_ptr<const SweptDirections> OfVacuum;
   std::unique_ptr<const GivenLight> Given; ///< uncollided light from another solver; null: none
 
-  /// Boundary source of sweeps along the usual directions; empty: none.
+  /// Boundary source of sweeps along the directions of scattered light; empty: none.
   SweepBoundary BoundaryOfSweeps() const;
   bool SweepCarriesBoundarySource() const { return this->UsualBoundary->Shines(); }
-  /// The boundary source of FineBoundary, represented in the usual quadrature instead of the finer one.
+  /// The boundary source of FineBoundary, represented in the quadrature of scattered light instead of the finer one.
   BoundaryLight FinePartAlongUsual() const;
   /// Lamps of a scene, and parallel beams that represent the peaks of its environment, in the units of `illumination`.
   std::vector<Light> LampsOf(const Illumination& illumination) const;
@@ -92,10 +93,11 @@ public:
   /// Sources of uncollided light, other than lamps, whose light is not swept: localised emission, and uncollided light
   /// given by another solver.
   Sources OtherSources() const;
-  /// Source of the emission of empty voxels, if it is swept along OfVacuum; else none.
+  /// Source of the emission of empty voxels, if it is swept along a quadrature of its own (OfVacuum); else none.
   Sources VacuumSources() const;
   /// Emission without localised emission, W / (length^3 sr), [channel][voxel].
-  /// @param emptyVoxels  true: emission of the empty voxels that are swept along OfVacuum; false: of all other voxels
+  /// @param emptyVoxels  true: emission of the empty voxels that is swept along the quadrature OfVacuum; false: of all
+  ///   other voxels
   std::vector<float> EmissionOf(bool emptyVoxels) const;
   void CountEmission(EnergyLedger& ledger) const; ///< adds all emission of the medium to the ledger; collective
 

@@ -8,8 +8,9 @@ namespace tyndall
 {
 namespace
 {
-/// Largest number of calls of OwedPower::Collect(). Power that a call cannot subtract from the direct neighbours of a
-/// voxel is passed one voxel farther by the next call.
+/// Largest number of passes (OwedPower::Collect()) in which the power that raising negative fluence added is subtracted
+/// from neighbouring voxels. Power that a pass cannot subtract from the direct neighbours of a voxel is passed one
+/// voxel farther by the next one.
 constexpr int MostTurns = 50;
 
 /// One channel of fluence on this rank, in which negative values are raised. A raised voxel absorbs additional power;
@@ -36,8 +37,9 @@ public:
     return std::any_of(this->Owed.begin(), this->Owed.end(), [](double owed) { return owed > 0.0; });
   }
 
-  /// Subtracts the owed power from the neighbouring voxels. A neighbour whose fluence becomes negative owes that power
-  /// to its own neighbours in the next call. Collective.
+  /// Subtracts the owed power, which voxels absorb in addition since their fluence was raised, from the neighbouring
+  /// voxels. A neighbour whose fluence becomes negative owes that power to its own neighbours in the next call.
+  /// Collective.
   void Collect()
   {
     std::vector<float> own(this->Owed.size());
@@ -106,8 +108,10 @@ private:
   const Halo& Around;
   const std::function<double(std::size_t)> Sigma;
   float* Fluence;
-  const Grid Known;         ///< the block with its halo
-  std::vector<double> Owed; ///< owed power per volume, W / length^3, by voxel of the block
+  const Grid Known; ///< the block with its halo
+  /// Power per volume that voxels absorb in addition since their fluence was raised, W / length^3, by voxel of the
+  /// block.
+  std::vector<double> Owed;
 };
 }
 

@@ -34,7 +34,8 @@ OrderSweeps::OrderSweeps(
   this->Whole = parts.Transport.MakeSweep(request);
   if (!octantSource && !byCells && this->MayOmitEmptySlabs())
   {
-    // This sweep adds no net flux: that of all later orders is computed by the final sweep (SweepEmptySlabs).
+    // This sweep adds no net flux: that of all later orders is computed by the final sweep, through the whole grid
+    // (SweepEmptySlabs).
     this->Filled = parts.Transport.MakeSweep(
       { { &parts.Path, nullptr, nullptr, nullptr }, parts.AllRays(), parts.Problem.Traits().filled });
   }
@@ -126,7 +127,8 @@ void OrderSweeps::SweepEmptySlabs(EnergyLedger& ledger, const Monitor& monitor)
   this->AddOutside(parts.Problem.Traits().filled);
 }
 
-/// Adds the path integrals of the final sweep to the fluence of the voxels outside `box`.
+/// Adds the path integrals of the final sweep, which computes the light of later orders around the medium, to the
+/// fluence of the voxels outside `box`.
 void OrderSweeps::AddOutside(const VoxelBox& box)
 {
   const TransportParts& parts = this->Parts;

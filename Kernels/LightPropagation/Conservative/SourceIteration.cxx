@@ -508,8 +508,8 @@ bool SourceIteration::Done() const
   {
     return true;
   }
-  // Least number of sweeps: the remainder is estimated from the ratio of successive orders, which is known after three;
-  // a warm start uses the ratio that the previous solve found.
+  // Least number of sweeps: the sum of the later orders is estimated from the ratio of successive orders, which is
+  // known after three; a warm start uses the ratio that the previous solve found.
   const int least = this->Warm.Begins() ? 2 : 3;
   return this->Settings.maximumOrders > 0
     ? this->Order >= this->Settings.maximumOrders

@@ -15,7 +15,7 @@
 
 namespace tyndall
 {
-/// Power still in flight after a scattering order, W by channel, and the estimated remainder of the orders to come.
+/// Power still in flight after a scattering order, W by channel, and the estimated sum of the orders to come.
 struct OrdersToCome
 {
   Rgb scattered = {};    ///< power scattered in the last order
@@ -25,9 +25,10 @@ struct OrdersToCome
   Rgb stranded = {};     ///< power of uncollided light that wraps around periodic axes without end
   Rgb allScattered = {}; ///< power scattered in all orders so far
   std::array<RestOfOrders, 3> rest;
-  double residual = 1.0; ///< estimated remainder relative to allScattered, largest over channels
+  double residual = 1.0; ///< estimated sum of the orders to come, relative to allScattered, largest over channels
 
-  /// Updates `residual` with the remainder of a channel; the caller sets `residual` to 0 before the first channel.
+  /// Updates `residual` with the estimated sum of the orders to come of a channel; the caller sets `residual` to 0
+  /// before the first channel.
   /// @param now  power that the next order carries, or its magnitude if it may be negative, W
   void Expect(int channel, double now)
   {

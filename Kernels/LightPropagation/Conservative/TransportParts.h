@@ -98,15 +98,15 @@ public:
   /// Reflected radiance by cell of the box faces, for SweepRequest::faceIn; null: no face reflects.
   const Buffer<float>* LightByCells() const { return this->FacesReflect() ? &this->Faces->In() : nullptr; }
 
-  /// Writes to `source` the emission that sweeps along the usual quadrature carry; writes nothing if the medium does
-  /// not emit.
+  /// Writes to `source` the emission that sweeps along the quadrature of scattered light carry; writes nothing if the
+  /// medium does not emit.
   /// @return whether this emission is non-zero in any voxel
   bool LoadEmission(Buffer<float>& source) const;
 
-  /// Deposit to Path, to Flux if requested, and to the outgoing power of Faces.
+  /// Arrays to which sweeps add light: Path, Flux if requested, and the outgoing power of Faces.
   Deposit WholeDeposit() const;
-  std::vector<AxisBundles> AllRays() const; ///< all rays of the usual quadrature
-  /// Angular functions in the usual directions, for SweepRequest::angular; null: scattering is isotropic.
+  std::vector<AxisBundles> AllRays() const; ///< all rays of the quadrature of scattered light
+  /// Angular functions in the directions of scattered light, for SweepRequest::angular; null: scattering is isotropic.
   const AngularValues* UsualValues() const { return this->Angular ? &this->Angular->Values() : nullptr; }
   void DarkenBeams(); ///< sets the first-collision sources of beams in Source to 0
   /// Object that moves the beams' first-collision sources out of Source for the sweep in which beams are traced, and

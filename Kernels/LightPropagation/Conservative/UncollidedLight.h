@@ -67,9 +67,11 @@ private:
   std::vector<float> Lengths, LengthsOfLamps;
   const BlockWithGhosts& Block;
   const GhostedMedium& Coefficients;
-  /// arrays to which the light of one lamp is deposited (Deposit::path, firstMoments)
+  /// path integrals and first moments of collisions of one lamp's light, W length
   Buffer<float> PathOfLamp, MomentsOfLamp;
-  Buffer<float> ThroughFaces, ScatteredInVoxels; ///< sums over all lamps: Passed() and OfLamps() without ghost cells
+  /// Sums over all lamps, without ghost cells: power of first-scattered light through voxel faces, W, and the
+  /// first-collision source without it, W / (length^3 sr).
+  Buffer<float> ThroughFaces, ScatteredInVoxels;
   GhostedBuffer PathWithGhosts, MomentsWithGhosts, AllPathWithGhosts, PassedWithGhosts, OfLampsWithGhosts;
   EnergyLedger Counted;
   /// Incident and escaped power of lamps, localised emission and given light; onTheWay is light that wraps around

@@ -11,7 +11,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double SlowestRate = 1.0 - 1e-6; ///< largest ratio of successive changes that is passed to the next solve
+/// Largest ratio of the changes of the light in successive iterations that is passed to the next solve.
+constexpr double SlowestRate = 1.0 - 1e-6;
 }
 
 WarmStart::WarmStart(const TransportParts& parts, const KeptLight* kept, const char* method)
@@ -143,8 +144,8 @@ KeptLight WarmStart::Leave(const std::vector<float>& base, const std::vector<flo
   left.kind = this->TheKind;
   for (int c = 0; c < layout.channels && this->Parts.Problem.Settings().maximumOrders == 0; ++c)
   {
-    // Keeps at least the ratio that the previous solve kept: after a good initial guess the first changes decrease
-    // faster than the last ones of a solve from zero.
+    // Keeps at least the ratio of successive changes that the previous solve kept: after a good initial guess the first
+    // changes decrease faster than the last ones of a solve from zero.
     left.rate[c] = std::max(std::min(rate[c], SlowestRate), this->Begins() ? this->Rate(c) : 0.0);
   }
   left.firstScattered = this->First;

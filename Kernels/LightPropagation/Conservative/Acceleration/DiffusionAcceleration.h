@@ -59,7 +59,8 @@ private:
   SystemArrays Arrays;
   std::optional<UncollidedLight> Uncollided;
   std::vector<float> UncollidedFluence; ///< fluence of uncollided light, W / length^2, [channel][voxel]
-  std::unique_ptr<SweepOperator> Swept; ///< sweep of scattered and boundary light along the usual quadrature
+  /// Sweep of scattered and boundary light along the quadrature of scattered light.
+  std::unique_ptr<SweepOperator> Swept;
   std::vector<std::unique_ptr<DiffusionSolver>> Systems; ///< diffusion systems, by channel
   /// Power through each cell of the box faces; unset unless faces reflect or face power is requested.
   std::optional<FaceBalance> Box;

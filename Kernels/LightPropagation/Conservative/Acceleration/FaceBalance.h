@@ -82,7 +82,7 @@ public:
 
   const Rgb& GivenBack() const { return this->PowerGivenBack; } ///< reflected power of uncollided light, W by channel
 
-  /// Reads the outgoing power of the last sweep, and writes Rows().
+  /// Reads the outgoing power of the last sweep, and writes it, with the reflected powers, to Rows().
   void TakeSwept();
   /// Power in one channel by cell of the faces of the block with ghost cells, W, [FaceCame ... FaceLeaves][cell]
   /// (DiffusionShared.h): reflected into the last sweep, reflected uncollided, outgoing in the sweep, and outgoing in
