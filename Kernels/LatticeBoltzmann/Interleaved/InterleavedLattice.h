@@ -70,8 +70,8 @@ public:
     const Illumination& illumination, const LatticeSettings& settings);
 
   /// Marches the photons, and solves for the light.
-  /// @param marcher  made for the medium of this object, with settings that end photons at their first scattering (one
-  ///   order) and do not divide them into batches
+  /// @param marcher  made for the medium of this object, with settings that end photons at their first collision (one
+  ///   order) and keep no separate sums for batches of photons
   LightField Solve(PhotonMarcher& marcher, const std::vector<Photon>& photons, const Monitor& monitor);
 
 private:

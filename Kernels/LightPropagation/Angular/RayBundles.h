@@ -14,8 +14,8 @@ namespace tyndall
 ///
 /// Rays march along an axis of the grid, plane by plane of voxels. All rays of one direction start at the same position
 /// in their voxels, so they cross each plane in the same pattern of at most three voxels per ray, and the light
-/// propagation map, i.e. the radiance of all rays in a plane, shifts as one. Directions that are mirror images of each
-/// other (and, if voxels are square across the axis, directions with exchanged tangents) have segments of the same
+/// propagation map, i.e. the radiance of these rays in a plane, shifts as one. Directions that are mirror images of
+/// each other (and, if voxels are square across the axis, directions with exchanged tangents) have segments of the same
 /// lengths. They form a Bundle, for which transmittance is computed once.
 ///
 /// Guarantees: every voxel is crossed by every segment, so that a source emits all of its power (Eq. (20)); one

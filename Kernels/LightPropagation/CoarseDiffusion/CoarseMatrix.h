@@ -11,7 +11,7 @@ namespace tyndall
 struct CoarseMatrix
 {
   /// Conductances of the cells' low faces, and absorbed power per fluence, length^2, in the memory layout of
-  /// MultigridSolver.
+  /// MultigridSolver (MultigridLevel).
   std::vector<float> conductance, loss;
   /// Escaped power per fluence through each cell of the box's faces (BoxFaces.h), length^2.
   std::vector<double> borders;

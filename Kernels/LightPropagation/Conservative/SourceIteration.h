@@ -79,7 +79,7 @@ private:
   std::optional<OrderSweeps> Sweeps; ///< always set after construction
   std::optional<EscapeCorrection> Escaping;
   std::optional<OrdersByCells> Cells; ///< coarse-mesh DSA; unset for plain source iteration
-  /// Sources by octant of optically thick voxels; unset: all sources are uniform in their voxels.
+  /// Sources by octant of directions in optically thick voxels; unset: every voxel has one source for all octants.
   std::optional<OctantSources> AtFaces;
   WarmStart Warm;
   /// Uncollided fluence, W / length^2, [channel][voxel], if light is kept for the next solve.
