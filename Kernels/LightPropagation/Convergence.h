@@ -76,7 +76,7 @@ double GoesOnAsForeseen(double before, double onTheWay, double others);
 /// @param iterations  completed iterations, including the fraction of the current one
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations);
 
-/// Fraction of the first iteration's progress, for monitors, that is attributed to uncollided light.
+/// Fraction of the first iteration's progress, as reported to monitors, at which uncollided light has been computed.
 constexpr double UncollidedPart = 0.5;
 
 /// Adds a warning to `light.doubts` if faces reflect and uncollided light is given as input: the cells through which

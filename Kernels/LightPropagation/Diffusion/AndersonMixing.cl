@@ -10,7 +10,7 @@
 // - given, and its differences d1, d2 from the changes of the two previous iterations: f f and found found (both
 // weighted by scattering, over the first value of each voxel only), d1 d1, d1 d2, d2 d2, d1 f, d2 f.
 //   change1, change2  changes of the two previous iterations
-//   sums              [chunk][AndersonSums]
+//   sums              receives the sums, [chunk][AndersonSums]
 __kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,
   const __global float* change2, const __global float* sigma_s, int first, float length, int voxels, int count,
   __global exact* sums)
@@ -23,7 +23,7 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     const float scatters = sigma_s[first + i % voxels];
     if (scatters < 0.0f)
     {
-      continue; // a ghost voxel, whose values only the rank that owns it adds
+      continue; // a ghost voxel: only the rank that owns it adds its values
     }
     const exact tau = i < voxels ? scatters * length : 0;
     const exact f = found[i] - given[i];
@@ -38,7 +38,7 @@ __kernel void anderson_sums(const __global exact* given, const __global exact* f
     sum[5] += d1 * f;
     sum[6] += d2 * f;
   }
-  // The eighth element is padding and remains 0.
+  // The last of the eight elements is padding and remains 0.
   const exact8 all = (exact8)(sum[0], sum[1], sum[2], sum[3], sum[4], sum[5], sum[6], sum[7]);
   __global exact8* of_chunks = (__global exact8*)sums;
   PUT_SUM_OF_GROUP(exact8, all, of_chunks[get_group_id(0)])

@@ -37,8 +37,8 @@ void AndersonMixing::Mix(const ExactValues& given, const ExactValues& found, con
   cl::Kernel step = this->Kernel("anderson_step");
   std::swap(this->FoundBefore[0], this->FoundBefore[1]);
   std::swap(this->ChangeBefore[0], this->ChangeBefore[1]);
-  // Swaps the buffers of the two stored results: the kernel reads the older result, then overwrites it with the new
-  // one.
+  // After the swap, index 0 is the older of the two stored results, which the kernel reads and then overwrites with the
+  // new one.
   With(step, given.Handle(), found.Handle(), this->FoundBefore[1], this->FoundBefore[0], this->ChangeBefore[0],
     static_cast<float>(weights[0]), static_cast<float>(weights[1]));
   this->TheDevice.Queue().enqueueNDRangeKernel(step, cl::NullRange, cl::NDRange(this->Count), cl::NullRange);

@@ -15,7 +15,8 @@ class AndersonMixing
 {
 public:
   /// @param voxels  number of voxels
-  /// @param count  number of values: `voxels` times the number of consecutive arrays of one value per voxel
+  /// @param count  number of values that are mixed: `voxels` times the number of consecutive arrays (fluence, then
+  ///   moments) with one value per voxel
   AndersonMixing(Device& device, std::size_t voxels, std::size_t count, const char* what);
 
   /// Parameters of the weight of a voxel in the norm of the change (numerics.md, Eq. (72)): tau / (1 + tau), with tau =

@@ -45,8 +45,8 @@ public:
 
 private:
   friend class GhostedBuffer;
-  /// Copies `parts` consecutive arrays over the block to arrays with ghosts, and sets the ghost voxels to `elsewhere`.
-  /// TakeOwn() copies the block's values back.
+  /// Copies `parts` consecutive arrays over the block (`own`) to arrays with ghosts, and sets the ghost voxels to
+  /// `elsewhere`. TakeOwn() is the inverse: it copies the block's values from arrays with ghosts.
   std::vector<float> Placed(const std::vector<float>& own, int parts, float elsewhere) const;
   std::vector<float> TakeOwn(const std::vector<float>& held, int parts) const;
 
@@ -64,7 +64,7 @@ class GhostedBuffer
 public:
   GhostedBuffer() = default;
   /// @param block, own  must outlive this object
-  /// @param parts  number of arrays that `own` holds one after another at equal distances
+  /// @param parts  number of arrays over the block that `own` holds one after another, at equal distances
   GhostedBuffer(Device& device, const BlockWithGhosts& block, const Buffer<float>& own, int parts, const char* what);
   GhostedBuffer(Device& device, const BlockWithGhosts& block, Buffer<float>& own, int parts, const char* what)
     : GhostedBuffer(device, block, const_cast<const Buffer<float>&>(own), parts, what)
@@ -82,6 +82,6 @@ private:
   const Buffer<float>* Own = nullptr;
   Buffer<float>* Target = nullptr;
   int Parts = 0;
-  Buffer<float> Held; ///< empty if the block has no ghosts
+  Buffer<float> Held; ///< the copy with ghosts; empty if the block has no ghosts
 };
 }

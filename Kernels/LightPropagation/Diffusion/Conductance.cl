@@ -49,11 +49,13 @@ inline real among_equals(real y)
   const real bounded = clamp(y, (real)1e-3f, (real)40.0f);
   real left;
   const real gone = extinguished(2.0f * bounded, &left);
-  const real x = 2.0f * bounded * sqrt(left) / gone; // y / sinh y
+  const real x = 2.0f * bounded * sqrt(left) / gone; // y / sinh(y), with y = bounded
   return select(fmax(select(x * x, (real)0.0f, y >= (real)40.0f), (real)1e-20f), (real)1.0f, y < (real)0.01f);
 }
 
-// Conductance per area of the inner face between voxels 0 and 1 (D / A of numerics.md, Eq. (57)).
+// Conductance per area of the inner face between voxels 0 and 1 (D / A of numerics.md, Eq. (57)). tau0, tau1 are their
+// optical lengths, y0, y1 their half_diffusion_length(), and flat_source is the sum of their flat_source_current(),
+// used if DiffusionLayout::linear is 0.
 inline real pass_face(const DiffusionLayout* layout, real tau0, real tau1, real y0, real y1, real flat_source)
 {
   if (!layout->linear)
@@ -108,11 +110,15 @@ inline real weight_of_transport(const DiffusionLayout* layout, real tau, real ab
   return layout->linear ? weight : (real)1.0f;
 }
 
-// Crossing pattern of a face between voxels of optical length tau (`pattern` of numerics.md, Eq. (65)).
-//   crossing  its value for thick voxels (CrossingPattern.h)
+// Factor by which the power that diffusion predicts through a face between voxels of optical length tau is multiplied
+// before it is compared with the sweep's: rays cross some faces more often than others (`pattern` of numerics.md, Eq.
+// (65)).
+//   crossing  crossing pattern of the face (CrossingPattern.h), relative to the mean over the grid: the factor if the
+//             voxels are thick
 inline real pattern_of(real crossing, real tau)
 {
-  // The factor is 1 in thin voxels, where the fluence has the crossing pattern, too
+  // In thin voxels the factor is 1: there diffusion starts from the sweep's fluence, which already varies from plane to
+  // plane like the power of the rays that cross.
   const real thick = 1.0f - 1.0f / (1.0f + tau * tau);
   return 1.0f + thick * (crossing - 1.0f);
 }
@@ -122,17 +128,21 @@ typedef struct
 {
   real sigma_t[2], sigma_a[2]; // extinction and absorption coefficients of the two voxels, 1/length
   real flatSource[2];          // result of flat_source_current()
-  // Fluence from which diffusion gives the power that is compared with the sweep's, W / length^2.
+  // Fluence of the two voxels from which diffusion's power through the face is computed, to be compared with the power
+  // `net` of the sweep; W / length^2.
   real model[2];
   real passes; // conductance, length^2
   real net;    // net power that crosses the face from voxel 0 to voxel 1 in the sweep, W
   // Part of `net` due to the net flux of the known source (emission and first collisions, Eq. (53a)).
   real driven;
-  real crossing; // factor of the crossing pattern (CrossingPattern.h), if the voxels are optically thick
+  // crossing pattern of the face (CrossingPattern.h): power of the rays that cross it, relative to the mean over the
+  // grid
+  real crossing;
 } inner_face;
 
-// Remainder of the power through the face from voxel 0 to 1: R of numerics.md, Eq. (54), the power of the sweep minus
-// that of diffusion, times the weight of the transport correction.
+// Transport correction of the power through the face from voxel 0 to 1, W: the power of the sweep minus that of
+// diffusion, times weight_of_transport(), which is reduced further between a thick voxel and a thinner one (remainder R
+// of numerics.md, Eq. (54)).
 inline real remainder_of(const DiffusionLayout* layout, int axis, const inner_face* face)
 {
   const float h = layout->spacing[axis];

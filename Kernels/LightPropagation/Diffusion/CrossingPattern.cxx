@@ -76,7 +76,8 @@ CrossingPattern FindCrossingPattern(
     for (int which = 0; which < 2; ++which)
     {
       const int marching = OtherAxis(axis, which);
-      // On a periodic axis rays wrap around many times, so the power in each plane is the mean over all planes.
+      // Along a periodic axis rays wrap around many times, so the same power crosses the faces in each plane: the mean
+      // over all planes.
       const std::vector<double> power = periodic[marching]
         ? std::vector<double>(grid.size[marching], HalfRange(grid, set, axis, marching))
         : CrossingsIn(grid, set, mapResolution, starts, axis, marching);

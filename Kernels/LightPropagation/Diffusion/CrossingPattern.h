@@ -16,7 +16,8 @@ namespace tyndall
 struct CrossingPattern
 {
   std::vector<float> values;
-  /// Offset of each table in `values`, [axis perpendicular to the face][other axes in order].
+  /// Index in `values` of the first entry of each table, [axis perpendicular to the face][first, second of the other
+  /// two axes].
   std::array<int, 6> first = {};
 };
 CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,

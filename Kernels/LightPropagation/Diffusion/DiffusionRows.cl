@@ -5,9 +5,9 @@
 //   GROUP       number of work-items that sum together (GroupSum.cl)
 //   DOUBLES     1: the device has double precision
 //
-// Arrays of the sweeps are [voxel]; reads may extend one vector beyond a row's end. Arrays in rows have the layout of
-// MultigridRows.cl. The low face of the first voxel of a row is processed separately: the voxel before it in memory is
-// not its neighbour.
+// Arrays of the sweeps are [voxel], x fastest and without gaps; reads may extend one vector beyond a row's end. Arrays
+// "in rows" have the layout of MultigridLevel, with ghosts and padding between rows. The low face of the first voxel of
+// a row is processed separately: the voxel before it in memory is not its neighbour.
 
 #include "LightPropagation/Diffusion/Conductance.cl"
 #include "LightPropagation/Diffusion/MultigridRows.cl"
@@ -23,7 +23,7 @@ inline int voxel_at(const DiffusionLayout* layout, int y, int z)
 typedef struct
 {
   int begin, end; // range of x of the voxels
-  int before;     // index of the voxel behind the low face at x = 0; for other x, add x
+  int before;     // index, in an array [voxel], of the voxel behind the low face at x = 0; for other x, add x
 } face_span;
 
 // Finds all face_spans of a row. At the box's boundary there are none; perpendicular to x the first span is the face
@@ -48,7 +48,8 @@ inline int find_spans(const DiffusionLayout* layout, int axis, int y, int z, fac
   return 1;
 }
 
-// Stores a vector of values from voxel x of a row on, in an array [voxel]. Lanes beyond the row's end are not stored.
+// Stores a vector of values from voxel x of a row on, in an array [voxel]. SIMD lanes beyond the row's end are not
+// stored.
 inline void store_in_row(real values, int x, int size, __global float* row)
 {
   if (x + REAL_WIDTH <= size)
@@ -65,7 +66,7 @@ inline void store_in_row(real values, int x, int size, __global float* row)
 }
 
 // Computes flat_source_current() (Conductance.cl) of each voxel along each axis.
-//   flat_source  [axis][flatStride]
+//   flat_source  [axis][voxel], axes flatStride floats apart
 //   swept        extinction that sweeps use, 1/length
 __kernel void diffusion_flat_source(
   DiffusionLayout layout, const __global float* sigma_t, const __global float* swept, __global float* flat_source)
@@ -108,8 +109,8 @@ static real conductance_of(
 }
 
 // Computes the matrix of the diffusion system, without the loss through the box's faces.
-//   conductance  [axis][rows] of the voxel's low face, length^2; 0 on the box's boundary
-//   loss         [rows] absorbed power per fluence, length^2
+//   conductance  of each voxel's low face, length^2, in rows, [axis]; 0 on the box's boundary
+//   loss         absorbed power per fluence, length^2, in rows
 __kernel void diffusion_conductance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, __global float* conductance, __global float* loss)
 {
@@ -145,8 +146,8 @@ __kernel void diffusion_conductance(DiffusionLayout layout, const __global float
   }
 }
 
-// Copies sigma_t to rows. The ghosts of a row beyond the box's boundary get the value of the outermost voxel, so that
-// contrast() is 0 at the boundary.
+// Copies sigma_t to an array in rows (MultigridLevel). A row's ghosts (the floats before and after it), if they lie
+// beyond the box's boundary, get the value of the outermost voxel, so that contrast() is 0 at the boundary.
 __kernel void diffusion_extinction(DiffusionLayout layout, const __global float* sigma_t, __global float* extinction)
 {
   sigma_t += layout.firstT;
@@ -188,8 +189,8 @@ static void find_extinctions(
   sigma_t[6] = load_real(row_at(rows, y, high_z) + x, extinction);
 }
 
-// Skin of voxels (numerics.md, section 7.5): the largest contrast() of a voxel's faces, 0 if that is below 0.01.
-// Nonzero only next to thinner voxels.
+// Degree to which voxels are the skin, i.e. the surface layer, of a thick region (numerics.md, section 7.5), 0 to 1:
+// the largest contrast() of a voxel's faces, 0 if that is below 0.01. Nonzero only next to thinner voxels.
 static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
 {
   real most = (real)0.0f;
@@ -223,8 +224,8 @@ __kernel void diffusion_skins(DiffusionLayout layout, const __global float* exti
   }
 }
 
-// Loads a vector of exact values (Exact.cl) of a row of [voxel] from x on, rounded to floats; lanes beyond the row's
-// end repeat its last voxel.
+// Loads a vector of `exact` values (double precision where the device has it, Exact.cl) from voxel x of a row on,
+// rounded to floats; SIMD lanes beyond the row's end repeat its last voxel.
 static real load_rounded(const __global exact* row, int x, int size)
 {
   float values[REAL_WIDTH];
@@ -235,11 +236,11 @@ static real load_rounded(const __global exact* row, int x, int size)
   return *(real*)values;
 }
 
-// Computes the fluence from which diffusion gives the powers that are compared with the sweep's (m of numerics.md, Eq.
-// (56)): in thin voxels the fluence of the sweep, in optically thick ones the fluence from which its source was
-// computed.
-//   extinction  sigma_t in rows, from diffusion_extinction; if DiffusionLayout::skin is 0, in the layout of the sweeps
-//   of_lamps    DiffusionSystem::Arrays::ofLamps, W / (length^3 sr), if DiffusionLayout::passing
+// Computes the fluence from which diffusion's power through each face is computed, to be compared with the sweep's
+// power (m of numerics.md, Eq. (56)): in thin voxels the fluence of the sweep, in optically thick ones the fluence from
+// which its source was computed.
+//   extinction  sigma_t, in rows as diffusion_extinction writes it; if DiffusionLayout::skin is 0, [voxel]
+//   of_lamps    first-collision source of lamps, W / (length^3 sr); read only if DiffusionLayout::passing is 1
 //   model       W / length^2, [voxel]
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
   const __global exact* fluence, const __global float* source, const __global float* of_lamps, __global float* model)
@@ -283,7 +284,7 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
   }
 }
 
-// Arrays of a channel for the faces perpendicular to one axis, [voxel].
+// Arrays of a channel, [voxel], from which the power through the faces perpendicular to one axis is computed.
 typedef struct
 {
   const __global float *sigma_t, *sigma_a, *flatSource, *model;
@@ -295,8 +296,9 @@ typedef struct
 } face_arrays;
 
 // Power from voxels j to their next neighbours i along the axis, W, without the part that is proportional to the
-// difference of their fluences (numerics.md, Eqs. (53a), (54)). It is the sum of the remainder R, the power due to the
-// net flux of the known source (emission and first collisions), and the first-scattered light of lamps.
+// difference of their fluences (numerics.md, Eqs. (53a), (54)). It is the sum of the transport correction R
+// (remainder_of()), the power due to the net flux of the known source (emission and first collisions), and the
+// first-scattered light of lamps.
 static real power_of_faces(
   const DiffusionLayout* layout, const face_arrays* of, int axis, int j, int i, real passes, real crossing)
 {
@@ -318,11 +320,13 @@ static real power_of_faces(
   return power;
 }
 
-// Computes the power of power_of_faces() through the voxels' low faces, W, in rows; 0 at the box's boundary.
-//   currents  power that entered voxels in the sweep, W, [-x, +x, -y, +y, -z, +z][stride]
-//   passed    power of lamps' first-scattered light that leaves through each face, in the layout of `currents`, if
-//             DiffusionLayout::passing
-//   pattern   tables of the crossing pattern (CrossingPattern.h)
+// Computes power_of_faces() for the voxels' low faces: powers_x, powers_y, powers_z, W, in rows; 0 at the box's
+// boundary.
+//   currents  power that entered voxels in the sweep, W, [-x, +x, -y, +y, -z, +z][voxel]
+//   passed    power of lamps' first-scattered light that leaves through each face, W, in the layout of `currents`; read
+//             only if DiffusionLayout::passing is 1
+//   pattern   tables of the crossing pattern: power of the rays that cross a face, relative to the mean
+//             (CrossingPattern.h)
 __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,
@@ -370,7 +374,8 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
   }
 }
 
-// Computes the right-hand side of numerics.md, Eq. (53), W, in rows, except for the power through the box's faces.
+// Computes the right-hand side of the diffusion system, numerics.md, Eq. (53): W, in rows, without the power through
+// the box's faces.
 //   given    emission and first-collision source, W / (length^3 sr)
 //   powers_  results of diffusion_face_powers
 __kernel void diffusion_balance(DiffusionLayout layout, const __global float* given, const __global float* powers_x,

@@ -7,9 +7,10 @@ SHARED_BEGIN
 enum
 {
   DiffusionChunk = 4096, ///< number of values that one work-group sums; the host adds the sums of chunks in double
-  AndersonSums = 8,      ///< number of sums that Anderson mixing needs of each chunk of values
-  RowVector = 8,         ///< width of the widest SIMD vector along rows of a level, floats
-  RowsLead = 16          ///< padding before a level's first row, floats
+  /// Number of sums over each chunk of values that Anderson mixing needs: seven, and one of padding
+  AndersonSums = 8,
+  RowVector = 8, ///< width of the widest SIMD vector along rows of a multigrid level, floats
+  RowsLead = 16  ///< padding before the first row of a multigrid level, floats
 };
 
 /// A box of voxels of a multigrid level and the memory layout of its arrays. Voxels form rows along x. One float before
@@ -34,16 +35,19 @@ typedef struct
 {
   int size[3];
   int periodic[3];
-  int passing;    ///< 1: first-scattered light of lamps crosses faces without another collision (LampPassing.h)
-  int moments;    ///< 1: sweeps treat forward scattering as unscattered light, or have angular moments
-  int faces;      ///< 1: sweeps tally outgoing and reflected power by cell of the box's faces
-  int skin;       ///< 1: there are thick voxels next to thinner ones
-  int linear;     ///< 1: light varies linearly between voxel centres; 0: it is constant in each voxel
-  int stride;     ///< stride between channels in the solver's arrays, voxels
-  int flatStride; ///< stride between axes in flat_source; 0 if voxels are cubes, so that axes share one array
+  int passing; ///< 1: first-scattered light of lamps crosses faces without another collision (LampPassing.h)
+  int moments; ///< 1: sweeps treat forward scattering as unscattered light, or have angular moments
+  int faces;   ///< 1: sweeps tally outgoing and reflected power by cell of the box's faces
+  int skin;    ///< 1: the grid has optically thick voxels next to thinner ones
+  int linear;  ///< 1: light varies linearly between voxel centres; 0: it is constant in each voxel
+  int stride;  ///< floats from one channel to the next in the solver's arrays
+  /// Floats from one axis to the next in flat_source; 0 if voxels are cubes, so that axes share one array
+  int flatStride;
   /// Offset of the channel: firstT in sigma_t, first in all other arrays (times 6 in currents, times 3 in flux).
   int firstT, first;
-  int pattern[6]; ///< offsets of the tables of the crossing pattern (CrossingPattern.h), [axis][other axes in order]
+  /// Index of the first entry of each table of the crossing pattern (power of the rays that cross a face, relative to
+  /// the mean; CrossingPattern.h), [axis perpendicular to the face][first, second of the other two axes].
+  int pattern[6];
   float spacing[3];
   /// Half-range flux of the quadrature: sum of w mu / (4 pi) over directions with mu > 0; 1/4 except for the error of
   /// the quadrature.
@@ -60,8 +64,10 @@ typedef struct
 /// Values for each cell of the box's faces (Medium/BoxFaces.h), W, in the array `borders`.
 enum
 {
-  BorderNet = 0,     ///< outgoing minus incoming power, without the transport correction; accurate for each voxel
-  BorderShare = 1,   ///< transport correction of BorderNet; accurate only in sums over a face of the box
+  BorderNet = 0, ///< outgoing minus incoming power, without the transport correction; accurate for each voxel
+  /// Transport correction (the sweep's deviation from diffusion) of BorderNet; accurate only in sums over a face of the
+  /// box
+  BorderShare = 1,
   BorderSeeming = 2, ///< outgoing power in the sweep (estimated, numerics.md, Eq. (61))
   /// Weight of the transport correction if several faces of the voxel lie on the box's boundary, else -1;
   /// dimensionless.

@@ -11,7 +11,9 @@ namespace tyndall
 {
 namespace
 {
-/// Crossing pattern for the planes of voxels of a box, from that of the whole grid.
+/// Crossing pattern (power of the rays that cross voxel faces, relative to the mean) for a box of voxels: the entries
+/// of its planes, copied from the tables for the whole grid.
+/// @param size  size of the whole grid, voxels
 CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, const std::array<int, 3>& size)
 {
   CrossingPattern pattern;
@@ -209,7 +211,7 @@ std::array<double, 6> DiffusionSolver::Outflow(double entered, const std::array<
       voxel[axes.axis] = face % 2 ? size[axes.axis] - 1 : 0;
       voxel[axes.u] = u;
       voxel[axes.v] = v;
-      // Where a voxel of this rank is at an end of the box with ghosts, the whole grid ends, too
+      // A voxel at an end of the box with ghosts that is not a ghost itself lies at an end of the whole grid, too
       return this->Block.IsOwn(voxel);
     });
   });

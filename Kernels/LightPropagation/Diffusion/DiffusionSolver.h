@@ -18,7 +18,8 @@ class DiffusionSolver
 {
 public:
   /// @param block  must outlive this object
-  /// @param pattern  crossing pattern of the whole grid
+  /// @param pattern  crossing pattern (power of the rays that cross voxel faces, relative to the mean) of the whole
+  ///   grid
   /// @param arrays  arrays with ghost voxels. In ghost voxels sigma_t, sigma_a, partialCurrents and passed have the
   ///   values of the owners, sigma_s is below 0, and all other arrays are not read.
   /// @param incoming  incident power per area of each face of the whole grid, without lamps, W / length^2
@@ -43,7 +44,8 @@ public:
   std::array<double, 6> Outflow(double entered, const std::array<double, 6>& ofSweep);
   /// Warm start: adds estimated fluences to the solution from which the next sweep's source and the next correction are
   /// computed.
-  /// @param guessed  fluence to add, W / length^2, by voxel with ghosts, in the layout of DiffusionSystem::State()
+  /// @param guessed  fluence to add, W / length^2, [voxel of the block with its ghosts]; with angular moments, followed
+  ///   by their moments of degree 1, as in DiffusionSystem::State()
   void BeginBeyond(const std::vector<double>& guessed);
 
   // Functions that are not collective:

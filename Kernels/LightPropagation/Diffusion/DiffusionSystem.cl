@@ -8,7 +8,7 @@
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
 // Conductance of face d of the voxel with indices `at`. The array `conductance` holds one value per voxel and axis,
-// that of the voxel's low face, in rows (MultigridLevel).
+// that of the voxel's low face, with rows laid out as in MultigridLevel.
 static float conductance_at(const DiffusionLayout* layout, const __global float* conductance, int d, const int* at)
 {
   int of[3] = { at[0], at[1], at[2] };
@@ -41,8 +41,9 @@ __kernel void diffusion_border_loss(
   loss[RowsLead + z * layout.rows.plane + y * layout.rows.pitch + x] += taken;
 }
 
-// Skin of a voxel (numerics.md, section 7.5): the largest contrast() of its inner faces, 0 if that is below 0.01.
-// Nonzero only next to thinner voxels. `open` receives the contrast of each face.
+// Degree to which a voxel is the skin, i.e. the surface layer, of a thick region (numerics.md, section 7.5), 0 to 1:
+// the largest contrast() of its inner faces, 0 if that is below 0.01. Nonzero only next to thinner voxels. `open`
+// receives the contrast of each face.
 static float openness(
   const DiffusionLayout* layout, const __global float* sigma_t, int i, const int* next, const int* at, float* open)
 {
@@ -69,11 +70,11 @@ typedef struct
   const __global float* passed;
   const __global float* model;
   const __global float* pattern;
-  // Net flux of the known source (emission and first collisions) over 4 pi, [axis][stride].
+  // Net flux of the known source (emission and first collisions) over 4 pi, [axis][voxel].
   const __global float* givenFlux;
   ulong stride;
-  const __global float*
-    faces; // if DiffusionLayout::faces: rows of power by cell of the box's faces, W (DiffusionShared.h)
+  // Power by cell of the box's faces, W, [FaceCame ... FaceLeaves][cell]; not used if DiffusionLayout::faces is 0
+  const __global float* faces;
 } diffusion_arrays;
 
 // Index of the cell of face d of the box at a voxel (Medium/BoxFaces.h).
@@ -97,7 +98,7 @@ static int face_cells(const DiffusionLayout* layout)
 }
 
 // Incident power per area through a cell of face d of the box, W / length^2: boundary source and, if
-// DiffusionLayout::faces, reflected power of a row (FaceCame or FaceGiven) of `faces`.
+// DiffusionLayout::faces is 1, the reflected power in the given row of arrays->faces (FaceCame or FaceGiven).
 static float coming_in(const DiffusionLayout* layout, const diffusion_arrays* arrays, int row, int d, const int* at)
 {
   if (!layout->faces)
@@ -127,7 +128,8 @@ static float drive_out(const DiffusionLayout* layout, const diffusion_arrays* ar
   return (d & 1 ? 1.0f : -1.0f) * drive(layout, arrays, d / 2, i);
 }
 
-// Crossing pattern (CrossingPattern.h) of a voxel's faces perpendicular to an axis.
+// Crossing pattern of a voxel's faces perpendicular to an axis: power of the rays that cross them, relative to the mean
+// over the grid (CrossingPattern.h).
 static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, const int* at)
 {
   const int b = axis == 0 ? 1 : 0;
@@ -135,8 +137,8 @@ static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* 
   return arrays->pattern[layout->pattern[2 * axis] + at[b]] + arrays->pattern[layout->pattern[2 * axis + 1] + at[c]];
 }
 
-// Remainder R of the power through inner face d from voxel i to j: power of the sweep minus that of diffusion, times
-// the weight of the transport correction (numerics.md, Eq. (54)).
+// Transport correction of the power through inner face d from voxel i to j, W: power of the sweep minus that of
+// diffusion, weighted as in remainder_of() (remainder R of numerics.md, Eq. (54)).
 static float remainder_of_face(
   const DiffusionLayout* layout, const diffusion_arrays* arrays, int d, int i, int j, const int* at)
 {
@@ -206,12 +208,12 @@ static float part_that_leaves(const DiffusionLayout* layout, const diffusion_arr
   return reflecting_face(layout, d, pass_boundary(layout, way)).ofMedium;
 }
 
-// Remainder of the net outgoing power through all faces of the box at voxel i: power of the sweep minus that of
-// diffusion, times the weight of the transport correction (R_box of numerics.md, Eq. (60)), W.
+// Transport correction of the net outgoing power through all faces of the box at voxel i, W: power of the sweep minus
+// that of diffusion, times weight_of_transport() (remainder R_box of numerics.md, Eq. (60)).
 //   power    emitted and scattered power of the voxel in the sweep, minus the power that collides in it, W
-//   share    [face] part of the remainder for each face, in proportion to `seeming`
+//   share    [face] part of the correction for each face, in proportion to `seeming`
 //   seeming  [face] outgoing power of the sweep; estimated, since its tally is not by voxel (numerics.md, Eq. (61))
-//   transport_weight  weight of the remainder, Eq. (55)
+//   transport_weight  receives the weight of the correction, Eq. (55)
 static float remainder_of_borders(const DiffusionLayout* layout, const diffusion_arrays* arrays, int i, const int* next,
   const int* at, float power, float* share, float* seeming, float* transport_weight)
 {
@@ -271,8 +273,9 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
   return remainder;
 }
 
-// Power of the medium that reaches face d of the box from inside in the solution, before reflection, W, without the
-// response to incident light (m of numerics.md, Eq. (76b)); `share` is from remainder_of_borders().
+// Power that the medium sends to face d of the box from inside, by the solution of the diffusion system, before
+// reflection and without the response to incident light, W (m of numerics.md, Eq. (76b)). `share` is the face's part of
+// remainder_of_borders().
 static exact sent_by_medium(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, float passes, float share)
 {
@@ -280,7 +283,8 @@ static exact sent_by_medium(const DiffusionLayout* layout, const diffusion_array
   return passes * face_area(layout, d / 2) * light + share + passing(layout, arrays, d, i, next, true);
 }
 
-// Net outgoing power through face d of the box in the solution, W; `share` is from remainder_of_borders().
+// Net outgoing power through face d of the box by the solution of the diffusion system, W. `share` is the face's part
+// of remainder_of_borders().
 static exact power_of_border(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, const int* at, float share)
 {
@@ -299,8 +303,8 @@ static exact power_of_border(const DiffusionLayout* layout, const diffusion_arra
   return factors.ofMedium * ofMedium - factors.ofLight * area * coming_in(layout, arrays, FaceGiven, d, at);
 }
 
-// Net outgoing power through face d of voxel i in the solution, W; `share` is from remainder_of_borders(), and is used
-// only if the face lies on the box's boundary.
+// Net outgoing power through face d of voxel i by the solution of the diffusion system, W. `share`, [face], the parts
+// of remainder_of_borders(), is used only if the face lies on the box's boundary.
 static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays* arrays, const __global exact* fluence,
   int d, int i, const int* next, const int* at, const float* share)
 {
@@ -317,8 +321,8 @@ static exact power_of_face(const DiffusionLayout* layout, const diffusion_arrays
     remainder_of_face(layout, arrays, d, i, next[d], at) + passing(layout, arrays, d, i, next, false);
 }
 
-// Outgoing power through face d of the box in the solution, W: all power that reaches the face from inside, including
-// light that the face reflected earlier (J_out of numerics.md, Eq. (76c)).
+// Outgoing power through face d of the box by the solution of the diffusion system, W: all power that reaches the face
+// from inside, including light that the face reflected earlier (J_out of numerics.md, Eq. (76c)).
 static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays* arrays, exact fluence, int d, int i,
   const int* next, const int* at, float share)
 {
@@ -348,11 +352,11 @@ static exact power_leaving(const DiffusionLayout* layout, const diffusion_arrays
   const float per_radiance = 4.0f * M_PI_F * volume_of(&layout);                                                  \
   float share[6], seeming[6], transport_weight;
 
-// Adds the power through the box's faces to the right-hand side of numerics.md, Eq. (53), W, in rows. One work-item per
-// cell of the box's faces.
+// Adds the power through the box's faces to `right`, the right-hand side of numerics.md, Eq. (53), W, in the row layout
+// of MultigridLevel. One work-item per cell of the box's faces.
 //   borders     [cell of the box's faces][BorderNet ... BorderWholeShare]; all but BorderNet are written
 //   source      source of the sweep, W / (length^3 sr)
-//   given_flux  net flux of the known source over 4 pi, if there are angular moments, [channel][x, y, z][stride]
+//   given_flux  net flux of the known source over 4 pi, if there are angular moments, [channel][x, y, z][voxel]
 __kernel void diffusion_border_balance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* swept, const __global float* flat_source,
   const __global float* conductance, const __global float* currents, const __global float* passed,
@@ -393,8 +397,9 @@ __kernel void diffusion_border_balance(DiffusionLayout layout, const __global fl
   }
 }
 
-// Computes the power through the box's faces in the solution: writes BorderNet to the array `borders` of
-// diffusion_border_balance and, if DiffusionLayout::faces, the row FaceLeaves of `faces`.
+// Computes the power through the box's faces by the solution of the diffusion system, W, for each cell: writes the
+// value BorderNet of `borders`, [cell][BorderNet ... BorderWholeShare], and, if DiffusionLayout::faces is 1, the row
+// FaceLeaves of `faces`.
 __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* passed, const __global float* given_flux, __global float* faces, const __global exact* fluence,
   __global exact* borders)
@@ -424,7 +429,7 @@ __kernel void diffusion_outflow(DiffusionLayout layout, const __global float* si
   }
 }
 
-// Adds the net flux of the solution, W / length^2, times the voxel's volume to `flux`, [x, y, z][stride] (numerics.md,
+// Adds the net flux of the solution, W / length^2, times the voxel's volume to `flux`, [x, y, z][voxel] (numerics.md,
 // Eq. (75)).
 __kernel void diffusion_flux(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* swept, const __global float* flat_source, const __global float* conductance,
@@ -498,7 +503,7 @@ __kernel void diffusion_put_flux(
 // Changes the next sweep's source in optically thick voxels next to thinner ones. The source is mixed with the one with
 // which the voxel's surface emits the outgoing partial current of diffusion; the latter has the weight openness(), 0 to
 // 1 (numerics.md, Eqs. (63), (64)).
-//   skins  by row of voxels, from diffusion_skins
+//   skins  [z][y], 1: the row of voxels has voxels in which openness() is above 0 (written by diffusion_skins)
 __kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
   const __global float* sigma_t, const __global float* sigma_a, const __global float* conductance,
   const __global float* passed, const __global int* skins, __global float* source)

@@ -16,7 +16,7 @@
 
 namespace tyndall
 {
-/// Geometry and channel offsets of a DiffusionLayout; all its constants are 0.
+/// Returns a DiffusionLayout in which the geometry and the offsets of the channel are set, and all other members are 0.
 /// @param arrays  has members stride, firstT and first (DiffusionSystem::Arrays, LampLight)
 template <class Arrays>
 DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
@@ -70,10 +70,12 @@ struct SurfacePowers
 class DiffusionSystem
 {
 public:
-  /// Arrays that the system reads, for all channels: [channel][stride], unless stated otherwise.
+  /// Arrays that the system reads, for all channels: [channel][voxel], `stride` floats per channel, unless stated
+  /// otherwise.
   struct Arrays
   {
-    /// Stride between channels; offset of this channel in sigma_t and `swept`, and in all other arrays.
+    /// Floats from one channel to the next; index of this channel's first value in sigma_t and `swept` (firstT), and in
+    /// all other arrays (first).
     std::size_t stride, firstT, first;
     const Buffer<float>* sigma_t; ///< transport extinction, 1/length: sigma_a + sigma_s (1 - g)
     const Buffer<float>* swept;   ///< extinction used by the sweeps, 1/length
@@ -82,20 +84,20 @@ public:
     const Buffer<float>* given;   ///< emission and first-collision source, W / (length^3 sr)
     MomentPlaces moments;         ///< memory layout of the angular moments in `path`
     int channel;                  ///< channel of this system
-    /// Net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][stride]; null: isotropic.
+    /// Net flux of `given` over 4 pi, if there are angular moments, [channel][x, y, z][voxel]; null: isotropic.
     const Buffer<float>* givenFlux;
     const Buffer<float>* source; ///< source of the sweep, W / (length^3 sr)
     const Buffer<float>* path;   ///< path integrals of the sweep, W length
-    /// Partial currents of the sweep, W, [channel][-x, +x, -y, +y, -z, +z][stride].
+    /// Partial currents of the sweep, W, [channel][-x, +x, -y, +y, -z, +z][voxel].
     const Buffer<float>* partialCurrents;
     /// Power of lamps' first-scattered light that leaves a voxel through each face without another collision
-    /// (LampPassing.h), W, [channel][-x, +x, -y, +y, -z, +z][stride]; null: voxels are thin, or there are no lamps.
+    /// (LampPassing.h), W, [channel][-x, +x, -y, +y, -z, +z][voxel]; null: voxels are thin, or there are no lamps.
     const Buffer<float>* passed;
-    /// First-collision source of lamps without the light that `passed` counts, W / (length^3 sr), [channel][stride];
+    /// First-collision source of lamps without the light that `passed` counts, W / (length^3 sr), [channel][voxel];
     /// not used if `passed` is null.
     const Buffer<float>* ofLamps;
-    /// Power by cell of the box's faces, W, [FaceCame ... FaceLeaves][cell of BoxFaces.h]; SumBorders() writes the row
-    /// FaceLeaves. Null: no face reflects, and power by cell is not requested.
+    /// Power by cell of the box's faces, W, [FaceCame ... FaceLeaves][cell, numbered as in BoxFaces.h]; SumBorders()
+    /// writes the row FaceLeaves. Null: no face reflects, and power by cell is not requested.
     const Buffer<float>* faces = nullptr;
     std::array<double, 6> albedo = {}; ///< albedo of the box's faces
   };
@@ -127,7 +129,8 @@ public:
   // Steps of DiffusionSolver::Correct(), in order. The system of a rank's block includes ghost voxels, which have
   // `sigma_s` below 0 and are excluded from sums.
 
-  /// Computes the fluence m of Eq. (56), from which diffusion gives the powers that are compared with the sweep's.
+  /// Computes the fluence m of Eq. (56), from which diffusion's power through each face is computed, to be compared
+  /// with the sweep's power.
   void FindModel();
   Buffer<float>& TheModel() { return this->Model; } ///< result of FindModel(), W / length^2, [voxel]
   void Balance(); ///< computes the right-hand side of Eq. (53) from the sweep's powers and the result of FindModel()
@@ -160,7 +163,7 @@ public:
   /// Eq. (70a)).
   void PutNextFlux(const Buffer<float>& path);
 
-  /// Adds the net flux of the solution times the voxel's volume to `flux`, [channel][x, y, z][stride].
+  /// Adds the net flux of the solution times the voxel's volume to `flux`, [channel][x, y, z][voxel].
   void AddFlux(const Buffer<float>& flux);
 
 private:
@@ -191,7 +194,7 @@ private:
   std::size_t Count, BorderCells;
   MultigridSolver& Solver;
   Buffer<float> FlatSource, Pattern, Model;
-  Buffer<cl_int> Skins; ///< by row of voxels: 1 if it has thick voxels next to thinner ones
+  Buffer<cl_int> Skins; ///< [z][y], 1: the row of voxels has optically thick voxels next to thinner ones
   AndersonMixing Mixing;
   ExactValues Borders;
   ExactValues Next, Solution; ///< input of the next sweep, and the last solution, in the layout of State()

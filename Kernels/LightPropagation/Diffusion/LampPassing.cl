@@ -5,10 +5,11 @@
 #include "LightPropagation/Diffusion/BoxBorders.cl"
 #include "LightPropagation/Sweep/FallOfLight.cl"
 
-// Fraction of scattered light that returns to the entry face (`back` of numerics.md, Eq. (69)), if the density of first
-// collisions decreases as exp(-b t) with the optical depth t < tau behind that face, and light is attenuated by exp(-k
-// t) on its way back. The constant b follows from r = 1 - 2 t_mean / tau, where t_mean is the mean optical depth of
-// first collisions: r is 0 if it is that of the voxel's centre, 1 if it is that of the face.
+// Fraction of a voxel's first-scattered light that returns to the face through which lamp light enters (`back` of
+// numerics.md, Eq. (69)), if the density of first collisions decreases as exp(-b t) with the optical depth t < tau
+// behind that face, and light is attenuated by exp(-k t) on its way back. The constant b follows from r = 1 - 2 t_mean
+// / tau, where t_mean is the mean optical depth of first collisions: r is 0 if it is that of the voxel's centre, 1 if
+// it is that of the face.
 static float comes_back(float tau, float r, float k)
 {
   const float x = fall_of(fmin(r, 0.999999f)), y = x + k * tau;
@@ -36,8 +37,8 @@ static float hopf(float depth)
   return 0.57735f + 0.13310f * depth / (depth + c);
 }
 
-// Correction factor of the fraction that crosses a face, in voxels that are neither thin nor thick; fitted to slabs
-// (numerics.md, Eq. (68)).
+// Factor that corrects the fraction of first-scattered light that crosses a face; it differs from 1 in voxels that are
+// neither optically thin nor thick, and was fitted to slabs (numerics.md, Eq. (68)).
 static float beside_sweeps(float tau)
 {
   const float transport_weight = 1.0f / (1.0f + 0.25f * tau * tau);
@@ -63,8 +64,9 @@ static float passes_border(float tau, float r, float k)
 // (numerics.md, Eqs. (66) to (69)).
 //   path           path integrals of the lamp, W length
 //   swept          sigma_t of the sweeps: larger than sigma_t if scattering is solved in angular moments
-// first_moments  first moments of the lamp's deposit, W length, [channel][face][stride] (Deposit::firstMoments)
-// passed         power through voxel faces, W, [channel][face][stride]; added to
+// first_moments  first moments of the lamp's deposit: where in each voxel light collides first, W length,
+//                [channel][face][voxel] (Deposit::firstMoments)
+// passed         power of first-scattered light through voxel faces, W, [channel][face][voxel]; added to
 // all_path       path integrals of all lamps, W length; added to
 __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigma_t, const __global float* sigma_a,
   const __global float* sigma_s, const __global float* swept, const __global float* path,

@@ -39,7 +39,8 @@ std::vector<float> InRows(const MultigridLevel& level, const std::vector<Value>&
       {
         row[x] = static_cast<float>(values[i]);
       }
-      row[n[0]] = row[0]; // ghost after the row, read on a periodic axis
+      // the float after the row is a ghost: the voxel at the opposite end, read if the axis is periodic
+      row[n[0]] = row[0];
     }
   }
   return rows;

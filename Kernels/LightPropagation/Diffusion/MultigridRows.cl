@@ -1,6 +1,7 @@
 // Loops over the rows of a multigrid level (MultigridLevel), and its matrix along rows:
 //   (A x)_i = sum over faces of conductance (x_i - x_j) + loss_i x_i
-// The conductances are those of low faces, [axis][MultigridLevel::floats]; 0 where the box ends.
+// Conductances are stored for the low face of each voxel, one array of MultigridLevel::floats per axis; 0 where the box
+// ends.
 //
 // The macros let one kernel serve CPUs and GPUs. On a CPU a work-item processes rows in vectors of REAL_WIDTH voxels.
 // On a GPU (REAL_WIDTH 1) it processes single voxels, and neighbouring work-items of a group process neighbouring
@@ -53,13 +54,14 @@ inline int row_at(const MultigridLevel* level, int y, int z)
   return RowsLead + z * level->plane + y * level->pitch;
 }
 
-// Sets the lanes from `left` on to 0; `left` is the number of voxels from the first lane to the row's end.
+// Sets the SIMD lanes of `values` that lie beyond the row's end to 0; `left` is the number of voxels from the first
+// lane to the row's end.
 inline real in_row(real values, int left)
 {
   return left >= REAL_WIDTH ? values : select(values, (real)0.0f, LANES >= left);
 }
 
-// Sets the lanes of voxels that this rank does not own to 0; the first lane is voxel x of the row.
+// Sets the SIMD lanes of `values` whose voxels this rank does not own to 0; the first lane is voxel x of the row.
 inline real in_own(const MultigridLevel* level, real values, int x)
 {
   const real kept = in_row(values, level->end[0] - x);
@@ -115,7 +117,7 @@ inline real diagonal_of(const matrix_row* row, int x)
     ((load_real(x, row->passes_z) + load_real(x, row->passes_high_z)) + load_real(x, row->loss));
 }
 
-// Product of the matrix with the values, for the vector of voxels from x on.
+// Product of the matrix with the row's values (matrix_row::own), for the vector of voxels from x on.
 inline real apply_row(const matrix_row* row, int x)
 {
   const real own = load_real(x, row->own);
@@ -129,7 +131,8 @@ inline real apply_row(const matrix_row* row, int x)
   return sum + aside;
 }
 
-// Sums of pairs of neighbouring lanes of two adjacent vectors. first_of_pairs(): the first lane of each pair.
+// Sums of pairs of neighbouring SIMD lanes of two adjacent vectors a, b. first_of_pairs() returns the first lane of
+// each pair instead.
 inline real pair_sums(real a, real b)
 {
 #if REAL_WIDTH == 1

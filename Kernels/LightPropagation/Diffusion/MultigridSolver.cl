@@ -70,8 +70,8 @@ typedef struct
   real loss, passes[3];
 } coarse_entries;
 
-// Adds the entries of the fine row y = v, z = w to those of a vector of coarse voxels from x on. b, c: 1 if the fine
-// row is the second one of the coarse voxels along y, along z.
+// Adds the matrix entries of the finer level's row y = v, z = w to those of a vector of the coarser level's voxels from
+// x on. b, c: 1 if that row is the second one within the coarse voxels along y, along z; 0 if it is the first.
 static void add_fine_row(const MultigridLevel* fine, int v, int w, int b, int c, int x,
   const __global float* conductance, const __global float* loss, coarse_entries* sum)
 {

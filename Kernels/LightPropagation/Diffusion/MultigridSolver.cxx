@@ -61,9 +61,9 @@ public:
   }
 
 private:
-  double Most; ///< bound on the squared norm
+  double Most; ///< bound on the squared norm of the residual
   double Smallest = std::numeric_limits<double>::infinity();
-  int SinceHalved = 0; ///< number of iterations since the residual halved
+  int SinceHalved = 0; ///< number of iterations since the norm of the residual halved
 };
 }
 

@@ -57,12 +57,14 @@ public:
   /// Collective.
   void Coarsen();
 
-  /// Right-hand side b, in rows, 0 in their padding. To be written before each Solve(), which overwrites it.
+  /// Right-hand side b, in rows (MultigridLevel), 0 in their padding. To be written before each Solve(), which
+  /// overwrites it.
   Buffer<float>& Right() { return this->Levels.front().right; }
   /// Three scratch arrays in rows that callers may use between solves; every solve overwrites them.
   std::array<const Buffer<float>*, 3> Scratch() const;
 
-  // Solve() and GoOn() are collective. `values` are by voxel of the block with its ghost voxels, x fastest.
+  // Solve() and GoOn() are collective. `values` holds one value per voxel of the block with its ghost voxels, x
+  // fastest.
 
   /// Iterates until the residual has fallen by the factor `reduction` in the norm of the preconditioner, and its root
   /// mean square by ten times that factor; the norm of the preconditioner alone hardly weighs thin voxels next to thick
