@@ -136,15 +136,15 @@ static real mean_left(real tau, real* left)
 typedef struct
 {
   real rate[3];       // voxels crossed along each axis per length of the ray
-  real step[3];       // distance along the ray between voxel planes across each axis
-  real next[3];       // position of the next voxel plane across each axis
+  real step[3];       // distance along the ray between successive planes of voxel faces perpendicular to each axis
+  real next[3];       // position of the next plane of voxel faces perpendicular to each axis
   integer up[3];      // whether the ray propagates towards increasing index along each axis
   real enter, leave;  // positions at which the ray enters and leaves the emitting box
   real ahead, behind; // distance from the point to its voxel's border, forward and backward
 } box_ray;
 
-// Sets `crossed` to the axes whose next voxel plane lies at or before position `end`, and advances `next` beyond these
-// planes. Sets it to no axis if the ray ends at `end`, i.e. `end` is at least `way_ends`.
+// Sets `crossed` to the axes whose next plane of voxel faces lies at or before position `end` on the ray, and advances
+// `next` beyond these planes. Sets it to no axis if the ray ends at `end`, i.e. `end` is at least `way_ends`.
 static void cross_planes(box_ray* ray, real end, real way_ends, integer* crossed)
 {
   for (int a = 0; a < 3; ++a)

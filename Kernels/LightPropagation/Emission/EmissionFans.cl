@@ -10,11 +10,12 @@
 
 #include "LightPropagation/Emission/EmissionBox.cl"
 
-// Bound on the difference between the light of the fans' two halves, relative to EmissionInfo::uneven times their sum:
-// the sum is more accurate than the difference of the halves suggests.
+// Half of the fans is compared with the other half: bound on the difference of their light, relative to
+// EmissionInfo::uneven times their sum. Above 1, since the sum is more accurate than the difference of the halves
+// suggests.
 #define OF_HALVES 3.0f
-// Fraction of the light without extinction; if the halves' sum is smaller, their difference is compared with this
-// instead.
+// If the light of all fans is less than this fraction of their light without extinction, the difference of the halves
+// is compared with that fraction instead.
 #define DIM 1e-6f
 
 static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* turned)
@@ -24,8 +25,9 @@ static void turn_fan(const EmissionInfo* s, const FanInfo* fan, turned_scene* tu
   turn_scene(s, &nowhere, fan->order, fan->turned, turned, &turned_nowhere);
 }
 
-// Copies sigma_t to `outside`, with 0 in the emitting box: the extinction that rays undergo after leaving the box.
-// Voxels along the fan's second axis are contiguous, followed by those along its third axis. One work-item per voxel.
+// Copies sigma_t to `outside`, with 0 in the emitting box: the extinction that the rays of a fan undergo after leaving
+// the box. The axes are permuted as in FanInfo::order: voxels along the second axis are contiguous, followed by those
+// along the third. One work-item per voxel.
 __kernel void lay_out(
   EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first, __global float* outside)
 {
@@ -43,8 +45,8 @@ __kernel void lay_out(
   outside[FanMargin + to] = inside ? 0.0f : sigma[from];
 }
 
-// Sets up a ray on the line through a point of the emitting box: positions of the box's faces on it, ahead of the point
-// and behind.
+// Sets up a ray on the line through a point of the emitting box: its distances from the point to the box's faces, ahead
+// (`leave`) and behind (`enter`, negative).
 static void begin_line(const turned_scene* s, const float* point, const real* way, box_ray* ray)
 {
   ray->enter = -1e30f;
@@ -62,8 +64,9 @@ static void begin_line(const turned_scene* s, const float* point, const real* wa
   }
 }
 
-// Radiance where a line leaves the emitting box, divided by the density of sample points along the line, W / sr. Points
-// are distributed in proportion to emission, so that this power is equal for all lines if the box does not attenuate.
+// Power per solid angle that a ray of a fan carries where it leaves the emitting box, W / sr: radiance there, divided
+// by the density, along the ray's line, of the points from which fans start. These points are distributed in proportion
+// to emission, so that this power is equal for all lines if the box does not attenuate.
 static real weigh_line(const turned_scene* s, const float* point, const real* way, float emitted,
   const __global float* sigma, const __global float* emission)
 {
@@ -79,19 +82,21 @@ static real weigh_line(const turned_scene* s, const float* point, const real* wa
   return seen[0] * emitted / fmax(clear[0], (real)1e-30f);
 }
 
-// Origin and tangents of a packet of adjacent rays of a fan.
+// Origin and tangents of a SIMD packet: adjacent rays of a fan, i.e. of the rays from one point of the emitting box.
 typedef struct
 {
-  float point[3];        // origin of the rays, voxels
-  float low[2], high[2]; // smallest and largest tangent of the packet's rays along the second and the third axis
+  float point[3]; // origin of the rays, voxels
+  // Smallest and largest tangent (voxels per layer) of the packet's rays along the second and third axis
+  float low[2], high[2];
 } line_packet;
 
-// Whether a packet may still reach voxels of its 24th of space, in this layer or beyond.
+// Whether a packet of a fan's rays may still reach voxels of the 24th of space that the fan lights, in this layer or
+// beyond.
 static bool is_wanted(
   const EmissionInfo* s, const turned_scene* turned, const FanInfo* fan, const line_packet* packet, int layer)
 {
   const float near = layer - packet->point[0], far = near + 1.0f;
-  // lateral limit of this 24th of space in this layer
+  // lateral limit of this 24th of space in this layer, voxels from the emitting box's centre
   const float away = layer + 1.0f - turned->sourceFirst[0] - 0.5f * turned->sourceSize[0];
   bool wanted = true;
   for (int a = 1; a < 3; ++a)
@@ -106,10 +111,10 @@ static bool is_wanted(
   return wanted;
 }
 
-// Current state of a packet of rays in follow_fan().
+// State of a SIMD packet of a fan's rays that follow_fan() traces. All rays of a packet belong to one row of the fan.
 typedef struct
 {
-  // position of the origin along the second and third axis; tangent of the row along the third
+  // position of the rays' origin along the second and third axis, voxels; tangent of their row along the third axis
   float point[2], row_tangent;
   real tangent, inverse; // tangents of the rays along the second axis, and their inverses
   real per_layer;        // path length of each ray per layer
@@ -119,7 +124,7 @@ typedef struct
 } fan_lines;
 
 // Advances the rays from `from` to `to`, in layers from the origin, within one row of voxels. Requires that no ray
-// crosses more than one voxel plane.
+// crosses more than one plane of voxel faces.
 static void cross_row(const turned_scene* s, const FanInfo* fan, const __global float* row, int last, float from,
   float to, fan_lines* lines)
 {
@@ -144,8 +149,8 @@ static void cross_row(const turned_scene* s, const FanInfo* fan, const __global 
   lines->tau += first + second;
 }
 
-// Advances the rays from `from` to `to` in one layer, in steps in which no ray crosses more than one plane across
-// either axis.
+// Advances the rays from `from` to `to`, in layers from the origin, within one layer of voxels, in steps in which no
+// ray crosses more than one plane of voxel faces across either the second or the third axis.
 static void cross_layer(const turned_scene* s, const EmissionInfo* info, const FanInfo* fan,
   const __global float* of_layer, int steps, float from, float to, fan_lines* lines)
 {
@@ -175,12 +180,13 @@ static real spread(const turned_scene* s, const fan_lines* lines, float layers)
   return inverse * (1.0f + deep * (8.0f * forward * forward * inverse - 2.0f));
 }
 
-// Traces the rays of fans. One work-item per packet of rays, row, and fan.
-// points    origins in the permuted scene, [point][FanPointFloats]
-// tangents  tangents of the rays along the second axis, without the offset of the point
+// Traces the rays of fans, each the rays from one point of the emitting box. One work-item per SIMD packet of rays, row
+// of rays, and fan.
+// points    origins of the fans in the permuted scene, [fan][FanPointFloats]
+// tangents  tangents of a row's rays along the second axis, without the offset of the fan
 // outside   extinction outside the emitting box, see lay_out()
-// light     fluence that the ray contributes to the voxel it is in, W / length^2, and for the last layer index flux
-//           density through the face: [point][layer][row][line]
+// light     fluence that the ray contributes to the voxel it is in, W / length^2; at layer index fan.layers, flux
+//           density through the face of the grid: [fan][layer][row][ray of the row]
 __kernel void follow_fan(EmissionInfo s, FanInfo fan, const __global float* sigma, ulong sigma_first,
   const __global float* outside, const __global float* points, const __global float* tangents,
   const __global float* emission, __global float* light)
@@ -232,16 +238,18 @@ __kernel void follow_fan(EmissionInfo s, FanInfo fan, const __global float* sigm
   store_real(weight * left * inverse * inverse * (along[0] / lines.per_layer), fan.layers * all, to);
 }
 
-// Number of a fan's rays, along one axis, that lie below a position at a depth. The rays that cross a voxel lie between
-// the numbers for its two borders.
-//   before  index of the ray with tangent 0, negated
+// Number of a fan's rays along one axis that pass below a position. The rays that cross a voxel are those between the
+// numbers for its two borders.
+//   place      position relative to the fan's origin, voxels
+//   per_voxel  number of rays per voxel edge at the depth of the voxels
+//   before     index of the ray with tangent 0, negated
 static integer lines_up_to(real place, float per_voxel, float before, int count)
 {
   return clamp(to_integer(ceil(place * per_voxel - before)), (integer)0, (integer)count);
 }
 
-// Adds the light of rays of one row of a fan to the sums of adjacent voxels.
-//   got        light of one ray for each voxel
+// Adds the light of one ray per SIMD lane, all of one row of a fan, to the sums of adjacent voxels, one per lane.
+//   got        light of the ray, divided by the number of rays over which its voxel averages
 //   aside, up  tangents of the ray and of the row, times the voxel's edge
 //   sums       [fluence, net flux along the permuted axes]
 static void add_lines(const turned_scene* s, real got, real aside, float up, real* sums)
@@ -257,10 +265,10 @@ static void add_lines(const turned_scene* s, real got, real aside, float up, rea
   sums[3] += part * up;
 }
 
-// Adds to `sums` the mean of the rays of fan p that cross adjacent voxels (numerics.md, Eqs. (40a), (40b)), or adjacent
-// cells of the face.
-//   layer  from 0; fan->layers is the face
-//   at     position along the second and the third axis
+// Adds to `sums`, for adjacent voxels or cells of the face at the end of the layers, the mean light of the rays of fan
+// p that cross each of them (numerics.md, Eqs. (40a), (40b)).
+//   layer       layer of voxels, from 0; fan->layers: the face
+//   at, row_at  positions of the voxels along the second and the third axis
 static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer, real at, int row_at,
   const __global float* points, const __global float* light, real* sums)
 {
@@ -291,10 +299,10 @@ static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer,
   }
 }
 
-// Number of the 24 parts of space that contain a voxel: more than 1 if it lies on a border between parts. 0 if it is
-// not in the part of the permuted scene, in which no distance is negative and the one along the first axis is the
-// largest.
-//   distance  half voxels from the centre of the box along each axis
+// Space is divided into 24 parts, one for each cyclic permutation and each reflection of the axes. Returns the number
+// of parts that contain a voxel: more than 1 if it lies on a border between parts; 0 if it is not in the permuted
+// scene's own part, in which no distance is negative and the one along the first axis is the largest.
+//   distance  from the centre of the emitting box along each axis, half voxels
 static int parts_of_space(const int* distance)
 {
   int parts = 1;
@@ -324,7 +332,7 @@ static ulong voxel_index(const turned_scene* s, const int* at)
   return s->base + (long)at[0] * s->strides[0] + (long)at[1] * s->strides[1] + (long)at[2] * s->strides[2];
 }
 
-// Index, among the cells of all faces (FanFaceFirst), of a cell of the face at the end of a fan.
+// Index, among the cells of all faces of the grid (FanFaceFirst), of a cell of the face at which the rays of a fan end.
 static ulong cell_index(const EmissionInfo* s, const FanInfo* fan, const turned_scene* turned, const int* at)
 {
   const int sizes[2] = { s->size[fan->order[1]], s->size[fan->order[2]] };
@@ -333,12 +341,13 @@ static ulong cell_index(const EmissionInfo* s, const FanInfo* fan, const turned_
   return fan->faceFirst + (ulong)v * sizes[0] + u;
 }
 
-// Adds the light of the fans in memory to the sums over all fans. One work-item per packet of voxels, row, and layer.
+// Adds the light of the fans that follow_fan() has just traced, FanInfo::points of them, to the sums over all fans. One
+// work-item per SIMD packet of voxels, row, and layer.
 //   path         fluence, W / length^2, [voxel]
-//   flux         net flux, W / length^2, [x, y, z][stride]
-//   halves       fluence of the first half of the fans, [voxel]
+//   flux         net flux, W / length^2, [x, y, z][voxel]
+//   halves       fluence due to the first half of the fans, W / length^2, [voxel]
 //   faces        outgoing flux density through the box's faces, W / length^2, [cell]
-//   face_halves  outgoing flux density of the first half of the fans, [cell]
+//   face_halves  outgoing flux density due to the first half of the fans, W / length^2, [cell]
 __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* points, const __global float* light,
   __global float* path, __global float* flux, ulong stride, __global float* halves, __global float* faces,
   __global float* face_halves)
@@ -395,17 +404,18 @@ __kernel void collect_fans(EmissionInfo s, FanInfo fan, const __global float* po
   }
 }
 
-// Whether the two halves of the fans agree: their difference is small relative to their sum, or to a small fraction of
-// the light without extinction.
-//   all         light of all fans;  first_half  light of the first half
+// Whether the light of the first half of the fans agrees with that of the second half: the difference is small relative
+// to the sum, or to a small fraction of the light without extinction.
+//   all         light of all fans
+//   first_half  light of the first half of the fans
 //   clear       light of all fans without extinction
 static bool agree(const EmissionInfo* s, float all, float first_half, float clear)
 {
   return fabs(all - 2.0f * first_half) <= OF_HALVES * s->uneven * fmax(all, DIM * clear);
 }
 
-// Compares the two halves of the fans in each voxel.
-// found    1: the two halves of the fans agree; -1: the voxel is too close to the emission for fans; else 0
+// Compares the light of the first and the second half of the fans in each voxel.
+// found    receives 1: the halves agree; 0: they differ; -1: the voxel is too close to the emission for fans
 // emitted  integral of emission over the emitting box, times the number of fans
 __kernel void judge_voxels(
   EmissionInfo s, float emitted, const __global float* path, const __global float* halves, __global float* found)
@@ -424,7 +434,8 @@ __kernel void judge_voxels(
   found[i] = farthest < s.near ? -1.0f : agree(&s, path[i], halves[i], emitted / squared) ? 1.0f : 0.0f;
 }
 
-// Compares the two halves of the fans in each cell of a face, as judge_voxels() does in voxels.
+// Compares the light of the first and the second half of the fans in each cell of a face, as judge_voxels() does in
+// voxels.
 // found  also -1 in cells that are farther from the emission laterally than along the face's normal
 __kernel void judge_cells(EmissionInfo s, int axis, int up, ulong first, float emitted, const __global float* faces,
   const __global float* halves, __global float* found)
@@ -436,7 +447,7 @@ __kernel void judge_cells(EmissionInfo s, int axis, int up, ulong first, float e
   const int aside = max(abs(2 * at[0] + 1 - 2 * s.sourceFirst[u] - s.sourceSize[u]),
     abs(2 * at[1] + 1 - 2 * s.sourceFirst[v] - s.sourceSize[v]));
   const float away = 0.5f * ahead * s.spacing[axis];
-  // Fans store no light before their first layer of voxels, nor outside their 24th of space.
+  // Fans light no voxels closer to the emission than their first layer, nor outside their 24th of space.
   const bool far = ahead > s.near && aside <= ahead;
   const bool even = agree(&s, faces[first + i], halves[first + i], emitted / fmax(away * away, 1e-30f));
   found[first + i] = !far ? -1.0f : even ? 1.0f : 0.0f;

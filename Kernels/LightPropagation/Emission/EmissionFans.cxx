@@ -12,17 +12,20 @@ namespace tyndall
 {
 namespace
 {
-/// Initial number of fans into each of the 24 parts of space: two halves, each of two pairs of mirrored fans.
+/// Initial number of fans (the rays from one point of the emitting box) into each of the 24 parts of space. Half of the
+/// fans are compared with the other half; each half consists of two pairs (FindPoints()).
 constexpr int FewestPoints = 8;
-constexpr int MostPoints = 1024; ///< maximum number of fans into each of the 24 parts of space
-/// The number of fans n is doubled while the two halves of the fans differ in more than this fraction, times n, of all
-/// voxels. In the voxels where they still differ at the end, rays are traced for each voxel individually.
+constexpr int MostPoints = 1024; ///< maximum number of fans into each part of space
+/// The number of fans n is doubled while the light of the two halves of the fans differs in more than this fraction,
+/// times n, of all voxels. In the voxels where they still differ at the end, rays are traced for each voxel
+/// individually.
 constexpr double FewLeft = 0.001;
 constexpr double LinesPerVoxel = 1.02; ///< rays per voxel edge in the last layer, so that a ray crosses every voxel
 /// The number of rays in a row of a fan is a multiple of this, the width of the widest SIMD packet.
 constexpr int LineStep = 16;
-constexpr std::size_t KeptFloats = 1 << 24; ///< approximate number of floats of the fans in memory at a time: 64 MiB
-constexpr int NearGap = 3;                  ///< voxels between the emitting box and the nearest voxel that uses fans
+/// Approximate number of floats for the light of the fans that are traced together: 64 MiB
+constexpr std::size_t KeptFloats = 1 << 24;
+constexpr int NearGap = 3; ///< voxels between the emitting box and the nearest voxel that uses fans
 
 /// Sobol's low-discrepancy sequence in six dimensions (Joe and Kuo 2008).
 class Sobol
@@ -79,7 +82,7 @@ private:
   std::array<std::array<int, Bits>, Dimensions> Numbers = {};
 };
 
-/// The emitting box in the permuted and reflected axes of a fan.
+/// The emitting box in the permuted and reflected axes of a fan (the rays from one point of the box).
 class TurnedBox
 {
 public:
@@ -191,7 +194,7 @@ public:
     this->FollowAll(0, this->Points, OfPart(monitor, 0.0, 0.5));
     while (this->AreManyLeft() && this->Points < MostPoints)
     {
-      // the fans traced so far become the first half
+      // the fans traced so far become the first half of the doubled number of fans
       this->Halves.CopyFrom(this->Light.path, 0, this->Halves.Size());
       this->FaceHalves.CopyFrom(this->Light.faces, 0, this->FaceHalves.Size());
       this->FollowAll(this->Points, 2 * this->Points, OfPart(monitor, 0.5, 1.0));
@@ -219,7 +222,8 @@ private:
     return values;
   }
 
-  /// Compares the two halves of the fans in all voxels. @return whether too many far voxels still need more fans
+  /// Compares the light of the two halves of the fans in all voxels. @return whether the halves still differ in too
+  /// many voxels, so that more fans are needed
   bool AreManyLeft()
   {
     const std::size_t voxels = this->Scene.volume.grid.VoxelCount();
@@ -245,7 +249,7 @@ private:
     }
   }
 
-  /// Traces the fans into all 24 parts of space. @param from, end  range of origins in each part
+  /// Traces the fans into all 24 parts of space. @param from, end  range of the fans in each part
   void FollowAll(int from, int end, const Monitor& monitor)
   {
     for (int part = 0; part < 24; ++part)
@@ -261,7 +265,7 @@ private:
         Define("NET_FLUX", this->Scene.volume.deposit.flux != nullptr));
   }
 
-  /// Fills Outside with a copy of sigma_t for the fans that have the same first axis as `fan`.
+  /// Fills Outside with a copy of sigma_t, in the order of axes that `fan` and all fans with the same first axis read.
   void LayOut(const FanInfo& fan)
   {
     const SweepVolume& volume = this->Scene.volume;
@@ -272,7 +276,8 @@ private:
       layOut, cl::NullRange, cl::NDRange(size[fan.order[1]], size[fan.order[2]], size[fan.order[0]]));
   }
 
-  /// Describes the fans into one of the 24 parts of space. @return layers is 0 if that part has no far voxels
+  /// Describes the fans into one of the 24 parts of space. @return FanInfo with layers 0 if that part has no voxels far
+  /// enough from the emission
   FanInfo Describe(int part) const
   {
     const EmissionInfo& info = this->Scene.info;
@@ -307,13 +312,14 @@ private:
     }
     const double nearest = fan.first[0] - box.First[0] - box.Size[0];
     const double farthest = ends[0] - box.First[0];
-    // Largest distance of voxels from the box's centre along the second and third axis.
+    // Largest distance along the second and third axis, from the emitting box's centre, of voxels of the first layer
+    // that belong to this part of space.
     const double away = fan.first[0] + 1.0 - box.First[0] - 0.5 * box.Size[0];
     fan.spacing = static_cast<float>(1.0 / (LinesPerVoxel * farthest));
     const auto cover = [&](int k, float& first, int& count) {
       const double low = std::min(0.0, (fan.first[k] - box.First[k] - box.Size[k]) / nearest);
       const double high = std::min(away + 0.5 * box.Size[k] + 0.5, ends[k] - box.First[k] + 0.0) / nearest;
-      // One spacing lower, since each fan adds an offset of at most one spacing to its tangents.
+      // Lower by the difference of adjacent tangents, since each fan adds an offset of at most that to its tangents.
       first = static_cast<float>(low) - fan.spacing;
       count = static_cast<int>(std::ceil((high - low) / fan.spacing)) + 3;
     };
@@ -337,8 +343,8 @@ private:
     return (~fan.turned & this->Scene.info.mirrored & even) != 0;
   }
 
-  /// Origins [from, end) of fans, [point][FanPointFloats]; those of each pair are mirror images in the second and third
-  /// axis.
+  /// Origins and offsets of the fans [from, end), [fan][FanPointFloats]. Each two consecutive fans are a pair that uses
+  /// the same quantiles of the emission and the same offsets, but with the second and third axis exchanged.
   std::vector<float> FindPoints(const FanInfo& fan, int from, int end) const
   {
     const TurnedBox box(this->Scene, fan);
@@ -401,7 +407,8 @@ private:
     }
   }
 
-  /// Arguments of follow_fan() and collect_fans() for the fans in memory.
+  /// Arguments of follow_fan() and collect_fans(): origins of all fans of a part of space, tangents of a row's rays,
+  /// and the light of the fans that are traced together.
   struct KeptFans
   {
     Buffer<float> points, tangents, light;
@@ -430,14 +437,14 @@ private:
   Device& TheDevice;
   const FanScene& Scene;
   const Buffer<float> Emission;
-  /// Extinction outside the emitting box (lay_out()), and light of the first half of the fans in voxels and in face
-  /// cells.
+  /// Extinction outside the emitting box (lay_out()), and light of the first half of the fans in voxels and in cells of
+  /// the grid's faces.
   Buffer<float> Outside, Halves, FaceHalves;
   /// Marching axis of the fans for which the extinction in `Outside` is laid out, 0 to 2; -1: not laid out yet
   int LaidOut = -1;
   FanLight Light;
   double Emitted = 0.0;      ///< integral of emission over the emitting box, W / sr
-  int Points = FewestPoints; ///< fans into each part of space that are traced, or about to be traced
+  int Points = FewestPoints; ///< number of fans into each part of space that have been traced, or are about to be
 };
 }
 

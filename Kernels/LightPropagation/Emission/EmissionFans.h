@@ -22,9 +22,10 @@ struct FanScene
 /// Values are valid only where `found` (voxels) or `cellsFound` (cells) is 1.
 struct FanLight
 {
-  Buffer<float> path, flux; ///< fluence and net flux, voxel means, W / length^2; flux is [x, y, z][stride] or empty
-  /// For each voxel, 1: its value is accurate; 0: the two halves of the fans differ; -1: it is too close to the
-  /// emission.
+  /// Mean fluence and net flux of each voxel, W / length^2; flux is [x, y, z][voxel], empty if not requested
+  Buffer<float> path, flux;
+  /// For each voxel, 1: its value is accurate; 0: it is not, since the light of one half of the traced rays differs
+  /// from that of the other half; -1: the voxel is too close to the emission.
   Buffer<float> found;
   /// Outgoing flux density through each cell of the box's faces, W / length^2, and 1 where it is accurate; index: see
   /// FanFaceFirst.

@@ -69,7 +69,8 @@ __kernel void mark_image_cells(EmissionInfo s, int mirrored, int face, ulong fir
 }
 
 // Copies light to the voxels that are mirror images. One work-item per voxel.
-// path  path integrals, [channel][stride];  flux  net flux, [channel][x, y, z][stride], if has_flux is 1
+// path  path integrals, [channel][voxel]
+// flux  net flux, [channel][x, y, z][voxel]; not used if has_flux is 0
 __kernel void copy_images(
   EmissionInfo s, int mirrored, int channels, ulong stride, __global float* path, __global float* flux, int has_flux)
 {

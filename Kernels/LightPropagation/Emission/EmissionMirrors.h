@@ -24,8 +24,8 @@ public:
   /// their light is not computed.
   void MarkImages(const Buffer<float>& voxels, const Buffer<float>& cells) const;
   /// Copies the light of voxels to their mirror images.
-  /// @param path  path integrals, [channel][stride]
-  /// @param flux  their net flux, [channel][x, y, z][stride], or empty
+  /// @param path  path integrals, [channel][voxel]
+  /// @param flux  net flux, [channel][x, y, z][voxel]; empty if it is not computed
   void CopyVoxels(const Buffer<float>& path, const Buffer<float>& flux) const;
   /// Copies the light of face cells to their mirror images.
   /// @param faces  outgoing light, [cell][channel]

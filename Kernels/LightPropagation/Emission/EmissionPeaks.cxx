@@ -63,7 +63,8 @@ BrightVoxels FindBright(const Medium& medium)
     bright.all += sorted[i];
   }
   std::nth_element(sorted.begin(), sorted.begin() + most, sorted.end(), std::greater<double>());
-  // brightness of the brightest voxel that is not among the brightest 64th: so many voxels reach it that it is no peak
+  // brightness of the brightest voxel that is not among the brightest 64th of the voxels; emission up to this value
+  // occurs in too many voxels to be a peak
   const double next = sorted[most];
   double rest = 0.0;
   for (std::size_t i = most; i < voxels; ++i)

@@ -330,10 +330,10 @@ static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float
 }
 
 // Gathers the light of voxels [first, count), one work-item per voxel.
-// path      W length, [channel][stride]
-// flux      W length, [channel][x, y, z][stride]
+// path      W length, [channel][voxel]
+// flux      W length, [channel][x, y, z][voxel]
 // emission  of the emitting box, W / (length^3 sr), [channel][voxel]
-// found     above 0: voxels lit by fans (EmissionFans.cl), which are skipped
+// found     above 0: voxels whose light is known from fans of rays (EmissionFans.cl), which are skipped
 __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* path, __global float* flux,
   ulong stride, const __global float* found, ulong first, ulong count)
@@ -361,7 +361,7 @@ __kernel void gather_voxels(EmissionInfo s, const __global float* sigma, ulong s
 
 // Gathers the outgoing flux density through cells [first, count) of a face of the grid, one work-item per cell.
 // out         W / length^2, [cell][CHANNELS]
-// found       above 0: cells lit by fans (EmissionFans.cl), which are skipped
+// found       above 0: cells whose light is known from fans of rays (EmissionFans.cl), which are skipped
 // face_first  the face's first cell in `out` and `found`
 __kernel void gather_face(EmissionInfo s, int axis, int up, const __global float* sigma, ulong sigma_first,
   const __global float* points, const __global float* emission, __global float* out, const __global float* found,
@@ -407,14 +407,15 @@ __kernel void add_gathered(
   values[first + i] += gathered[from + i] * factor;
 }
 
-// Copies the light of fans: values[first + i * stride] = factor * brought[i]
+// Copies the light that fans of rays (EmissionFans.cl) brought: values[first + i * stride] = factor * brought[i]
 __kernel void take_fans(const __global float* brought, __global float* values, ulong first, ulong stride, float factor)
 {
   const ulong i = get_global_id(0);
   values[first + i * stride] = factor * brought[i];
 }
 
-// values[i] = min(values[i], found[i]): a voxel counts as lit by fans only if it is lit by the fans of all channels.
+// Sets the value v at first + i * stride to min(v, factor * found[i]): a voxel counts as lit by fans of rays
+// (EmissionFans.cl) only if it is lit by the fans of all channels.
 __kernel void take_least(const __global float* found, __global float* values, ulong first, ulong stride, float factor)
 {
   const ulong i = get_global_id(0);

@@ -134,7 +134,7 @@ private:
   }
 
   /// Whether the peak's emission has the same distribution in all channels, up to a factor. All channels can then share
-  /// one set of fans, whose origins are distributed in proportion to emission.
+  /// one set of fans of rays, whose origins are distributed in proportion to emission.
   bool ShineAlike() const
   {
     const std::size_t voxels = this->OfChannels.size() / this->Volume.channels;
@@ -161,7 +161,8 @@ private:
     this->Found = Buffer<float>(device, volume.stride, "voxels that fans light");
     this->FaceLight = Buffer<float>(device, FanFaceFirst(volume.grid, 6) * volume.channels, "light that leaves");
     this->CellsFound = Buffer<float>(device, FanFaceFirst(volume.grid, 6), "cells that fans light");
-    // If the grid is so large that each voxel starts with the fewest rays, fans trace as many rays at lower cost.
+    // If the grid is so large that each voxel starts with the fewest rays, fans, whose rays voxels share, trace as many
+    // rays at lower cost.
     const bool fans = this->Scene.fewest == FewestRays;
     this->Found.Fill(fans ? 1.0f : 0.0f);
     this->CellsFound.Fill(fans ? 1.0f : 0.0f);
@@ -192,8 +193,8 @@ private:
     }
   }
 
-  /// Gathers light by fans in all channels. Channels with the same distribution of emission share one set of fans;
-  /// otherwise each channel has a separate one.
+  /// Gathers light by fans of rays (EmissionFans.h) in all channels. Channels with the same distribution of emission
+  /// share one set of fans; otherwise each channel has a separate one.
   void GatherByFansFor(const Monitor& monitor)
   {
     const SweepVolume& volume = this->Volume;
@@ -354,10 +355,12 @@ private:
   Buffer<float> Points, Emission; ///< arguments of gather_voxels(): lattice, and emission
   Rgb Emitted = {};               ///< emitted power of the peak, W, by channel
   Buffer<float> Path, Flux;
-  Buffer<float> Found;      ///< by voxel, 1: lit by fans; less: the voxel traces rays individually
-  Buffer<float> CellsFound; ///< by face cell, 1: lit by fans; less: the cell traces rays individually
-  Buffer<float> FaceLight;  ///< outgoing flux density through the box's faces, W / length^2, [cell][channel]
-  Rgb Taken = {};           ///< power that the medium removes from the gathered light, W, by channel
+  /// By voxel, 1: its light is known from fans of rays; less: rays are traced for this voxel alone
+  Buffer<float> Found;
+  /// By face cell, 1: its light is known from fans of rays; less: rays are traced for this cell alone
+  Buffer<float> CellsFound;
+  Buffer<float> FaceLight; ///< outgoing flux density through the box's faces, W / length^2, [cell][channel]
+  Rgb Taken = {};          ///< power that the medium removes from the gathered light, W, by channel
   std::array<Rgb, 6> Escaped = {};
   std::vector<float> EscapedByCell; ///< escaped power, W, [channel][cell]; empty if not requested
   SweepTally Tally;

@@ -40,7 +40,7 @@ public:
   static std::unique_ptr<const SweptDirections> DirectionsFor(const Grid& whole, const PropagationSettings& settings);
 
   /// @param along  must outlive this object
-  /// @param emission  of empty voxels, W / (length^3 sr), in the layout of Planar()
+  /// @param emission  of empty voxels, W / (length^3 sr), [channel][voxel] with the padding of VolumeLayout
   VacuumEmission(const SweptDirections& along, std::vector<float> emission);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
