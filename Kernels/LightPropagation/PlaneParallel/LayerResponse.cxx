@@ -45,7 +45,7 @@ double SeriesOfMoment(int power, double r)
   return sum;
 }
 
-/// Matrix (x a - y b) (x a + y b)^-1 with the modes' matrices x, y and diagonal matrices a, b.
+/// Matrix (x a - y b) (x a + y b)^-1 with the matrices x, y of LayerModes and diagonal matrices a, b.
 Eigen::MatrixXd Ratio(const LayerModes& modes, const Eigen::ArrayXd& a, const Eigen::ArrayXd& b)
 {
   const Eigen::ArrayXd scale = 1.0 / (a + b); // only the ratio a / b of each mode matters
@@ -149,8 +149,8 @@ Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, in
 
 namespace
 {
-/// Identity minus the scattering matrix at the nodes, from the moments whose Legendre functions are even in the cosine,
-/// or from those whose functions are odd.
+/// Identity minus the scattering matrix between the nodes (cosines) of the quadrature, from the moments whose Legendre
+/// functions are even in the cosine, or from those whose functions are odd.
 Eigen::MatrixXd OneLessScattered(
   const LayerScattering& scattering, const Eigen::MatrixXd& legendre, int order, bool even)
 {
@@ -171,7 +171,7 @@ Eigen::MatrixXd OneLessScattered(
 /// Square of the smallest decay rate k, whose mode is nearly isotropic. Its rounding error would act as absorption, so
 /// the contribution of the isotropic part of the mode is computed from the absorption instead.
 /// @param even  OneLessScattered() of even functions
-/// @param mode  radiance of the mode at the nodes
+/// @param mode  radiance of the mode at the nodes of the quadrature, times the square root of their weights
 double SmallestSquare(const LayerScattering& scattering, const Eigen::MatrixXd& even, const Eigen::MatrixXd& legendre,
   const Eigen::VectorXd& mode)
 {
@@ -222,8 +222,10 @@ LayerSource::LayerSource(Eigen::Index nodes)
 {
 }
 
-/// Adds the response that cancels the incident light of a solution with a = 0 at both boundaries of the layer.
-/// @param bAtEntry, bAtExit  amplitude b of this solution where the beam enters the layer, and where it leaves
+/// The particular solution has amplitudes a = 0 at both boundaries of the layer, which implies incident light. Adds the
+/// layer's response that cancels this light.
+/// @param bAtEntry, bAtExit  amplitudes b of this solution (LayerModes) where the beam enters the layer, and where it
+///   leaves
 void LayerSource::AddEnds(const LayerModes& modes, const LayerOperator& layer, const Eigen::VectorXd& bAtEntry,
   const Eigen::VectorXd& bAtExit, bool fromTop)
 {

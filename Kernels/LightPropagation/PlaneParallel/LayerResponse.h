@@ -45,11 +45,12 @@ struct LayerModes
   Eigen::VectorXd k; ///< decay rates of the modes per mean free path, >= 0, ascending
 };
 
-/// Normalised Legendre functions at the nodes, times sqrt(weight); row: node, column: degree l.
+/// Normalised Legendre functions at the nodes (cosines) of the quadrature, times the square root of their weights; row:
+/// node, column: degree l.
 Eigen::MatrixXd LegendreAtNodes(const HalfRangeQuadrature& nodes, int degree, int order);
 
-/// Reflection and transmission operators of a uniform layer, the same from both sides. Vectors are over the nodes:
-/// radiance times the square root of the weight.
+/// Reflection and transmission operators of a uniform layer, the same from both sides. They act on vectors with one
+/// element per node of the quadrature: radiance times the square root of the node's weight.
 struct LayerOperator
 {
   /// @param depth  optical thickness of the layer
@@ -61,20 +62,25 @@ struct LayerOperator
 /// Light of a layer's internal sources, without incident light.
 struct LayerSource
 {
-  Eigen::VectorXd up, down; ///< outgoing radiance at the top and at the bottom, at the nodes
-  /// Means over depth of the amplitudes a, b (LayerModes), for the solution with a = 0 at top and bottom.
+  /// Outgoing radiance at the top and at the bottom of the layer, at the quadrature's nodes, times the square root of
+  /// their weights
+  Eigen::VectorXd up, down;
+  /// Means over depth of the amplitudes a, b of the layer's modes (LayerModes), for the solution with a = 0 at top and
+  /// bottom.
   Eigen::VectorXd meanA, meanB;
 
   explicit LayerSource(Eigen::Index nodes);
 
   /// Adds the light of emission that is uniform in depth.
-  /// @param emitted  emission times height of the layer at each node, equal up and down
+  /// @param emitted  emission times height of the layer, equal up and down, times the square root of the weight of each
+  ///   of the quadrature's nodes
   void AddEmission(const LayerModes& modes, const LayerOperator& layer, double depth, const Eigen::VectorXd& emitted);
 
   /// Adds the light of the first-collision source of a beam, per mean free path.
   /// @param cosine  cosine of the beam to the axis of the layers, > 0
   /// @param fromTop  the beam enters at the top; false: at the bottom
-  /// @param sum, difference  sum and difference of forward and backward first-scattered light, where the beam enters
+  /// @param sum, difference  sum and difference of the first-scattered light forward and backward with respect to the
+  ///   beam, where it enters, at the quadrature's nodes, times the square root of their weights
   void AddBeam(const LayerModes& modes, const LayerOperator& layer, double depth, double cosine, bool fromTop,
     const Eigen::VectorXd& sum, const Eigen::VectorXd& difference);
 
@@ -83,7 +89,7 @@ private:
     const Eigen::VectorXd& bAtExit, bool fromTop);
 };
 
-/// Radiance averaged over the depth of a layer, at the nodes of the quadrature.
+/// Radiance averaged over the depth of a layer, at the nodes of the quadrature, times the square root of their weights.
 struct LayerMeans
 {
   Eigen::VectorXd sum;  ///< mean of downward plus upward radiance
@@ -91,7 +97,8 @@ struct LayerMeans
 };
 
 /// Means over the depth of a layer of the radiance that its internal sources and the light incident on it cause.
-/// @param downAtTop, upAtTop, downAtBottom, upAtBottom  radiance at the nodes at both boundaries of the layer
+/// @param downAtTop, upAtTop, downAtBottom, upAtBottom  radiance at both boundaries of the layer, at the quadrature's
+///   nodes, times the square root of their weights
 LayerMeans MeansOf(const LayerModes& modes, const LayerSource& source, double depth, const Eigen::VectorXd& downAtTop,
   const Eigen::VectorXd& upAtTop, const Eigen::VectorXd& downAtBottom, const Eigen::VectorXd& upAtBottom);
 }

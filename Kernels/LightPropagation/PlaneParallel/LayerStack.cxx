@@ -138,8 +138,8 @@ private:
     return source;
   }
 
-  /// First-collision source at the nodes for a beam of irradiance 1: downward plus upward (parity 0), or forward minus
-  /// backward with respect to the beam (parity 1).
+  /// First-collision source at the quadrature's nodes, times the square root of their weights, for a beam of irradiance
+  /// 1: downward plus upward (parity 0), or forward minus backward with respect to the beam (parity 1).
   Eigen::VectorXd FirstScattered(const LayerScattering& kind, const std::vector<double>& ofBeam, int parity) const
   {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(this->Roots.size());
@@ -152,15 +152,16 @@ private:
     return sum;
   }
 
-  /// Operator of Lambertian reflection, from outgoing to reflected radiance at the nodes; 0 for azimuthal orders above
-  /// 0.
+  /// Operator of Lambertian reflection, from outgoing to reflected radiance at the quadrature's nodes; 0 for azimuthal
+  /// orders above 0.
   Eigen::MatrixXd Lambert(double albedo) const
   {
     return this->Order == 0
       ? Eigen::MatrixXd(2.0 * albedo * this->Roots * this->Roots.cwiseProduct(this->Cosines).transpose())
       : Eigen::MatrixXd::Zero(this->Roots.size(), this->Roots.size());
   }
-  /// Radiance at the nodes that is incident from outside, plus that of beams reflected by the boundary.
+  /// Radiance at the quadrature's nodes, times the square root of their weights, that is incident from outside, plus
+  /// that of beams reflected by the boundary.
   /// @param irradiance  power of the beams at the boundary, W / length^2
   Eigen::VectorXd ComesIn(double radiance, double albedo, double irradiance) const
   {

@@ -43,10 +43,12 @@ struct StackLight
 /// Scattered, emitted and diffuse boundary light of a stack of layers; the beams are not included.
 struct StackSolution
 {
-  std::vector<LayerMeans> means;                ///< mean radiance of each layer
-  Eigen::VectorXd upAtTop, downAtBottom;        ///< outgoing radiance at the nodes
-  Eigen::VectorXd downAtTop, upAtBottom;        ///< incident radiance at the nodes, including reflected light
-  double beamsAtTop = 0.0, beamsAtBottom = 0.0; ///< power of the beams that leaves, W / length^2, before reflection
+  std::vector<LayerMeans> means; ///< mean radiance of each layer
+  /// Outgoing radiance at the quadrature's nodes, times the square root of their weights
+  Eigen::VectorXd upAtTop, downAtBottom;
+  Eigen::VectorXd downAtTop, upAtBottom; ///< incident radiance, including reflected light, in the same form
+  /// Power of the beams that reaches the boundary from inside, before reflection there, W / length^2
+  double beamsAtTop = 0.0, beamsAtBottom = 0.0;
 };
 
 /// Irradiance of a beam, perpendicular to it, where it enters each layer, W / length^2.

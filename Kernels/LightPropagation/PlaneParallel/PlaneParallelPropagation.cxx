@@ -64,7 +64,7 @@ int OrdersFor(const SlabScene& scene, const PropagationSettings& settings, int d
 }
 
 /// Outgoing radiance at SurfaceCosines: polynomial interpolation, in the square root of the cosine, of the radiance at
-/// the nodes.
+/// the quadrature's nodes.
 std::array<double, SurfaceCosines.size()> AtSurfaceCosines(
   const HalfRangeQuadrature& nodes, const Eigen::VectorXd& radiance)
 {

@@ -25,7 +25,7 @@ struct FallOff
 };
 
 /// Integral over the cosine of `values`, multiplied by the cosine if `cosine` is set, and by the sine if `sine` is set.
-/// The values are given at the nodes and contain the square root of the node's weight as a factor.
+/// The values are given at the quadrature's nodes and contain the square root of the node's weight as a factor.
 double Integral(const HalfRangeQuadrature& nodes, const Eigen::VectorXd& values, bool cosine, bool sine)
 {
   double sum = 0.0;
@@ -48,8 +48,9 @@ void ForLayersOf(const LayerStack& stack, const StackBeam& beam, const Act& act)
   }
 }
 
-/// Matrix that projects radiance at the nodes, given as amplitudes of its Fourier series in azimuth, onto each
-/// spherical harmonic of the scene axes. Columns: node, down and up, order (cos, then sin).
+/// Matrix that projects radiance at the quadrature's nodes, given as amplitudes of its Fourier series in azimuth, onto
+/// each spherical harmonic of the scene axes (rows). Columns: [node][down, up][order 0, then cos and sin of orders 1,
+/// 2, ...].
 Eigen::MatrixXd Projection(const SlabScene& scene, const HalfRangeQuadrature& nodes, int degree, int orders)
 {
   const auto count = static_cast<int>(nodes.cosines.size());
@@ -270,7 +271,8 @@ void SlabColumn::AddBeams(const SlabScene& scene, const StackLight& light, int c
   }
 }
 
-/// Adds to `direct` the uncollided light of sky, faces and emission, integrated over the directions of the nodes.
+/// Adds to `direct` the uncollided light of sky, faces and emission, integrated over the nodes (cosines) of the
+/// quadrature.
 void SlabColumn::AddDiffuse(const StackLight& light, const LayerStack& unscattered, const HalfRangeQuadrature& nodes)
 {
   const std::size_t count = unscattered.layers.size();

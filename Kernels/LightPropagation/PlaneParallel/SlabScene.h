@@ -48,7 +48,7 @@ private:
   bool Isotropic = true;
   std::vector<std::array<double, 3>>
     Directions;                      ///< unit vectors of the incident lights: along the axis and the next two axes
-  std::vector<std::size_t> Entering; ///< indices of the incident lights in Illumination::lights
+  std::vector<std::size_t> Entering; ///< indices in Illumination::lights of the lights that `Directions` lists
 };
 
 /// Light of one column of voxels in one channel; all columns are equal. Arrays have one value per layer; powers are per
@@ -65,8 +65,9 @@ public:
   double absorbed = 0.0, emitted = 0.0;
   std::array<double, 2> escaped = {}; ///< power that leaves at top and bottom, without reflected power
   LayerStack stack;
-  StackSolution even;                                 ///< solution of azimuthal order 0
-  std::vector<std::array<StackSolution, 2>> slanting; ///< solutions of azimuthal orders 1, 2, ..., [cos, sin]
+  StackSolution even; ///< solution of azimuthal order 0
+  /// Solutions of azimuthal orders 1, 2, ...; for each, the amplitudes of cos and of sin.
+  std::vector<std::array<StackSolution, 2>> slanting;
 
 private:
   void AddBeams(const SlabScene& scene, const StackLight& light, int channel);
@@ -74,8 +75,8 @@ private:
   void SumUp(const SlabScene& scene, const StackLight& light, const HalfRangeQuadrature& nodes, int channel);
 };
 
-/// LightField::scatteredMoments of a column, [layer][(degree + 1)^2], from the radiance at the nodes, which excludes
-/// uncollided light of beams.
+/// LightField::scatteredMoments of a column, [layer][(degree + 1)^2], from the radiance at the quadrature's nodes,
+/// which excludes uncollided light of beams.
 std::vector<double> ScatteredMoments(
   const SlabScene& scene, const SlabColumn& column, const HalfRangeQuadrature& nodes, int degree);
 }

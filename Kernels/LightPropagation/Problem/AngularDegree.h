@@ -20,7 +20,7 @@ struct DeviceMemory
 /// Returns the free memory of a device.
 DeviceMemory MemoryOf(const Device& device);
 
-/// Mean optical thickness of the box: mean extinction times mean edge.
+/// Mean optical thickness of the box: mean extinction of its voxels times mean length of its edges.
 /// @param grid  grid of the domain
 /// @param extinction  sum of the extinction over all voxels of the domain, 1/length
 double MeanThickness(const Grid& grid, double extinction);

@@ -130,7 +130,7 @@ void AxisPermutation::TurnBackMoments(LightField& light, const Grid& grid) const
   {
     if (first % (harmonics * channels) >= channels)
     {
-      continue; // this is not the first moment of a voxel and channel
+      continue; // only at the index of the first moment of a voxel and channel are all its moments converted
     }
     for (std::size_t j = 0; j < harmonics; ++j)
     {

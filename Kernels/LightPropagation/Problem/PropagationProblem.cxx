@@ -9,7 +9,7 @@ namespace tyndall
 {
 namespace
 {
-/// Checks a scene before the first member of a problem is constructed from it. @return `domain`
+/// Checks a scene before the first data member of a PropagationProblem is initialised from it. @return `domain`
 const Domain& Checked(
   const Domain& domain, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings)
 {
@@ -34,8 +34,9 @@ PropagationProblem::PropagationProblem(const Domain& domain, const Medium& mediu
   this->Given = domain.Any(this->SolvedLight.uncollided.IsThere());
   this->Isotropic = !domain.Any(!domain.IsEmpty() && !this->Solved.phase.IsIsotropic());
   this->Truncate(memory);
-  // TraitsOf() compares the extinctions of the similarity relation. If degree > 0, sweeps use other extinctions, which
-  // are equal in all channels if the medium is grey.
+  // Whether the extinction is equal in all channels: TraitsOf() compares the extinctions for isotropic scattering
+  // (similarity relation). If scattering has moments above degree 0, sweeps use other extinctions, which are equal in
+  // all channels if the medium is grey.
   this->TheTraits.greyExtinction =
     this->TheTraits.grey || (this->TheTraits.greyExtinction && this->Truncated->Degree() == 0);
 }

@@ -14,7 +14,8 @@ namespace tyndall
 {
 namespace
 {
-/// Ratio of the thickest line of voxels to the mean line (weighted by thickness) above which a medium is uneven.
+/// A medium is uneven if the optical thickness of the thickest line of voxels, divided by the mean over all lines
+/// (weighted by thickness), is above this ratio.
 constexpr double Uneven = 1.5;
 
 /// Residual at which the number of orders is estimated: the default tolerance rather than the user's, so that the
@@ -42,12 +43,14 @@ constexpr AcceleratedTime InUnevenMedia = { 7.0, 7.0, 3.0 };
 constexpr AcceleratedTime InMoments = { 5.0, 8.0, 1.0 };
 constexpr AcceleratedTime InMomentsOfThickVoxels = { 8.0, 8.0, 3.0 };
 constexpr AcceleratedTime InSlab = { 3.0, 5.0, 1.0 };
-/// Time of coarse-mesh DSA; TimeInCells() computes the number of iterations.
+/// Times of coarse-mesh DSA (a diffusion correction on cells of several voxels). The number of iterations is 0 here and
+/// set by TimeInCells().
 constexpr AcceleratedTime InCells = { 3.0, 0.0, 0.4 };
 /// Factor, relative to the albedo, by which an iteration of coarse-mesh DSA reduces the error: 5 iterations at albedo
 /// 0.5, 7 at 0.9 to 1.
 constexpr double CellFall = 0.3;
-constexpr double CellAtMost = 1.0; ///< maximum optical width of a cell of coarse-mesh DSA where the medium is thickest
+/// Maximum optical thickness of a cell of coarse-mesh DSA where the extinction is largest
+constexpr double CellAtMost = 1.0;
 constexpr int MostHalvings = 3;
 /// Time of set-up of source iteration, relative to that of one order: measured 0.8 in 100^3 voxels, 2 in 40^3.
 constexpr double PlainSetUp = 0.8;
@@ -119,7 +122,8 @@ struct ScatteringOfChannel
 {
   /// Optical thickness of lines of voxels, with the transport extinction, by which light diffuses.
   ThickLines diffusing;
-  ThickLines swept;    ///< the same with the extinction that sweeps use; unused without angular moments
+  /// The same with the extinction that sweeps use; unused if the degree of the angular moments is 0
+  ThickLines swept;
   double albedo = 0.0; ///< mean albedo, from the scattering and extinction coefficients that sweeps use
 };
 
@@ -251,7 +255,9 @@ bool Reflects(const ScatteringOfScene& scene)
   return std::any_of(scene.faceAlbedo.begin(), scene.faceAlbedo.end(), [](const Rgb& face) { return Sum(face) > 0.0; });
 }
 
-/// Whether cells consist of several voxels along each axis on which the grid has more than one voxel.
+/// Whether each cell of coarse-mesh DSA consists of several voxels along every axis on which the grid has more than one
+/// voxel, i.e. whether voxels are optically thin enough for such cells.
+/// @param halvings  base-2 logarithm of the number of voxels per cell along each axis
 bool AreThinEnough(const Grid& grid, const std::array<int, 3>& halvings)
 {
   bool thin = true, any = false;

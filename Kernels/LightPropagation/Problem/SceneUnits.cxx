@@ -111,7 +111,8 @@ AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illuminati
     2.0 * Pi * radiance * (area[0] + area[1] + area[2]);
   if (illumination.uncollided.IsThere())
   {
-    all.first = 0.0; // given light is scaled by a power of two only, so that no digits of its floats change
+    // Uncollided light given as input is scaled by a power of two only, so that no digits of its floats change
+    all.first = 0.0;
     for (int c = 0; c < 3; ++c)
     {
       all.power += PowerLost(illumination.uncollided, medium, c);

@@ -37,8 +37,8 @@ struct SceneInUnits
   SceneInUnits(const Medium& medium, const Illumination& illumination, double unit);
 
   std::vector<float> emission, uncollided;
-  Medium medium;             ///< medium with emission from `emission`
-  Illumination illumination; ///< illumination with given light from `uncollided`
+  Medium medium;             ///< the medium, whose emission refers to the member `emission`
+  Illumination illumination; ///< the illumination, whose given uncollided light refers to `uncollided`
 };
 
 /// Converts light from `unit` of power back to W.
@@ -60,7 +60,7 @@ struct SceneInLengths
   SceneInLengths(const Medium& medium, const Illumination& illumination, double unit);
 
   std::vector<float> sigma_a, sigma_s, emission;
-  Medium medium; ///< medium that refers to sigma_a, sigma_s and emission
+  Medium medium; ///< the medium, which refers to the members sigma_a, sigma_s and emission
   Illumination illumination;
 };
 

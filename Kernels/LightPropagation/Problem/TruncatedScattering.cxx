@@ -44,7 +44,8 @@ std::vector<std::array<double, 3>> ComingFrom(const DirectionSet& set)
 /// Maximum optical thickness, along the shortest edge and without the forward peak, of a voxel that scatters in moments
 /// above degree 0.
 constexpr double Thickest = 1.0;
-/// Number of intervals between tabulated mean cosines; truncations are interpolated linearly.
+/// Number of intervals between the mean cosines g, -1 to 1, for which truncated phase functions are tabulated; between
+/// them they are interpolated linearly.
 constexpr int Columns = 1024;
 
 std::vector<DeltaM> TruncationsOf(const PhaseFunction& function, int degree, const DirectionKernel* nowhereNegative)

@@ -110,7 +110,7 @@ public:
   const Buffer<float>& SigmaT() const { return this->Extinction; }
   const Buffer<float>& SigmaS() const { return this->Scattering.Size() > 0 ? this->Scattering : this->Extinction; }
   const Buffer<float>& SigmaA() const { return this->Absorption; } ///< sigma_a; empty if not requested
-  /// sigma_s of each degree (TruncatedScattering.h), [degree][channel][stride]; empty if all scattering is isotropic.
+  /// sigma_s of each degree (TruncatedScattering.h), [degree][channel][voxel]; empty if all scattering is isotropic.
   const Buffer<float>& SigmaOfDegrees() const { return this->OfDegrees; }
   /// Transport extinction sigma_a + sigma_s (1 - g), used by the diffusion correction. Equal to SigmaT() if all
   /// scattering is isotropic.
