@@ -74,7 +74,7 @@ void ParallelPropagation::FinishOrder()
   this->Ledger.Count(std::exchange(this->Tally, {}));
   this->Ledger.CloseOrder(fluence);
   this->FluenceDirect = first ? std::move(fluence) : this->FluenceDirect;
-  this->Emits = true; // the source U is not zero from now on
+  this->Emits = true; // from the second order on the source U is not zero
 }
 
 void ParallelPropagation::UpdateSourcesOfOrder()

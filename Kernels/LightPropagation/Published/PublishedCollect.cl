@@ -10,7 +10,8 @@
 #include "LightPropagation/Published/PublishedShared.h"
 #include "Numerics/Numerics.cl"
 
-// Adds the deposits of a batch of directions to the moments, REAL_WIDTH voxels at a time, in either layout.
+// Adds the deposits of a batch of directions to the moments, REAL_WIDTH voxels at a time. Voxels are in either of the
+// two memory layouts, [z][y][x] or [x][z][y] (PublishedLayouts).
 //   coefficients   [MOMENTS][directions], starting at index `first`
 //   contributions  T over sigma_s, [direction][CHANNELS][volume], length W / (length^2 sr)
 //   moments        [MOMENTS][CHANNELS][volume]
@@ -39,9 +40,10 @@ __kernel void add_directions(const int volume, const int directions, const int a
 }
 
 // Computes U of the next order (Eq. (4)), and the moments of all orders so far. One work-item per voxel and channel.
-//   moments0, moments1  moments of this order from the maps of layouts 0 and 1; moments0 receives their sum
-//   totals              moments of all orders, [MOMENTS][CHANNELS][volume 0]
-//   part                the sources U as multiples of moments
+//   moments0, moments1  moments of this order from the directions whose ray maps use memory layout 0, [z][y][x], and
+//                       from those that use layout 1, [x][z][y]; moments0 receives their sum
+//   totals              moments of all orders, [MOMENTS][CHANNELS][voxel in layout 0]; added to
+//   part                the sources U to compute, as multiples of moments; `parts` of them
 __kernel void update_sources(const PublishedLayouts info, const int parts, __global const PublishedPart* part,
   __global const float* sigma_s, __global float* moments0, __global const float* moments1, __global float* totals,
   __global float* sources0, __global float* sources1)

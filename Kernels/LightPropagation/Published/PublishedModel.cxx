@@ -131,7 +131,8 @@ public:
   /// Mean at a cosine between light and patch, 1/sr.
   double At(double cosine) const
   {
-    const double place = Rows * std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0)); // tabulated by sin(angle / 2)
+    // Tabulated as a function of sin(angle / 2)
+    const double place = Rows * std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0));
     const int row = std::min(static_cast<int>(place), static_cast<int>(Rows));
     return this->Means[row] + (place - row) * (this->Means[row + 1] - this->Means[row]);
   }

@@ -138,7 +138,8 @@ struct MapGeometry
   /// Transverse position within its voxel, 0 to 1, at which a ray begins order `order` if it began order 0 at `start`.
   /// Differs from `start` if the ray has wrapped around a periodic axis.
   double StartOfOrder(double start, double slope, int order) const;
-  /// Path of the rays of one of the resolution^2 sub-maps, numbered row by row, in a scattering order.
+  /// Path, in a scattering order, of the rays of one sub-map: those that start at the same one of resolution^2
+  /// positions within their voxels, numbered row by row.
   GridWalk Walk(int resolution, int subMap, int order) const;
 
 private:
@@ -155,10 +156,11 @@ public:
   /// @param startU, startV  position within the first voxel, [0, 1]
   GridWalk(double startU, double startV, double slopeU, double slopeV, int planes);
 
-  int moveU = 0; ///< voxels to move along u before the segment: -1, 0, 1
+  int moveU = 0; ///< move into the next voxel along u before the segment, voxels: -1, 0 or 1
   int moveV = 0;
-  int plane = -1;        ///< plane of the segment, counted from the start of the ray
-  double fraction = 0.0; ///< length of the segment relative to that of a complete plane
+  /// Plane of voxels that the segment crosses, counted from where the ray starts; -1 before the first call of Next()
+  int plane = -1;
+  double fraction = 0.0; ///< length of the segment, relative to the length of the ray within the plane
 
   bool Next(); ///< moves to the next segment; false beyond the last plane
 

@@ -34,8 +34,8 @@ inline real depth(real gone, real tau, float length)
 // Sets the initial radiance of the rays, in both ray maps, so that both contain the border. One work-item per element
 // of the map with border, direction and channel.
 //   boundary  incident radiance through the faces across w, u, v: [direction][3][CHANNELS]
-//   carried   radiance by voxel that has wrapped around a periodic axis, [direction][carried_stride], from index
-//             carried_first on
+//   carried   radiance, by voxel of the first plane, of the rays that have wrapped around the marching axis;
+//             carried_stride floats per direction, from index carried_first on
 __kernel void start_rays(const PublishedMap map, __global float* rays, __global const float* boundary,
   __global const float* carried, const ulong carried_first, const ulong carried_stride)
 {
@@ -111,9 +111,9 @@ inline real deposit(real radiance, real sigma_s, float length)
 }
 
 // Moves all rays of all directions of a launch into their next voxel and through it.
-//   first, crossings  table of crossings, and index of the launch's first one; one per direction
-//   plane             index of the plane's first float in a volume
-//   add               0: first ray in these voxels, T is overwritten; 1: deposits are added to T
+//   crossings         voxel crossings of all launches; those of this launch, one per direction, begin at index `first`
+//   plane             index of the first float of the crossed plane in a volume
+//   add               0: no rays have crossed these voxels yet, T is overwritten; 1: deposits are added to T
 __kernel void cross_voxels(const PublishedMap map, const int plane, const int add, const int first,
   __global const PublishedCrossing* crossings, __global const float* sigma_t, __global const float* sigma_s,
   __global const float* sources, __global float* rays, __global float* contributions, __global float* escaped)
@@ -176,7 +176,7 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
   const float radiance = cross_voxel(from[u], sigma_t[u], SOURCE ? sources[u] : 0.0f, length);
   const float gained = deposit(radiance, sigma_s[u], length);
   contributions[u] = add ? contributions[u] + gained : gained;
-  for (int dv = -1; dv <= 1; ++dv) // the voxel itself and its images in the border
+  for (int dv = -1; dv <= 1; ++dv) // the voxel itself, and its periodic images in the border of the map
   {
     for (int du = -1; du <= 1; ++du)
     {
@@ -192,9 +192,10 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
 #endif
 }
 
-// Sums the outgoing radiance after the last plane, and stores rays that wrap around the marching axis for the next
-// order, [direction][carried_stride]. One work-item per row of the map, direction and channel.
-//   crossings  one per direction, from index `first` on; parity selects the ray map
+// Sums the radiance of the rays that leave after the last plane. If they wrap around the marching axis, stores their
+// radiance in `carried` for the next order, carried_stride floats per direction. One work-item per row of the map,
+// direction and channel.
+//   crossings  for each direction, from index `first` on: its `parity` says in which of the two ray maps the rays are
 __kernel void end_rays(const PublishedMap map, const int first, __global const PublishedCrossing* crossings,
   __global float* rays, __global float* escaped, __global float* carried, const ulong carried_first,
   const ulong carried_stride)

@@ -12,7 +12,8 @@ typedef struct
   int row[2], plane[2], volume[2]; ///< strides of rows, planes and channels in floats, by layout
 } PublishedLayouts;
 
-/// A source U, computed as sigma_s times `factor` times a moment, and its place in memory.
+/// A source U, computed as sigma_s times `factor` times a moment, and where it is stored: in the memory layout `layout`
+/// (0 or 1), at index `slot` among the sources in that layout.
 typedef struct
 {
   int moment;
@@ -25,7 +26,7 @@ typedef struct
 typedef struct
 {
   int sizeU, sizeV;
-  int rowStride; ///< floats between consecutive rows of the map in a volume
+  int rowStride; ///< distance in a volume, floats, between the voxels of consecutive rows of the map
   int volume;    ///< floats per volume of one channel
   int rayRow;    ///< floats per row of a ray map
   int periodicU, periodicV;
@@ -34,13 +35,13 @@ typedef struct
   int directions; ///< number of directions in the batch
 } PublishedMap;
 
-/// Segment that all rays of one direction cross in one launch of cross_voxels().
+/// Path through one voxel that all rays of one direction take in one launch of cross_voxels().
 typedef struct
 {
   int direction; ///< index of the direction within the batch
-  int parity;    ///< ray map, 0 or 1, from which radiance is read; the other one is written
+  int parity;    ///< which of the two ray maps (0 or 1) holds the rays before the crossing; the other one receives them
   int moveU, moveV;
-  int source;   ///< slot of the source U for this direction
+  int source;   ///< index, among the sources U in this memory layout, of the one for this direction
   float length; ///< path length in the voxel
 } PublishedCrossing;
 SHARED_END

@@ -34,7 +34,7 @@ int PublishedPlan::DirectionsPerBatch(std::size_t temporaryBytes) const
 {
   const int perFace = this->Model.Directions().PerFace();
   const std::size_t one = this->LargestLayout() * sizeof(float);
-  const double maps = 4.0; // two ray maps, and as much memory for tables of crossings
+  const double maps = 4.0; // two ray maps, and as much memory again for the tables of voxel crossings
   const std::size_t map =
     static_cast<std::size_t>(maps * this->Volumes.Channels() * sizeof(float) * this->LargestRayMap());
   const std::size_t taken = this->TheDevice.BytesInUse() + map * perFace;
@@ -98,7 +98,8 @@ void PublishedPlan::MeasureBuffers(int perBatch)
   {
     const std::size_t slots = static_cast<std::size_t>(batch.count) * this->Volumes.Channels();
     const std::size_t rows = batch.Map().sizeV;
-    this->sizes.rays = std::max(this->sizes.rays, 2 * slots * (rows + 2) * this->RayRow(batch)); // 2: two ray maps
+    // Two ray maps: before and after a voxel crossing
+    this->sizes.rays = std::max(this->sizes.rays, 2 * slots * (rows + 2) * this->RayRow(batch));
     this->sizes.escaped = std::max(this->sizes.escaped, slots * (2 * rows + 1));
   }
   this->sizes.contributions = perBatch * this->LargestLayout();
@@ -127,7 +128,8 @@ void PublishedPlan::AppendCoefficients(Batch& batch, std::vector<float>& to) con
   }
 }
 
-/// Lists the crossings of all directions, by sub-map, plane and launch.
+/// Lists the voxel crossings of all directions, ordered by sub-map (rays that start at the same position within their
+/// voxels), plane and launch.
 void PublishedPlan::MakePasses(Batch& batch, int order) const
 {
   std::vector<PublishedCrossing> crossings;
@@ -164,7 +166,8 @@ GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) cons
   return map.Walk(this->Settings.mapResolution, subMap, order);
 }
 
-/// Adds the crossings of direction i of a batch on one sub-map to `byPlane`, and its entry for end_rays() to `ends`.
+/// Adds the voxel crossings of direction i of a batch, for the rays of one sub-map (those that start at the same
+/// position within their voxels), to `byPlane`, and the entry that end_rays() reads to `ends`.
 void PublishedPlan::WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
   std::vector<PublishedCrossing>& ends) const
 {

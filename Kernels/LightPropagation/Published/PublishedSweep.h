@@ -29,12 +29,12 @@ public:
     bool add; ///< whether deposits are added to those of earlier launches in this plane
   };
 
-  /// Path of a batch's rays through the volume on one of the N x N sub-maps ("divide the LPM into N smaller sub-LPM",
-  /// section 5).
+  /// Path through the volume of a batch's rays of one sub-map: those that start at the same one of N x N positions
+  /// within their voxels ("divide the LPM into N smaller sub-LPM", section 5 of the paper).
   struct Pass
   {
     std::vector<Launch> launches;
-    int end = 0; ///< index in `crossings` of the entries that end_rays() reads
+    int end = 0; ///< index in Batch::crossings of the first of the entries that end_rays() reads, one per direction
     std::size_t carriedFirst = 0;
   };
 
@@ -64,19 +64,19 @@ public:
 
   int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
   int RayRow(const Batch& batch) const; ///< floats per row of a ray map
-  /// Number of floats per direction, over all channels and sub-maps, of the radiance that wraps around into the next
-  /// order.
+  /// Number of floats per direction, for all channels and sub-maps, of the radiance of rays that wrap around the
+  /// marching axis into the next order.
   std::size_t CarriedStride(const Batch& batch) const;
 
-  /// Makes the passes of a batch (its rays on each sub-map) for scattering order `order`. Rays that wrap around a
-  /// periodic axis start at another position in their voxels in each order.
+  /// Makes the passes of a batch for scattering order `order`; a pass traces the rays of one sub-map. Rays that wrap
+  /// around a periodic axis start at another position in their voxels in each order.
   void MakePasses(Batch& batch, int order) const;
-  /// Path of the rays of a sub-map in a scattering order.
+  /// Path of the rays of a sub-map (those that start at the same position within their voxels) in a scattering order.
   GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
 
 private:
-  /// Crossings of a batch's directions on one sub-map: [plane][index of the voxel along the ray in this
-  /// plane][direction].
+  /// Voxel crossings of the rays of a batch on one sub-map: [plane][voxel of this plane, in the order in which the ray
+  /// crosses them][direction].
   using CrossingsByPlane = std::vector<std::vector<std::vector<PublishedCrossing>>>;
 
   int DirectionsPerBatch(std::size_t temporaryBytes) const;

@@ -72,7 +72,8 @@ std::size_t PublishedVolumes::LayoutSize(int layout) const
   return static_cast<std::size_t>(this->Layouts.volume[layout]) * this->Channels();
 }
 
-/// Calls visit(index in the layout, index of the voxel x fastest, channel) for all voxels and channels.
+/// Calls visit(index in an array in memory layout `layout`, index of the voxel x fastest, channel) for all voxels and
+/// channels.
 template <class Visit>
 void PublishedVolumes::ForEach(int layout, int channels, Visit visit) const
 {
@@ -93,7 +94,7 @@ void PublishedVolumes::ForEach(int layout, int channels, Visit visit) const
   }
 }
 
-/// Array in a layout, filled with value(index of the voxel x fastest, channel).
+/// Array in memory layout `layout` (0 or 1), filled with value(index of the voxel x fastest, channel).
 template <class Value>
 std::vector<float> PublishedVolumes::ArrangeValues(int layout, int channels, Value value) const
 {

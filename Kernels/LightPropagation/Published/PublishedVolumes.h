@@ -9,7 +9,7 @@
 
 namespace tyndall
 {
-/// Memory layouts of volumes. Rows always run along u of the maps that use the layout.
+/// The two memory layouts of volumes (PublishedLayouts). Rows run along the axis u of the ray maps that use the layout.
 struct VolumeLayouts : PublishedLayouts
 {
   /// Computes the strides of both layouts.
@@ -30,14 +30,15 @@ struct PublishedVolumes
   PublishedVolumes(Device& device, const Medium& medium, const PublishedModel& model, int width);
 
   int Channels() const { return this->Model.Channels(); }
-  std::size_t LayoutSize(int layout) const; ///< floats per quantity, all channels
+  std::size_t LayoutSize(int layout) const; ///< floats of one quantity in all channels
 
-  /// Slot in Sources[layout] of the source U of a source direction; -1 if no map reads it in this layout.
+  /// Index, among the sources in Sources[layout], of the source U of a source direction; -1 if no ray map reads it in
+  /// this layout.
   int SourceSlot(int layout, int sourceDirection) const { return this->Slots[layout][sourceDirection]; }
 
-  /// Converts an array that is x fastest, with channels interleaved, to a layout.
+  /// Converts an array that is x fastest, with channels interleaved, to memory layout 0 or 1.
   std::vector<float> Arrange(int layout, const float* interleaved) const;
-  /// Converts an array in a layout to one that is x fastest, with channels interleaved.
+  /// Converts an array in memory layout 0 or 1 to one that is x fastest, with channels interleaved.
   std::vector<float> Interleave(int layout, const float* arranged) const;
   /// Sets the source U from an array [voxel][source direction][channel], x fastest.
   void WriteSource(const std::vector<float>& source);
@@ -55,9 +56,9 @@ struct PublishedVolumes
   VolumeLayouts Layouts;
   bool Coloured; ///< whether sigma_t or sigma_s differs between channels
 
-  /// sigma_t, sigma_s, source U and moments of the current order, [layout]
+  /// sigma_t, sigma_s, source U and moments of the current order, each in memory layouts 0 and 1 of PublishedLayouts
   Buffer<float> Extinction[2], Scattering[2], Sources[2], OrderMoments[2];
-  Buffer<float> Totals; ///< moments of all orders, layout 0
+  Buffer<float> Totals; ///< moments of all orders, in memory layout 0
   Buffer<PublishedPart> Parts;
 
 private:
