@@ -1,12 +1,14 @@
 // Scattering source in angular moments, except the first moment (fluence), which IsotropicScattering.cl handles. One
-// work-item per row of voxels; it processes the functions of each group of voxels in the order of the arrays.
-//   sigma_s  1/length, [degree][channel][stride]
+// work-item per row of voxels; for each group of MomentGroup voxels it processes the moments, one per angular function,
+// in the order in which they are stored.
+//   sigma_s  1/length, [degree][channel][voxel]
 //   path     path integrals and their moments, W length (MomentPlacesShared.h)
 //   source   source and its moments, W / (length^3 sr), with the same layout
 
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 
-// Loads the values of a group of voxels; 0 beyond the end of the row.
+// Loads the values of a group of MomentGroup (16) voxels along x, of which the row still has `voxels`; 0 beyond the
+// row's end.
 static float16 load_group(const __global float* values, int voxels)
 {
   if (voxels >= MomentGroup)
@@ -21,8 +23,9 @@ static float16 load_group(const __global float* values, int voxels)
   return vload16(0, some);
 }
 
-// Runs ACTION for each function of each group of voxels in a row. In ACTION, `at` is the index of the group's moments,
-// and `scale` the factor from path integral to source.
+// Runs ACTION for each angular function from the second on and each group of MomentGroup voxels in a row. In ACTION,
+// `at` is the index of the first of the group's moments for that function, and `scale` the factors of the group's
+// voxels that convert path integral to source.
 #define FOR_MOMENTS(ACTION)                                                                                      \
   const ulong line = get_global_id(0);                                                                           \
   for (int x = 0; x < places.sizeX; x += MomentGroup)                                                            \
@@ -39,8 +42,8 @@ static float16 load_group(const __global float* values, int voxels)
     }                                                                                                            \
   }
 
-// Processes one scattering order: overwrites the moments of the source with those scattered from `path`, and sets
-// `path` to 0.
+// Processes one scattering order: overwrites the moments of the source, from the second on, by those that are scattered
+// from `path`, and sets the moments of `path` to 0.
 __kernel void scatter_moments(MomentPlaces places, int channel, __global float* path, __global float* source,
   const __global float* sigma_s, ulong stride, float per_path)
 {
@@ -87,7 +90,7 @@ __kernel void add_to_shown(const __global float* source, __global float* shown, 
 // work-item per voxel of a row, row, and harmonic.
 //   basis    coefficients, [function][harmonic]
 //   moments  laid out as in MomentPlacesShared.h; there are at most as many harmonics as functions
-//   scale    factor of each voxel, [channel][stride]
+//   scale    factor by which each voxel's moments are multiplied, [channel][voxel]
 //   out      [voxel][harmonic][channel]
 __kernel void to_harmonics(MomentPlaces places, int channel, const __global float* basis, const __global float* moments,
   const __global float* scale, ulong stride, __global float* out)
@@ -105,8 +108,8 @@ __kernel void to_harmonics(MomentPlaces places, int channel, const __global floa
   out[(voxel * get_global_size(2) + j) * places.channels + channel] = scale[channel * stride + voxel] * sum;
 }
 
-// Adds the first-collision source of a beam, in voxels of the highest degree; in other voxels beams are scattered in
-// moments only. One work-item per value.
+// Adds the first-collision source of a beam to its range of `source`, in voxels whose moments have the highest degree;
+// in other voxels the light of beams is scattered in moments only. One work-item per value.
 //   values  number of values of all channels
 //   degree  highest degree of the moments
 __kernel void scatter_beam(MomentPlaces places, const __global float* path, __global float* source,
@@ -117,8 +120,8 @@ __kernel void scatter_beam(MomentPlaces places, const __global float* path, __gl
     sigma_s[degree * values + i] != 0.0f ? sigma_s[i] * path[i] * per_path : 0.0f;
 }
 
-// Adds the net flux of one channel, W length, [channel][x, y, z][stride], from the moments of degree 1, which are
-// sqrt(3) times the y, z and x components. One work-item per voxel of a row, and row.
+// Adds the net flux of one channel to `flux`, W length, [channel][x, y, z][voxel], from the moments of degree 1 of
+// `path`, which are sqrt(3) times the y, z and x components. One work-item per voxel of a row, and row.
 __kernel void add_flux_of_moments(
   MomentPlaces places, int channel, const __global float* path, __global float* flux, ulong stride)
 {

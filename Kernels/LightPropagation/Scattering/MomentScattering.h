@@ -42,7 +42,8 @@ private:
 std::unique_ptr<const ScatteringOperator> MakeScattering(
   Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree, bool scatters);
 
-/// Adds the angular moments of `path` to those of `to`, W length, except the first, which is the path integral.
+/// Adds the angular moments of `path` to those of `to`, W length, except the first moment, which is the path integral
+/// itself.
 /// @param functions  number of functions of the angular basis
 void AddMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to);
@@ -53,7 +54,7 @@ void AddMoments(
 void AddToShown(
   Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part);
 
-/// Adds to `flux` the net flux, W length, [channel][x, y, z][stride], from the angular moments of degree 1 of `path`.
+/// Adds to `flux` the net flux, W length, [channel][x, y, z][voxel], from the angular moments of degree 1 of `path`.
 void AddFluxOfMoments(
   Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& flux);
 }

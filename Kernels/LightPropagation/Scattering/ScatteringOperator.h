@@ -44,7 +44,7 @@ public:
 
   /// Adds the first-collision source of a parallel beam to its range of `source`, after the angular moments, in voxels
   /// whose first-scattered light follows the phase function instead of truncated moments (BeamScattering.h).
-  /// @param path  path integrals of the beam, W length, [channel][stride]
+  /// @param path  path integrals of the beam, W length, [channel][voxel]
   /// @param beam  index of the beam, see SweptMoments::BeamOf()
   virtual void AddBeam(const Buffer<float>& path, const Buffer<float>& source, int beam) const = 0;
 

@@ -166,15 +166,16 @@ void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor
   }
 }
 
-/// Queues the launches of the kernel `sweep` for a list of slabs of planes.
+/// Queues the launches of the kernel `sweep`: in each of them the work-items carry rays through the ranges of planes
+/// that `schedule` lists.
 /// @param seconds  upper estimate of the time of all launches together, s
 void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffer<CrossingInfo>& crossings,
   const SliceStream::Schedule& schedule, double seconds, const Monitor& monitor)
 {
   const SweepPlan& plan = this->Plan;
   const Deposit& to = volume.deposit;
-  // With angular moments or cells of faces, a bundle always crosses one plane at a time, so one program, compiled for
-  // periodic boxes, serves open boxes, too.
+  // With angular moments, or with light per cell of the faces, the rays of a bundle always cross one plane at a time.
+  // One program, compiled for periodic boxes, then serves open boxes, too.
   const bool faces = to.faceOut || entry.byCells, alone = plan.angular || faces;
   cl::Kernel kernel =
     this->Kernel.Make(faces, alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v], false);

@@ -52,7 +52,7 @@ private:
     bool source = false;    ///< whether the medium has a source (emission or scattered light)
     bool border = false;    ///< whether light is incident on the faces parallel to the marching axis
     bool byCells = false;   ///< whether incident radiance is also given per cell of the box's faces
-    bool mapsEmpty = false; ///< whether the memory of the maps is uninitialised
+    bool mapsEmpty = false; ///< whether the memory of the maps (power of each ray) is uninitialised
   };
   void Enter(const SweepBoundary& boundary, std::size_t firstChannel);
   void GoRound(const SweepVolume& volume, int mostPlanes, const Monitor& monitor);
@@ -88,7 +88,8 @@ private:
   Buffer<CrossingInfo> FirstCrossings;
   /// Copies slices of a volume in host memory to the device; null: the volume is in device memory
   std::unique_ptr<SliceStream> Stream;
-  /// Launches in which rays start, and launches in which rays wrap around the periodic axis
+  /// Ranges of planes that work-items cross in each launch of the kernel: while rays start, and while rays wrap around
+  /// the periodic axis
   SliceStream::Schedule First, Rounds;
 
   /// Cached incident light of each group of channels; key: SweepVolume::first

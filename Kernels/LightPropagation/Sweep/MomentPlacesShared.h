@@ -9,10 +9,11 @@ enum
   MomentGroup = 16 ///< number of neighbouring voxels of a row along x whose moments are adjacent in memory
 };
 
-/// Memory layout of an array with the angular moments of each voxel. The first function, the fluence, is stored like
-/// any other array: [channel][stride]. The other functions follow in groups of voxels,
-/// [z][y][channel][group][function][MomentGroup], so that a sweep along any axis reads contiguous memory. Values of
-/// beams are last, [beam][channel][stride].
+/// Memory layout of an array with the angular moments of each voxel. The moment of the first angular function, the
+/// fluence, is stored like any other array: [channel][voxel]. The moments of the other functions follow, for groups of
+/// MomentGroup neighbouring voxels along x: [z][y][channel][group][function][voxel of the group], so that a sweep along
+/// any axis reads contiguous memory. The values of beams (sources with their own angular distribution) are last,
+/// [beam][channel][voxel].
 typedef struct
 {
   ulong second; ///< index of the first value of the second angular function

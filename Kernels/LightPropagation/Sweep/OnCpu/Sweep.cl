@@ -87,14 +87,14 @@ typedef struct
 #endif
 } unit_scratch;
 
-// Planes [first, first + count) of the volume, copied to scratch memory in padded rows.
+// Packed planes: planes [first, first + count) of the volume, copied to scratch memory in padded rows.
 typedef struct
 {
   __global float* planes;
   __global int* thin; // whether all voxels of a row are optically thin, [plane][row]
   int first, count;
-  // Path integral, within its voxel of origin, of the light that a source of 1 emits; one element per plane, from the
-  // first one crossed
+  // Path integral, within its voxel of origin, of the light that a source of 1 emits; one element per plane, in
+  // marching order
   const __global OwnLightInfo* own;
 } packed_planes;
 
@@ -113,8 +113,8 @@ static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float*
   }
 }
 
-// Copies rows [rows.x, rows.y) of planes to scratch memory, to be crossed by rays, and sets the sums of their voxels to
-// 0.
+// Copies rows [rows.x, rows.y) of planes to scratch memory, to be crossed by rays, and sets to 0 what rays add to in
+// these rows: path integrals, net flux and partial currents.
 static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -191,7 +191,8 @@ static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, c
 }
 #endif
 
-// Adds the sums of rows of the packed planes to the arrays of the volume.
+// Adds what rays have added to rows [rows.x, rows.y) of packed planes (path integrals, net flux, partial currents) to
+// the arrays of the volume.
 static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -258,10 +259,11 @@ static void cross_planes(sweep_state* state, int planes, const swept_rays* rays,
 }
 
 // Carries the rays of `count` bundles, from bundle `first` on, through a chain of planes, which each bundle crosses
-// together, row by row. If the planes hold much data (moments, or large chained planes), bundles alternate on tiles of
-// rows, so that a tile stays in the cache for all bundles.
+// together, row by row. If the planes hold much data (moments, or large chained planes), all bundles cross one tile (a
+// block of rows) before they cross the next, so that the tile stays in the cache.
 // @param planes  number of planes; 1 if CHAINED is 0
-// @param packed  the planes; if KEPT_ROWS, their rows are packed tile by tile, and `count` is the number of all bundles
+// @param packed  the planes; if KEPT_ROWS is not 0, this function packs their rows tile by tile, and `count` must be
+//   the number of all bundles
 static void cross_bundles(sweep_state* state, const swept_volume* volume, const packed_planes* packed, int planes,
   const swept_rays* rays, int first, int count, const __global CrossingInfo* crossings)
 {
@@ -307,9 +309,9 @@ static void cross_bundles(sweep_state* state, const swept_volume* volume, const 
   state->ring = kept;
 }
 
-// For streamed volumes, moves the pointers of the volume to a slot, which holds a slice (SliceStream.h). The strides in
-// PlaneInfo are those of a slot, slot.x is the slot's number, and slot.y is the index in the box of the slot's first
-// plane.
+// For streamed volumes, moves the pointers of the volume to a slot: one of the device buffers that each hold a slice of
+// the volume (SliceStream.h). The steps between voxels in PlaneInfo are those of a slot, slot.x is the slot's number,
+// and slot.y is the index in the box of the slot's first plane.
 static void go_to_slot(SweepInfo* info, int2 slot, swept_volume* volume)
 {
   info->planes.firstP = -slot.y;
@@ -380,13 +382,15 @@ static void begin_state(sweep_state* state, const SweepInfo* info)
 #endif
 }
 
-// Number of bundles that alternate on tiles of the same planes; further bundles cross these planes afterwards.
+// Number of bundles that cross planes together, tile (block of rows) by tile; further bundles cross these planes
+// afterwards.
 static int bundles_together(const sweep_state* state, int bundles)
 {
   return ANGULAR || state->tile > 0 ? min(bundles, (int)BundlesTogether) : bundles;
 }
 
-// Divides a work-item's scratch memory into arrays, and sets the rows of rays in it to 0.
+// Divides a work-item's scratch memory into arrays, and sets the power of the rays in it to 0.
+// @param together  number of bundles that cross planes together (bundles_together())
 static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __global float* scratch, int together)
 {
   const PlaneInfo* layout = &info->planes;
@@ -410,7 +414,8 @@ static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __glo
   return parts;
 }
 
-// Packs planes and their moments, except rows that are packed tile by tile.
+// Packs planes (copies them to scratch memory) and their moments. If KEPT_ROWS is not 0, cross_bundles() packs the rows
+// instead, tile by tile.
 static void begin_planes(const swept_volume* volume, const packed_planes* packed, const unit_scratch* scratch)
 {
   const SweepInfo* info = volume->info;
@@ -430,7 +435,8 @@ static void begin_planes(const swept_volume* volume, const packed_planes* packed
 #endif
 }
 
-// Adds the sums of the packed planes to the arrays of the volume.
+// Adds what rays have added to the packed planes (path integrals, net flux, partial currents, moments) to the arrays of
+// the volume. If KEPT_ROWS is not 0, cross_bundles() has already done this.
 static void end_planes(const swept_volume* volume, const packed_planes* packed, const unit_scratch* scratch)
 {
   if (!KEPT_ROWS)
@@ -446,7 +452,8 @@ static void end_planes(const swept_volume* volume, const packed_planes* packed, 
 }
 
 #if ANGULAR
-// Sets the pointers to the angular moments of a plane of the box: in the volume, or packed in scratch.
+// Sets the pointers in `state` to the angular moments of a plane of the box: in the volume's arrays, or packed in
+// scratch memory.
 static void go_to_moments(
   sweep_state* state, const swept_volume* volume, const unit_scratch* scratch, int plane, int first_packed)
 {
@@ -560,26 +567,28 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
 // sense of marching, some or all bundles).
 // sigma     extinction, 1/length, [voxel]
 // source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
-// octants   additional source per octant, see SweepRequest::octantSource
+// octants   additional source per octant of directions, W / (length^3 sr), [channel][octant][voxel]
 // path      path integrals, W length, with their angular moments, added to
 // lost      rounding errors of path in this sweep (compensated summation), if rays wrap around the marching axis
-// flux      net flux, W length, [channel][x, y, z][stride], added to
-// currents  power that enters the voxel through each face, W, [channel][-x, +x, -y, +y, -z, +z][stride], added to
+// flux      net flux, W length, [channel][x, y, z][voxel], added to
+// currents  power that enters the voxel through each face, W, [channel][-x, +x, -y, +y, -z, +z][voxel], added to
 // maps      power of each ray, W, for both senses of marching (or for the only one)
-// border    power of incident rays, W, each for both senses: rows that enter through the faces normal to v, then values
-// for the faces normal to u
-// coefficients  values of the angular functions, see BundleInfo, both senses
-// crossings sideways moves and segment lengths, [plane of the ray pattern][bundle]
-// own       path integrals, within the voxel of origin, of the light that a source of 1 emits, [unit][plane from where
-// rays start]
+// border    power of incident rays, W: rows that enter through the faces normal to v, for both senses of marching; then
+//           values for the faces normal to u, for both senses
+// coefficients  values of the angular functions in the directions of the bundles (BundleInfo::coefficients), for both
+//               senses
+// crossings  sideways moves and segment lengths, [plane of the ray pattern][bundle]
+// own       path integrals, within the voxel of origin, of the light that a source of 1 emits, [unit][plane,
+//           counted from where rays start]
 // schedule  first plane and end, counted from where rays start, [launch][unit]; planes beyond the last plane wrap
-//           around; if streamed [launch][planes, slots][unit], see go_to_slot
+//           around; if streamed [launch][planes, slots][unit], where slots are those of go_to_slot()
 // tally     escaped power, W, [plane, counted from where rays start][unit][-u, +u, -v, +v][channel]
 // entering  if SIDES: power of the rays that enter through the sides (SweepSides.cl); else, if FaceInfo::in, incident
 //           radiance per cell of the box's faces (SweepRequest::faceIn)
 // leaving   if SIDES: power of the rays that leave; else, if FaceInfo::out, escaped power per cell,
 //           [unit][channel][cell] if FaceInfo::spread, else [channel][cell]
-// function_places  see SweepPlan::FunctionPlaces
+// function_places  index of each angular function within a group of moments, sorted by parity
+//                  (sweep_state::functionPlaces)
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo info, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* lost,
   __global float* flux, __global float* currents, __global float* maps, const __global float* border,

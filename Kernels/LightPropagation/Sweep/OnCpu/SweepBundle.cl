@@ -1,4 +1,5 @@
-// Functions that carry the rays of one bundle through one plane. Compiled once for each number of MEMBERS.
+// Functions that carry the rays of one bundle through one plane. A bundle is a set of directions (members) that are
+// mirror images of each other. Compiled once for each number of MEMBERS.
 //
 // A plane is crossed in up to three stages, one per segment. A stage reads every ray where the previous stage left it:
 // the whole map moves by one voxel or none, which costs only an offset in the load. The stages process rows one after
@@ -43,7 +44,7 @@
   }
 #else
 
-// Rows of the plane that a segment reads and adds to.
+// Rows of the plane's quantities that rays read and add to in one segment (their path through one voxel).
 typedef struct
 {
   const __global float *inverse, *source, *octants;
@@ -61,7 +62,8 @@ typedef struct
   int2 aside[MEMBERS];                    // combinations of senses along u and v, see ways_aside
 } MEMBER_WAYS;
 
-// For one channel and a vector of voxels, carries the rays of all members of a bundle through one segment.
+// For one channel and a vector of voxels, carries the rays of all directions (members) of a bundle through one segment,
+// i.e. through one voxel each.
 // own_path  path integral, within its voxel of origin, of the light that a source of 1 emits, times the cosine between
 // rays and axis
 static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_ROWS* rows, const MEMBER_WAYS* ways,
@@ -168,8 +170,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
 
 #endif
 
-// Carries the rays of a row through one segment: by CROSS_MOMENTS with angular moments, else by CROSS_VOXELS.
-// @param slot  index of the row among those whose sources along the bundle's rays are stored
+// Carries the rays of a row through one segment, i.e. through one voxel each: by CROSS_MOMENTS if there are angular
+// moments, else by CROSS_VOXELS.
+// @param slot  index of the row among the MomentRows rows for which sources along the bundle's rays are stored
 // @param first  whether this segment is the row's first in the plane
 static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool deposit, const __global float** in,
   __global float* out, float length, const __global BundleInfo* bundle)
@@ -201,8 +204,8 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 // moves, to the escaped power. Rays that move along u and v at once are taken to cross u first and v first in equal
 // parts. At the box's edge, half of their power leaves through either face, and half of the light that enters next to
 // the edge passes straight through.
-// across_u, across_v  power that enters through the faces normal to u and v, W, at [m][c] and at [FIRST(m, c)] of the
-//                     row, without light given per cell
+// across_u, across_v  power of the rays that enter through the faces normal to u and v, W, without light given per
+//                     cell: across_u is [member][channel], across_v a row of rays
 static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv,
   float part, const __global BundleInfo* bundle, const __global float* across_u, const __global float* across_v)
 {
@@ -282,7 +285,7 @@ static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global floa
 }
 
 // Writes the power of the rays that enter through the faces normal to u to the columns at both ends of every row in the
-// ring buffers between stages.
+// ring buffers, which hold the rows of rays between one stage (crossing of one voxel) and the next.
 static BY_ROW void FILL_BORDER(sweep_state* state, const __global float* radiance)
 {
   for (int i = 0; i < MEMBERS * CHANNELS; ++i)
@@ -520,7 +523,7 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
   const bool inside = y >= 0 && y < height;
   const int wrapped = inside ? y : (y % height + height) % height;
   const __global CrossingInfo* crossing = crossings + chain->of[g].plane * state->allBundles;
-  // Rows that the previous stage wrote
+  // ring buffer with the rows of rays that the previous stage wrote
   const __global float* ring = state->ring + (g - 1) * (RingRows * RAYS_OF_ROW);
   const __global float* own = g > 0 ? ring + (y & (RingRows - 1)) * RAYS_OF_ROW : 0;
   const __global float* in[MEMBERS];

@@ -1,4 +1,5 @@
-// Functions for the effect of a segment on the power of a ray, for a vector of voxels.
+// Functions for the effect of a segment (a ray's path through one voxel) on the power of the ray, for a vector of
+// voxels.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -76,7 +77,7 @@ static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* sta
   state->asked += state->asks * FloatsOfLine;
 }
 
-// Selects the part of row y (of `floats` floats) that stage g of `stages` prefetches; y < 0: nothing.
+// Selects the part of row y of a map (of `floats` floats per row) that stage g of `stages` is to prefetch; y < 0: none.
 static inline void ask_ahead(sweep_state* state, const __global float* map, int y, int floats, int g, int stages)
 {
   state->asks = 0;

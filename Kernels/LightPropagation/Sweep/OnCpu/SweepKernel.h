@@ -16,7 +16,8 @@ public:
   SweepKernel(Device& device, const SweepPlan& plan);
 
   /// Sets the incident light that is uniform over each face parallel to the marching axis.
-  /// @param outside, radiance  power of the rays that enter, W, as in SweepBorder
+  /// @param outside, radiance  power of the rays that enter through the faces normal to v, and normal to u, W, in the
+  ///   layout of SweepBorder
   void SetBorder(const std::vector<float>& outside, const std::vector<float>& radiance);
   void ClearBorder();
   bool IsBorderClear() const { return this->BorderIsClear; }
@@ -31,8 +32,8 @@ public:
     const Buffer<float>& maps;
     const Buffer<float>& scratch;
     const Buffer<CrossingInfo>& crossings;
-    /// Range of planes (first, end) that each work-item crosses, [launch][work-item]; if streamed,
-    /// SliceStream::Schedule::rows
+    /// Range of planes (first, end) that each work-item crosses, [launch][work-item]; if the volume is streamed, also
+    /// the slot of each range (SliceStream::Schedule::rows)
     const Buffer<cl_int2>& schedule;
     /// Incident radiance per cell of the faces, or power of the rays that enter through the sides (Sweep.cl)
     const cl::Buffer& entering;
@@ -58,7 +59,8 @@ public:
 private:
   Device& TheDevice;
   const SweepPlan& Plan;
-  Buffer<float> Border; ///< incident power: `outside` for both senses of marching, then `radiance` for both
+  /// Incident power, W: of SetBorder()'s `outside` for both senses of marching, then of `radiance` for both
+  Buffer<float> Border;
   bool BorderIsClear = false;
   Buffer<float> Left, Coefficients;
   Buffer<BundleInfo> Bundles;

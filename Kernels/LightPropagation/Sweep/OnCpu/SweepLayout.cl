@@ -9,7 +9,8 @@
 //   PERIODIC  1: the box may be periodic along u or v; SweepInfo tells along which
 //   FACES     1: escaped power may be summed, and incident radiance given, per cell of the box's faces (SweepSides.cl);
 //             FaceInfo tells which
-//   ROWS_KEPT  rows of chained planes that fit in scratch, a power of two; 0: all
+//   ROWS_KEPT  number of rows that are kept in scratch memory of chained planes, i.e. planes that a bundle crosses
+//              together; a power of two; 0: all rows
 //   SIDES     1: the box is a block of a larger domain (SweepSides.cl)
 // Options whose run-time test is nearly free are in SweepInfo instead: sweeps of incident light and of scattered light
 // thus share one program, which takes seconds to compile.
@@ -35,17 +36,17 @@
 #define PLANE_BEAMS (PlaneSource + CHANNELS)
 #define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
-// Additional source, by WaysAside, W / (length^3 sr)
+// Additional source for each combination of senses along u and v (WaysAside), W / (length^3 sr)
 #define PLANE_OCTANTS (PLANE_FLUX + FLUX * CHANNELS)
-// Power that enters through CurrentFaces, W; only if PlaneInfo::currents
+// Power that enters the voxel through each of its CurrentFaces faces, W; only if PlaneInfo::currents is 1
 #define PLANE_CURRENTS (PLANE_OCTANTS + (OCTANT_SOURCE ? WaysAside : 0) * CHANNELS)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 
 // Whether a bundle may cross up to PLANES_CHAINED planes together, row by row, as a chain. Not possible if the rays
 // that enter or leave sideways are stored by plane, or if rows wrap around.
 #define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
-// Attribute of functions that are called at most once per row. Inlining them in unrolled loops makes compilation a
-// third slower; where planes may be chained, however, calls cost 10% of a sweep with 64 voxels per row.
+// Attribute BY_ROW of functions that are called at most once per row. Inlining them in unrolled loops makes compilation
+// a third slower; where planes may be chained, however, calls cost 10% of a sweep with 64 voxels per row.
 #if CHAINED
 #define BY_ROW
 #else
@@ -56,14 +57,16 @@
 #define KEPT_ROWS (CHAINED ? ROWS_KEPT : 0)
 
 // Position of a row and quantity in a plane, [row][quantity][float]: data used together is contiguous, and no stride is
-// a power of two. If KEPT_ROWS, only the rows that bundles are crossing are stored, in a ring buffer of that many rows.
+// a power of two. If KEPT_ROWS is not 0, only the rows that bundles are crossing are stored, in a ring buffer of
+// KEPT_ROWS rows.
 #define PLACE_OF_ROW(row) (KEPT_ROWS ? (row) & (KEPT_ROWS - 1) : (row))
-// `layout` is a PlaneInfo or a sweep_state.
+// Row v of a quantity in the packed plane `planes`; `layout` is a PlaneInfo or a sweep_state.
 #define ROW_IN(layout, planes, quantity, v) ((planes) + (PLACE_OF_ROW(v) * (layout)->quantities + (quantity)) * ROW)
 #define ROW_OF(planes, quantity, v) ROW_IN(state, planes, quantity, v)
 
 #if ANGULAR
-// Index of voxel x in a row of moments with `higher` functions from the second on, see MomentPlacesShared.h.
+// Index, in a row of moments, of the first moment of voxel x; `higher` is the number of angular functions from the
+// second on. The order is [group][function][voxel of the group] (MomentPlacesShared.h).
 #define IN_ROW(x, higher) ((x) / MomentGroup * ((higher)*MomentGroup) + (x) % MomentGroup)
 // Number of floats of a channel's row in the volume's array of moments, all functions from the second on.
 #define MOMENTS_OF_CHANNEL(info) ((ulong)(info)->moments.groups * ((info)->moments.functions - 1) * MomentGroup)
@@ -76,15 +79,16 @@
 #define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2)
 typedef struct
 {
-  int stages; // number of elements of `of` that are used
-  int before; // number of stages of earlier planes of the chain, which are not in `of`
+  int stages; // number of stages of the planes that are crossed now, listed in `of`
+  int before; // number of stages of the chain's planes that were crossed before, not listed in `of`
   struct
   {
-    int plane, stage; // index of the plane, and of the stage in that plane
+    int plane, stage; // index of the plane in the chain, and of the stage in that plane
   } of[STAGES];
 } chain_of_stages;
 
-// Compile-time check: the rows kept must hold a tile and the rows by which its last stage lags behind.
+// Compile-time check: the rows kept must hold a tile (the block of rows that all bundles cross in turn) and the rows by
+// which its last stage lags behind the first.
 typedef char kept_rows_suffice[!KEPT_ROWS || KEPT_ROWS >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 
 // A plane that is being crossed: its packed quantities, thin rows and escaped power.
@@ -111,12 +115,12 @@ typedef struct
   __global int* thin;               // 1 if all voxels of a row of that plane are thin, [row]
   float meanLength[MeanLengthTerms];
   int chained_before; // number of planes of the chain that were crossed before those in `places`
-  // Prefetch, if CHAINED: next address, and number of cache lines per vector of voxels
+  // Prefetch of maps, if CHAINED: address of the next cache line, and number of cache lines per vector of voxels
   const __global float* asked;
   int asks;
-  int tile;             // rows in a tile, on which bundles alternate; 0: each bundle crosses all rows
-  int rings;            // number of ring buffers: one after each stage except the last
-  __global float* ring; // rows between stages, [ring][RingRows][RAYS_OF_ROW]
+  int tile;             // rows in a tile, which all bundles cross before the next tile; 0: each bundle crosses all rows
+  int rings;            // number of ring buffers of rows of rays: one after each stage except the last
+  __global float* ring; // rows of rays that one stage hands to the next, W, [ring buffer][RingRows][RAYS_OF_ROW]
 #if ANGULAR
   // Sources in the directions (members) of a bundle, W / (length^3 sr), MomentRows rows of RAYS_OF_ROW floats
   __global float* sources;
@@ -128,21 +132,22 @@ typedef struct
   const __global float* momentSource;
   __global float* momentPath;
   ulong momentStep, momentChannel;
-  // Number of angular functions; index of each in a group of moments, sorted by parity along u and v: even-even,
-  // odd-even, even-odd, odd-odd; and the end of each parity's range.
+  // Number of angular functions; index of each function's moment in a group of moments (MomentPlacesShared.h), sorted
+  // by the function's parity along u and v: even-even, odd-even, even-odd, odd-odd; and the end of each parity's range.
   int functions;
   const __global int* functionPlaces;
   int parityEnds[4];
 #endif
-  __global float* moving;     // rays of a row of which only a fraction moves
+  __global float* moving;     // result of MOVE_PART: a row of rays of which only a fraction moved sideways
   float (*escaped)[CHANNELS]; // escaped power of the plane through -u, +u, -v, +v, W, and its rounding errors
   float (*rounding)[CHANNELS];
 #if FACES
   const FaceInfo* faces;
-  ulong faceFirst[4];        // index of the first cell of the plane that is being crossed, per side, first channel
+  // Index of the first cell, in the first channel, of the plane that is being crossed, for each of -u, +u, -v, +v
+  ulong faceFirst[4];
   int firstPlane;            // index in the grid of the first plane of the box
-  __global exact* faceOut;   // escaped power per cell to which the work-item adds
-  int facePlane, facePlanes; // index of the plane that is being crossed; number of planes
+  __global exact* faceOut;   // escaped power per cell of the box's faces, W, to which the work-item adds
+  int facePlane, facePlanes; // index in the box of the plane that is being crossed; number of planes of the box
   const __global float* faceIn;
 #endif
 #if FACES || SIDES

@@ -1,5 +1,6 @@
-// Functions that carry a bundle through a row, with light and source in angular moments (numerics.md, section 4.7).
-// Compiled once for each number of MEMBERS, by SweepBundle.cl.
+// Functions that carry the rays of a bundle (directions that are mirror images of each other) through a row of voxels,
+// with light and source in angular moments (numerics.md, section 4.7). Compiled once for each number of MEMBERS, by
+// SweepBundle.cl.
 //
 // Members (directions) of a frame differ only in the signs of their components along u and v, so the values of an
 // angular function in their directions differ only in sign. Functions are therefore summed by parity along u and v,
@@ -10,8 +11,9 @@
 // Index of the first direction (member) of frame f of a bundle; eight members are two frames of four.
 #define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f])
 
-// Loops over the functions k, from the second on, parity by parity; skips parities whose functions are zero in all of
-// the bundle's directions. BEGIN_PARITIES loads the values needed into registers.
+// OF_ALL_PARITIES(MACRO) runs MACRO(parity) for the angular functions k, from the second on, parity by parity; it skips
+// parities whose functions are zero in all of the bundle's directions. BEGIN_PARITIES loads the values needed into
+// registers.
 #define BEGIN_PARITIES                                                  \
   const int functions = state->functions, parities = bundle->parities;  \
   const int end_0 = state->parityEnds[0], end_1 = state->parityEnds[1]; \
@@ -38,9 +40,9 @@
     FUNCTIONS_OF(MACRO, end_2, end_3, 3) \
   }
 
-// Computes the source in the direction of each member (numerics.md, Eq. (29b)), in row y, and stores it in slot `slot`
-// of state->sources. Rows have the layout of the ring buffers, whose last row ends with the padding that precedes the
-// first row of the sources.
+// Computes the source of the voxels of row y in each direction (member) of the bundle (numerics.md, Eq. (29b)), and
+// stores it as row number `slot` of state->sources. Rows have the layout of the ring buffers, whose last row ends with
+// the padding that precedes the first row of the sources.
 // @param frames  number of frames of the bundle, a compile-time constant
 static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)

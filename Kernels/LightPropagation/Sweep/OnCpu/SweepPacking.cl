@@ -197,8 +197,8 @@ static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, i
 
 // Packing and unpacking of angular moments.
 #if ANGULAR
-// Index in the volume of the moments (from the second function on) of position (u, v) and a channel, for planes from
-// `first` on, which must be in one group of MomentGroup planes.
+// Index in the volume's array of the moments (from the second angular function on) of voxel (u, v) in a channel, for
+// planes along x from `first` on, all of which must be in one group of MomentGroup voxels.
 static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int first)
 {
   const PlaneInfo* layout = &info->planes;
@@ -209,14 +209,14 @@ static ulong moments_of(const SweepInfo* info, int channel, int u, int v, int fi
     IN_ROW(layout->firstP + first, higher);
 }
 
-// Index in packed planes of the moments (from the second function on) of position (u, v) and a channel.
+// Index in a packed plane of the moments (from the second angular function on) of voxel (u, v) in a channel.
 static int packed_moments_of(const SweepInfo* info, int channel, int u, int v)
 {
   return v * info->packedMoments + channel * (info->packedMoments / CHANNELS) + IN_ROW(u, info->moments.functions - 1);
 }
 
-// Number of planes, from plane `next` on in marching order along x, whose moments are in the same group of MomentGroup
-// voxels.
+// Number of planes perpendicular to x, from plane `next` on in marching order, whose moments are in the same group of
+// MomentGroup voxels along x.
 static int of_one_group(const PlaneInfo* layout, int next, int backward)
 {
   const int plane = layout->firstP + (backward ? layout->sizeP - 1 - next : next);
@@ -286,7 +286,8 @@ static BY_ROW void unpack_moments(
 #endif
 
 #if OCTANT_SOURCE
-// Packs the additional source for the octants of one sense of marching along the axis.
+// Packs (copies to scratch memory) the additional source for the octants of directions that march in one sense along
+// the axis.
 static void pack_octants(const SweepInfo* info, __global float* planes, int first, int count, int2 rows,
   const __global float* octants, int backward)
 {

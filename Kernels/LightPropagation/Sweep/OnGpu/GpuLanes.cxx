@@ -55,7 +55,7 @@ GpuLanes::GpuLanes(const Device& device, const SweepVolume& volume, std::vector<
   , floatsOfDeposit(functionCount + (volume.deposit.flux ? 3 : 0) + (volume.deposit.partialCurrents ? 6 : 0))
 {
   SweepDescription sweep = Describe(volume, periodic);
-  sweep.faceIn = false; // incident radiance per cell is added by LaneFaces
+  sweep.faceIn = false; // incident radiance per cell of the faces is added by the class LaneFaces, not by the plan
   std::stable_partition(rays.begin(), rays.end(), [&](const AxisBundles& along) { return !periodic[along.axis]; });
   for (const AxisBundles& along : rays)
   {
@@ -76,8 +76,8 @@ GpuLanes::GpuLanes(const Device& device, const SweepVolume& volume, std::vector<
   }
 }
 
-/// Appends a plan's bundles and crossings to those laid out so far, and adds a lane (the rays that march in one sense
-/// along the axis) for each sense of marching.
+/// Appends a plan's bundles (sets of symmetric directions) and their moves and segments in each plane (`crossings`) to
+/// those laid out so far, and adds a lane (the rays that march in one sense along the axis) for each sense of marching.
 void GpuLanes::LayPlan(const SweepPlan& plan, const AngularValues* angular)
 {
   const int firstBundle = static_cast<int>(this->bundles.size());

@@ -55,20 +55,22 @@ struct GpuLanes
   std::vector<CrossingInfo> crossings;
   /// Values of the angular functions in each ray's direction, [ray][function, then beam]; empty without angular moments
   std::vector<float> functions;
-  /// For each lane: index of the sum of its maps' first row among LanePowers' sums at the ends of axes,
+  /// For each lane: index of its first sum among the sums of LanePowers over the rows of rays at the far ends of axes,
   /// [ray][channel][v]
   std::vector<std::size_t> ends;
-  /// For each lane: index of its first sum among LanePowers' sums at the sides, [plane][side][channel]
+  /// For each lane: index of its first sum among the sums of LanePowers over the power that escapes sideways,
+  /// [plane][side][channel]
   std::vector<std::size_t> sides;
   std::size_t endRows = 0, sideRows = 0;
-  std::size_t escaped = 0; ///< number of floats of escaped power, all lanes; see SweepLane::escaped
+  std::size_t escaped = 0; ///< number of floats of the power that escapes sideways from all lanes (SweepLane::escaped)
   int rays = 0;            ///< number of rays of all lanes
   int channels;            ///< number of channels swept together
   int functionCount;       ///< number of angular functions; 1: fluence only
   int floatsOfDeposit;     ///< number of floats that a lane writes per voxel and channel
-  /// Size of the largest maps of a batch, floats: of open axes, and of a periodic axis
+  /// Number of floats of the largest maps (power of each ray) of any batch: among batches of open axes, and of periodic
+  /// axes
   std::size_t mostMapsOpen = 0, mostMapsAround = 0;
-  /// Maximum number of lanes in a batch with its own arrays, and in a batch on a periodic axis
+  /// Maximum number of lanes in any batch whose lanes have arrays of their own, and in any batch on a periodic axis
   int mostWithArrays = 0, mostAround = 0;
 
   /// Number of floats of the arrays that lanes have of their own, so that they can run concurrently.

@@ -41,7 +41,8 @@ static float light_of_cell(const cells_beside* cells, int side, int i)
   return cells->light[faces->first[side] + cells->plane * faces->plane[side] + i * faces->along[side]];
 }
 
-// Incident power of a ray, W: mean radiance of cell i and, if it is on the face, cell i + move, times `power`.
+// Incident power of a ray, W: the mean of the radiance of cell i of a side and of cell i + move, if that is on the
+// face, times `power`, the power of a ray at radiance 1.
 static float light_of_cells(const cells_beside* cells, float power, int side, int i, int move)
 {
   if (!cells->faces->in)
@@ -58,7 +59,7 @@ static float light_of_cells(const cells_beside* cells, float power, int side, in
 }
 
 // Writes the power of the rays that enter through the sides of planes, W, for one lane (the rays that march in one
-// sense along an axis). One work-item per position along the sides (LanePlane.cl).
+// sense along an axis). One work-item per position along the sides, ray and channel, and plane (LanePlane.cl).
 // crossings  sideways moves of rays, from the lane's first plane on
 __kernel void enter_sides(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global CrossingInfo* crossings,
@@ -95,7 +96,7 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
   sides_in[lane->sides + ((ulong)k * lane->rays * CHANNELS + slot) * SIDE_FLOATS(&lane->planes) + place] = light;
 }
 
-// Fraction of a ray's power that leaves through the cells of plane p, where the ray moves sideways in `plane`.
+// Fraction of a ray's power that leaves through the cells of plane p, if the ray moves out sideways in `plane`.
 // @param planes  number of planes from one sideways move of the ray to the next
 static float part_through(const __global SweepLane* lane, int spread, int plane, int p, float planes)
 {
@@ -137,7 +138,7 @@ static float power_through(const __global SweepLane* lane, const ray_in_plane* r
     const bool turns = edges && along != 0;
     const float stays = turns && i == (along > 0 ? size - 1 : 0) ? 0.5f : 1.0f;
     float leaves = stays * out[of_u ? sizeU + i : i];
-    // Power that entered through the adjacent face and leaves without crossing a voxel
+    // Power that enters through the adjacent face and leaves through this one without crossing a voxel
     if (turns && i == (along > 0 ? 0 : size - 1))
     {
       const int last = side % 2 ? (of_u ? sizeU : sizeV) - 1 : 0;

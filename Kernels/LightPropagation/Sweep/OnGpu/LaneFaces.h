@@ -20,7 +20,8 @@ public:
     const Buffer<BundleInfo>& bundles;
     const Buffer<CrossingInfo>& crossings;
     bool ofRound = false; ///< PlaneLaunch::ofRound: rays wrap around a periodic axis, and no more light enters
-    const Buffer<cl_float4>& entering; ///< incident power that is uniform over each face
+    /// Power of incident rays, W, that is uniform over each face, [ray][channel] (PlaneRays::entering)
+    const Buffer<cl_float4>& entering;
   };
 
   /// @param lanes  must outlive this object

@@ -43,12 +43,14 @@ public:
   /// @param lanes  must outlive this object
   LanePowers(Device& device, const GpuLanes& lanes);
 
-  /// Power that escapes sideways, W, written by the plane kernels; see SweepLane::escaped.
+  /// Power that escapes sideways, W, as the plane kernels write it for each lane: [plane][-u, +u, -v,
+  /// +v][channel][position along the face].
   const Buffer<float>& Escaped() const { return this->OfPlanes; }
 
   using MapsOfLane = std::function<const Buffer<float>&(const SweepLane&)>;
 
-  /// Sums each row of `maps`, and of the power that escaped sideways, for the planes that the batch has just crossed.
+  /// Sums each row of rays in `maps` (power of each ray behind the last plane), and each row of the power that escaped
+  /// sideways, for the planes that the batch has just crossed.
   void AddUp(const LaneBatch& batch, const MapsOfLane& maps);
   /// Adds the power that escaped through the faces parallel to the marching axis, from the sums of AddUp(), to
   /// SweepTally::out.

@@ -14,24 +14,25 @@
 namespace tyndall
 {
 /// Streams a volume in host memory for one lane of a sweep on GPUs, i.e. the rays that march in one sense along an
-/// axis: they cross slices of the volume one after another, in two alternating slots on the device (numerics.md,
-/// section 4.10).
+/// axis: they cross slices of the volume one after another. A slot is a device buffer for one slice; two slots
+/// alternate (numerics.md, section 4.10).
 class LaneSlices
 {
 public:
-  /// Returns null if the volume is swept in place, see SliceStream::Make. Otherwise changes the memory layout in `lane`
-  /// to that of the slots.
+  /// Returns null if the volume is not streamed, since it is in device memory or is swept in place
+  /// (SliceStream::Make()). Otherwise changes the memory layout in `lane` to that of a slot, the device buffer for one
+  /// slice.
   /// @param plan  the plan of the lane's axis
   static std::unique_ptr<LaneSlices> Make(
     Device& device, const SweepPlan& plan, SweepLane& lane, SweepWorkspace& workspace);
 
-  VolumeArrays Arrays() const { return this->Stream->Arrays(); } ///< device arrays of the slots
+  VolumeArrays Arrays() const { return this->Stream->Arrays(); } ///< device arrays that hold the slots, one slice each
 
-  /// Queues the crossing of the lane's planes [from, to), whose slice is in the slot given by `launch`. The planes wait
-  /// for the events `after`; the last plane signals `done`.
+  /// Queues the crossing of the lane's planes [from, to), whose slice of the volume is in the slot (device buffer) that
+  /// `launch` gives. The planes wait for the events `after`; the last plane signals `done`.
   using Planes =
     std::function<void(PlaneLaunch launch, int from, int to, const std::vector<cl::Event>* after, cl::Event* done)>;
-  /// Streams all slices through the slots and crosses all planes.
+  /// Copies all slices of the volume, one after another, to the slots and back, and crosses all planes.
   /// @param launch  arguments of the launch, except plane and slot
   void Cross(const SweepVolume& volume, const PlaneLaunch& launch, const Planes& cross);
 
@@ -50,7 +51,8 @@ struct PlaneRays
   const Buffer<BundleInfo>& bundles;
   const Buffer<CrossingInfo>& crossings;
   const Buffer<cl_float4>& entering;
-  /// Power of the rays before planes with even index, and before planes with odd index
+  /// Power of the rays, W, before planes with even index, counted from where rays start, and before planes with odd
+  /// index
   std::array<const Buffer<float>*, 2> maps;
   const Buffer<float>&directed,
     &functions; ///< source along each ray, and angular functions; used only with angular moments
@@ -85,7 +87,7 @@ public:
 
   /// Queues the crossing of planes 0 to planes - 1, counted from where rays start.
   /// @param arrays  the volume's arrays, or the lanes' own arrays
-  /// @param slices  slots of a streamed volume; null: the volume is not streamed
+  /// @param slices  streams the slices of a volume in host memory; null: the volume is not streamed
   void Cross(const SweepVolume& volume, const PlaneLaunch& launch, const VolumeArrays& arrays, LaneSlices* slices,
     const PlaneRays& rays, int planes, const Monitor& monitor);
 

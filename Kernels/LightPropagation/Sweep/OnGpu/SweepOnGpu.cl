@@ -23,7 +23,8 @@ static void put(__global float* where, float value, int adds)
   *where = adds ? *where + value : value;
 }
 
-// Adds `value` to a path integral; with compensated (Kahan) summation if rays cross a voxel repeatedly.
+// Adds `value` to a path integral; with compensated (Kahan) summation, rounding error in `lost`, if rays cross a voxel
+// repeatedly.
 static void put_path(const plane_state* state, __global float* path, __global float* lost, float value)
 {
   if (!state->lane->around)
@@ -110,7 +111,7 @@ static void cross_bundles(const plane_state* state, voxel_sums* sums, const __gl
 
 #if ANGULAR
 // Adds the angular moments of one channel and voxel to `path`.
-// @param places  memory layout of `path`: that of the volume with inPlaces, else [function][channel][stride]
+// @param places  memory layout of `path`: MomentPlaces if inPlaces is 1, else [function][channel][voxel]
 static void put_moments(const plane_state* state, const PlaneLaunch* places, const float* moments, int c, ulong voxel,
   __global float* path, __global float* lost)
 {
@@ -189,8 +190,8 @@ static void put_escaped(
 // Carries the rays of several lanes (SweepLane: one sense along an axis) through one plane. One work-item per voxel of
 // the plane and lane.
 // sigma     extinction, 1/length, [voxel]
-// source    W / (length^3 sr), [channel][stride]
-// octants   additional source per octant, see SweepRequest::octantSource
+// source    W / (length^3 sr), [channel][voxel]
+// octants   additional source per octant of directions, W / (length^3 sr), [channel][octant][voxel]
 // path, flux, currents  output arrays, as for the kernel `sweep`
 // lost      rounding errors of the path, laid out as path, if the marching axis is periodic
 // before    power of the rays at the voxel that they enter in this plane, W, [ray][channel][v][u] for each lane
@@ -199,7 +200,7 @@ static void put_escaped(
 // rays start
 // directed  source in the direction of each ray, W / (length^3 sr), laid out as `before`; if ANGULAR
 // functions values of the angular functions in the rays' directions, [ray][function, then beam]; if ANGULAR
-// escaped   power that escapes sideways, W, see SweepLane::escaped
+// escaped   power that escapes sideways, W, [plane][-u, +u, -v, +v][channel][position along the face] for each lane
 // sides_in, sides_out  power of the rays that enter and leave through the sides, W, see LanePlane.cl; if SIDES
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* lost,

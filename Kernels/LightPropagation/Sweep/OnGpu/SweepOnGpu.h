@@ -54,9 +54,11 @@ private:
   /// Sources, incident light and moves of the rays while a batch (lanes that run concurrently) crosses all planes once.
   struct Crossing
   {
-    bool shines;                                 ///< whether the medium has a source
-    const Buffer<cl_float4>* entering;           ///< power of the light incident on the sides
-    const Buffer<CrossingInfo>* round = nullptr; ///< sideways moves of rays that wrap around; null: of rays that start
+    bool shines; ///< whether the medium has a source
+    /// Power of each incident ray, W, in the layout of the buffer Entering
+    const Buffer<cl_float4>* entering;
+    /// Sideways moves of the rays in a lap around a periodic axis; null: the rays start, with the moves in Crossings
+    const Buffer<CrossingInfo>* round = nullptr;
   };
   /// Rays in transit along a periodic axis between sweeps, for both senses along the axis and a group of channels.
   struct OnTheWay
@@ -99,7 +101,8 @@ private:
   Buffer<CrossingInfo> Crossings;
   Buffer<float> Along;    ///< values of the angular functions, GpuLanes::functions
   Buffer<float> Directed; ///< source in each ray's direction, W / (length^3 sr), in the layout of the maps
-  Buffer<float> Maps[2];  ///< power of the rays of open axes, W
+  /// Power of the rays of open axes, W, before planes with even and with odd index, in the layout of SweepLane::map
+  Buffer<float> Maps[2];
   /// Rays in transit along periodic axes; key: first lane of the batch, and group of channels
   std::map<std::pair<int, int>, OnTheWay> Rounds;
   /// Incident power of each ray, W, [ray][channel]: through the face normal to u, through the face normal to v, and
@@ -109,6 +112,6 @@ private:
   LaneArrays OfLanes;
   LanePowers Powers;
   std::optional<LaneFaces> Faces;      ///< set if light is given or summed per cell of the faces
-  std::map<int, Entered> KeptEntering; ///< cached incident light of each group of channels
+  std::map<int, Entered> KeptEntering; ///< cached incident light; key: group of channels
 };
 }

@@ -24,7 +24,7 @@ typedef struct
   /// `functions` and maps
   int firstRay;
   ulong map; ///< index of the first float of the lane's maps, [ray][channel][v][u]
-  /// Index of the first float of the lane's path integrals; with angular moments [function][channel][stride]
+  /// Index of the first float of the lane's path integrals; with angular moments [function][channel][voxel]
   ulong path;
   /// Index of the lane's first float in the partial currents, divided by 6, and in the net flux, divided by 3
   ulong deposit;
@@ -56,13 +56,16 @@ typedef struct
   /// this index)
   ulong putFirst;
   ulong stride; ///< floats from one channel to the next
-  /// For a streamed volume: index of the first float of the slot of the source, of the path
+  /// For a streamed volume: index of the first float of the slot (buffer for one slice) in the array of the source, and
+  /// of the path; else 0
   ulong slotSource, slotPath;
-  /// For a streamed volume: index of the first float of the slot of arrays with one value per voxel and channel; else 0
+  /// For a streamed volume: index of the first float of the slot in arrays with one value per voxel and channel; else 0
   ulong slotValues;
   int slotPlane; ///< index in the box of the slot's first plane; 0 if the volume is not streamed
   int plane;     ///< index of the plane that is crossed, counted from where rays start
-  int firstLane; ///< index of the lane of the first work-items
+  /// Index of the lane that work-items with get_global_id(2) = 0 carry; the following lanes are carried at the same
+  /// time
+  int firstLane;
   /// 1: the array of crossings begins with those of this launch's lanes, for a lap around a periodic axis; 0: at
   /// SweepLane::crossings
   int ofRound;
@@ -71,7 +74,8 @@ typedef struct
   /// 1: lanes add to the arrays, one lane after another or repeatedly around a periodic axis; 0: each lane writes its
   /// own arrays
   int adds;
-  /// 1: moments have the memory layout of the volume; 0: [function][channel][stride] in the lane's own arrays
+  /// 1: the moments of path integrals are in the volume's array, laid out as `moments`; 0: in the lane's own array,
+  /// [function][channel][voxel]
   int inPlaces;
   int outerSides;       ///< bit i: light that crosses side i leaves the domain; used with SIDES
   MomentPlaces moments; ///< memory layout of the moments of source and path

@@ -13,8 +13,9 @@
 #define LEAVES_GRID(state, side) true
 #endif
 
-// Effect of a segment on rays, see SweepCrossing.cl. own: path integral, within the voxel, of the light that a source
-// of 1 in it emits, divided by a ray's power at radiance 1.
+// Effect of a segment (path through one voxel) on rays of power P with a source q: path += meanLength P, P' = P keep +
+// P change + power q meanLength, with `power` the power of a ray at radiance 1. own: path integral, within the voxel,
+// of the light that a source of 1 in it emits, divided by `power`.
 typedef struct
 {
   float meanLength, keep, change, own;
@@ -31,11 +32,11 @@ typedef struct
   const __global SweepLane* lane;
   const __global float* sigma;  // extinction, 1/length, from the plane's voxel (0, 0) on
   const __global float* source; // source, W / (length^3 sr), from the plane's voxel (0, 0) on
-  // Additional source per octant, from the plane's voxel (0, 0) on, if OCTANT_SOURCE
+  // Additional source, W / (length^3 sr), [octant][voxel], from the plane's voxel (0, 0) on; only if OCTANT_SOURCE is 1
   const __global float* octants;
   ulong stride;
   int sizeU, sizeV;
-  int shines, adds; // whether there is a source; whether values are added or written, see PlaneLaunch
+  int shines, adds; // whether the medium has a source; whether sums are added to the arrays (1) or written to them (0)
   float meanLength[MeanLengthTerms];
   float thin, vacuum;
 #if SIDES
@@ -257,7 +258,7 @@ typedef struct
 } voxel_sums;
 
 // Adds the path integral, and net flux, of a segment to the sums.
-// @param not_lost  power that is subtracted from each ray's for the path integral, W, see not_lost_of
+// @param not_lost  power that is subtracted from each ray's before it is added to the path integral, W (not_lost_of())
 static void put_down(voxel_sums* sums, colours rays, colours not_lost, float meanLength, float3 along)
 {
   for (int c = 0; c < CHANNELS; ++c)
@@ -272,8 +273,9 @@ static void put_down(voxel_sums* sums, colours rays, colours not_lost, float mea
   }
 }
 
-// Adds the power of the rays that leave the box from voxel (u, v) in the move before segment s to the sums, see
-// COUNT_ESCAPED in SweepBundle.cl.
+// Adds the power of the rays that leave the box from voxel (u, v) in the move before segment s to the sums. At the
+// box's edge, half of the power of rays that move along u and v at once leaves through either face, and half of the
+// light that enters next to the edge passes straight through.
 static void count_escaped(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours rays)
 {
@@ -320,9 +322,8 @@ static void add_current(voxel_sums* sums, int face, colours rays, float part)
   }
 }
 
-// Adds the power that enters voxel (u, v) through its faces in the move before segment s to the partial currents, see
-// SweepPartialCurrents.cl. Half of the rays that cross the edge between four voxels, from and to neighbours, pass
-// through voxel (u, v).
+// Adds the power that enters voxel (u, v) through its faces in the move before segment s to the partial currents. Half
+// of the rays that cross the edge between four voxels, from and to neighbours, pass through voxel (u, v).
 // @param come  power of the rays that arrive from the voxel where the move starts
 static void count_currents(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours come)
@@ -391,7 +392,8 @@ static colours cross_voxel(const plane_state* state, voxel_sums* sums, const mem
   return rays;
 }
 
-// Determines the octants of a direction (member m) of a bundle, see SweepBundle.cl.
+// Determines the two octants to which a direction (member m) of a bundle belongs; they are equal unless the direction
+// has no component along u or v.
 static void find_octants(const __global SweepLane* lane, const __global BundleInfo* bundle, int m, int* octants)
 {
   const int u = lane->axis == 0 ? 1 : 0, v = lane->axis == 2 ? 1 : 2;

@@ -36,7 +36,7 @@ public:
     const std::array<bool, 3>& periodic);
 
   /// Fetches the values beyond the faces of this rank's block. Collective.
-  /// @param byFaces  [channel][face][stride] values of the block
+  /// @param byFaces  values of the block's voxels at each of their faces, [channel][face][voxel]
   /// @return values owned by this object, valid until the next call
   BeyondFaces Fetch(const Buffer<float>& byFaces);
 

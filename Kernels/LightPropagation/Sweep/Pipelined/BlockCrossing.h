@@ -13,8 +13,11 @@ namespace tyndall
 /// Power of the rays at the faces of a block, W: either of all rays that enter, or of all that leave.
 struct RaysAtFaces
 {
-  std::vector<float> maps; ///< rays at an end of the marching axis, in the layout of BlockCrossing::RowOfMap
-  /// Rays at the faces parallel to the marching axis, [plane in marching order][ray][cell], see SweepSides.cl
+  /// Power of the rays at an end of the marching axis; BlockCrossing::RowOfMap() gives the index of each row
+  std::vector<float> maps;
+  /// Power of the rays at the faces parallel to the marching axis, [plane in marching order][ray][cell]. The cells of a
+  /// plane are those of the face normal to v, those of the face normal to u, and one for rays that cross both faces at
+  /// once.
   std::vector<float> sides;
 };
 
@@ -23,7 +26,8 @@ struct BlockWorkspace
 {
   SweepWorkspace sweep;
   Buffer<float> sidesIn, sidesOut;
-  /// For GPU kernels: power of the rays before planes with odd index, W, and source along each ray, W / (length^3 sr)
+  /// For GPU kernels: power of the rays before planes with odd index, W (sweep.maps holds those before even ones), and
+  /// source along each ray, W / (length^3 sr)
   Buffer<float> otherMaps, directed;
 };
 
@@ -68,7 +72,7 @@ public:
 };
 
 /// Creates a BlockCrossing with kernels for a CPU, or for a GPU.
-/// @param workspace  must outlive the result; its buffers for sides must be large enough
+/// @param workspace  must outlive the result; its buffers sidesIn and sidesOut must hold RaysOfBlock::Sides() floats
 std::unique_ptr<BlockCrossing> MakeBlockCrossingOnCpu(
   Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace);
 std::unique_ptr<BlockCrossing> MakeBlockCrossingOnGpu(

@@ -57,8 +57,11 @@ private:
   Buffer<CrossingInfo> Crossings;
   /// Values of the angular functions in the rays' directions, if there are angular moments
   Buffer<float> Functions;
-  Buffer<cl_float4> Beyond;  ///< power of light incident from outside the domain, see BlockCrossing::Cross
-  Buffer<float> Left, Sides; ///< power that escapes sideways, W, see SweepLane::escaped; sums of its rows
+  /// Power of light incident from outside the domain, W, [ray][channel]: x through the face normal to u, y through that
+  /// normal to v
+  Buffer<cl_float4> Beyond;
+  /// Power that escapes sideways, W, [plane][-u, +u, -v, +v][channel][position along the face]; sums over the positions
+  Buffer<float> Left, Sides;
 };
 
 BlockCrossingOnGpu::BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, BlockWorkspace& workspace)

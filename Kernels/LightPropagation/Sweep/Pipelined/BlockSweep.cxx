@@ -15,7 +15,7 @@ SweepPlan PlanOf(
   SweepDescription sweep = Describe(volume, {});
   sweep.grid = partition.whole;
   sweep.box = partition.blocks[rank];
-  sweep.faceIn = true; // rays enter through the sides of the block
+  sweep.faceIn = true; // as for light given per cell of faces: rays may enter through the sides of the block
   SweepPlan plan(device, sweep, { rays.axis, rays.bundles });
   const std::array<int, 3>& n = partition.blocks[rank].size;
   const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
@@ -206,7 +206,7 @@ std::vector<cl_float4> BlockSweep::LightBeyond(const SweepBoundary& boundary) co
   return beyond;
 }
 
-/// Bits of the sides -u, +u, -v, +v of the block through which rays leave the domain, see BlockCrossing::Cross.
+/// Bit mask of the block's sides -u, +u, -v, +v (bits 0 to 3) through which rays leave the domain.
 int BlockSweep::OuterSides() const
 {
   int outer = 0;
@@ -220,7 +220,7 @@ int BlockSweep::OuterSides() const
 }
 
 /// Adds the power that leaves the domain from this block to the tally.
-/// @param aside  power that escaped sideways, W, see BlockCrossing::Cross
+/// @param aside  power that left the domain sideways, W, consecutive arrays [-u, +u, -v, +v][channel]
 void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& out, SweepTally& tally) const
 {
   const SweepPlan& plan = this->Plan;

@@ -20,8 +20,8 @@ BlockSweep::ByCells::ByCells(const BlockSweep& sweep, const LightByCells& cells)
   }
 }
 
-/// Calls act for each sideways move of rays in the block's planes, for each direction of a bundle and channel; does
-/// nothing if no face of the block parallel to the marching axis is a face of the domain.
+/// Calls act(Aside) for each sideways move of rays in the block's planes, for each direction of each bundle and each
+/// channel; does nothing if no face of the block parallel to the marching axis is a face of the domain.
 template <class Act>
 void BlockSweep::ByCells::ForAside(const Act& act) const
 {
