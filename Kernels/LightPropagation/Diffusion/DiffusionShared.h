@@ -35,7 +35,8 @@ typedef struct
 {
   int size[3];
   int periodic[3];
-  int passing; ///< 1: first-scattered light of lamps crosses faces without another collision (LampPassing.h)
+  /// 1: the system includes lamps' first-scattered light that crosses faces without another collision (LampPassing.h).
+  int passing;
   int moments; ///< 1: sweeps treat forward scattering as unscattered light, or have angular moments
   int faces;   ///< 1: sweeps tally outgoing and reflected power by cell of the box's faces
   int skin;    ///< 1: the grid has optically thick voxels next to thinner ones

@@ -9,7 +9,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t FewVoxels = 64;        ///< number of voxels below which a level is not coarsened further
+/// Number of voxels below which a multigrid level is not coarsened further
+constexpr std::size_t FewVoxels = 64;
 constexpr int VoxelsOfItem = 4096;           ///< approximate number of voxels per work-item
 constexpr int BetweenPlanes = 2 * RowVector; ///< padding after each plane of voxels, floats
 

@@ -236,8 +236,8 @@ __kernel void level_guess(
   }
 }
 
-// Copies the values at the indices `places` of an array to a message for ghost voxels; put_places() copies a message
-// back.
+// Copies the values at the indices `places` of an array to a message for a rank that holds these voxels as ghosts;
+// put_places() copies a received message to the ghosts.
 __kernel void pick_places(const __global float* values, const __global int* places, __global float* picked)
 {
   picked[get_global_id(0)] = values[places[get_global_id(0)]];

@@ -27,7 +27,8 @@ bool IsInOnePart(const std::array<double, 3>& omega)
 
 std::vector<std::array<double, 3>> ComingFrom(const DirectionSet& set)
 {
-  std::vector<std::array<double, 3>> from = { { 1.0, 0.0, 0.0 } }; // included since beams are often parallel to an axis
+  // The incident direction along an axis is included, since beams are often parallel to an axis
+  std::vector<std::array<double, 3>> from = { { 1.0, 0.0, 0.0 } };
   for (const DirectionSet& one : { set, EquiangularDirections(FromPerFace) })
   {
     for (const Direction& direction : one.directions)

@@ -176,7 +176,7 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
   const float radiance = cross_voxel(from[u], sigma_t[u], SOURCE ? sources[u] : 0.0f, length);
   const float gained = deposit(radiance, sigma_s[u], length);
   contributions[u] = add ? contributions[u] + gained : gained;
-  for (int dv = -1; dv <= 1; ++dv) // the voxel itself, and its periodic images in the border of the map
+  for (int dv = -1; dv <= 1; ++dv) // the voxel itself and its images in the border
   {
     for (int du = -1; du <= 1; ++du)
     {

@@ -110,7 +110,7 @@ SweepTally AxisSweep::Finish()
   if (!this->IsPeriodic() && !this->Dark)
   {
     CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
-    // On an open axis, the rays behind the last plane, whose power is in the maps, have left the box.
+    // On an open axis, the rays behind the last plane have left the box; the maps hold their power.
     const std::array<Rgb, 2> power = this->PowerInMaps();
     for (int way = 0; way < 2; ++way)
     {

@@ -92,7 +92,8 @@ private:
   /// the periodic axis
   SliceStream::Schedule First, Rounds;
 
-  /// Cached incident light of each group of channels; key: SweepVolume::first
+  /// Cached incident light of each group of channels that are swept together; key: index of the group's first value in
+  /// arrays over voxels (SweepVolume::first)
   std::map<std::size_t, std::unique_ptr<SweepBorder>> Borders;
   bool Dark = false; ///< whether the current sweep has neither a source nor incident light
   SweepTally Tally;  ///< incident and escaped power of the current sweep

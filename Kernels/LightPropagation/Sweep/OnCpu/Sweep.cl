@@ -516,8 +516,9 @@ static packed_planes part_of(const packed_planes* packed, const swept_volume* vo
   return part;
 }
 
-// Number of planes to pack together, from plane `begin` of the ray pattern on; at most up to plane `end`, and to the
-// end of the lap (passage through all planes of a periodic axis) that began at plane `lap`.
+// Number of planes to pack (copy to scratch memory) together, from plane `begin` on, counted from where rays start; at
+// most up to plane `end`, and to the end of the lap (passage through all planes of a periodic axis) that began at plane
+// `lap`.
 static int planes_to_pack(const SweepInfo* info, int begin, int end, int lap, int backward)
 {
   const PlaneInfo* layout = &info->planes;

@@ -75,7 +75,8 @@
 // Maximum number of planes that a bundle crosses together, as a chain.
 #define PLANES_CHAINED (CHAINED ? MostChained : 1)
 #define STAGES (3 * PLANES_CHAINED)
-// Maximum number of rows by which the last stage of a chain lags behind the first
+// Maximum number of rows by which the last stage of a chain (`planes` planes that a bundle crosses together) lags
+// behind the first stage
 #define ROWS_BEHIND(planes) (LAG * (3 * (planes)-1) + 2)
 typedef struct
 {

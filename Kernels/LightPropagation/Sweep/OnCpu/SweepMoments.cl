@@ -8,7 +8,8 @@
 // value of a moment is read once for both.
 
 #define MOST_OF_FRAME (MEMBERS < 4 ? MEMBERS : 4)
-// Index of the first direction (member) of frame f of a bundle; eight members are two frames of four.
+// Index of the first direction (member) of frame f of a bundle. A frame is a set of members that differ only in signs;
+// eight members are two frames of four.
 #define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f])
 
 // OF_ALL_PARITIES(MACRO) runs MACRO(parity) for the angular functions k, from the second on, parity by parity; it skips
@@ -43,7 +44,8 @@
 // Computes the source of the voxels of row y in each direction (member) of the bundle (numerics.md, Eq. (29b)), and
 // stores it as row number `slot` of state->sources. Rows have the layout of the ring buffers, whose last row ends with
 // the padding that precedes the first row of the sources.
-// @param frames  number of frames of the bundle, a compile-time constant
+// @param frames  number of frames (sets of members that differ only in signs) of the bundle, 1 or 2, a compile-time
+//   constant
 static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
 {
@@ -135,7 +137,8 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
 }
 
 // Adds the path integrals of the bundle's directions to the moments of row y (numerics.md, Eq. (29b)).
-// @param frames  number of frames of the bundle, a compile-time constant
+// @param frames  number of frames (sets of members that differ only in signs) of the bundle, 1 or 2, a compile-time
+//   constant
 static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
 {

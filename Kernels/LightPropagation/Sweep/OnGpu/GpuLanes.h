@@ -19,8 +19,8 @@ SweepLane LaneOf(const SweepPlan& plan, int way);
 /// (LanePlane.cl).
 std::size_t SideFloats(const SweepLane& lane);
 
-/// Values of the angular functions in the directions of a plan's rays of one sense, followed by those of beams,
-/// [ray][function].
+/// Values of the angular functions, followed by those of beams, in the directions of the rays of a sweep plan that
+/// march in one sense (`way`, 0 forward, 1 backward): [ray][function, then beam].
 std::vector<float> FunctionsAlong(const SweepPlan& plan, int way, const AngularValues& angular);
 
 /// Batch of lanes (each the rays of one sense along an axis) that cross planes in the same launches: lanes of open

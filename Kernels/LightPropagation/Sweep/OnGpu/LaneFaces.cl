@@ -190,7 +190,7 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
 }
 
 // Adds the light incident per cell to the power of a lane's rays (those that march in one sense along an axis) where
-// they start. One work-item per float of the lane's maps.
+// they start. One work-item per float of the lane's maps (power of each ray).
 __kernel void enter_start(int number, const __global SweepLane* lanes, const __global LaneFaceInfo* faces,
   const __global int2* rays, const __global BundleInfo* bundles, const __global float* face_in, ulong first,
   ulong stride, __global float* maps)

@@ -6,7 +6,7 @@
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"
 
 // Sets the power of a lane's rays (those that march in one sense along an axis) where they start, W. One work-item per
-// float of the lane's maps.
+// float of the lane's maps (power of each ray).
 __kernel void start_rays(
   int first_lane, const __global SweepLane* lanes, const __global float4* entering, __global float* maps)
 {

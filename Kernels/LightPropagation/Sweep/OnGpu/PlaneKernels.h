@@ -39,7 +39,9 @@ public:
 private:
   LaneSlices(const SweepPlan& plan, const SweepLane& lane);
 
-  SweepPlan Plan; ///< sweep plan of the lane's axis, with all rays of the lane in a single unit of work
+  /// Sweep plan of the lane's axis, in which all rays of the lane form one unit of work, i.e. cross the planes
+  /// together.
+  SweepPlan Plan;
   std::unique_ptr<SliceStream> Stream;
   SliceStream::Schedule Schedule;
 };

@@ -248,7 +248,7 @@ SweepOnGpu::OnTheWay& SweepOnGpu::RaysOnTheWay(const LaneBatch& batch, int group
 }
 
 /// Discards the rays in transit along periodic axes.
-/// @param group  group of channels; none: all groups
+/// @param group  index of a group of channels that are swept together; none: all groups
 void SweepOnGpu::Forget(std::optional<int> group)
 {
   for (auto& [key, rays] : this->Rounds)

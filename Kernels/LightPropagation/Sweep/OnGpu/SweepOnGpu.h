@@ -103,7 +103,8 @@ private:
   Buffer<float> Directed; ///< source in each ray's direction, W / (length^3 sr), in the layout of the maps
   /// Power of the rays of open axes, W, before planes with even and with odd index, in the layout of SweepLane::map
   Buffer<float> Maps[2];
-  /// Rays in transit along periodic axes; key: first lane of the batch, and group of channels
+  /// Rays in transit along periodic axes; key: index of the batch's first lane, and index of the group of channels that
+  /// are swept together
   std::map<std::pair<int, int>, OnTheWay> Rounds;
   /// Incident power of each ray, W, [ray][channel]: through the face normal to u, through the face normal to v, and
   /// where rays start
@@ -111,7 +112,8 @@ private:
   Buffer<cl_float4> Nothing; ///< zeros, in the layout of Entering: no incident light
   LaneArrays OfLanes;
   LanePowers Powers;
-  std::optional<LaneFaces> Faces;      ///< set if light is given or summed per cell of the faces
-  std::map<int, Entered> KeptEntering; ///< cached incident light; key: group of channels
+  std::optional<LaneFaces> Faces; ///< set if light is given or summed per cell of the faces
+  /// Cached incident light; key: index of the group of channels that are swept together
+  std::map<int, Entered> KeptEntering;
 };
 }
