@@ -32,11 +32,11 @@ CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, con
   return pattern;
 }
 
-/// Factor by which one correction reduces the residual of the diffusion system; a stronger reduction would hardly save
-/// sweeps.
+/// Factor by which the diffusion solve after each sweep reduces the residual of the diffusion system; a stronger
+/// reduction would hardly save sweeps.
 constexpr double Reduction = 3e-3;
-/// Reduction of the residual from the 13th correction on: in slow iterations the residuals of successive corrections
-/// add up.
+/// Factor by which the diffusion solves from the 13th sweep on reduce the residual: if the iteration converges slowly,
+/// the residuals of successive solves add up.
 constexpr double SlowReduction = 1e-4;
 constexpr int Several = 12;
 /// Targets of Refine(): factor by which it reduces the residual of the diffusion system, and upper bound on the

@@ -49,8 +49,9 @@ public:
   /// Layout of the arrays of the finest level: the block and its ghost voxels (BlockWithGhosts::Held).
   const MultigridLevel& Rows() const { return this->Levels.front().layout; }
 
-  /// Conductances of the low faces of the block's voxels and of the ghost voxels above them, [axis][rows]; 0 at the low
-  /// end of the box with ghosts, unless the block spans a periodic axis from end to end.
+  /// Conductances, length^2, of the low faces of the block's voxels and of the ghost voxels above them: for each axis
+  /// one array in rows (MultigridLevel); 0 at the low end of the box with ghosts, unless the block spans a periodic
+  /// axis from end to end.
   Buffer<float>& Conductance() { return this->Levels.front().conductance; }
   Buffer<float>& Loss() { return this->Levels.front().loss; }
   /// Computes the matrices of the coarser levels. To be called after Conductance() and Loss() have been written.

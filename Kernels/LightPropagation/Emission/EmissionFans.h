@@ -27,8 +27,8 @@ struct FanLight
   /// For each voxel, 1: its value is accurate; 0: it is not, since the light of one half of the traced rays differs
   /// from that of the other half; -1: the voxel is too close to the emission.
   Buffer<float> found;
-  /// Outgoing flux density through each cell of the box's faces, W / length^2, and 1 where it is accurate; index: see
-  /// FanFaceFirst.
+  /// For each cell of the box's faces, numbered face by face (FanFaceFirst()): outgoing flux density, W / length^2, and
+  /// 1 where it is accurate.
   Buffer<float> faces, cellsFound;
 };
 

@@ -29,7 +29,8 @@ struct EmissionPeak
 struct SplitEmission
 {
   std::vector<EmissionPeak> peaks; ///< localised emission, at most 16 peaks
-  std::vector<float> smooth;       ///< emission minus peaks, laid out as Medium::emission; empty if there are no peaks
+  /// Emission minus peaks, W / (length^3 sr), [voxel][component] like Medium::emission; empty if there are no peaks
+  std::vector<float> smooth;
 
   /// The medium's emission without the peaks, W / (length^3 sr).
   Field Smooth(const Medium& medium) const

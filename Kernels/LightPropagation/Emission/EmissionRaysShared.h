@@ -27,7 +27,8 @@ typedef struct
   int order[3], turned; ///< permutation of the scene's axes, and bit mask of the reflected ones
   /// First voxel far enough from the emission to use fans, along each axis of the permuted scene
   int first[3];
-  /// Number of layers of such voxels across the first axis, up to the face of the grid; 0: none
+  /// Number of layers, across the first axis, of voxels far enough from the emission to use fans, up to the face of the
+  /// grid; 0: none
   int layers;
   /// Index, among the cells of all faces of the grid, of the first cell of the face at the end of the layers
   int faceFirst;

@@ -46,7 +46,8 @@ struct StackSolution
   std::vector<LayerMeans> means; ///< mean radiance of each layer
   /// Outgoing radiance at the quadrature's nodes, times the square root of their weights
   Eigen::VectorXd upAtTop, downAtBottom;
-  Eigen::VectorXd downAtTop, upAtBottom; ///< incident radiance, including reflected light, in the same form
+  /// Incident radiance at the quadrature's nodes, including reflected light, times the square root of their weights
+  Eigen::VectorXd downAtTop, upAtBottom;
   /// Power of the beams that reaches the boundary from inside, before reflection there, W / length^2
   double beamsAtTop = 0.0, beamsAtBottom = 0.0;
 };

@@ -122,7 +122,8 @@ struct ScatteringOfChannel
 {
   /// Optical thickness of lines of voxels, with the transport extinction, by which light diffuses.
   ThickLines diffusing;
-  /// The same with the extinction that sweeps use; unused if the degree of the angular moments is 0
+  /// Optical thickness of lines of voxels, with the extinction that sweeps use; unused if the degree of the angular
+  /// moments is 0
   ThickLines swept;
   double albedo = 0.0; ///< mean albedo, from the scattering and extinction coefficients that sweeps use
 };

@@ -121,7 +121,9 @@ public:
   /// @param begins  whether this is the first batch of a memory layout, which overwrites the moments
   void Collect(const Batch& batch, bool begins);
 
-  Buffer<float> Contributions; ///< temporary buffers T, see PublishedPropagate.cl
+  /// Temporary buffers T: deposits of the rays over sigma_s, length W / (length^2 sr), [direction of the
+  /// batch][channel][volume]
+  Buffer<float> Contributions;
 
 private:
   void MakeKernels();

@@ -51,8 +51,8 @@ static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 #include "LightPropagation/Sweep/OnCpu/SweepBundle.cl"
 #undef MEMBERS
 
-// Arrays of the volume that a work-item sweeps, from the first of the channels that are swept together; see the
-// arguments of `sweep`.
+// Arrays of the volume that a work-item sweeps: the arguments of the kernel `sweep` with the same names, advanced to
+// the first of the channels that are swept together.
 typedef struct
 {
   const SweepInfo* info;
@@ -65,8 +65,8 @@ typedef struct
   int backward;
 } swept_volume;
 
-// Maps (power of each ray), incident power, bundles and sideways moves of the rays of a work-item's sense of marching;
-// see the arguments of `sweep`.
+// Arguments of the kernel `sweep` that describe rays, advanced to a work-item's sense of marching: maps (power of each
+// ray), incident power, bundles and sideways moves.
 typedef struct
 {
   __global float* maps;

@@ -52,14 +52,15 @@ typedef struct
   // Power that enters the plane's voxels, W, [channel][CurrentFaces]; null: not computed
   __global float* entered;
   bool deposit, thin;
-  float power, cosine; // power of a ray at radiance 1, and cosine of its angle to the marching axis, see BundleInfo
+  float power, cosine; // power of a ray at radiance 1, length^2 sr, and cosine of its angle to the marching axis
 } SEGMENT_ROWS;
 
 // Components, normal to the marching axis, of the directions (members) of a bundle.
 typedef struct
 {
   float alongU[MEMBERS], alongV[MEMBERS]; // components along u and v, for the net flux
-  int2 aside[MEMBERS];                    // combinations of senses along u and v, see ways_aside
+  // The two combinations of senses along u and v to which each direction belongs (ways_aside())
+  int2 aside[MEMBERS];
 } MEMBER_WAYS;
 
 // For one channel and a vector of voxels, carries the rays of all directions (members) of a bundle through one segment,

@@ -12,7 +12,8 @@ typedef struct
 {
   real tau;
   real meanLength; // mean transmitted length p1
-  real keep;       // 1 for small tau, else 0
+  // 1 for small tau, where `change` is minus the lost fraction of P; else 0, where `change` is the transmittance
+  real keep;
   real change;
 } real_crossing;
 

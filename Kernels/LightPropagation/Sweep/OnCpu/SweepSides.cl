@@ -34,8 +34,8 @@ static BY_ROW void take_across_v(sweep_state* state, const __global BundleInfo* 
   }
 }
 
-// Writes the power of the rays of one direction (member) of a bundle that enter through the face normal to u in a move
-// of `du` to the column beside row y.
+// Copies the power of the rays of one direction (member) of a bundle that enter row y through the face normal to u in a
+// move of `du` to the column beside that row.
 static BY_ROW void take_across_u(
   sweep_state* state, const __global BundleInfo* bundle, int member, int y, int du, __global float* out)
 {
@@ -46,8 +46,8 @@ static BY_ROW void take_across_u(
   }
 }
 
-// Writes the power of the rays in row y, of one direction (member) of a bundle, that leave the box in a move of (du,
-// dv) to the sides.
+// Writes the power of the rays of one direction (member) of a bundle that leave the box from row y in a move of (du,
+// dv) to state->sidesOut, for the neighbouring blocks.
 static BY_ROW void give_sides(
   sweep_state* state, const __global BundleInfo* bundle, int member, const __global float* row, int y, int du, int dv)
 {

@@ -2,7 +2,8 @@
 // memory layout of the rays at the planes' sides.
 //
 // The power of rays that enter or leave through the sides is stored as [plane, counted from where rays
-// start][ray][channel][SIDE_FLOATS], see SweepSides.cl.
+// start][ray][channel][SIDE_FLOATS]: one float per column of the plane for the rays that cross the face normal to v,
+// one per row for those that cross the face normal to u, and one for the ray that crosses both at once.
 
 #pragma once
 #include "LightPropagation/Sweep/OnGpu/SweepOnGpuShared.h"

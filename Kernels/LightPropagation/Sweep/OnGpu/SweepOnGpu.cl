@@ -192,7 +192,8 @@ static void put_escaped(
 // sigma     extinction, 1/length, [voxel]
 // source    W / (length^3 sr), [channel][voxel]
 // octants   additional source per octant of directions, W / (length^3 sr), [channel][octant][voxel]
-// path, flux, currents  output arrays, as for the kernel `sweep`
+// path, flux, currents  path integrals and net flux, W length, and power that enters each voxel through each face, W:
+//                       written or, if PlaneLaunch::adds is 1, added to
 // lost      rounding errors of the path, laid out as path, if the marching axis is periodic
 // before    power of the rays at the voxel that they enter in this plane, W, [ray][channel][v][u] for each lane
 // after     power of the rays at the voxel that they enter in the next plane, W, laid out as `before`
@@ -201,7 +202,8 @@ static void put_escaped(
 // directed  source in the direction of each ray, W / (length^3 sr), laid out as `before`; if ANGULAR
 // functions values of the angular functions in the rays' directions, [ray][function, then beam]; if ANGULAR
 // escaped   power that escapes sideways, W, [plane][-u, +u, -v, +v][channel][position along the face] for each lane
-// sides_in, sides_out  power of the rays that enter and leave through the sides, W, see LanePlane.cl; if SIDES
+// sides_in, sides_out  power of the rays that enter and leave through the sides, W, in the layout of LanePlane.cl; if
+//                      SIDES is not 0
 __kernel void cross_plane(PlaneLaunch launch, const __global SweepLane* lanes, const __global float* sigma,
   const __global float* source, const __global float* octants, __global float* path, __global float* lost,
   __global float* flux, __global float* currents, const __global float* before, __global float* after,

@@ -104,7 +104,7 @@ SweepTally SweepOnGpu::ApplyGroup(
     return tally;
   }
   const bool lit = this->Enter(boundary, volume.firstChannel, tally);
-  if (boundary) // rays in transit are discarded, as in SweepInMemory
+  if (boundary) // the rays that incident light starts replace those in transit from earlier sweeps, as in SweepInMemory
   {
     this->Forget(volume.firstChannel);
   }

@@ -66,7 +66,7 @@ private:
     Buffer<float> maps[2];
     int current = 0;
   };
-  /// Incident light: power of each ray, W, as in the buffer Entering, and power by face, W.
+  /// Incident light: power of each ray, W, in the layout of `Entering`, and power through each face of the box, W.
   using Entered = std::pair<std::vector<cl_float4>, std::array<Rgb, 6>>;
 
   SweepTally ApplyGroup(

@@ -37,8 +37,9 @@ typedef struct
   ulong sides;
 } SweepLane;
 
-/// Memory layout of the cells of the box's faces (BoxFaces.h) for a lane, within one channel: the faces -u, +u, -v, +v
-/// as in FaceInfo, and the faces where the lane's rays start and end, [v][u].
+/// Memory layout of the cells of the box's faces (BoxFaces.h) for a lane, within one channel. On the faces -u, +u, -v,
+/// +v the cell at position i of plane p has the index first + p * plane + i * along. `start` and `end` are the indices
+/// of the first cells of the faces where the lane's rays start and end, [v][u].
 typedef struct
 {
   int first[4], plane[4], along[4];

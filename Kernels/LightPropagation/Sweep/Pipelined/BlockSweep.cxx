@@ -15,7 +15,8 @@ SweepPlan PlanOf(
   SweepDescription sweep = Describe(volume, {});
   sweep.grid = partition.whole;
   sweep.box = partition.blocks[rank];
-  sweep.faceIn = true; // as for light given per cell of faces: rays may enter through the sides of the block
+  // Makes the plan provide for rays that enter through the sides, as if light were given per cell of the faces
+  sweep.faceIn = true;
   SweepPlan plan(device, sweep, { rays.axis, rays.bundles });
   const std::array<int, 3>& n = partition.blocks[rank].size;
   const std::array<int, 3> step = { 1, n[0], n[0] * n[1] };
@@ -288,8 +289,8 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
   }
 }
 
-/// Calls visit(inSides, place) for each ray that crosses a contact of the kind Along, i.e. behind the last plane of a
-/// block; see ForEachPlace.
+/// Calls visit(false, place) for each ray that crosses a contact (the voxel faces shared by two blocks) of the kind
+/// Along, i.e. behind the last plane of a block: place is an index into the maps, the power of each ray.
 template <class Visit>
 void BlockSweep::ForEachPlaceAlong(const BlockContact& contact, const Visit& visit) const
 {
