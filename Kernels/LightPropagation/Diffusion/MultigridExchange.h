@@ -24,12 +24,15 @@ public:
 
   /// Layout of this rank's block with its ghost voxels.
   const MultigridLevel& Finest() const { return this->OfBlock; }
-  /// Layout of the second level's cells that contain voxels of the block.
+  /// Layout of the cells of the multigrid's second level that contain voxels of this rank's block.
   const MultigridLevel& Touched() const { return this->OfTouched; }
 
-  /// Copies the values of ghost voxels from their owners, in an array of the finest level in rows.
+  /// Copies the values of ghost voxels from the ranks that own them, in an array of the finest level in rows
+  /// (MultigridLevel).
   void FillGhosts(Buffer<float>& rows) const;
-  void FillGhosts(ExactValues& ofVoxels) const; ///< copies the values of ghost voxels in an array by voxel
+  /// Copies the values of ghost voxels from the ranks that own them, in an array with one value per voxel of the block
+  /// with its ghosts, x fastest.
+  void FillGhosts(ExactValues& ofVoxels) const;
   /// Sums values of touched cells over all ranks, in the order of ranks.
   /// @param arrays  number of consecutive arrays in `ofTouched`
   /// @return rows of the whole second level on the first rank; empty on all other ranks
@@ -44,7 +47,7 @@ private:
   Device& TheDevice;
   const Domain& TheDomain;
   MultigridLevel OfBlock, OfTouched, Coarser;
-  std::vector<VoxelBox> TouchedBoxes; ///< boxes of touched cells, by rank
+  std::vector<VoxelBox> TouchedBoxes; ///< by rank, the box of the second level's cells that contain voxels of that rank
   std::unique_ptr<GhostCells> Ghosts;
   /// Indices, in the row layout, of this rank's voxels that are ghosts on other ranks, and of this rank's ghosts.
   Buffer<cl_int> Owned, Copied;

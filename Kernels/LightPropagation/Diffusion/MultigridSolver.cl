@@ -389,7 +389,7 @@ static exact finish(const MultigridLevel* level, const __global float* conductan
   return sum;
 }
 
-// finish(), run by one work-item.
+// Runs finish(), the approximate solution of a level of few voxels, in one work-item.
 //   sums  [0] sum of right times values
 __kernel void level_finish(MultigridLevel level, const __global float* conductance, const __global float* loss,
   const __global float* right, __global float* values, __global exact* sums, int rounds)

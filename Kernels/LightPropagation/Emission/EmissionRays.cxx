@@ -118,7 +118,8 @@ private:
     // More rays in and next to the box: most of the emitted power may leave through the nearest faces, and an error
     // there would change all other light, because powers are normalised to add up.
     const std::array<int, 3>& size = this->Peak.size;
-    const double close = (size[0] + 2.0) * (size[1] + 2.0) * (size[2] + 2.0); // number of voxels in and next to the box
+    // Number of voxels in the emitting box and next to it
+    const double close = (size[0] + 2.0) * (size[1] + 2.0) * (size[2] + 2.0);
     this->Scene.fewestClose = FewestFor(close, CloseRays, this->Scene.fewest);
     this->Scene.uneven = static_cast<float>(this->Error);
     this->Scene.near = FarFrom(this->Peak.size);

@@ -67,8 +67,8 @@ std::unique_ptr<const SweptDirections> VacuumEmission::DirectionsFor(
 {
   const int asked = static_cast<int>(std::lround(std::sqrt(static_cast<double>(settings.directionsPerFace))));
   const int edge = std::max(FewestPerEdge, asked + asked % 2), perFace = edge * edge;
-  const bool around =
-    settings.periodic[0] || settings.periodic[1] || settings.periodic[2]; // rays cross the grid many times
+  // Along a periodic axis each ray crosses the grid many times
+  const bool around = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
   const double rays = around ? perFace : std::min(RaysOfVoxel, RaysOfGrid / static_cast<double>(whole.VoxelCount()));
   PropagationSettings finer = settings;
   finer.mapResolution = std::max(settings.mapResolution, static_cast<int>(std::sqrt(rays / perFace)));

@@ -77,7 +77,7 @@ struct LayerSource
   void AddEmission(const LayerModes& modes, const LayerOperator& layer, double depth, const Eigen::VectorXd& emitted);
 
   /// Adds the light of the first-collision source of a beam, per mean free path.
-  /// @param cosine  cosine of the beam to the axis of the layers, > 0
+  /// @param cosine  cosine of the angle between beam and axis of the layers, > 0
   /// @param fromTop  the beam enters at the top; false: at the bottom
   /// @param sum, difference  sum and difference of the first-scattered light forward and backward with respect to the
   ///   beam, where it enters, at the quadrature's nodes, times the square root of their weights

@@ -230,7 +230,8 @@ private:
   Eigen::VectorXd Roots, Cosines;
   Eigen::MatrixXd Legendre;
   std::vector<std::vector<double>> BeamsAt, OfBeams;
-  double BeamsAtTop = 0.0, BeamsAtBottom = 0.0; ///< escaped power of the beams, W / length^2
+  /// Power of the beams that reaches the top and the bottom from inside, W / length^2
+  double BeamsAtTop = 0.0, BeamsAtBottom = 0.0;
   std::vector<LayerSource> Sources;
   /// Reflection and emitted light of all layers below each interface; interfaces from the top.
   std::vector<Below> Under;

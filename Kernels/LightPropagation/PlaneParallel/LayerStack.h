@@ -25,7 +25,7 @@ struct LayerStack
 /// Parallel beam incident on the layers. Its azimuth enters through `irradiance`.
 struct StackBeam
 {
-  double cosine = 1.0; ///< cosine to the axis of the layers, above 0
+  double cosine = 1.0; ///< cosine of the angle between beam and axis of the layers, above 0
   bool fromTop = true; ///< whether the beam enters at the top; false: at the bottom
   /// Incident irradiance, perpendicular to the beam, W / length^2; in azimuthal order m > 0 multiplied by the cosine or
   /// sine of m times the azimuth.

@@ -10,7 +10,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostMoments = 32;     ///< highest degree of phase-function moments that is examined
+/// Highest degree of the phase functions' moments from which the degree of the angular moments is chosen
+constexpr int MostMoments = 32;
 constexpr double Negligible = 1e-3; ///< magnitude below which a moment of a phase function is neglected
 constexpr int DegreeOfSlabs = 9, DegreeOfThin = 6, DegreeOfOthers = 3;
 constexpr double SomewhatForward = 0.6;

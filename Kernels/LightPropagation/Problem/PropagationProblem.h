@@ -48,7 +48,8 @@ public:
   const Grid& Whole() const { return this->Solving.Whole(); } ///< grid of the domain
   const Medium& TheMedium() const { return this->Solved; }
   const Grid& TheGrid() const { return this->Solved.grid; } ///< grid of this rank's subdomain
-  /// Traits of the domain's medium, except `filled`, which refers to this rank's subdomain.
+  /// Traits of the domain's medium (whether it absorbs, scatters, emits, is grey, ...); but the box `filled` is that of
+  /// this rank's subdomain.
   const MediumTraits& Traits() const { return this->TheTraits; }
   /// Scattering coefficients and moments of the sweeps (delta-M).
   const TruncatedScattering& Scattering() const { return *this->Truncated; }

@@ -13,8 +13,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr int UsualExponent = 40;       ///< total powers between 2^-40 W and 2^40 W are scaled by less than 2
-constexpr int UsualLengthExponent = 20; ///< longest spacings between 2^-20 and 2^20 are not scaled
+/// If the total power is between 2^-40 W and 2^40 W, it is scaled by a factor below 2
+constexpr int UsualExponent = 40;
+/// Grids whose longest voxel edge is between 2^-20 and 2^20 keep their unit of length
+constexpr int UsualLengthExponent = 20;
 
 double Largest(const Rgb& values)
 {

@@ -57,7 +57,7 @@ public:
   /// Coefficient of a direction's mean radiance in a moment.
   double Coefficient(int moment, int direction) const { return this->Coefficients[moment][direction]; }
 
-  /// A quantity expressed as factor times moment.
+  /// A quantity expressed as a factor times one of the moments.
   struct Part
   {
     int moment = 0;
@@ -127,10 +127,8 @@ struct MapGeometry
   /// density_i of Eq. (13): mean radiance of a voxel per radiance and path length of a ray, 1/length
   double density;
 
-  int PlaneAt(int crossed) const
-  {
-    return this->forward ? crossed : this->planes - 1 - crossed;
-  } ///< index of the plane that rays reach after `crossed` planes
+  /// Index along `axis` of the plane of voxels that rays enter after crossing `crossed` planes.
+  int PlaneAt(int crossed) const { return this->forward ? crossed : this->planes - 1 - crossed; }
   /// Face across `entryAxis` through which this direction enters: index 2 * entryAxis, or 2 * entryAxis + 1 for the
   /// upper side.
   int EntryFace(int entryAxis) const;

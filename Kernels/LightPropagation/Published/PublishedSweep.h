@@ -142,7 +142,7 @@ private:
   std::array<bool, 3> Periodic;
   int Channels;
   Buffer<float> Rays, Escaped, Boundary;
-  Buffer<float> Carried; ///< radiance that wraps around periodic axes into the next order
+  Buffer<float> Carried; ///< radiance of the rays that wrap around the marching axis into the next order
   cl::Kernel StartRays, CrossVoxels[2], EndRays, AddDirections;
 };
 }

@@ -282,9 +282,10 @@ private:
   std::vector<std::vector<float>> Sources;
   /// Moments of this order, in double: thousands of rays cross a flat voxel, and sums in float were wrong by 6e-4.
   std::vector<std::vector<double>> OrderMoments;
-  std::vector<std::vector<float>> Totals;  ///< moments of all orders
-  std::vector<std::vector<float>> Carried; ///< radiance that wraps around the marching axis, by direction
-  std::vector<float> Coefficients;         ///< coefficients of the moments for the current direction
+  std::vector<std::vector<float>> Totals; ///< moments of all orders
+  /// Radiance of the rays that wrap around the marching axis into the next order, by direction
+  std::vector<std::vector<float>> Carried;
+  std::vector<float> Coefficients; ///< coefficients of the moments for the current direction
 };
 }
 

@@ -531,7 +531,8 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
   TAKE_ROW(state, y, inside, s, map, ring, own, beside, outside, radiance, bundle, crossing, in);
   __global float* out =
     g == stages - 1 ? map + y * BLOCK : state->ring + (g * RingRows + (y & (RingRows - 1))) * RAYS_OF_ROW;
-  // At stage 0 without angular moments, CROSS_CHANNEL adds the power.
+  // Adds the power that enters the voxels to the partial currents. At stage 0 without angular moments, CROSS_CHANNEL
+  // does this instead.
   if (state->currents && inside && (ANGULAR || s > 0))
   {
     COUNT_CURRENTS(state, y, s, in, own, bundle, crossing);

@@ -25,7 +25,7 @@ public:
   };
 
   /// @param lanes  must outlive this object
-  /// @param request  request with faceIn or faceOut
+  /// @param request  request that gives incident radiance or asks for escaped power per cell (faceIn, faceOut)
   LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request);
 
   bool Shine() const { return this->FaceIn != nullptr; } ///< whether incident radiance is given per cell

@@ -16,7 +16,7 @@ LaneArrays::LaneArrays(Device& device, const GpuLanes& lanes, const VolumeLayout
     if (count * parts > 0)
     {
       array = Buffer<float>(device, count * parts * values, what);
-      array.Fill(0.0f); // the padding remains zero
+      array.Fill(0.0f); // the padding between channels remains zero
     }
   };
   make(this->path, lanes.mostWithArrays, lanes.functionCount, "the light of each way");
@@ -82,7 +82,7 @@ LanePowers::LanePowers(Device& device, const GpuLanes& lanes)
 {
   if (lanes.escaped > 0)
   {
-    this->OfPlanes.Fill(0.0f); // entries beyond the end of shorter faces remain zero
+    this->OfPlanes.Fill(0.0f); // positions beyond the end of a lane's shorter faces remain zero
   }
 }
 

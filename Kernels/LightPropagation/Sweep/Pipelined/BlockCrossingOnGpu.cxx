@@ -84,7 +84,7 @@ BlockCrossingOnGpu::BlockCrossingOnGpu(Device& device, const RaysOfBlock& rays, 
   this->Beyond = Buffer<cl_float4>(device, plan.eachWay.radiance, "the light that comes in sideways");
   const std::size_t rows = std::size_t{ 4 } * plan.Planes() * plan.channels;
   ReserveOnDevice(device, this->Left, rows * this->Lane.positions, "the power that leaves sideways");
-  this->Left.Fill(0.0f); // entries beyond the end of shorter faces remain zero
+  this->Left.Fill(0.0f); // positions beyond the end of the block's shorter faces remain zero
   this->Sides = Buffer<float>(device, rows, "sums");
   this->Slices = this->MakeSlices();
   this->Lanes = Buffer<SweepLane>(device, std::vector<SweepLane>{ this->Lane }, "the rays' way");
