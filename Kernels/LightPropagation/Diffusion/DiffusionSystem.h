@@ -112,8 +112,8 @@ public:
   /// The last solution: fluence, W / length^2, [voxel]; with angular moments, followed by the moments of degree 1,
   /// [x, y, z][voxel].
   std::vector<double> State() const { return this->Solution.Read(); }
-  /// Sets the state, in the layout of State(), from which the next sweep's source and the next correction are computed.
-  /// The initial state is 0.
+  /// Sets the state (fluence and moments, in the layout of State()) from which the next sweep's source and the next
+  /// correction are computed. The initial state is 0.
   void Begin(const std::vector<double>& state)
   {
     this->Next.Write(state);
@@ -197,6 +197,7 @@ private:
   Buffer<cl_int> Skins; ///< [z][y], 1: the row of voxels has optically thick voxels next to thinner ones
   AndersonMixing Mixing;
   ExactValues Borders;
-  ExactValues Next, Solution; ///< input of the next sweep, and the last solution, in the layout of State()
+  /// State from which the next sweep's source is computed, and the last solution, in the layout of State()
+  ExactValues Next, Solution;
 };
 }

@@ -33,11 +33,13 @@ public:
   /// Copies the values of ghost voxels from the ranks that own them, in an array with one value per voxel of the block
   /// with its ghosts, x fastest.
   void FillGhosts(ExactValues& ofVoxels) const;
-  /// Sums values of touched cells over all ranks, in the order of ranks.
+  /// Sums values of touched cells (cells of the second level that contain voxels of the rank) over all ranks, in the
+  /// order of ranks.
   /// @param arrays  number of consecutive arrays in `ofTouched`
   /// @return rows of the whole second level on the first rank; empty on all other ranks
   std::vector<float> Sum(const Buffer<float>& ofTouched, int arrays) const;
-  /// Copies values of the second level from the first rank to the touched cells of all ranks.
+  /// Copies values of the second level from the first rank to the touched cells (those that contain voxels of the rank)
+  /// of all ranks.
   /// @param whole  rows of the whole second level, read on the first rank only
   void Distribute(const Buffer<float>& whole, Buffer<float>& ofTouched) const;
 

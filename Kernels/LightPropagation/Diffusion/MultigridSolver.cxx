@@ -252,7 +252,8 @@ void MultigridSolver::Smooth(Level& level)
 }
 
 /// Applies the preconditioner, one multigrid cycle, to the residual r; the result z is in the finest level's `better`.
-/// @return r z, the squared norm of the residual in the norm of the preconditioner, relative to `unit`
+/// @return r z, the square of the residual in the norm of the preconditioner; r and z are stored divided by the
+///   parameter `unit` of Solve()
 double MultigridSolver::Precondition()
 {
   if (!this->Exchange)
@@ -348,7 +349,8 @@ double MultigridSolver::SumAfter(const std::function<void()>& work) const
   return this->TheDomain.Sum(sum);
 }
 
-/// Replaces the right-hand side by the residual r = b - A x of `values`. @return r r, with r relative to `unit`
+/// Replaces the right-hand side by the residual r = b - A x of x = `values`, divided by `unit`. @return r r of the
+/// divided residual
 double MultigridSolver::Begin(const ExactValues& values, double unit)
 {
   return this->SumAfter([&] {
@@ -385,7 +387,8 @@ double MultigridSolver::Curvature()
   });
 }
 
-/// Step along the search direction: x += length * p, r -= length * A p. @return r r, with r relative to `unit`
+/// Step along the search direction: x += length * p, r -= length * A p. @return r r; r and p are stored divided by
+/// `unit`
 double MultigridSolver::Step(const ExactValues& values, double length, double unit)
 {
   return this->SumAfter([&] {
@@ -413,7 +416,7 @@ int MultigridSolver::GoOn(ExactValues& values, double unit, double reduction, do
 }
 
 /// Conjugate gradients (Hestenes and Stiefel 1952) until the bounds are met or the residual stagnates.
-/// @param left  r r of the initial residual, relative to `unit`
+/// @param left  r r of the initial residual r, which is stored divided by `unit`
 /// @return number of iterations
 int MultigridSolver::Iterate(ExactValues& values, double left, double unit, double reduction, double leftAtMost)
 {

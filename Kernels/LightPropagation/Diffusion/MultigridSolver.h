@@ -123,8 +123,9 @@ private:
   /// Approximate inverse of the coarsest level's matrix, on devices where it is faster (level_answers); else empty.
   Buffer<float> Answers;
   ExactValues Sums;
-  /// Squared norm r z of the residual r at the start of a solve (z the preconditioned residual, both relative to
-  /// `unit`), the largest of all solves so far. Later solves stop at residuals that are rounding errors relative to it.
+  /// Largest squared norm r z, of all solves so far, of the residual r at the start of a solve; z is the preconditioned
+  /// residual, and both are divided by the parameter `unit` of Solve(). Later solves stop at residuals that are
+  /// rounding errors relative to it.
   double FirstResidual = 0.0;
 };
 }

@@ -25,7 +25,8 @@ namespace tyndall
 /// removed in a voxel is taken as uniform over it.
 ///
 /// @param firstChannel  channel of the peak that corresponds to the first channel of `volume`
-/// @param error  accepted difference of the two halves of a voxel's rays, relative to their sum
+/// @param error  accepted difference between the light of the first and the second half of a voxel's rays, relative to
+///   the sum
 /// @return tally with the escaped power; there is no incident power
 SweepTally DepositEmission(Device& device, const SweepVolume& volume, int firstChannel, const EmissionPeak& peak,
   double error, const Monitor& monitor);

@@ -12,8 +12,9 @@ typedef struct
   int sourceFirst[3], sourceSize[3]; ///< bounding box of the emission: lowest voxel, size in voxels
   int fewest;                        ///< initial number of rays per voxel, a power of two, at least 32
   int fewestClose;                   ///< initial number of rays per voxel in the emitting box and next to it
-  float uneven;                      ///< accepted difference of the two halves of a voxel's rays, relative to their sum
-  int mirrored;                      ///< bit mask of axes across which the scene is symmetric (EmissionMirrors.h)
+  /// Accepted difference between the light of the first and the second half of a voxel's rays, relative to the sum
+  float uneven;
+  int mirrored; ///< bit mask of axes across which the scene is symmetric (EmissionMirrors.h)
   /// Distance of a voxel from the emitting box's centre, half voxels, below which it traces its own rays instead of
   /// sharing fans of rays
   int near;

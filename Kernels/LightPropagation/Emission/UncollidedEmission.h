@@ -13,7 +13,8 @@ namespace tyndall
 class UncollidedEmission : public UncollidedSource
 {
 public:
-  /// @param error  accepted difference of the two halves of a voxel's rays, relative to their sum
+  /// @param error  accepted difference between the light of the first and the second half of a voxel's rays, relative
+  ///   to the sum
   UncollidedEmission(EmissionPeak peak, double error);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;

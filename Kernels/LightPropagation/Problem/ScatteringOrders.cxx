@@ -114,7 +114,8 @@ struct ThickLines
   ThickLines(const Grid& grid, const LineSums& sigma_t);
 
   std::array<double, 3> along = {};
-  bool uneven = false; ///< whether the thickest line is much thicker than the mean
+  /// Whether the optical thickness of the thickest line of voxels is much larger than the mean over all lines
+  bool uneven = false;
 };
 
 /// Properties of one channel from which the number of scattering orders is estimated.

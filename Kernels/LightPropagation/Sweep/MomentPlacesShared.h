@@ -23,8 +23,8 @@ typedef struct
   int functions; ///< number of angular functions, including the first (fluence)
 } MomentPlaces;
 
-/// Index of the value of angular function `function` >= 1 in the voxel at `x` of a row along x. `line` is z * sizeY +
-/// y, as ulong.
+/// Index of the value of angular function `function` >= 1 in the voxel at `x` of a row along x. `line` is the index of
+/// that row, z * sizeY + y, as ulong.
 #define MOMENT_PLACE(places, function, channel, line, x)                                                           \
   ((places).second +                                                                                               \
     ((((line) * (places).channels + (channel)) * (places).groups + (x) / MomentGroup) * ((places).functions - 1) + \

@@ -17,8 +17,8 @@ typedef struct
   real change;
 } real_crossing;
 
-// Computes the effect of a segment. If the whole row is thin, p1 is evaluated as a polynomial, which halves the work.
-// `thin` must be a compile-time constant.
+// Computes the effect of a segment (path through one voxel) on rays. If the whole row of voxels is optically thin, p1
+// is evaluated as a polynomial, which halves the work. `thin` must be a compile-time constant.
 static inline __attribute__((always_inline)) real_crossing cross_length(const sweep_state* state, int x,
   const __global float* sigma_row, const __global float* inverse_row, float length, bool thin)
 {

@@ -8,7 +8,8 @@ namespace tyndall
 {
 namespace
 {
-/// Plan of the sweep of a block: the ray pattern is that of the whole domain, the arrays are those of the block.
+/// Plan of the sweep of a block: rays make the same sideways moves as in a sweep of the whole domain, and the arrays
+/// are those of the block.
 SweepPlan PlanOf(
   Device& device, const BlockPartition& partition, int rank, const ParallelBundles& rays, const SweepVolume& volume)
 {
