@@ -30,16 +30,17 @@ public:
   /// @param boundary  incident radiance; not empty
   SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, Holds holds = Holds::Maps);
 
-  /// Incident power of a ray, W, [sense][bundle][member][channel]; components x, y, z: power if the ray enters through
-  /// the face normal to u, through the face normal to v, or at the face where rays start.
+  /// Incident power of a ray, W, [sense][bundle][member (direction)][channel]; components x, y, z: power if the ray
+  /// enters through the face normal to u, through the face normal to v, or at the face where rays start.
   std::vector<cl_float4> rays;
 
-  /// Power of each ray before it crosses the first plane, W, laid out as the maps of a sweep; the columns beyond the
-  /// end of a row hold the power of rays that enter through the faces normal to u.
+  /// Power of each ray before it crosses the first plane, W, in the layout of a sweep's maps (MapsInfo in
+  /// SweepShared.h: rows of rays per bundle, direction and channel); the columns beyond the end of a row hold the
+  /// power of rays that enter through the faces normal to u.
   std::vector<float> maps;
-  /// Power of rays that enter through the faces normal to v, W, [bundle][member][channel][row]
+  /// Power of rays that enter through the faces normal to v, W, [bundle][member (direction)][channel][row]
   std::vector<float> outside;
-  /// Power of a ray that enters through a face normal to u, W, [bundle][member][channel]
+  /// Power of a ray that enters through a face normal to u, W, [bundle][member (direction)][channel]
   std::vector<float> radiance;
   std::array<Rgb, 6> powerIn = {}; ///< incident power through each face of the box, W
 

@@ -16,17 +16,17 @@
 
 namespace tyndall
 {
-/// Output arrays of a sweep. The sweep adds to their values.
+/// Output arrays of a sweep, in the layout of VolumeLayout. The sweep adds to their values.
 struct Deposit
 {
-  /// Path integral of power per voxel, W length, [channel][stride]; with angular moments [function][channel][stride],
-  /// where the first function is the path integral
+  /// Path integral of power per voxel, W length, [channel][voxel]; with angular moments [angular
+  /// function][channel][voxel], where the moment of the first function is the path integral
   const Buffer<float>* path = nullptr;
-  const Buffer<float>* flux = nullptr; ///< net flux, W length, [channel][x, y, z][stride]; null: not computed
+  const Buffer<float>* flux = nullptr; ///< net flux, W length, [channel][x, y, z][voxel]; null: not computed
   /// Power that enters each voxel through each of its faces (numerics.md, Eq. (29)), W, [channel][-x, +x, -y, +y, -z,
-  /// +z][stride]; null: not computed
+  /// +z][voxel]; null: not computed
   const Buffer<float>* partialCurrents = nullptr;
-  /// First moments of the deposit of lamps, W length, [channel][-x, +x, -y, +y, -z, +z][stride]: path integral times
+  /// First moments of the deposit of lamps, W length, [channel][-x, +x, -y, +y, -z, +z][voxel]: path integral times
   /// the distance, in voxels (0 to 1/2), of the mean position of collisions from the voxel's centre towards each face
   /// (numerics.md, Eq. (37)). 0 in voxels thinner than ThinForFirstMoments. Null: not computed.
   const Buffer<float>* firstMoments = nullptr;
@@ -80,7 +80,7 @@ struct SweepTally
 {
   std::array<Rgb, 6> in = {};
   std::array<Rgb, 6> out = {};
-  Rgb onTheWay = {}; ///< power in transit along periodic axes at the end of the sweep
+  Rgb onTheWay = {}; ///< power of the rays still in transit along periodic axes at the end of the sweep
 };
 
 /// Adds `power` to `sum`, both by face and channel, W.
@@ -147,18 +147,19 @@ struct SweepRequest
   int mostPlanes = MostPlanesAround;
   /// Whether the boundary source is the same in every sweep, so that the incident power of the rays is cached
   bool sameBoundary = false;
-  /// Values of the angular functions in the rays' directions; must outlive the sweep. Sources and path integrals are
-  /// then angular moments, which include the net flux. Null: no angular moments, fluence only.
+  /// Values, in the rays' directions, of the angular functions (spherical harmonics) in which light is expanded; must
+  /// outlive the sweep. Sources and path integrals are then angular moments, which include the net flux. Null: no
+  /// angular moments, fluence only.
   const AngularValues* angular = nullptr;
   /// Isotropic incident radiance per cell of the box's faces, W / (length^2 sr), [channel][cell] (BoxFaces.h), in
   /// addition to the boundary source of each sweep; not counted as incident power in the tally. Must outlive the sweep;
   /// null: none.
   const Buffer<float>* faceIn = nullptr;
-  /// Additional source per octant of directions, W / (length^3 sr), [channel][octant][stride], added to the source for
+  /// Additional source per octant of directions, W / (length^3 sr), [channel][octant][voxel], added to the source for
   /// light that leaves the voxel. Bits 0, 1, 2 of an octant's index are set if its directions are positive along x, y,
-  /// z. The power that this source adds to rays is subtracted from the voxel's own path integral, so the total power is
-  /// that of the source alone. Not with angular moments. Must outlive the sweep; null: the source is the same in all
-  /// octants.
+  /// z. The power that this source adds to rays is subtracted from the voxel's own path integral, so the total power
+  /// is that of the source alone. Not with angular moments. Must outlive the sweep; null: the source is the same in
+  /// all octants.
   const Buffer<float>* octantSource = nullptr;
 };
 
@@ -172,8 +173,8 @@ public:
   virtual ~SweepOperator() = default;
 
   /// Sweeps once and adds to the request's deposit.
-  /// @param source  W / (length^3 sr), [channel][stride], with angular moments [function, then beam][channel][stride];
-  /// null: no source
+  /// @param source  W / (length^3 sr), [channel][voxel], with angular moments [angular function, then
+  ///   beam][channel][voxel]; null: no source
   /// @param boundary  incident light, three channels; empty: none
   /// @param monitor  receives the completed fraction of this sweep, 0 to 1
   /// @return incident power, escaped power, and power in transit along periodic axes, which continues in the next

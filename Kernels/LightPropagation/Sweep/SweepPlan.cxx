@@ -171,8 +171,8 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
-  // If all bundles are processed in one call, rows can be packed (copied to scratch) just before bundles cross them,
-  // and are then still in the cache.
+  // If all bundles take their turns on a tile of rows in one call (at most BundlesTogether bundles), rows can be
+  // packed (copied to scratch) just before bundles cross them, and are then still in the cache.
   const bool inOneTurn = this->plane.tile > 0 && this->bundles.size() <= BundlesTogether;
   this->rowsKept = inOneTurn && this->plane.block == 1 && this->plane.sizeV > RowsOfChainKept ? RowsOfChainKept : 0;
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
@@ -255,8 +255,8 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   return description;
 }
 
-/// Determines the frames of each bundle (sets of members whose directions differ only in signs), and the values of the
-/// angular functions in their directions, with their indices, for both senses of marching.
+/// Determines the frames of each bundle (sets of members whose directions differ only in signs), and for both senses
+/// of marching the values of the angular functions in their directions and the index of each bundle's first value.
 void SweepPlan::LayFrames()
 {
   for (std::size_t b = 0; b < this->bundles.size(); ++b)
@@ -306,7 +306,8 @@ int SweepPlan::ParitiesOf(const Bundle& bundle) const
 }
 
 /// Appends to `coefficients` the values of the angular functions in the direction of each frame of bundle b, reflected
-/// to positive u and v, and the values of the beams in the direction of each of its members.
+/// to positive u and v, and the angular distributions of the beams' light (AngularValues::beams) in the direction of
+/// each of its members.
 void SweepPlan::LayCoefficients(std::size_t b, int way)
 {
   const auto directionOf = [way](const Member& member) { return way == 0 ? member.direction : member.opposite; };
@@ -387,8 +388,9 @@ int SweepPlan::CrossingPlanes() const
 
 std::size_t SweepPlan::ScratchFloats() const
 {
-  // Scratch of the bundles (two ring buffers of rows, or the data kept from one tile of rows to the next), and the rays
-  // of one row of which only a fraction of the power moves.
+  // Scratch of the bundles: with angular moments the data kept from one tile of rows to the next, else the ring
+  // buffers of rows between the stages of crossing a plane. In addition, one row of rays, for fractional moves, in
+  // which only a fraction of a ray's power moves.
   const std::size_t raysOfRow = static_cast<std::size_t>(MaxMembers) * this->channels * this->row;
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
   const std::size_t kept = this->angular
@@ -557,9 +559,10 @@ std::vector<OwnLightInfo> SweepPlan::OwnLight(int lapPlanes) const
   return rows;
 }
 
-/// Path integral, per unit of source, of light within its voxel of origin (numerics.md, Eq. (26)). For thin voxels: the
-/// sum over segments of power (l - p1) / sigma_t = -power l^2 (MeanLength[0] + sigma_t l (MeanLength[1] + ...)), with
-/// sigma_t in units of `thin`.
+/// Path integral, per unit of source, of light within its voxel of origin (numerics.md, Eq. (26)): the sum over
+/// segments of power (l - p1) / sigma_t, where l is the segment's length and p1 its mean transmitted length. For thin
+/// voxels each term is -power l^2 (MeanLength[0] + sigma_t l (MeanLength[1] + ...)), a polynomial in sigma_t /
+/// PlaneInfo::thin.
 OwnLightInfo SweepPlan::OwnLightOf(const UnitInfo& unit, int ofPlane) const
 {
   double sum = 0.0;

@@ -12,7 +12,7 @@
 
 namespace tyndall
 {
-/// Properties of a sweep along one axis that its plan depends on.
+/// Properties of a sweep along one axis on which its SweepPlan depends.
 struct SweepDescription
 {
   Grid grid;
@@ -56,15 +56,16 @@ struct SweepPlan : SweepDescription
   EachWay eachWay = {}; ///< number of floats of each array for one sense of marching
   /// Values of the angular functions (BundleInfo::coefficients), those of rays that march forward first
   std::vector<float> coefficients;
-  FunctionOrder order; ///< order of the angular functions for the marching axis
+  FunctionOrder order; ///< order in which this marching axis stores the angular functions: by parity along u and v
   /// Whether the array of moments holds each row of a plane contiguously, so that rows need not be packed (copied to
   /// scratch)
   bool momentsInPlace = false;
-  /// Number of floats in a packed row of moments: all channels, all functions from the second on
+  /// Number of floats in a row of moments that is packed (copied to scratch): all channels, all functions from the
+  /// second on
   int momentRow = 0;
 
   std::vector<UnitInfo> units;
-  /// Range of planes (first, end) that each unit of work crosses in each launch, [launch][unit]
+  /// Range of planes (first, end) that each unit of work crosses in each launch, [launch][unit of work]
   std::vector<cl_int2> schedule;
   int launches = 0;
   double secondsPerLaunch = 0.0; ///< upper estimate of the time of a launch on a slow core, s
@@ -72,7 +73,7 @@ struct SweepPlan : SweepDescription
   /// of moves; else 1
   int laps = 1;
   /// Range of planes (first, end) that each unit of work crosses in each launch when rays wrap around a periodic axis,
-  /// [launch][unit]; only one unit of work runs in each launch
+  /// [launch][unit of work]; only one unit of work runs in each launch
   std::vector<cl_int2> roundSchedule;
 
   int Planes() const { return this->box.size[this->axes.axis]; }
@@ -83,16 +84,19 @@ struct SweepPlan : SweepDescription
   int PlanesBefore(int way) const;
   /// Number of planes from where rays start to the end of the swept box; the maximum over both senses of marching.
   int CrossingPlanes() const;
-  std::size_t ScratchFloats() const; ///< number of floats of scratch memory per unit
+  /// Number of floats of scratch memory per unit of work (the rays that one work-item carries)
+  std::size_t ScratchFloats() const;
 
   /// Sideways moves and segment lengths of rays in each plane, [plane][bundle].
   /// @param firstPlane  first plane, counted from the plane where rays start
   std::vector<CrossingInfo> Crossings(int firstPlane, int planes) const;
-  /// Path integral, per unit of source, of emitted and scattered light within its voxel of origin, [unit][plane].
+  /// Path integral, per unit of source, of emitted and scattered light within its voxel of origin, [unit of
+  /// work][plane].
   /// @param lapPlanes  number of planes that the rays have crossed at the start of this lap around a periodic axis
   std::vector<OwnLightInfo> OwnLight(int lapPlanes = 0) const;
-  /// Offset of the values of each angular function within a group of moments (MomentPlacesShared.h), for the functions
-  /// in this axis's order. 0 for the first function, which is stored elsewhere, and if there are no angular moments.
+  /// Offset of the values of each angular function within a group of moments (those of MomentGroup voxels along x,
+  /// which are stored together; MomentPlacesShared.h), for the functions in this axis's order. 0 for the first
+  /// function, which is stored elsewhere, and if there are no angular moments.
   std::vector<cl_int> FunctionPlaces() const;
   /// Arguments of the kernel `sweep` that the plan determines.
   SweepInfo Info() const;

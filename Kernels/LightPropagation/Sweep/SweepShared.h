@@ -19,22 +19,25 @@ enum
   /// Maximum number of bundles that take turns on each tile (block of rows), if there are angular moments or planes are
   /// chained
   BundlesTogether = 16,
-  /// Rows for which a bundle's sources are stored: those that its stages of crossing a plane work on
+  /// Rows for which a bundle's sources are stored: those on which its stages of crossing a plane (each takes every ray
+  /// through one voxel) work at a time
   MomentRows = 8,
   /// Maximum number of planes in a chain, i.e. planes that a bundle crosses together, row by row
   MostChained = 2,
   /// Rows in a tile of a plane with angular moments; a tile stays in the cache while all bundles cross it
   RowsTogether = 8,
-  /// Rows in a tile of chained planes; a tile stays in the cache while all bundles cross it
+  /// Rows in a tile of chained planes (planes that a bundle crosses together, row by row); a tile stays in the cache
+  /// while all bundles cross it
   RowsOfChain = 32,
-  /// Rows of chained planes held in scratch: a tile and the rows by which the last stage lags behind the first; a power
-  /// of two
+  /// Rows of chained planes held in scratch: a tile, and the rows by which the last stage of crossing a plane (each
+  /// stage takes every ray through one voxel) lags behind the first; a power of two
   RowsOfChainKept = 64,
-  /// In chained planes, a row of a map (powers of rays) is prefetched this number of rows before it is crossed
+  /// In chained planes (crossed together, row by row), a row of a map (powers of rays) is prefetched this number of
+  /// rows before it is crossed
   RowsAhead = 2,
   FloatsOfLine = 16, ///< number of floats in a cache line
-  /// Lowest row at which the first stage of crossing a plane begins: if v is periodic, it also crosses up to two rows
-  /// before the plane
+  /// Lowest row at which the first stage of crossing a plane begins: if v is periodic, that stage also crosses up to
+  /// two rows before row 0, ghost rows of the other end of the plane
   FirstRow = -2
 };
 
@@ -44,8 +47,8 @@ enum
 {
   PlaneSigma = 0,
   PlaneInverse = 1,
-  /// Sum over rays of power times mean transmitted length; subtracted to obtain the path integral of light in its voxel
-  /// of origin
+  /// Sum over rays of power times mean transmitted length; subtracted from the sum of power times length to obtain the
+  /// path integral of light in its voxel of origin (numerics.md, Eq. (26))
   PlaneTaken = 2,
   PlaneSource = 3
 };
@@ -88,17 +91,20 @@ enum
 typedef struct
 {
   int members;
-  int map;    ///< index of the first float of the bundle's maps (power of its rays)
-  int border; ///< index of the bundle's first value in the incident power at faces normal to u, [member][channel]
-  /// Index of the bundle's first float in the rows that enter through faces normal to v, [member][channel][row]
+  int map; ///< index of the first float of the bundle's maps (power of its rays)
+  /// Index of the bundle's first value in the incident power at faces normal to u, [member (direction)][channel]
+  int border;
+  /// Index of the bundle's first float in the rows that enter through faces normal to v, [member][channel][row]; a
+  /// member is one direction of the bundle
   int outside;
   float power;  ///< power of a ray of radiance 1 (numerics.md, Eq. (19)), length^2 sr
   float cosine; ///< cosine of the angle between the bundle's directions and the marching axis, for the net flux
   float sineU, sineV;
-  /// Mean number of planes between two moves of a ray along u, and along v; at most the number of planes of the axis
+  /// Mean number of planes between two sideways moves of a ray along u, and along v; at most the number of planes of
+  /// the axis
   float planesU, planesV;
-  /// Per member, the 2 x 2 signed permutation that maps the bundle's moves along its own axes to moves along u and v of
-  /// the plane: u from u, u from v, v from u, v from v
+  /// Per member (direction), the 2 x 2 signed permutation that maps the bundle's moves along its own axes to moves
+  /// along u and v of the plane: u from u, u from v, v from u, v from v
   int move[MaxMembers][4];
   /// Number of frames, and index of each frame's first member, then the end of the last frame. A frame is a set of at
   /// most four members of the bundle whose directions differ only in signs.
@@ -107,7 +113,8 @@ typedef struct
   /// directions (SweepLayout.cl)
   int parities;
   /// Index of the bundle's first coefficient, for each sense of marching: values of the angular functions for positive
-  /// u and v, [frame][function] in the order of the axis; then values of beams, [member][beam].
+  /// u and v, [frame (directions that differ only in signs)][function], sorted by parity as FunctionOrder; then the
+  /// angular distributions of beams, [member][beam].
   int coefficients;
 } BundleInfo;
 
@@ -127,8 +134,8 @@ typedef struct
 {
   int backward; ///< 0: marches from the lower end of the axis, 1: from the upper end
   int firstBundle, bundles;
-  int scratch; ///< index of the first float of the unit's scratch memory
-  /// Number of planes from where the unit's rays start to the first plane of the swept box
+  int scratch; ///< index of the first float of the unit of work's scratch memory
+  /// Number of planes from where the rays of this unit of work start to the first plane of the swept box
   int planesBefore;
 } UnitInfo;
 
@@ -140,7 +147,7 @@ typedef struct
   int firstU, firstV, firstP;
   int stepU, stepV, stepP;
   int width;
-  int quantities; ///< number of quantities per voxel of a packed plane
+  int quantities; ///< number of quantities per voxel of a plane that is packed (copied to scratch)
   int currents;   ///< 1: the power that enters each voxel through each face is summed
   /// Number of planes packed (copied to scratch) at once: 1 if rows are contiguous in memory, else the vector width
   int block;
@@ -159,7 +166,7 @@ typedef struct
 typedef struct
 {
   float length; ///< sum over segments of power times length l
-  /// Coefficients of that sum as a polynomial in sigma_t / PlaneInfo::thin, for a thin voxel
+  /// For a thin voxel: coefficients of the path integral as a polynomial in sigma_t / PlaneInfo::thin
   float terms[MeanLengthTerms];
 } OwnLightInfo;
 
@@ -171,13 +178,15 @@ typedef struct
   int first[4], plane[4], along[4];
   /// Index of the first channel's first cell; number of cells from one channel to the next
   ulong firstChannel, stride;
-  /// Number of cells in each unit of work's own copy of the cells' values, if `spread`, because units of work run
-  /// concurrently
+  /// If `spread`: number of cells in the copy of all cells' values that each unit of work (rays carried by one
+  /// work-item) has for itself, because units of work run concurrently
   ulong unit;
-  int out; ///< 1: the power that leaves through each cell is summed
-  /// Whether (1) the escaped power of a ray is spread over all cells that the ray represents; used if `out`
+  int out; ///< 1: the power that leaves through each cell of the box's faces is summed
+  /// Whether (1) the escaped power of a ray is spread over all cells of the face through which light represented by
+  /// the ray leaves; used if `out`
   int spread;
-  /// 1: incident radiance is given per cell, in addition to the radiance that is uniform over each face
+  /// 1: incident radiance is given per cell of the box's faces, in addition to the radiance that is uniform over each
+  /// face
   int in;
 } FaceInfo;
 
@@ -211,20 +220,24 @@ typedef struct
   PlaneInfo planes;
   FaceInfo faces;
   MomentPlaces moments;
-  int sizeY; ///< voxels along y of the grid or, if the volume is streamed, of a slot
-  /// 1: angular moments are read and added to in their array; 0: they are packed like the other quantities of a plane
+  int sizeY; ///< voxels along y of the grid or, if the volume is streamed, of a slot (device buffer for a slice)
+  /// 1: angular moments are read and added to in their array; 0: they are packed (copied to scratch) like the other
+  /// quantities of a plane
   int momentsInPlace;
-  int packedMoments; ///< number of floats in a packed row of moments
+  int packedMoments; ///< number of floats in a row of moments that is packed (copied to scratch)
   int parityEnds[4]; ///< end of the range of angular functions of each parity (SweepLayout.cl)
   int firstChannel;
-  int streamed; ///< 1: the volumes are streamed in slices through slots (SliceStream.h)
-  /// Number of floats in a slot of the source, and in a slot of the path integral, if streamed
+  /// 1: the volumes are streamed in slices through slots, device buffers that hold a few planes (SliceStream.h)
+  int streamed;
+  /// If the volume is streamed: number of floats in a slot (device buffer for a slice) of the source, and in a slot of
+  /// the path integral
   ulong sourceSlot, pathSlot;
   int outerSides; ///< for a subdomain: bit i is set if light that crosses side i of -u, +u, -v, +v leaves the domain
 } SweepInfo;
 
-/// Arguments of the kernels on the maps of rays (SweepMaps.cl). Maps are [sense][bundle][row][member][channel], with
-/// `row` floats for each row of rays: the first `border` floats are padding, then `sizeU` rays follow.
+/// Arguments of the kernels on the maps of rays (SweepMaps.cl). Maps are [sense][bundle][row][member][channel] (a
+/// member is one direction of a bundle), with `row` floats for each row of rays: the first `border` floats are
+/// padding, then `sizeU` rays follow.
 typedef struct
 {
   ulong eachWay; ///< number of floats of the maps for one sense of marching
@@ -238,7 +251,8 @@ typedef struct
 SHARED_END
 
 #ifdef __OPENCL_C_VERSION__
-// Sideways move of a bundle's member before a stage of crossing a plane, voxels along u and v.
+// Sideways move of the rays of one member (direction) of a bundle before a stage of crossing a plane (each stage takes
+// them through one voxel), voxels along u and v.
 static inline int2 move_of(
   const __global BundleInfo* bundle, int member, const __global CrossingInfo* crossing, int stage)
 {

@@ -14,12 +14,13 @@ namespace tyndall
 struct SweepVolume
 {
   Grid grid;
-  /// Region of the grid that is swept; rays start at its faces, at the positions where they would have entered it;
-  /// empty: the whole grid
+  /// Region of the grid that is swept; rays start at its faces, at the same positions as rays that have crossed the
+  /// grid up to there; empty: the whole grid
   VoxelBox box;
   int channels = 1; ///< number of channels that share one sigma_t: 1 or 3
   std::size_t stride = 0;
-  const AngularValues* angular = nullptr; ///< values of the angular functions, as in SweepRequest
+  /// Values of the angular functions, as SweepRequest::angular; null: fluence only
+  const AngularValues* angular = nullptr;
   const Buffer<float>* sigma_t = nullptr; ///< extinction, 1/length
   std::size_t sigma_t_first = 0;          ///< index of the first channel's first value in sigma_t
   const Buffer<float>* source = nullptr;  ///< source, W / (length^3 sr); null: no source
@@ -27,8 +28,9 @@ struct SweepVolume
   /// Index of the first channel's first value in source and path (in flux three times this index, in partialCurrents
   /// and firstMoments six times).
   std::size_t first = 0;
-  const Buffer<float>* faceIn = nullptr; ///< incident radiance per cell of the box's faces, as in SweepRequest
-  /// Additional source per octant of directions, as in SweepRequest
+  /// Incident radiance per cell of the box's faces, SweepRequest::faceIn; null: none
+  const Buffer<float>* faceIn = nullptr;
+  /// Additional source per octant of directions, SweepRequest::octantSource; null: none
   const Buffer<float>* octantSource = nullptr;
   std::size_t faceFirst = 0; ///< index of the first channel's first cell in faceIn and faceOut
   int firstChannel = 0;
@@ -76,7 +78,8 @@ struct SweepWorkspace
   /// Source, path integral and other quantities of the planes that are being crossed (SweepShared.h)
   Buffer<float> scratch;
   Buffer<float> lost; ///< rounding errors of `path` (compensated summation), in sweeps along a periodic axis
-  std::array<Buffer<float>, SlotSizes().size()> slots; ///< slots of streamed volumes (SliceStream.h)
+  /// Slots of streamed volumes: device buffers that hold a few planes (SliceStream.h)
+  std::array<Buffer<float>, SlotSizes().size()> slots;
 
   /// Enlarges `maps` and `scratch` to these sizes. No sweep may be in progress, because buffers that are too small are
   /// freed first.

@@ -21,9 +21,9 @@ struct ChannelGroup
   int count = 1;
 };
 
-/// Memory layout of arrays over voxels on the device: [channel][stride], voxels x fastest. The stride is the voxel
-/// count rounded up to whole vectors; the padding is zero. Buffers are SweepPadding floats longer, so that a full
-/// vector may be read from any position in them.
+/// Memory layout of arrays over voxels on the device: [channel][voxel], voxels x fastest, with Stride() floats per
+/// channel: the voxel count rounded up to whole vectors; the padding is zero. Buffers are SweepPadding floats longer,
+/// so that a full vector may be read from any position in them.
 struct VolumeLayout
 {
   Grid grid;
@@ -76,7 +76,7 @@ struct VolumeLayout
   }
 };
 
-/// Writes value(voxel, channel) to `values` in the layout [channel][stride], and zero to the padding. `value` is called
+/// Writes value(voxel, channel) to `values` in the layout [channel][voxel], and zero to the padding. `value` is called
 /// from several threads.
 template <class Value>
 void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, float* values)
@@ -95,7 +95,7 @@ void WritePlanar(const VolumeLayout& layout, int channels, const Value& value, f
   std::fill_n(values + channels * stride, SweepPadding, 0.0f);
 }
 
-/// Returns an array [channel][stride] filled with value(voxel, channel), zero in the padding; see WritePlanar.
+/// Returns an array [channel][voxel] filled with value(voxel, channel), zero in the padding; see WritePlanar.
 template <class Value>
 std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value& value)
 {
@@ -104,7 +104,7 @@ std::vector<float> Planar(const VolumeLayout& layout, int channels, const Value&
   return values;
 }
 
-/// Returns a device buffer [channel][stride] filled with value(voxel, channel), zero in the padding; written without a
+/// Returns a device buffer [channel][voxel] filled with value(voxel, channel), zero in the padding; written without a
 /// copy on a CPU. See WritePlanar.
 /// @param what  name of the quantity for error messages, see Buffer
 template <class Value>
@@ -116,7 +116,7 @@ Buffer<float> PlanarOnDevice(
   return values;
 }
 
-/// Values of a planar array times `scale`, interleaved: the values of each voxel (channels times components) are
-/// adjacent.
+/// Values of a planar array ([channel][voxel]) times `scale`, interleaved: the values of each voxel (channels times
+/// components) are adjacent.
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale);
 }

@@ -244,8 +244,8 @@ void BlockSweep::ByCells::PassEdges(const Aside& ray, const SweepBoundary& bound
 
 /// Sums the power of a ray that passes an edge of the domain: it enters through the face normal to axis `from` and
 /// leaves through the face normal to axis `through`.
-/// @param alike  the ray's power from incident light that is uniform over the face, W; it is added only to the cells,
-/// because BlockCrossing adds it to the tally
+/// @param alike  the ray's power from incident light that is uniform over the face, W; it is added only to the sums
+///   per cell, because BlockCrossing adds it to the tally
 void BlockSweep::ByCells::PassEdge(const Aside& ray, int through, int from, double alike, SweepTally& tally) const
 {
   const PlaneAxes& axes = this->Sweep.Plan.axes;

@@ -199,8 +199,8 @@ SweepTally SweepInBlocks::ApplyGroup(
   return sweeping.tally;
 }
 
-/// Index of the first face cell of this group of channels in FaceIn and Left, which hold the cells of the whole
-/// domain's faces for all channels.
+/// Index of the first face cell of this group of channels in FaceIn (incident radiance) and Left (escaped power),
+/// which hold the cells of all faces of the whole domain for all channels.
 std::size_t SweepInBlocks::FirstCell(const SweepVolume& volume) const
 {
   return volume.firstChannel * BoxFaceCellCount(this->Partition.whole);
@@ -323,6 +323,8 @@ void SweepInBlocks::SweepTask(int number, Sweeping& sweeping, const Monitor& mon
 }
 
 /// Sends the outgoing rays of this rank's block to the ranks downwind, and to those reached around periodic axes.
+/// @param number  index in Tasks of the set of bundles to which the rays belong
+/// @param state  whether the rays carry power; sent first in each message
 void SweepInBlocks::SendOn(int number, State state, const RaysAtFaces& rays)
 {
   const Task& task = this->Tasks[number];
@@ -385,6 +387,7 @@ bool SweepInBlocks::TakeFromAround(const Sweeping& sweeping)
 }
 
 /// Collects the incoming rays of a block, from outside the domain and from other ranks.
+/// @return Lit if any of them carries power, else Dark; Failed if a sending rank has thrown
 SweepInBlocks::State SweepInBlocks::Enter(
   Task& task, const std::vector<std::vector<float>>& messages, const Sweeping& sweeping, RaysAtFaces& rays) const
 {

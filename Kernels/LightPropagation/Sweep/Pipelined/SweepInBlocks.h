@@ -35,7 +35,8 @@ class SweepInBlocks : public SweepByGroups
 public:
   /// @param communicator, partition, sigma_t  must outlive this object
   /// @param layout  layout of this rank's block
-  /// @param request  its box is ignored: the whole domain is swept. Ranks without voxels need no angular values
+  /// @param request  its member `box` is ignored: the whole domain is swept. On ranks without voxels its member
+  ///   `angular` may be null
   /// @param workspace  must outlive this object; may be shared by sweeps that never run concurrently
   /// @param mostRays  maximum number of rays that cross a block together; 0: the number that minimises the time of the
   /// sweep (FastestParts)
@@ -79,7 +80,7 @@ private:
   enum class State
   {
     Lit,
-    Dark,  ///< no ray carries any power
+    Dark,  ///< no ray carries any power: the message contains no rays
     Failed ///< the sending rank has thrown
   };
   Task MakeTask(const ParallelBundles& rays, BlockWorkspace& workspace) const;
@@ -122,12 +123,14 @@ private:
   BlockWorkspace& Workspace;
   std::vector<ParallelBundles> Parts;
   SweepSchedule TheSchedule;
-  /// Tasks of this rank (sweeps of its block along one set of bundles each), in the order of Parts
+  /// Tasks of this rank (sweeps of its block along one set of bundles each), one per element of Parts, which holds
+  /// these sets
   std::vector<Task> Tasks;
 
   // State of the sweep in progress.
-  std::exception_ptr Error; ///< error on this rank, if any
-  /// Incident radiance per cell of the domain's faces, SweepRequest::faceIn; empty: none, or zero
+  std::exception_ptr Error; ///< error on this rank; null: none
+  /// Incident radiance per cell of the domain's faces, SweepRequest::faceIn; empty: no such light, or all of it is
+  /// zero
   std::vector<float> FaceIn;
   /// Power that left from this rank's block through each cell of the domain's faces, W; empty: not summed
   std::vector<double> Left;

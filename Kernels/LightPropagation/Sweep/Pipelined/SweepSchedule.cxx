@@ -162,8 +162,9 @@ struct TaskGraph
   std::vector<int> behind;
 };
 
-/// Number of rays that cross a contact between two blocks, per channel. A ray crosses a contact parallel to the
-/// marching axis only in some planes, so it counts as its mean number of voxels moved per plane.
+/// Number of rays that cross a contact (set of shared voxel faces) between two blocks, per channel. Through faces
+/// parallel to the marching axis a ray passes only in some planes, so there it counts as the mean number of voxels
+/// that it moves sideways per plane.
 std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& contact)
 {
   const double cells = static_cast<double>(contact.cells.VoxelCount());
@@ -347,7 +348,8 @@ private:
   const std::vector<ParallelBundles>& Tasks;
   const SweepCosts& Costs;
   std::vector<TaskGraph> Graphs;
-  /// Per rank: tasks that are ready to run, the most urgent first
+  /// Per rank: tasks that are ready to run, most urgent first: minus the number of blocks in the longest chain
+  /// downwind that waits for it, and the task
   std::vector<std::set<std::pair<int, int>>> Ready;
   std::vector<bool> Busy;
   std::set<int> Touched;                             ///< ranks with an event at the current time

@@ -16,10 +16,11 @@ struct ParallelBundles
   int axis = 0;
   int way = 0;                            ///< sense of marching: 0 forward along the axis, 1 backward
   std::array<int, 3> signs = { 1, 1, 1 }; ///< sign of the directions along x, y, z: 1 or -1
-  std::vector<Bundle> bundles; ///< bundles of these rays; the direction of opposite sense is removed from each member
+  /// Bundles of these rays; each member (pair of opposite directions) has only the direction of sense `way`
+  std::vector<Bundle> bundles;
   bool goThroughEdges = false; ///< whether any ray moves diagonally, along both transverse axes u and v, in one step
 
-  int Rays() const; ///< number of rays per voxel of a plane across the axis
+  int Rays() const; ///< number of rays per voxel of a plane across the marching axis
 };
 
 /// Divides rays into sets of parallel bundles by octant.
@@ -33,7 +34,7 @@ struct BlockContact
   {
     /// Through faces normal to the marching axis, after rays have crossed the last plane of a block
     Along,
-    AsideU, ///< AsideU, AsideV: through faces normal to u, v, within a plane
+    AsideU, ///< AsideU, AsideV: through faces normal to u, v, by rays that move sideways within a plane of voxels
     AsideV,
     Edge ///< through an edge of the block: rays that move diagonally, along both u and v, in one step
   };
@@ -53,7 +54,7 @@ struct SweepCosts
   double ofRay = 1.0;     ///< cost per ray and voxel
   double ofTask = 0.0;    ///< overhead per block and set of parallel bundles
   double ofMessage = 0.0; ///< cost per message between ranks
-  double ofValue = 0.0;   ///< cost per ray through one voxel face in a message
+  double ofValue = 0.0;   ///< cost per message of each ray in it, counted per voxel face that the ray crosses
 };
 
 /// Order in which each rank sweeps its block along the sets of parallel bundles. The sets of all octants start

@@ -26,8 +26,8 @@ std::size_t FloatsOfVoxel(const SweepPlan& plan)
         (plan.octantSource ? 8 : 0)));
 }
 
-/// Number of planes per slot such that all slots fit in the device memory that the rays and the scratch memory leave
-/// free; at least one.
+/// Number of planes per slot (device buffer for a slice of a streamed volume) such that all slots fit in the device
+/// memory that the rays and the scratch memory leave free; at least one.
 int ThicknessFor(const Device& device, const SweepPlan& plan, const SweepWorkspace& workspace)
 {
   std::size_t left = device.MemoryLimit() - std::min(device.BytesInUse(), device.MemoryLimit());
@@ -68,10 +68,10 @@ SlicePiece NextPiece(const SweepPlan& plan, bool backward, const cl_int2& left, 
 /// Cuts the launches of a sweep into shorter ones, such that in each launch a unit of work (rays carried by one
 /// work-item) needs only the planes in one slot. The units of work that run concurrently and the order of additions to
 /// each plane do not change, so results are identical bit for bit.
-/// @param schedule  planes of each unit of work, [launch][unit], first and end
+/// @param schedule  planes of each unit of work, [launch][unit of work], first and end
 /// @param thickness  planes per slot
-/// @param aligned  pieces end at multiples of this number of planes or at the end of a slab; 1: anywhere
-/// @return pieces, [launch][unit]
+/// @param aligned  pieces end at multiples of this number of planes or where the planes of a launch end; 1: anywhere
+/// @return pieces, [launch][unit of work]
 std::vector<std::vector<SlicePiece>> CutIntoPieces(
   const SweepPlan& plan, const std::vector<cl_int2>& schedule, int thickness, int aligned)
 {
@@ -290,8 +290,8 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   }
   if (this->Plan.periodic[this->Plan.axes.axis])
   {
-    // CPU kernels keep the rounding errors of the summed fluence only, GPU kernels those of the moments of all
-    // functions.
+    // The rounding errors kept for compensated summation: in CPU kernels those of the fluence only, in GPU kernels
+    // those of the moments of all angular functions.
     arrays.push_back(
       { &this->Workspace.lost, SlotArray::Lost, channels, volume.first, true, this->HasMoments() ? 0 : -1 });
   }

@@ -44,10 +44,11 @@ public:
   /// Launches of the sweep, cut into pieces that fit in a slot if the volume is streamed.
   struct Schedule
   {
-    /// Planes that each unit of work crosses in each launch, [launch][unit]; empty: not streamed
+    /// Planes that each unit of work crosses in each launch, [launch][unit of work]; empty: not streamed
     std::vector<std::vector<SlicePiece>> pieces;
-    /// Argument `schedule` of the kernel `sweep`, [launch][unit]: first and end plane that each unit of work crosses.
-    /// If streamed, each launch has a second list [unit]: the slot, and the index in the box of the slot's first plane
+    /// Argument `schedule` of the kernel `sweep`, [launch][unit of work]: first and end plane that each unit of work
+    /// (rays carried by one work-item) crosses. If streamed, each launch has a second list [unit of work]: the slot,
+    /// and the index in the box of the slot's first plane
     Buffer<cl_int2> rows;
   };
   Schedule Cut(const std::vector<cl_int2>& schedule) const;
@@ -60,7 +61,7 @@ public:
   };
   SlotPlace PlaceOf(const SlicePiece& piece, std::size_t launch, std::size_t unit) const;
 
-  /// Replaces the memory layout of the volume in `info` by that of the slots.
+  /// Replaces the memory layout of the volume in `info` by that of the slots (device buffers for a few planes).
   void Describe(SweepInfo& info) const;
   VolumeArrays Arrays() const; ///< device arrays of the slots
 
@@ -83,8 +84,10 @@ private:
   {
     const Buffer<float>* host;
     SlotArray slots;
-    int parts; ///< number of parts, e.g. channels or components; the host array is [part][stride]
-    /// Index in the host array of the first float of part 0; the location of the angular moments follows from it
+    /// Number of parts, e.g. channels or components; the host array is [part][voxel]
+    int parts;
+    /// Index in the host array of the first float of part 0 (the first channel or component); the location of the
+    /// angular moments follows from it
     std::size_t first;
     bool comesBack; ///< whether the sweep adds to the array, so that it must be copied back to the host
     /// Number of beams (sources with their own angular distribution), for arrays with angular moments; -1: an array
