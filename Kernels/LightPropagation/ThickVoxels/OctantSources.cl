@@ -35,7 +35,7 @@ static layer_response response_of(const __global float* values, float albedo, fl
 
 // Converts the power that entered through voxels' faces to mean incident radiance. One work-item per row of voxels and
 // face.
-//   currents  entered power, W, [face][stride] from index 6 `first` on; set to 0
+//   currents  entered power, W, [face][voxel] from index 6 `first` on; set to 0
 //   pattern   power of the rays that cross each face at uniform radiance, relative to its mean (CrossingPattern.h)
 //   incoming  radiance, W / (length^2 sr), laid out as currents; replaced if `fresh` is 1, else added to
 __kernel void take_incoming(OctantSourceInfo info, __global float* restrict currents,
@@ -140,8 +140,9 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
 //   incoming  mean incident radiance at voxels' faces during the sweep, W / (length^2 sr)
 //   source    uniform source of the sweep, W / (length^3 sr)
 //   beyond    mean incident radiance of the voxels across a subdomain's faces, W / (length^2 sr)
-//   of_lamps  source by face of lamps' light, W / (length^3 sr), used if `lamps` is 1; set to 0
-//   sources   W / (length^3 sr), [octant][stride] from index 8 `first` on, in addition to the uniform source: on entry
+//   of_lamps  source by face (e of numerics.md, Eq. (46e)) of light first scattered from lamps, W / (length^3 sr),
+//             used if `lamps` is 1; set to 0
+//   sources   W / (length^3 sr), [octant][voxel] from index 8 `first` on, in addition to the uniform source: on entry
 //             that of the sweep, replaced. May be negative in the first scattering orders, for light that leaves the
 //             voxel only in later orders
 __kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,

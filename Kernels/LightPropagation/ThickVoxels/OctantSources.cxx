@@ -25,7 +25,7 @@ constexpr double Many = 0.25;
 /// light scattered in it, for single precision.
 constexpr double Opaque = 1e4;
 
-/// Counts of voxels over all channels, from which OctantSources::Matter() decides.
+/// Counts of voxels over all channels, from which OctantSources::Matter() decides whether to use sources by octant.
 struct ThickVoxels
 {
   double scattering = 0.0, thick = 0.0; ///< number of scattering voxels, and of thick ones among these

@@ -44,10 +44,10 @@ public:
   };
   explicit OctantSources(const Scene& scene);
 
-  /// Power that enters through voxels' faces, W, [channel][face][stride]; pass as Deposit::partialCurrents to every
+  /// Power that enters through voxels' faces, W, [channel][face][voxel]; pass as Deposit::partialCurrents to every
   /// sweep.
   const Buffer<float>& Currents() const { return this->OfSweep; }
-  /// Source of each octant as found by Find(), W / (length^3 sr), [channel][octant][stride]; pass as
+  /// Source of each octant as found by Find(), W / (length^3 sr), [channel][octant][voxel]; pass as
   /// SweepRequest::octantSource.
   const Buffer<float>& Sources() const { return this->Found; }
 
@@ -61,7 +61,7 @@ public:
   /// Records the sources by face (e of numerics.md, Eq. (46e)) of the light that is first scattered from one lamp, adds
   /// LampPath() to `allPath`, and sets LampPath() and LampMoments() to 0.
   void TakeLamp(const Buffer<float>& allPath);
-  /// Mean incident radiance at voxels' faces, W / (length^2 sr), [channel][face][stride], summed over the calls of
+  /// Mean incident radiance at voxels' faces, W / (length^2 sr), [channel][face][voxel], summed over the calls of
   /// TakeIncoming() since the last Find(). Find() needs that of the ghost cells around a subdomain.
   const Buffer<float>& CameInThroughFaces() const { return this->Incoming; }
   /// Computes Sources() for the light scattered from all light of TakeIncoming() and TakeLamp() since the last call.
@@ -88,11 +88,11 @@ private:
   Buffer<float> OfSweep, Incoming; ///< see Currents(), CameInThroughFaces()
   Buffer<float> Found;             ///< see Sources()
   /// See LampPath(), LampMoments(); OfLamps: sources by face of the light first scattered from lamps,
-  /// [channel][face][stride].
+  /// [channel][face][voxel].
   Buffer<float> PathOfLamp, MomentsOfLamp, OfLamps;
   Buffer<float> Diffuse, Falling; ///< tables of VoxelResponse
   std::map<const SweptDirections*, Crossings> Patterns;
   bool CameIn = false;     ///< whether TakeIncoming() was called since the last Find()
-  bool LampsShine = false; ///< whether the next Find() includes lamps
+  bool LampsShine = false; ///< whether the next Find() includes light first scattered from lamps
 };
 }

@@ -9,10 +9,11 @@ enum
 {
   ResponseAlbedos = 11, ///< number of values of sqrt(1 - albedo) in a table, from 0 to 1 in equal steps
   ResponseDepths = 23,  ///< number of values of log2(optical thickness) in a table, in steps of 1/2
-  FirstDepth = -4,      ///< log2(optical thickness) of the first of these values
-  /// Number of tables, for values in steps of 1/2 of log2(attenuation of a lamp's light per mean free path)
+  FirstDepth = -4,      ///< log2(optical thickness) of the first optical thickness in a table
+  /// Number of response tables for lamps' light, one per rate at which it decays in the layer: log2(attenuation per
+  /// mean free path) in steps of 1/2
   ResponseProfiles = 17,
-  FirstProfile = -3, ///< log2(attenuation per mean free path) of the first table
+  FirstProfile = -3, ///< log2(attenuation of a lamp's light per mean free path) of the first of these tables
   /// Number of values per table entry: coefficient alpha of the response that is antisymmetric in the two faces, beta
   /// of the symmetric response, and the fraction of isotropic light that collides in the layer.
   ResponseParts = 3,
@@ -26,8 +27,9 @@ typedef struct
   int periodic[3];
   /// 1 for axes along which light does not vary, because the domain has one voxel and is periodic
   int leftOut[3];
-  /// Offsets in the crossing pattern (CrossingPattern.h), per axis normal to a face: of the term that depends on the
-  /// position along the first, and along the second, of the other two axes
+  /// Indices of the crossing pattern (power of the rays across each voxel face relative to its mean,
+  /// CrossingPattern.h) of the faces normal to axis a: pattern[2 a] is that of the term that depends on the position
+  /// along the first of the other two axes, pattern[2 a + 1] that of the term that depends on the second
   int pattern[6];
   /// Index of this channel's first value in sigma_t, and in other arrays over voxels; number of values per channel.
   ulong firstT, first, stride;

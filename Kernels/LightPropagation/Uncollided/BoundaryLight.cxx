@@ -142,7 +142,7 @@ std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
     const double planes = PlanesOfPattern(n[axis], this->Periodic[axis]);
     if (planes <= 2.0)
     {
-      continue; // with so few planes it hardly matters that only whole rays enter through the sides
+      continue; // with so few planes, fractional moves hardly change the power that enters through the lateral faces
     }
     for (const Bundle& bundle : BundlesAlong(
            axis, this->TheGrid, this->Periodic, this->Directions.Set(), this->MapResolution, this->Directions.Starts()))
@@ -225,8 +225,8 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor)
 {
-  // A boundary source that is 0, rather than none: with none, the maps of rays in the opposite sense of marching would
-  // not be cleared.
+  // A boundary source that is 0, rather than none: with none, the maps (ray powers) of the opposite sense of marching
+  // would not be cleared.
   const SweepBoundary dark = [](int, int) { return Rgb{}; };
   const Grid& grid = volume.domain.Whole();
   const int channels = volume.layout.Groups().front().count; // number of channels that are swept together

@@ -64,8 +64,9 @@ private:
 /// Sweeps once along a quadrature other than that of the scattered light, in batches whose rays fit into memory. Adds
 /// to the volume's deposit. Collective if the domain is divided into blocks.
 /// @param isLit  whether a direction carries any light
-/// @param source  W / (length^3 sr), as for SweepOperator, with the moments of the volume's basis; null: no emission
-/// @param incoming  boundary source; may be empty
+/// @param source  W / (length^3 sr), as for SweepOperator, with its angular moments in the volume's basis if there is
+///   one; null: no emission
+/// @param incoming  boundary source; empty: no incident light, and rays then move without fractional moves
 SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& along,
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor);

@@ -10,8 +10,10 @@ namespace tyndall
 {
 namespace
 {
-constexpr double BrightPart = 0.05; ///< fraction of the solid angle of a direction's cell in which peaks are sought
-/// A peak's radiance exceeds this multiple of the mean radiance in the rest of its cell
+/// Fraction of the solid angle of a cell (all that is nearest to one quadrature direction) in which peaks are sought
+constexpr double BrightPart = 0.05;
+/// A peak's radiance exceeds this multiple of the mean radiance in the rest of its cell (the pixels nearest to one
+/// quadrature direction)
 constexpr double Outshines = 4.0;
 constexpr double LeastPower = 1.0 / 500.0;
 constexpr std::size_t MostPeaks = 64;
@@ -51,8 +53,8 @@ double SolidAngle(const Environment& environment, std::size_t pixel)
   return (std::cos(top) - std::cos(bottom)) * 2.0 * Pi / environment.width;
 }
 
-/// Peak of a direction's cell: in the brightest part of its solid angle, the radiance in excess of Outshines times the
-/// mean of the rest.
+/// Peak of the environment in a cell (the pixels nearest to one quadrature direction): in the brightest part of its
+/// solid angle, the radiance in excess of Outshines times the mean of the rest.
 Peak FindPeak(const Environment& environment, std::vector<Pixel>& cell)
 {
   std::sort(cell.begin(), cell.end(), [](const Pixel& a, const Pixel& b) {

@@ -20,7 +20,7 @@ void AddFirst(Device& device, const std::vector<float>& values, const Buffer<flo
   device.Queue().enqueueWriteBuffer(to.Handle(), CL_TRUE, 0, sum.size() * sizeof(float), sum.data());
 }
 
-/// Scalar in each voxel times the mean direction there, [channel][x, y, z][stride].
+/// Scalar in each voxel times the mean direction there, [channel][x, y, z][voxel].
 std::vector<float> Along(const VolumeLayout& layout, const std::vector<float>& scalar, const Field& direction)
 {
   std::vector<float> flux(layout.Floats(3), 0.0f);

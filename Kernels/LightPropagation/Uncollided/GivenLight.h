@@ -15,7 +15,8 @@ namespace tyndall
 class GivenLight : public UncollidedSource
 {
 public:
-  /// @param image, medium, scattering  in the solver's units and channels; must outlive this object
+  /// @param image, medium, scattering  in the units of power and length and the channels of the solve
+  ///   (PropagationProblem); must outlive this object
   GivenLight(const UncollidedImage& image, const Medium& medium, const TruncatedScattering& scattering);
 
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;

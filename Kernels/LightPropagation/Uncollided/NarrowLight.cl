@@ -10,8 +10,8 @@
 
 // Adds the angular moments of light whose direction in each voxel is that of its net flux.
 // basis    coefficients of the angular functions, [function][harmonic], AngularBasis.h
-// path     W length, [channel][stride]
-// flux     net flux of the same light, W length, [channel][x, y, z][stride]
+// path     W length, [channel][voxel]
+// flux     net flux of the same light, W length, [channel][x, y, z][voxel]
 // moments  W length, with angular moments (MomentPlacesShared.h), added to
 // peak     1: moments of a single direction, or of the spread that the net flux implies; below 1: those of degree l are
 //          multiplied by peak^(l (l + 1) / 2 - 1)

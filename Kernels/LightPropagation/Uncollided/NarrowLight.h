@@ -28,7 +28,7 @@ private:
 };
 
 /// Adds light along its net flux in each voxel to an array with angular moments.
-/// @param path, flux  W length, or another unit: [channel][stride], [channel][x, y, z][stride]
+/// @param path, flux  W length, or another unit: [channel][voxel], [channel][x, y, z][voxel]
 /// @param peak  1: moments of a single direction, or of one that spreads diffusively about its mean; below 1: moments
 /// above degree 1 are reduced, see SmoothPeak()
 void AddNarrowMoments(Device& device, const VolumeLayout& layout, const AngularBasis& basis, const Buffer<float>& path,

@@ -27,7 +27,7 @@ struct UncollidedVolume
   /// Basis of the angular moments in the deposit's path; null: no angular moments. With a basis, sources do not deposit
   /// net flux, which the moments contain.
   const AngularBasis* basis = nullptr;
-  /// Receives the path integrals of a parallel beam alone, W length, [channel][stride]; null: not needed.
+  /// Receives the path integrals of a parallel beam alone, W length, [channel][voxel]; null: not needed.
   const Buffer<float>* beamPath = nullptr;
   /// With several ranks: fetches the power that enters voxels beyond the block's faces; empty: the block is the domain,
   /// or no first moments are computed.
@@ -47,7 +47,7 @@ public:
   /// @return incident power, escaped power, and power in transit along periodic axes, W
   virtual SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const = 0;
 
-  /// Whether AddTo() returns the tally of this rank's own voxels; false: the tally of all ranks.
+  /// Whether AddTo() returns the energy balance of this rank's own voxels; false: that of the whole domain.
   virtual bool TalliesOwnVoxels() const { return false; }
 };
 

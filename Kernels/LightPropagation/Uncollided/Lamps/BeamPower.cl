@@ -63,8 +63,8 @@ static float cosine_at(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 
 #define SLICES 512 // number of slices into which a beam is divided if the border of the cone crosses it
 
-// Slice of a pyramid: its rays d = (ahead, u + x, v) at fixed v. Rays in the cone satisfy a x^2 + 2 b x + c <= 0 and
-// along + x slope >= 0 (numerics.md, Eq. (33a)).
+// Slice of a pyramid of beams (all directions nearest to one sense of an axis): its rays d = (ahead, u + x, v) at
+// fixed v. Rays in the cone satisfy a x^2 + 2 b x + c <= 0 and along + x slope >= 0 (numerics.md, Eq. (33a)).
 typedef struct
 {
   float ahead, u, v;
@@ -73,8 +73,8 @@ typedef struct
 } cone_slice;
 
 // Slice of the pyramid at v.
-// @param v  position across the pyramid's axis at a distance of one layer, length, relative to the reference tangent
-// (BeamRow::baseV)
+// @param v  position across the pyramid's axis at a distance of one layer of voxels, relative to that of the reference
+//   tangent (BeamRow::baseV); a length
 static cone_slice slice_at(const LampInfo* lamp, const BeamRow* row, float v)
 {
   const int i = row->axis, j = (i + 1) % 3, k = (i + 2) % 3;
@@ -140,7 +140,7 @@ static float angle_of_slice(const cone_slice* slice, float2 part)
 }
 
 // Fraction of a beam's solid angle that is in the cone.
-//   middle  tangents of the beam's centre, relative to the base of the pyramid
+//   middle  tangents of the beam's centre, relative to the pyramid's reference tangents (BeamRow::baseU, baseV)
 static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middle)
 {
   const float2 spacing = (float2)(lamp->spacing[(row->axis + 1) % 3], lamp->spacing[(row->axis + 2) % 3]);
@@ -162,8 +162,9 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middl
   return inside / all;
 }
 
-// Tangents of a beam's centre: relative to the base of its pyramid (tangent_from_base), and relative to the pyramid's
-// axis (tangent_of). begin_of() is the position of the beam's centre at its start, voxels.
+// Tangents of a beam's centre: relative to the reference tangents of its pyramid (BeamRow::baseU, baseV;
+// tangent_from_base), and relative to the pyramid's axis (tangent_of). begin_of() is the position of the beam's centre
+// at its start, voxels.
 static float2 tangent_from_base(const BeamRow* row, int beam)
 {
   return (float2)(row->tangentU + beam * row->widthU, row->tangentV);

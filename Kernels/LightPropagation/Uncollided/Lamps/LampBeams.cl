@@ -461,13 +461,13 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
 
 // Traces rows of beams through the grid or, IN_BLOCK, beams through a block of it: those that start in the block, and
 // those that arrive from other blocks.
-// path  fraction of the power times length, in fixed point, [stored voxel of LampInfo], added to. MOMENTS: [path, path
-//       times distance along x, y, z][stride]. NET_FLUX: then path times direction, [x, y, z][stride]. VACUUM: then the
-//       path in vacuum of light before it wraps around an axis, [stride], and if AROUND the actual path of that light,
-//       [stride]
+// path  fraction of the power times length, in fixed point, [voxel of LampInfo::stored], added to. MOMENTS: [path, path
+//       times distance along x, y, z][voxel]. NET_FLUX: then path times direction, [x, y, z][voxel]. VACUUM: then the
+//       path in vacuum of light before it wraps around an axis, [voxel], and if AROUND the actual path of that light,
+//       [voxel]
 // cells power that leaves through the box's faces, in fixed point, [cell]; if FACE_OUT
 // beams IN_BLOCK: replaced by their states when they have left the block, or ended
-// first, count  rows or beams of this launch
+// first, count  index of the first row (IN_BLOCK: beam) of this launch, and number of rows or beams
 // sums  tallies, [row or beam][LampRowSums], see write_sums()
 __kernel void follow_lamp(LampInfo lamp, const __global float* sigma, ulong sigma_first, __global long* path,
   ulong stride, __global long* cells, const __global BeamRow* rows, __global BeamOnItsWay* beams, int first, int count,

@@ -40,14 +40,16 @@ constexpr int PassesAtMost = 9;
 constexpr int EvenFrom = 3;
 constexpr double LeftAtMost = 5e-5; ///< passes end when at most this fraction of the power is in transit
 
-/// Function that traces the beams of a pass and adds their tallies to the shares of FollowInPasses().
+/// Function that traces the beams of a pass and adds their energy balance to the LampShares that FollowInPasses() is
+/// given.
 /// @param factor  multiplies the initial power of the beams
 using FollowPass = std::function<void(const Pass& pass, double factor, const Monitor& monitor)>;
 
 /// Traces a lamp's light around periodic axes in passes (numerics.md, section 5.3): beams that are still in the box at
 /// the end of a pass are replaced by fewer beams, which share their power.
-/// @param shares  shares of the lamp over all passes so far, updated by `follow`
-/// @return fraction of the lamp's power to be distributed uniformly over a box that is periodic along all axes; else 0
+/// @param shares  energy balance of the lamp's beams over all passes so far, as fractions of the traced power; updated
+///   by `follow`
+/// @return fraction of the traced power to be distributed uniformly over a box that is periodic along all axes; else 0
 double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, LampShares& shares,
   const FollowPass& follow, const Monitor& monitor)
 {
@@ -201,7 +203,7 @@ void LampBeams::FollowPoints(const Pass& pass, double factor, const Monitor& mon
   this->Shares.Add(found.SumOver(this->TheDomain));
 }
 
-/// Runs the kernel follow_lamp of LampBeams.cl for some rows or, on several ranks, for some beams.
+/// Runs the kernel follow_lamp of LampBeams.cl for some rows of beams or, on several ranks, for some beams.
 void LampBeams::Launch(const Buffer<float>& sigmaT, std::size_t sigmaFirst, const Buffer<BeamRow>& rows,
   const Buffer<BeamOnItsWay>& beams, std::size_t first, std::size_t count, const Buffer<float>& sums)
 {
@@ -296,7 +298,7 @@ LampBeams::Beams LampBeams::FollowInBlock(
   return gone;
 }
 
-/// Number of rows per launch, fewer if beams travel far around a periodic axis.
+/// Number of rows of beams per launch, fewer if beams travel far around a periodic axis.
 std::size_t LampBeams::RowsTogether(const BeamRow& row) const
 {
   const double layers = this->Stored.Periodic()[row.axis] ? static_cast<double>(row.count) * row.layers : 1.0;
@@ -342,8 +344,8 @@ void LampBeams::AddToOwners()
   });
 }
 
-/// Escaped power per cell of the domain's faces, in LampPowerUnits, summed over ranks; empty if it is not summed.
-/// Collective.
+/// Escaped power per cell of the domain's faces, in fixed point (LampPowerUnits), summed over ranks; empty if it is
+/// not summed. Collective.
 std::vector<cl_long> LampBeams::CellsOfAll() const
 {
   if (!this->Volume.deposit.faceOut)
@@ -360,7 +362,7 @@ std::vector<cl_long> LampBeams::CellsOfAll() const
 }
 
 /// Adds the sums of this rank's voxels to the deposit. Collective.
-/// @param even  fraction of the lamp's power to be distributed uniformly
+/// @param even  fraction of the traced power to be distributed uniformly
 LampFactors LampBeams::AddToDeposit(double even)
 {
   const Domain& domain = this->TheDomain;

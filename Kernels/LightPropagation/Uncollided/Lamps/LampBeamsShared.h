@@ -11,7 +11,8 @@ enum
   LampRowSums = 9
 };
 
-/// Fixed-point units that represent a lamp's full power: 2^56; a sum of 64 times that power still fits in 64 bits.
+/// Fixed-point units that represent the traced power (the share of a lamp's power that may reach the box): 2^56; a sum
+/// of 64 times that power still fits in 64 bits.
 #define LampPowerUnits 72057594037927936.0f
 
 /// A lamp and the box that its beams cross. Lengths along axis a are in units of `spacing[a]`, unless said otherwise.
@@ -32,8 +33,8 @@ typedef struct
   /// Fixed-point units per unit of the path integral, which is a fraction of the traced power times length
   float scale;
   float diagonal; ///< diagonal of a voxel, length
-  /// Cells of the box's faces, as in BoxFaceLayout: index of the first cell of each face; index step along each axis,
-  /// by the axis of the face.
+  /// Layout of the cells of the box's faces, as in BoxFaceLayout: faceFirst is the index of the first cell of each
+  /// face; faceStep[a][b] is the index difference between neighbouring cells along axis b in a face normal to axis a.
   int faceFirst[6], faceStep[3][3];
 } LampInfo;
 
@@ -42,11 +43,13 @@ typedef struct
 {
   int axis, up; ///< marching axis of the pyramid, and sense: 1 towards +, 0 towards -
   /// Reference tangents of the pyramid, to which tangentU and tangentV are relative: those of the axis of a narrow
-  /// cone.
+  /// cone; else 0
   float baseU, baseV;
-  /// Components along the marching axis, u and v of the cross product of the reference direction and the cone's axis
+  /// Components along the marching axis, u and v of the cross product of the reference direction (that of the
+  /// reference tangents) and the cone's axis; 0 if these are parallel, as for a narrow cone
   float crossing[3];
-  /// Tangents of the first beam's centre, relative to the base; tangentV is that of all beams
+  /// Tangents of the first beam's centre, relative to the reference tangents baseU, baseV; tangentV is that of all
+  /// beams
   float tangentU, tangentV;
   float widthU, widthV; ///< width of a beam along u and v, as a difference of tangents
   int count;            ///< number of beams along u
@@ -54,18 +57,18 @@ typedef struct
   float from;           ///< start of the beams: the lamp's position along the axis, or the box's face, voxels
   float startU, startV; ///< centre of the first beam at the start, voxels
   float openU, openV;   ///< width of a beam at the start, voxels
-  int skipped;          ///< number of layers that beams cross before they deposit light and are tallied
-  int layers;           ///< maximum number of layers that beams cross
+  int skipped;          ///< number of layers of voxels that beams cross before they deposit light and are tallied
+  int layers;           ///< maximum number of layers of voxels that beams cross
   /// Bits 1, 2: the lamp is outside the box along u, v, so that beams may enter through the faces normal to u, v
   int beside;
   float share;   ///< fraction of the lamp's power emitted by the point from which the beams originate
   float part[3]; ///< centre of the part of a rectangle that this point represents
   /// Squared distances from `part`: voxels nearer than the first are not lit from this point, and a beam nearer than
-  /// the second crosses no voxel that is.
+  /// the second crosses no voxel that is lit from it.
   float partFrom, partSeen;
   float whole[3]; ///< centre of the larger part of which `part` is a subdivision
   /// Squared distances from `whole`: voxels beyond the first are not lit from this point, and a beam beyond the second
-  /// crosses no voxel that is.
+  /// crosses no voxel that is lit from it.
   float wholeFrom, wholeSeen;
 } BeamRow;
 

@@ -21,8 +21,8 @@ constexpr std::size_t BeamsTogether = 1 << 18;
 /// periodic along all axes, where light never escapes.
 constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
 
-/// Width of beams where they leave the box, voxels: beams of a point or spot, of a rectangle, and of a rectangle with
-/// more than ManyPoints points.
+/// Width of beams where they leave the box, voxels: beams of a point or spot, of a rectangle, and of a rectangle that
+/// is represented by at least ManyPoints points.
 constexpr double BeamWidth = 0.5, BeamWidthOfRectangle = 1.0, BeamWidthOfMany = 1.4;
 constexpr std::size_t ManyPoints = 64;
 /// Number of times that the full power may cross one voxel without overflow in fixed point.

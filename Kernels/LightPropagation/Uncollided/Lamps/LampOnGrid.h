@@ -18,7 +18,8 @@
 
 namespace tyndall
 {
-/// Factors that convert the entries of LampShares to fractions of the lamp's power.
+/// Factors that convert fractions of the traced power (LampShares, LampSums) to fractions of the lamp's power, with
+/// corrections that make the energy balance exact.
 struct LampFactors
 {
   /// Factors for the power that enters, for the power that the medium removes, and for the power that escapes or is in
@@ -26,7 +27,7 @@ struct LampFactors
   double in, taken, out;
 };
 
-/// Energy balance of a lamp's beams, as fractions of its power.
+/// Energy balance of a lamp's beams, as fractions of the traced power (LampOnGrid::Share).
 struct LampShares
 {
   std::array<double, 6> in = {}, out = {}; ///< power that enters, and that escapes, by face
@@ -36,7 +37,7 @@ struct LampShares
   double In() const { return std::accumulate(this->in.begin(), this->in.end(), 0.0); }
   double Out() const { return std::accumulate(this->out.begin(), this->out.end(), this->onTheWay); }
 
-  /// Adds the tallies of one row of beams.
+  /// Adds the tallies (powers as fractions of the traced power) of one row of beams.
   /// @param sums  tallies of the row, [LampRowSums]
   void Count(const BeamRow& row, const float* sums)
   {
@@ -63,7 +64,7 @@ struct LampShares
     this->shone += other.shone;
   }
 
-  /// Sum of the shares over all ranks. Collective.
+  /// Sum of the energy balances of all ranks. Collective.
   LampShares SumOver(const Domain& domain) const
   {
     std::vector<double> values = { this->shone, this->onTheWay };
@@ -78,7 +79,7 @@ struct LampShares
     return sum;
   }
 
-  /// Converts the shares to power, W.
+  /// Converts the energy balance to power, W.
   /// @param power  power of the lamp, W, by channel; `channels` of these are used
   SweepTally Times(const Rgb& power, int channels, const LampFactors& factors) const
   {
@@ -100,7 +101,8 @@ struct LampShares
 class LampOnGrid
 {
 public:
-  /// Number of layers that all beams of a launch cross together; keeps the launch below a tenth of a second.
+  /// Maximum number of layers of voxels crossed in one launch, summed over the launch's beams; keeps it below a tenth
+  /// of a second.
   static constexpr double LayersPerLaunch = 4e6;
 
   /// @param grid  the whole grid; must outlive this object
@@ -108,22 +110,25 @@ public:
 
   const Light& TheLight() const { return this->Lamp; }
 
-  /// Points that represent the lamp in a pass: several for a rectangle in the first pass, else one.
+  /// Points that represent the lamp in a pass (a range of layers in which beams are traced): several for a rectangle
+  /// in the first pass, else one.
   const std::vector<LampPoint>& PointsOf(const Pass& pass) const
   {
     return pass.begin == 0 ? this->Points : this->Centre;
   }
 
-  /// Beams, as rows, from a batch of the pass's points.
+  /// Beams of a pass (a range of layers in which beams are traced), as rows, from a batch of the points that represent
+  /// the lamp.
   /// @param factor  multiplies the power of the beams
   /// @param first  index of the batch's first point
   /// @param next  set to the index of the next batch's first point
   std::vector<BeamRow> Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const;
 
-  /// Factors that normalise the lamp's shares. If the power that is traced (a lamp inside the box, a cone that lies
-  /// within the box's solid angle) or that enters the box is known exactly, the factors enforce it.
-  /// @param taken  share that the medium removes, for a rectangle
-  /// @param even  share that is to be distributed uniformly over the box
+  /// Factors that normalise the energy balance of the lamp's beams. If the power that is traced (a lamp inside the
+  /// box, a cone that lies within the box's solid angle) or that enters the box is known exactly, the factors enforce
+  /// it.
+  /// @param taken  fraction of the traced power that the medium removes, used for a rectangle
+  /// @param even  fraction of the traced power that is to be distributed uniformly over the box
   LampFactors Factors(const LampShares& shares, double taken, double even) const;
 
   /// Upper bound, in (0, 1], of the fraction of the lamp's power that reaches the box. Sums are fractions of this

@@ -27,7 +27,8 @@ struct LampPoint
   /// The point illuminates voxels outside the sphere `part` and inside the sphere `whole`. Beyond `whole`, the larger
   /// part that was divided into this one illuminates voxels instead.
   Sphere part, whole = { glm::dvec3(0.0), std::numeric_limits<double>::infinity() };
-  double reach = std::numeric_limits<double>::infinity(); ///< length to which beams from this point are traced
+  /// Length to which beams from this point are traced; infinite: until they leave the box
+  double reach = std::numeric_limits<double>::infinity();
 };
 
 /// Distance from a face, as a fraction of the box's edge, below which a lamp is taken to be on the face, as for

@@ -121,7 +121,7 @@ public:
   }
 
   /// Range of tangents, along the k-th axis after the pyramid's axis, of the beams that are still in the box in this
-  /// pass.
+  /// pass (a range of layers in which beams are traced).
   std::array<double, 2> Seen(int k, const Light& light, const Pass& pass) const
   {
     const int aside = (this->Axis + k) % 3;

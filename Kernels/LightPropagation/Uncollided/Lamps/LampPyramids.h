@@ -11,7 +11,7 @@
 
 namespace tyndall
 {
-/// Range of layers in which beams are traced. Only periodic axes need more than the first pass.
+/// Range of layers of voxels in which beams are traced. Only periodic axes need more than the first pass.
 struct Pass
 {
   int begin, end;          ///< first and end layer, counted from the lamp

@@ -167,7 +167,7 @@ static float mean_of_images(const RectangleInfo* rectangle, const int* voxel)
 
 // Computes the factor by which each voxel's path from a rectangle's beams is multiplied to be exact in vacuum
 // (numerics.md, Eq. (34a)). In voxels that no beam reaches, the path is that in vacuum, attenuated within the voxel.
-// fixed_path  as in follow_lamp (LampBeams.cl)
+// fixed_path  fixed-point sums, argument `path` of follow_lamp (LampBeams.cl)
 __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulong stride, __global float* gains,
   ulong first, const __global float* sigma, ulong sigma_first, float diagonal)
 {
@@ -200,7 +200,7 @@ static float gain_of(const __global float* gains, ulong i)
 
 // Adds a lamp's path integrals to those of the deposit. One work-item per voxel and channel.
 // gains  factor of each voxel, if VACUUM
-// path   W length, [channel][stride], added to
+// path   W length, [channel][voxel], added to
 // units  value of a fixed-point unit, W length, [channel]
 // sigma  extinction, 1/length, shared by the channels
 __kernel void add_fixed(const __global long* fixed_path, __global float* path, ulong first, ulong stride, float4 units,
@@ -215,7 +215,7 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
 
 // Adds the power of a lamp that escaped through each cell of the box's faces to the deposit. One work-item per cell and
 // channel.
-// cells     as in follow_lamp (LampBeams.cl)
+// cells     escaped power per cell in fixed point, from follow_lamp (LampBeams.cl)
 // face_out  W, [channel][cell], added to
 // watts     power of the lamp, W, [channel]
 __kernel void add_fixed_cells(
@@ -228,8 +228,8 @@ __kernel void add_fixed_cells(
 }
 
 // Adds a lamp's net flux to that of the deposit. One work-item per voxel and channel.
-// fixed_path  as in follow_lamp (LampBeams.cl)
-// flux  W length, [channel][x, y, z][stride], added to
+// fixed_path  fixed-point sums, argument `path` of follow_lamp (LampBeams.cl)
+// flux  W length, [channel][x, y, z][voxel], added to
 __kernel void add_fixed_flux(const __global long* fixed_path, __global float* flux, ulong first, ulong stride,
   float4 units, const __global float* sigma, ulong sigma_first, float diagonal, const __global float* gains)
 {
@@ -244,8 +244,8 @@ __kernel void add_fixed_flux(const __global long* fixed_path, __global float* fl
 }
 
 // Adds a lamp's first moments to those of the deposit. One work-item per voxel and channel.
-// fixed_path  as in follow_lamp (LampBeams.cl)
-// first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][stride], added to
+// fixed_path  fixed-point sums, argument `path` of follow_lamp (LampBeams.cl)
+// first_moments  W length, [channel][-x, +x, -y, +y, -z, +z][voxel], added to
 __kernel void add_fixed_moments(const __global long* fixed_path, __global float* first_moments, ulong first,
   ulong stride, float4 units, const __global float* sigma, ulong sigma_first, float diagonal,
   const __global float* gains)

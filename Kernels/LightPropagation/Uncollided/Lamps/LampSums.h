@@ -5,10 +5,10 @@
 
 namespace tyndall
 {
-/// Sums of a lamp's deposits in 64-bit fixed point, as fractions of its power, so that they do not depend on the order
-/// of their terms (numerics.md, Eq. (35)): path integral, followed by first moments and net flux if the deposit has
-/// them, and for a rectangle its path integral in vacuum, [path, 3 first moments, 3 of flux, ...][stride]; and the
-/// power that escapes through each cell of the grid's faces, if the deposit has it.
+/// Sums of a lamp's deposits in 64-bit fixed point, as fractions of the traced power (LampOnGrid::Share), so that they
+/// do not depend on the order of their terms (numerics.md, Eq. (35)): path integral, followed by first moments and net
+/// flux if the deposit has them, and for a rectangle its path integral in vacuum, [path, 3 first moments, 3 of flux,
+/// ...][voxel]; and the power that escapes through each cell of the grid's faces, if the deposit has it.
 class LampSums
 {
 public:
@@ -22,21 +22,22 @@ public:
   }
 
   Buffer<cl_long>& Sums() { return this->Fixed; }
-  /// Escaped power per cell of the faces (BoxFaces.h), in LampPowerUnits; a single unused value if it is not summed.
+  /// Escaped power per cell of the faces (BoxFaces.h), in fixed point (LampPowerUnits); a single unused value if it is
+  /// not summed.
   Buffer<cl_long>& Cells() { return this->OfCells; }
   std::size_t Stride() const { return this->TheStride; }
 
   /// For a rectangle: computes the factors by which each voxel's path must be multiplied to be exact in vacuum
   /// (numerics.md, Eq. (34a)). AddTo() applies them.
   /// @param own  voxels that the sums cover
-  /// @return fraction of the lamp's power that these voxels then remove; 0 for other lamps
+  /// @return fraction of the traced power that these voxels then remove; 0 for other lamps
   double FitToVacuum(const SweepVolume& volume, const LampOnGrid& lamp, const VoxelBox& own);
 
-  /// Adds the sums, which are fractions of the lamp's power, times that power to the arrays of the volume's deposit.
-  /// @param volume  its stride is that of the sums
-  /// @param factor  multiplies the lamp's power
+  /// Adds the sums, which are fractions of the traced power, converted to W, to the arrays of the volume's deposit.
+  /// @param volume  its arrays have as many values per channel as the sums
+  /// @param factor  LampFactors::taken
   void AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const;
-  /// Adds the sums per cell of the faces, times the lamp's power, to the deposit's faceOut.
+  /// Adds the sums per cell of the faces, converted to W, to the deposit's faceOut.
   /// @param faceFirst  index of the first channel's first cell in faceOut
   void AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, const LampOnGrid& lamp, double factor) const;
 
