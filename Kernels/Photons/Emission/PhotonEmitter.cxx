@@ -20,14 +20,14 @@ namespace
 constexpr std::size_t TrySamples = 4096;
 constexpr std::size_t ReportEvery = 100000;
 
-/// Photon source of a light, with a sampler of the square of the importance map that belongs to this light; without a
-/// sampler if the map has no such square.
+/// Photon source of a light, with a sampler of the square image that the importance map has for this light; without a
+/// sampler if it has none.
 struct SpreadSource
 {
   PhotonSource source;
   std::optional<ImportanceSampler> sampler;
 
-  /// Maps a sample to a photon; none if the light emits nothing there.
+  /// Maps a sample to a photon; empty if the light emits nothing there.
   /// @param weight  output: ratio of the photon's power to its power in uniform sampling
   std::optional<Shot> Shoot(PhotonSample sample, double& weight) const
   {
@@ -127,8 +127,8 @@ std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot
 
 /// Checks that the photons' powers are in the range of float: not 0, not infinite, and not so small that digits are
 /// lost.
-/// @param parts  number of parts of the emission; if there are several, only too large a power is an error, because
-///   photons of other parts may be brighter
+/// @param parts  number of parts of the emission, each of which a separate call computes; if there are several, only
+///   too large a power is an error, because photons of other parts may be brighter
 void CheckPowers(const EmittedPhotons& emitted, int parts)
 {
   float largest = 0.0f;
@@ -180,14 +180,16 @@ void Check(const EmissionSettings& settings)
     "Ask for fewer photons (PhotonCount).");
 }
 
-/// Numbers of samples of one light, and the range of them that this part of the emission uses.
+/// Numbers of samples of one light, and the range of them that this call uses, which computes only one part of the
+/// emission (EmissionSettings::part).
 struct Tries
 {
   std::size_t all = 0;            ///< number of all samples of the light
-  std::size_t begin = 0, end = 0; ///< range of the samples in the part of the emission that is computed
+  std::size_t begin = 0, end = 0; ///< range of them that this call uses
 };
 
-/// Returns, for each light, the number of its samples and the range of them that is used.
+/// Returns, for each light, the number of its samples and the range of them that this call uses, which computes only
+/// one part of the emission.
 std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettings& settings)
 {
   const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);

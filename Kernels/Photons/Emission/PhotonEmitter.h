@@ -24,8 +24,8 @@ struct EmissionSettings
   /// second batch also exchanges the first two coordinates, and Hammersley's bases 2 and 3, so that the patterns of
   /// two batches are unrelated.
   int batches = 1;
-  /// Relative density of photon origins; null or empty: uniform. Photons of lights for which the map has no density are
-  /// sampled uniformly.
+  /// Relative density of photon origins (the points of a light's photon plane where its photons start); null or empty:
+  /// uniform. Photons of lights for which the map has no density are sampled uniformly.
   const ImportanceMap* map = nullptr;
   /// Upper limit of the photon density that the map may request, relative to uniform sampling; at least 1.
   double densestAtMost = 8.0;
@@ -71,7 +71,7 @@ EmittedPhotons EmitPhotons(
 /// Pilot photons of one light, from which its importance map is computed.
 struct PilotPhotons
 {
-  int light = 0;               ///< number of the light, as in EmittedPhotons::lights
+  int light = 0; ///< index of the light in `illumination.lights`, or EnvironmentLight for environment and sky
   std::vector<Photon> photons; ///< photons of those samples that reach the volume, out of edge * edge samples
   /// Column and row of the photon-plane cell from which each photon was sampled.
   std::vector<std::array<int, 2>> origins;

@@ -135,8 +135,8 @@ glm::dvec2 ConvexPolygon::At(double u, double v) const
   const Slice& slice = this->Slices[Choose(this->Below, u, part)];
   const double w0 = slice.high0 - slice.low0;
   const double w1 = slice.high1 - slice.low1;
-  // t is the fraction of the slice's width at which the area is the fraction `part`: w0 t + (w1 - w0) t^2 / 2 = part
-  // (w0 + w1) / 2, solved without cancellation.
+  // t is the fraction of the slice's width up to which the area is the fraction `part`; w0, w1 are the slice's heights
+  // at its two ends: w0 t + (w1 - w0) t^2 / 2 = part (w0 + w1) / 2, solved without cancellation.
   const double wanted = part * (w0 + w1);
   const double root = std::sqrt(std::max(w0 * w0 + (w1 - w0) * wanted, 0.0));
   const double t = w0 + root > 0.0 ? std::min(wanted / (w0 + root), 1.0) : part;

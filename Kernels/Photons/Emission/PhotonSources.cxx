@@ -85,7 +85,7 @@ struct Moments
 
 /// Estimates the Moments of a light's photons from `samples` samples.
 /// @param power  W, power of the light
-/// @param shoot  maps a sample to a photon, or to none
+/// @param shoot  maps a sample to a photon; empty if it yields none
 template <class Shoot>
 Moments MomentsOf(int samples, const Rgb& power, const Shoot& shoot)
 {
@@ -187,7 +187,8 @@ public:
   }
 
 private:
-  static constexpr int Parts = 7; ///< number of sets of sampled points: six faces, rectangle in the volume
+  /// Number of sets of points that are sampled: one per face, and the part of the rectangle in the volume
+  static constexpr int Parts = 7;
 
   std::optional<Shot> ShootFrom(int part, const PhotonSample& u) const
   {
@@ -229,7 +230,7 @@ private:
   }
 
   /// Corners of the part of the rectangle that LampView counts as inside the volume, relative to the rectangle's
-  /// centre, in fractions of its edges.
+  /// centre, as fractions of the rectangle's edge vectors; empty if no part is inside.
   std::vector<glm::dvec2> InVolume() const
   {
     std::vector<glm::dvec2> corners = { { -0.5, -0.5 }, { 0.5, -0.5 }, { 0.5, 0.5 }, { -0.5, 0.5 } };
@@ -252,7 +253,8 @@ private:
   void SetShares()
   {
     constexpr int samples = 512;
-    constexpr double least = 0.01; // least share of a set of points that may contribute, even if no sample did
+    // Least share of the samples for a set of points that may contribute, even if none of its test samples did
+    constexpr double least = 0.01;
     std::array<double, Parts> shares = {};
     double sum = 0.0;
     for (int part = 0; part < Parts; ++part)
@@ -287,7 +289,9 @@ private:
   Rgb Power;
   glm::dvec3 Middle, Normal, First, Second;
   double Area;
-  std::optional<ConvexPolygon> Within; ///< part of the rectangle inside the volume, in fractions of its edges
+  /// Part of the rectangle that is inside the volume, its corners relative to the rectangle's centre, as fractions of
+  /// the rectangle's edge vectors; empty: the rectangle is outside
+  std::optional<ConvexPolygon> Within;
   /// Cumulative shares of the samples: six faces, then the part of the rectangle inside the volume; with a leading
   /// zero.
   std::array<double, Parts + 1> Shares = {};

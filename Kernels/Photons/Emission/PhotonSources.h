@@ -26,7 +26,7 @@ struct Shot
 /// nothing.
 struct PhotonSource
 {
-  int light = 0; ///< number of the light, as in EmittedPhotons::lights
+  int light = 0; ///< index of the light in the illumination; EnvironmentLight: environment and sky; -2: the faces
   std::function<std::optional<Shot>(const PhotonSample&)> shoot;
   bool alike = false; ///< whether all photons of this light reach the volume with equal power
 };

@@ -64,7 +64,8 @@ double SampleSequence::Random(std::size_t i, int dimension) const
   return Unit(Mix(Mix(this->Seed + 1) ^ Mix(4 * static_cast<std::uint64_t>(i) + dimension)));
 }
 
-/// A point in cell i of a grid of Count cells; rows have heights in proportion to their number of cells.
+/// A point in cell i of a grid of Count cells, at the fractions `across` and `along` of the cell's extent; rows have
+/// heights in proportion to their number of cells.
 std::array<double, 2> SampleSequence::Cell(std::size_t i, double across, double along) const
 {
   const std::size_t row = ((i + 1) * this->Rows - 1) / this->Count;

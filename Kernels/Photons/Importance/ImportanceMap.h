@@ -15,8 +15,9 @@ constexpr int EnvironmentLight = -1;
 /// one, over the first two coordinates of the samples from which its photons are computed.
 struct ImportanceMap
 {
-  int size = 0;               ///< cells along an edge of each square
-  std::vector<int> lights;    ///< number of the light to which each square image belongs, as in EmittedPhotons::lights
+  int size = 0; ///< cells along an edge of each square image
+  /// Light to which each square image belongs: its index in the illumination, or EnvironmentLight
+  std::vector<int> lights;
   std::vector<float> density; ///< size*size values per light, columns fastest; > 0, in any unit
 
   int SquareOf(int light) const; ///< index of the square image of a light; -1 if it has none

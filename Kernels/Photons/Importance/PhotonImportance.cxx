@@ -15,12 +15,13 @@ namespace tyndall
 namespace
 {
 // Constants of the automatic thresholds, which are in proportion to the pilot photons' light (numerics.md, Eq. (96)).
-constexpr double SteepPart = 0.2; ///< fraction of the lit cells whose gradient counts as steep
+constexpr double SteepPart = 0.2; ///< fraction of the lit cells whose gradient of luminance counts as steep
 /// Smallest difference of luminance between neighbouring cells, relative to the median luminance, that counts as steep;
 /// smaller ones are noise, or extinction in fog.
 constexpr double SteepAtLeast = 0.25;
-constexpr double DimBelow = 0.5;  ///< luminance threshold relative to the median luminance
-constexpr double FewCells = 0.01; ///< smallest fraction of lit cells that must be chosen to justify a map
+constexpr double DimBelow = 0.5; ///< luminance, relative to the median, below which a lit cell counts as dark
+/// Smallest fraction of lit cells that must be chosen for dense sampling to justify a map
+constexpr double FewCells = 0.01;
 /// A light needs no map if the standard deviation of the map of its chosen cells (mean 1), times the fourth root of the
 /// fraction of lit cells that are chosen, is below this. Measured values of this product: 0.2 to 0.46 for thin or thick
 /// fog under a sun from any direction, or a lamp above or in it; 0.53 to 1 for glass in fog.
@@ -60,8 +61,8 @@ std::vector<double> LuminanceOf(const PilotLight& light)
   return luminance;
 }
 
-/// Adds the pilot light of one lamp to the light of earlier lamps. Each cell keeps the origins of the first lamp that
-/// reaches it.
+/// Adds the pilot light of one lamp to the light of earlier lamps. Each cell keeps the origins (positions on the
+/// photon plane) of the photons of the first lamp that reaches it.
 void Add(const PilotLight& more, PilotLight& light)
 {
   if (light.count.empty())
@@ -193,9 +194,10 @@ void Splat(double x, double y, double diameter, int size, std::vector<double>& m
   }
 }
 
-/// Diameter, in map cells, of the circle drawn for a coarse cell. As published, it is the sum of the origins'
-/// standard deviations along both axes (Listing B.1), which leaves gaps between the circles of neighbours. Otherwise
-/// the circle spans the square with these deviations, including the spread of origins within their map cells.
+/// Diameter, in map cells, of the circle drawn for a coarse cell. As published, it is the sum of the standard
+/// deviations, along both axes, of the origins on the photon plane of the cell's photons (Listing B.1), which leaves
+/// gaps between the circles of neighbours. Otherwise the circle spans the square with these deviations, including the
+/// spread of origins within their map cells.
 double DiameterOf(const float* deviation, bool asPublished)
 {
   if (asPublished)
@@ -206,8 +208,8 @@ double DiameterOf(const float* deviation, bool asPublished)
   return 2.0 * (whole(deviation[0]) + whole(deviation[1]));
 }
 
-/// Draws a circle around the mean origin of each chosen cell's photons into a map, and scales it to mean 1. Empty if
-/// no chosen cell has photons of this light.
+/// Draws a circle around the mean origin, on the photon plane, of each chosen cell's photons into a map of that plane,
+/// and scales it to mean 1. Empty if no chosen cell has photons of this light.
 std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight& light, int size, bool asPublished)
 {
   std::vector<double> map(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0);

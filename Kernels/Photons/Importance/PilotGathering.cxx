@@ -17,8 +17,8 @@ namespace tyndall
 namespace
 {
 constexpr int LargestOrigin = 65535;
-/// Number of integers about origins in a cell's record: number of photons, sums of their columns and rows, and sums
-/// of the squares of columns and rows.
+/// Number of integers about the origins of photons in the record of a coarse cell (the sums that belong to it): number
+/// of photons, sums of their columns and rows, and sums of the squares of columns and rows.
 constexpr int OriginNumbers = 5;
 
 std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
@@ -69,7 +69,8 @@ void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::arr
   }
 }
 
-/// Marks of photons for the kernel option CELLS (PhotonMarch.cl): column and row of each photon's origin.
+/// Marks of photons (one 64-bit integer each) for the kernel option CELLS of PhotonMarch.cl: column and row of each
+/// photon's origin on the photon plane.
 std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed)
 {
   std::vector<cl_ulong> marks;
@@ -102,7 +103,8 @@ PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, i
   return light;
 }
 
-/// Sums the copies of the cells' records that are stored in a buffer; `size` is the number of integers in one copy.
+/// Adds up the copies of all coarse cells' sums that are stored one after another in a buffer; `size` is the number of
+/// integers in one copy.
 std::vector<std::int64_t> SumOfCopies(const Buffer<cl_long>& memory, std::size_t size)
 {
   const std::vector<cl_long> read = memory.Read();
@@ -115,7 +117,7 @@ std::vector<std::int64_t> SumOfCopies(const Buffer<cl_long>& memory, std::size_t
   return sums;
 }
 
-/// Converts sums of cells' records to pilot light.
+/// Converts the sums of all coarse cells to pilot light.
 /// @param unit  value of one fixed-point unit of power times path length, W length
 void PutCells(const std::vector<std::int64_t>& sums, const Grid& voxels, const PackedPhotons& packed, double unit,
   PilotLight& light)

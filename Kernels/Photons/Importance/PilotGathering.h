@@ -10,9 +10,9 @@
 
 namespace tyndall
 {
-/// Sums the light of pilot photons in coarse cells (PhotonMarcher::Gather). Each rank starts the photons whose origins
-/// lie in its subdomain; their deposits, which are integers, are summed over ranks. The map from voxels to cells is
-/// kept between calls.
+/// Sums the light of pilot photons in coarse cells (PhotonMarcher::Gather). Each rank begins with the photons that
+/// start in its subdomain or enter the volume there; their deposits, which are integers, are summed over ranks. The
+/// map from voxels to cells is kept between calls.
 class PilotGathering
 {
 public:

@@ -23,8 +23,8 @@ constexpr const char* MultiplyAdds = " -cl-mad-enable";
 constexpr int RoundsAtMost = 64; ///< maximum length of a path, in multiples of the sum of the domain's edges
 /// Power, in units of PackedPhotons::unit, too small to affect any sum; MarchInfo::darkness
 constexpr float DarkUnits = 1e-3f;
-/// Maximum fraction of filled bricks with which arrays are stored by bricks; with more filled bricks, skipping empty
-/// ones saves little.
+/// Maximum fraction of filled bricks (bricks that contain medium) with which arrays are stored by bricks; with more
+/// filled bricks, skipping empty ones saves little.
 constexpr double FilledAtMost = 0.25;
 
 // Values of `sigma`, the optical thickness of a voxel's diagonal, in PhotonMedium.cl: value outside the grid, and upper
@@ -43,7 +43,8 @@ IndexGrid SizeOf(const std::array<int, 3>& size)
   return { { size[0], size[1], size[2] } };
 }
 
-/// Creates the layout by bricks; empty if light is stored voxel by voxel.
+/// Creates the memory layout by bricks, in which an empty brick takes the place of one voxel; a layout without bricks
+/// if arrays are stored voxel by voxel.
 PhotonBricks BricksOf(Device& device, const Grid& grid, const FilledBricks& filled, const MarchSettings& settings,
   bool bends, bool scatters)
 {

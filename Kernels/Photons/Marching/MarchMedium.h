@@ -55,8 +55,8 @@ IndexRange IndexRangeOfAll(const Domain& domain, const IndexRange& own);
 /// @param filled  filled bricks of this rank's medium
 MarchTraits MarchTraitsOf(const Domain& domain, const Medium& medium, const Field& ior, const FilledBricks& filled);
 
-/// Memory layout by bricks, for the medium and for the sums of deposits: a filled brick has one record per voxel, x
-/// fastest; an empty brick has a single record. Record 0 stands for all places outside the grid.
+/// Memory layout by bricks, for the medium and for the sums of deposits: a filled brick has one record (the values of
+/// a voxel) per voxel, x fastest; an empty brick has a single record. Record 0 stands for all places outside the grid.
 class PhotonBricks
 {
 public:
@@ -71,10 +71,10 @@ public:
 
   struct Coefficients ///< coefficients of the medium by records
   {
-    /// Optical thickness of a voxel's diagonal, [channels][records], as pack_extinction in PhotonMedium.cl computes
-    /// it by voxels.
+    /// Optical thickness of a voxel's diagonal, [channel][record], as pack_extinction in PhotonMedium.cl computes it
+    /// by voxels.
     std::vector<float> extinction;
-    std::vector<float> sigmaA, sigmaS; ///< 1/length, [records][components]
+    std::vector<float> sigmaA, sigmaS; ///< 1/length, [record][component]
   };
   /// Packs the coefficients of a medium by records.
   /// @param diagonal  length of a voxel's diagonal
@@ -124,7 +124,7 @@ public:
     const std::uint8_t* levels = nullptr);
 
   /// Octree nodes of the block's voxels, one byte per voxel: whether n varies in the voxel, and the level of the node
-  /// that contains it (encoding: march_arrays in PhotonSteps.cl).
+  /// that contains it (0: n is constant; else 1 + level).
   /// @param levels  octree levels of the block's voxels
   std::vector<std::uint8_t> OwnNodes(const std::uint8_t* levels) const;
   /// Uploads the octree nodes of the domain, which steps evaluate beyond the block as well.
@@ -144,7 +144,8 @@ public:
   bool IsBlock() const { return this->block.own.size != this->block.whole.size; }
   /// Number of voxels of the grid with a padding of one voxel at each face.
   std::size_t PaddedCount() const { return Count(this->Padded(2)); }
-  /// Number of records of extinction and of deposits: those of bricks, or the voxels of the padded grid.
+  /// Number of records (the values that belong to one voxel or empty brick) of extinction and of deposits: those of
+  /// the bricks, or one per voxel of the padded grid.
   std::size_t Records() const { return this->bricks.AreThere() ? this->bricks.Records() : this->PaddedCount(); }
 
   /// Creates a kernel of PhotonMarch.cl for photons with `channels` power channels.
@@ -155,7 +156,7 @@ public:
   /// Creates a kernel of PhotonSums.cl.
   cl::Kernel SumsKernel(const char* name, int channels, const std::string& options) const;
 
-  /// Computes the index of the coarse cell of each voxel of the padded grid.
+  /// Computes the index of the coarse cell of each voxel of the grid with a padding of one voxel at each face.
   /// @param cells  number of cells along each axis of the domain, at most its voxels
   Buffer<cl_int> Cells(const std::array<int, 3>& cells) const;
 
@@ -172,10 +173,13 @@ public:
   PhotonBricks bricks;       ///< layout of all arrays by bricks; without bricks, arrays are stored voxel by voxel
 
   Buffer<float> sigmaA, sigmaS; ///< 1/length, voxel by voxel or by records
-  /// Optical thickness of voxel diagonals; layout: pack_extinction in PhotonMedium.cl, or PhotonBricks.
+  /// Optical thickness of voxel diagonals, [channel][voxel of the padded grid], as pack_extinction of PhotonMedium.cl
+  /// stores it, or [channel][record of PhotonBricks].
   Buffer<float> sigma;
   Buffer<float> coefficients; ///< coefficients of the spline of n^2, SquaredIndex.cl
-  Buffer<cl_uchar> nodes;     ///< octree nodes; layout: pack_nodes in PhotonMedium.cl, or BrickedBytes after SetNodes
+  /// Octree nodes of the voxels of block.known, as pack_nodes of PhotonMedium.cl stores them; after SetNodes those of
+  /// all voxels of the domain, as BrickedBytes
+  Buffer<cl_uchar> nodes;
 
 private:
   using Size = std::array<std::size_t, 3>;

@@ -44,7 +44,7 @@ struct MarchSums
   /// Index of the coarse cell of each voxel, for deposits to coarse cells, which also count photons; null: deposits
   /// to voxels.
   const Buffer<cl_int>* cells = nullptr;
-  const Buffer<cl_long>* sums = nullptr; ///< sums of deposits in fixed point, [copies][records][numbers]
+  const Buffer<cl_long>* sums = nullptr; ///< sums of deposits in fixed point, [copy][record][number]
 
   /// Number of 64-bit numbers in one copy of the sums.
   std::size_t Stride() const { return this->records * static_cast<std::size_t>(this->numbers); }
@@ -66,13 +66,13 @@ struct PhotonsOnDevice
   const cl::Buffer& Handle() const { return this->resumes ? this->arrived.Handle() : this->starting.Handle(); }
   std::size_t LargestBatch() const; ///< number of photons in the largest batch
 
-  bool resumes;                   ///< whether the photons arrived from other blocks
+  bool resumes;                   ///< whether the photons arrived from other blocks; false: they start in this block
   Buffer<float> starting;         ///< photons that start in this block, as PackedPhotons::values
   Buffer<PhotonOnItsWay> arrived; ///< photons that arrived from other blocks
   std::vector<int> begins;        ///< index of the first photon of each batch, and one past the last photon
   Buffer<cl_int> batchBegin;
   Buffer<cl_ulong> marks;
-  Buffer<cl_int> ends; ///< PhotonEnd and remaining power of each photon, which the kernel writes
+  Buffer<cl_int> ends; ///< final state (PhotonEnd) and remaining power of each photon, which the kernel writes
 };
 
 /// A kernel of PhotonMarch.cl that adds the deposits of photons to MarchSums.
@@ -133,7 +133,7 @@ public:
   /// Result of marching some photons.
   struct Outcome
   {
-    std::vector<cl_int> ends;         ///< PhotonEnd and powers of each photon, the input of Tally
+    std::vector<cl_int> ends; ///< final state (PhotonEnd) and remaining power of each photon, the input of Tally
     std::vector<PhotonOnItsWay> gone; ///< photons that entered other blocks, in any order
   };
   /// Marches photons that start in this block.
@@ -153,8 +153,8 @@ private:
   MarchKernel Kernel;
 };
 
-/// Traces the paths of photons through the domain as corners, and joins the parts traced in different blocks.
-/// Collective.
+/// Traces the paths of photons through the domain as lists of their corners, and joins the parts traced in different
+/// blocks. Collective.
 /// @param through  medium of this rank's block; null if it has no voxels
 /// @param photons  the same on all ranks
 /// @param numbers  indices of the photons to trace

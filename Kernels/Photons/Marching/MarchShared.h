@@ -7,9 +7,9 @@
 SHARED_BEGIN
 enum
 {
-  EndWords = 3, ///< number of integers of a PhotonEnd, before its powers
-  /// PhotonEnd::face of a photon that was terminated before it left the volume. This value and larger ones are no
-  /// faces.
+  EndWords = 3, ///< number of integers in a PhotonEnd (final state of a photon); its powers follow them
+  /// PhotonEnd::face of a photon that was terminated before it left the volume. This value and larger ones denote ends
+  /// that are not at a face.
   StillGoing = 6,
   Dark = 7,     ///< PhotonEnd::face of a photon with power below MarchInfo::darkness
   Elsewhere = 8 ///< PhotonEnd::face of a photon that continues in another block of the grid
@@ -39,11 +39,11 @@ typedef struct
   int first[3];      ///< first voxel of the block in the domain
   int knownFirst[3]; ///< first voxel of `known` in the domain
   float spacing[3];  ///< edges of a voxel, in units of its diagonal
-  float stepSize;    ///< length of a step, in voxels, where the octree has single voxels
+  float stepSize;    ///< length of a step, in voxels, without an octree or in an octree node of a single voxel
   float slowest;     ///< lower bound of the speed, in voxels per time, from which the duration of a step is computed
   float darkness;    ///< power, in units of PackedPhotons::unit, below which a photon ends as dark
   int eventLimit;    ///< maximum number of path segments (walls and velocity changes) of a photon
-  ulong copy;        ///< number of records of extinction: voxels of the padded grid, or records of bricks
+  ulong copy;        ///< number of records of extinction per channel: voxels of the padded grid, or records of bricks
 } MarchInfo;
 
 /// Parameters of one launch of a kernel of PhotonMarch.cl.
@@ -87,14 +87,16 @@ typedef struct
   float step;        ///< duration of the current step
   float start[3];    ///< position at which the step began
   float velocity[3]; ///< voxels per time, of the current step
-  float momentum[3]; ///< T of numerics.md, Eq. (90), voxels per time
+  float momentum[3]; ///< T = n dx/ds of numerics.md, Eq. (90), along the path, voxels per time
 } WayOnward;
 
 /// A photon that passes from one block of the domain into another, with straight or bent path and without scattering.
 /// Only the power channels in use are valid.
 typedef struct
 {
-  ulong mark; ///< mark of the photon, see PhotonMarch.cl
+  /// 64-bit integer of the photon: count and weight that it adds to voxels, column and row of its origin, or its
+  /// index, depending on the kernel's options (PhotonMarch.cl)
+  ulong mark;
   WayOnward way;
   int batch;      ///< index of the photon's batch
   int counted;    ///< coarse cell in which the photon was last counted
@@ -140,7 +142,7 @@ typedef struct
 /// Final state of a photon that was followed through scatterings; powers are in units of PackedPhotons::unit.
 typedef struct
 {
-  int face;              ///< face or other end, as PhotonEnd::face
+  int face;              ///< face through which the photon left, or another end, as PhotonEnd::face
   int scatterings;       ///< number of scatterings of the photon
   float power;           ///< power left at the end
   float absorbedAtFirst; ///< power absorbed before its first scattering
@@ -153,7 +155,7 @@ typedef struct
 {
   ulong number; ///< index of the photon, which selects its sequence of random numbers
   WayOnward way;
-  uint blocks; ///< number of blocks of random numbers that the photon has drawn
+  uint blocks; ///< number of blocks of four random numbers (Philox.cl) that the photon has drawn
   int drawn;   ///< number of unused random numbers in the last of these blocks
   int events;  ///< path segments since the last scattering; 0: the photon starts anew, in the direction `way.velocity`
   int scatterings;                         ///< number of scatterings of the photon

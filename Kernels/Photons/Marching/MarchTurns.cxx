@@ -48,16 +48,17 @@ public:
     this->Before += this->stretches;
   }
 
-  int stretches = 0; ///< maximum number of path segments per photon in the current turn
+  int stretches = 0; ///< maximum number of path segments per photon in the current turn (launch)
   bool last = false; ///< whether the current turn is the last
 
 private:
   int Each, Limit;
   std::size_t All;
-  std::int64_t Before = 0; ///< number of path segments per photon in all turns begun so far
+  std::int64_t Before = 0; ///< number of path segments per photon in all turns (launches) begun so far
 };
 
-/// State of the photons on the device between turns, and the kernel that marches them.
+/// State of the photons on the device between turns (launches that follow them over a limited number of path
+/// segments), and the kernel that marches them.
 class TurnsOfPhotons
 {
 public:

@@ -8,7 +8,7 @@
 
 namespace tyndall
 {
-/// Device times of a march in turns, s.
+/// Device times, s, of a march in turns (launches that follow photons over a limited number of path segments).
 struct TurnTimes
 {
   int turns = 0;          ///< number of turns
@@ -40,7 +40,8 @@ struct MarchTurns
 
 /// Marches photons to their ends in turns (MarchTurns).
 /// @param show  queues the conversion of the sums accumulated so far to fluence
-/// @throws DeviceError if packets of photons do not fit; Aborted: the sums then hold only a part of the paths
+/// @throws DeviceError if the states of the photons do not fit into the device's memory; Aborted: the sums then hold
+///   only a part of the paths
 void MarchInTurns(const MarchMedium& medium, const PackedPhotons& packed, const PhotonsOnDevice& photons,
   const MarchSums& target, MarchTurns& turns,
   const std::function<const Buffer<float>&(const cl::CommandQueue& queue)>& show, const Monitor& monitor);

@@ -20,7 +20,7 @@ namespace tyndall
 {
 namespace
 {
-/// Multiplies tallies of a single channel by the colour that the channel stands for.
+/// Multiplies the tallies (powers) of a single channel by the colour that the channel stands for.
 void Colour(const Rgb& colour, PhotonLight& result)
 {
   EnergyBalance& balance = result.light.balance;

@@ -49,7 +49,7 @@ private:
 /// Adds the final states of photons to the light's energy balance: the power that escaped through each face of the
 /// domain, and the power left over. Powers are rounded to whole units, so that their sums do not depend on the order
 /// of the photons. Photons that continue in another block are ignored.
-/// @param ends  PhotonEnd and powers of each photon, in units
+/// @param ends  final state (PhotonEnd) and remaining power of each photon, in units of packed.unit
 void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result);
 
 /// Replaces this rank's tallies of uncollided light (energy balance, powers, numbers) by their sums over all ranks.

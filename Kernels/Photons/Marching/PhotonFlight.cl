@@ -1,6 +1,6 @@
-// Flight of a packet of photons between two changes of velocity: attenuation, deposits, crossing of walls, and
-// termination or change of velocity at the end of a step. Part of PhotonMarch.cl, which lists the macros that the
-// host defines.
+// Flight of a packet of photons (one per vector lane) between two changes of velocity: attenuation, deposits, crossing
+// of walls, and termination or change of velocity at the end of a step. Part of PhotonMarch.cl, which lists the macros
+// that the host defines.
 
 #pragma once
 #define MARKS (COUNTS || CELLS || (BLOCKS && PATHS))
@@ -383,7 +383,7 @@ static void end_photon(const photon_lanes* lanes, int k, int face, __global Phot
 }
 
 #if BENDS
-// Terminates the photons of a mask whose speed is out of range after a change of velocity.
+// Terminates the photons selected by a mask whose speed is out of range after a change of velocity.
 static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, integer mask, int first)
 {
   const real pace = VECTOR(lanes->pace);
@@ -399,8 +399,8 @@ static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, intege
 }
 #endif
 
-// Terminates the photons of a mask that are outside, dark or at the limit of path segments, and starts the next steps
-// of the others.
+// Of the photons that a mask selects, terminates those that are outside, dark or at the limit of path segments, and
+// starts the next steps of the others.
 static void attend(
   const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {

@@ -55,8 +55,9 @@ static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, co
 }
 #endif
 
-// Follows a packet with photons that have not ended, over at most `events` path segments per photon, or to their
-// ends. Returns whether some photons have not ended. With PATHS, `vertices` counts the vertices of the path.
+// Follows a packet of photons (one per vector lane), some of which have not ended, over at most `events` path segments
+// per photon, or to their ends. Returns whether some photons have not ended. With PATHS, `vertices` counts the
+// vertices of the path.
 static bool follow(
   const march_arrays* arrays, photon_lanes* lanes, photon_flight* flight, int first, int events, int* vertices)
 {
@@ -233,7 +234,8 @@ __kernel void size_packet(__global int* bytes)
   bytes[0] = sizeof(photon_packet);
 }
 
-// Marches a packet for one turn: over launch->events path segments from its current state.
+// Marches a packet of photons (one per vector lane) for one turn: over launch->events path segments from its current
+// state.
 //   going  number of photons in the packet that have not ended; also added to `left`
 static void take_turn(const march_arrays* arrays, const MarchLaunch* launch, const __global float* photons,
   __global photon_packet* packet, __global int* going, volatile __global int* left, int first, int end)

@@ -90,6 +90,7 @@ public:
   PhotonLight March(const std::vector<Photon>& share, MarchTurns* turns, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const;
   /// Checks that light is stored voxel by voxel.
+  /// @param what  beginning of the error message: what requires it
   /// @throws InvalidInput if light is stored by bricks
   void RequireVoxels(const char* what) const;
 
@@ -116,9 +117,10 @@ private:
   ScatteredPhotons FollowScattered(const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor) const;
 
   Device& TheDevice;
-  const bool Divided;                   ///< whether the domain is divided among ranks
-  MarchTraits Traits;                   ///< traits of the medium in the domain
-  std::unique_ptr<BrickedBytes> Nodes;  ///< octree nodes of a divided domain; null: no octree
+  const bool Divided; ///< whether the domain is divided among ranks
+  MarchTraits Traits; ///< traits of the medium in the domain
+  /// Octree nodes of a divided domain; null: the domain is not divided, or steps use no octree
+  std::unique_ptr<BrickedBytes> Nodes;
   std::unique_ptr<MarchMedium> Through; ///< medium of this rank's block; null if the rank has no voxels
   std::unique_ptr<MarchedLight> Light;  ///< sums of uncollided light; null if the rank has no voxels
   /// Scattering of all channels; null if photons are followed to their first collision only.
@@ -315,8 +317,8 @@ void PhotonMarcher::Implementation::FollowUncollided(
   AddUpTallies(this->TheDomain, result);
 }
 
-/// Follows photons through scatterings. Returns one channel's scattered light in this rank's block, and its tallies.
-/// Collective.
+/// Follows photons through scatterings. Returns one channel's scattered light in this rank's block, and its tallies
+/// (energy balance and number of scatterings). Collective.
 /// @param in  medium and phase function of the channel; null if this rank has no voxels
 ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(
   const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor) const

@@ -81,7 +81,8 @@ public:
   PilotLight Gather(const std::vector<Photon>& photons, const std::vector<std::array<int, 2>>& origins,
     const std::array<int, 3>& cells, const Monitor& monitor = {});
 
-  /// Paths of the photons in `chosen`, as corners; photons that miss the volume are omitted.
+  /// Paths of the photons in `chosen`, each as a list of corners (the points where its direction changes); photons
+  /// that miss the volume are omitted.
   /// @param share  this rank's photons, as in March
   /// @param chosen  indices among the photons of all ranks, ascending; the same on all ranks
   /// @return the paths on rank 0, nothing on other ranks

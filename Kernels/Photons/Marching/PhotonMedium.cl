@@ -11,7 +11,7 @@
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
 // Whether n^2 varies in a voxel, within the reach of interpolation.
-//   low, high  least and largest coefficient near each coefficient, in the padded layout of the coefficients
+//   low, high  least and largest spline coefficient of n^2 near each voxel, in the padded layout of these coefficients
 static bool index_varies(
   const IndexGrid* known, const __global float* low, const __global float* high, int x, int y, int z)
 {
@@ -21,9 +21,9 @@ static bool index_varies(
 
 // Packs the extinction of the voxels.
 //   x0, y0, z0  first voxel of the grid within the region `known`, where the index is known
-//   low, high   as in index_varies
-//   sigma       [MEDIUM_CHANNELS][padded] optical thickness of a voxel diagonal, OUTSIDE in the padding; sign bit set
-//               where n^2 varies
+//   low, high   as in index_varies: bounds of the spline coefficients of n^2 near each voxel
+//   sigma       [MEDIUM_CHANNELS][voxel of the padded grid] optical thickness of a voxel diagonal, OUTSIDE in the
+//               padding; sign bit set where n^2 varies
 __kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, int z0, float diagonal,
   const __global float* sigma_a, const __global float* sigma_s, const __global float* low, const __global float* high,
   __global float* sigma)
@@ -48,7 +48,7 @@ __kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, i
 }
 
 // Packs the octree nodes of the region in which the index is known.
-//   nodes  [padded known] 0: n^2 does not vary in the voxel; else 1 + the voxel's octree level
+//   nodes  [voxel of `known` with its padding] 0: n^2 does not vary in the voxel; else 1 + the voxel's octree level
 __kernel void pack_nodes(IndexGrid known, const __global float* low, const __global float* high,
   const __global uchar* levels, __global uchar* nodes)
 {
@@ -63,7 +63,7 @@ __kernel void pack_nodes(IndexGrid known, const __global float* low, const __glo
 // Computes the coarse cell of each voxel of a block.
 //   x0, y0, z0  first voxel of the block in the domain `whole`
 //   cells       number of coarse cells along each axis of the domain
-//   cell        [padded] index of the coarse cell, x fastest; 0 in the padding
+//   cell        [voxel of the padded grid] index of the coarse cell, x fastest; 0 in the padding
 __kernel void assign_cells(IndexGrid grid, IndexGrid whole, int x0, int y0, int z0, IndexGrid cells, __global int* cell)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);

@@ -162,7 +162,7 @@ double UnitOfPower(double brightest)
 struct IncomingPhotons
 {
   std::vector<Ray> rays;
-  std::vector<std::size_t> numbers; ///< index of each photon among the photons given
+  std::vector<std::size_t> numbers; ///< index of each of these photons among all photons passed to ClipToVolume
 };
 
 IncomingPhotons ClipToVolume(const Grid& grid, const std::vector<Photon>& photons)
@@ -267,7 +267,7 @@ bool HaveColour(const std::vector<Photon>& photons, const Rgb& first)
   return common.IsOne();
 }
 
-/// Creates a packing without photons: channels, colour, unit of power and number of batches.
+/// Creates PackedPhotons that hold no photons yet: only channels, colour, unit of power and number of batches.
 PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsAtMost)
 {
   PackedPhotons packed;
@@ -288,7 +288,7 @@ PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsA
   return packed;
 }
 
-/// Writes this rank's photons to a packing that PackingOf created.
+/// Writes this rank's photons to the PackedPhotons that PackingOf created.
 void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, const Grid& grid)
 {
   const IncomingPhotons met = ClipToVolume(grid, photons);
@@ -432,7 +432,7 @@ std::vector<int> EveryRank(const Communicator& communicator)
   return ranks;
 }
 
-/// Replaces the photons of a packing by the photons received from all ranks, sorted by batch.
+/// Replaces the packed photons that start on this rank by the photons received from all ranks, sorted by batch.
 void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, StartingPhotons& starting)
 {
   PackedPhotons& packed = starting.packed;
@@ -462,7 +462,8 @@ void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, Star
   packed.batchBegin.back() = static_cast<int>(packed.numbers.size());
 }
 
-/// Computes the marks of photons for counting: a count of one, and the photon's weight in units.
+/// Computes the mark of each photon, the 64-bit integer that it adds to each voxel that it enters: a count of one in
+/// the upper bits, and the photon's weight, in units, in the lower bits.
 /// @param largest, count  largest weight, and number, of the photons of all ranks
 /// @throws InvalidInput if there are more photons than voxels can count
 void MarkForCounting(const std::vector<Photon>& share, float largest, std::size_t count, StartingPhotons& starting)
