@@ -14,9 +14,9 @@ struct Medium;
 /// (numerics.md, section 5.7).
 struct UncollidedImage
 {
-  Field fluence; ///< uncollided fluence, W / length^2, on the medium's grid; null: there is no image
+  Field fluence; ///< uncollided fluence, W / length^2, on the medium's grid; null values: there is no such light
   /// Power-weighted mean direction of the uncollided light, 3 components per voxel; its length is 0 for isotropic light
-  /// and 1 for a beam. Null: isotropic light.
+  /// and 1 for a beam. Null values: isotropic light.
   Field meanDirection;
   std::array<Rgb, 6> escaped = {}; ///< uncollided power that leaves through faces -x, +x, -y, +y, -z, +z, W
 

@@ -32,7 +32,8 @@ struct Part
   std::size_t first, size;
 };
 
-/// Means over coarse voxels along one axis: from an array [outer][from][inner] to one [outer][to][inner].
+/// Means over coarse voxels along one axis: from an array [outer][fine voxel][inner], which covers the fine voxels
+/// `from` along the axis, to one [outer][coarse voxel][inner], which covers the coarse voxels `to`.
 std::vector<float> AverageAlong(const CoarsenedAxis& axis, const float* values, std::size_t outer, const Part& from,
   const Part& to, std::size_t inner)
 {
@@ -219,7 +220,7 @@ std::vector<float> Coarsening::Average(const Field& values, const Field& weights
 }
 
 /// Interpolation weights of a fine voxel along an axis: 1 - part for coarse voxel `first` and part for coarse voxel
-/// `second`, both as indices in the restricted array.
+/// `second`, both as indices in the array of coarse values, which may cover only a box of the coarse grid.
 struct Coarsening::Between
 {
   std::size_t first, second;

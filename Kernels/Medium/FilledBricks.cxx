@@ -120,7 +120,8 @@ private:
   const Grid& TheGrid;
   const std::array<int, 3> BrickCount;
   const int Layer;
-  std::vector<std::int32_t> Bits; ///< [brick][lane]: the bits of all values of a brick, combined by OR
+  /// [brick][lane of a vector instruction]: the bits of a brick's values in this lane, combined by OR
+  std::vector<std::int32_t> Bits;
 };
 static_assert(BrickEdge == 8, "a row of a brick is whole lanes");
 

@@ -28,7 +28,7 @@ public:
 
 private:
   bool One = true;
-  Rgb First = {}; ///< first of the added colours that is not black
+  Rgb First = {}; ///< first of the added colours that is not black; black if there is none
   Rgb Sum = {};
 };
 

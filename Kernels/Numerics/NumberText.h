@@ -36,7 +36,7 @@ inline std::string FloatLiteral(float value)
   return Text("%.8e", value) + "f";
 }
 
-/// Floating-point number at the start of a text, after blanks; none if there is none, or if it is beyond doubles.
+/// Floating-point number at the start of a text, after blanks; empty if there is none, or if it is beyond doubles.
 inline std::optional<double> NumberIn(std::string_view text)
 {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");

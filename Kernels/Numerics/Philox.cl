@@ -45,7 +45,7 @@ static random_numbers random_after(ulong seed, ulong stream, uint blocks, int le
   return random;
 }
 
-// Draws the next random number of a sequence, in (0, 1): (k + 1/2) 2^-24.
+// Draws the next random number of a sequence, in (0, 1): (k + 1/2) 2^-24 with an integer k below 2^24.
 static float draw(random_numbers* random)
 {
   if (random->left == 0)

@@ -25,7 +25,8 @@ constexpr double Nothing = 1e-14; ///< eigenvalues below this, relative to the l
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Orthonormal columns [direction][term], sqrt(w_i) u_k(i), with their eigenvalues.
+/// Orthonormal columns, [direction i][term k]: sqrt(w_i) u_k(i), with the weights w_i of the quadrature and the basis
+/// functions u_k of the phase function; and an eigenvalue of the phase matrix per column.
 struct Basis
 {
   MatrixXd columns;
@@ -72,7 +73,8 @@ double Cosine(const Direction& a, const Direction& b)
   return std::clamp(a.omega[0] * b.omega[0] + a.omega[1] * b.omega[1] + a.omega[2] * b.omega[2], -1.0, 1.0);
 }
 
-/// Degree beyond which the cap moments (CapMoments) of the smallest of the directions' cells are below 1e-4.
+/// Degree beyond which the Legendre moments of the smallest of the directions' cells (CapMoments) are below 1e-4; a
+/// cell is a cap whose solid angle is the direction's weight.
 int DegreeOfMeans(const std::vector<Direction>& directions)
 {
   double least = 4.0 * Pi;
@@ -83,7 +85,8 @@ int DegreeOfMeans(const std::vector<Direction>& directions)
   return std::clamp(static_cast<int>(20.0 / std::sqrt(least / Pi)), 16, 512);
 }
 
-/// Cap moments of the directions' cells, [degree][direction], up to the degree beyond which terms vanish in rounding.
+/// Legendre moments of the directions' cells (CapMoments: caps whose solid angles are the weights),
+/// [degree][direction], up to the degree beyond which terms vanish in rounding.
 std::vector<std::vector<double>> MeansByDegree(
   const std::vector<double>& moments, const std::vector<Direction>& directions)
 {

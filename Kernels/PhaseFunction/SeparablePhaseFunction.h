@@ -40,8 +40,9 @@ struct SeparableSettings
 /// Errors of the sum of N terms relative to the full phase matrix.
 struct SeparableErrors
 {
-  double frobenius = 0.0;  ///< relative Frobenius norm of the difference, weighted by solid angles
-  double maximum = 0.0;    ///< largest absolute difference, relative to the largest value of the matrix
+  double frobenius = 0.0; ///< relative Frobenius norm of sum minus full matrix, weighted by solid angles
+  /// Largest absolute difference of an element of sum and full matrix, relative to the largest value of the matrix
+  double maximum = 0.0;
   double rowSum = 0.0;     ///< largest deviation from 1 of the total power scattered from a direction
   double meanCosine = 0.0; ///< largest deviation of a direction's mean cosine from that of the phase function
   /// Smallest value of the sum, relative to the matrix' largest value; negative if there are too few terms.
@@ -98,9 +99,9 @@ private:
   std::vector<double> Eigenvalues, Factors, Singular, Whole;
 };
 
-/// Theoretical value of SeparableErrors::frobenius: a phase function on the sphere has the eigenvalues chi_l, each 2 l
-/// + 1 times; the error is the root of the sum of squares of all but the `terms` largest, relative to that of all
-/// (numerics.md, Eq. (D4)).
+/// Theoretical value of SeparableErrors::frobenius: a phase function on the sphere has its Legendre moments chi_l as
+/// eigenvalues, each 2 l + 1 times; the error is the root of the sum of squares of all but the `terms` largest,
+/// relative to that of all (numerics.md, Eq. (D4)).
 /// @param moments  Legendre moments of the phase function, up to a degree beyond which they are negligible
 double TheoreticalError(const std::vector<double>& moments, int terms);
 
