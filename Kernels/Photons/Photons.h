@@ -26,7 +26,7 @@ struct Photon
   std::int32_t batch = 0;
 };
 
-/// Settings of the path integrator and of the sums of deposits.
+/// Settings of the path integrator and of the sums of photons' deposits in voxels.
 struct MarchSettings
 {
   /// Order of the path integrator: 2, one leapfrog per step; 4, Yoshida's three leapfrogs, more efficient where n^2
@@ -81,8 +81,9 @@ void Check(const MarchSettings& settings);
 /// The path of one photon.
 struct PhotonPath
 {
-  std::size_t photon = 0;                    ///< index of the photon among those that were marched
-  std::vector<std::array<double, 3>> points; ///< corners of the path
+  std::size_t photon = 0; ///< index of the photon in the array of photons that were marched
+  /// Its start, each point where it changes direction, and its end, world coordinates.
+  std::vector<std::array<double, 3>> points;
   std::vector<float> left; ///< fraction of the photon's power (sum of channels) left at each corner; 1 if it had none
 };
 
@@ -109,8 +110,8 @@ struct PhotonLight
   /// largest. Empty if not requested.
   std::vector<float> photonWeight;
   int batches = 1; ///< number of batches: the largest Photon::batch plus one
-  /// Fluence estimated from each batch alone, as if the batch carried all the power, [voxel][batch][channel]. Its
-  /// mean over batches is `fluence`. Empty if not requested.
+  /// Fluence estimated from each batch of photons alone, as if the batch carried all the power,
+  /// [voxel][batch][channel]. Its mean over batches is `light.fluence`. Empty if not requested.
   std::vector<float> batchFluence;
   std::size_t missed = 0;   ///< number of photons whose lines miss the volume; their power does not count as entered
   std::size_t deposits = 0; ///< number of path segments whose light was added to the sums of voxels

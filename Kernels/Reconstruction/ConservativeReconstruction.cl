@@ -147,7 +147,8 @@ inline void add_voxels(pair* sum, const __global float* batches, const __global 
 #define last_of(p) ((p).y)
 #endif
 
-// Computes level 1 from the grid's voxels: all fields in one pass, with weights 1 3 3 1 along each axis.
+// Computes pyramid level 1, whose cells are 2 x 2 x 2 voxels, from the grid's voxels: all fields (light of each batch,
+// then channels and flux of the mean light) in one pass, with weights 1 3 3 1 along each axis.
 __kernel void voxels_down(const __global float* batches, const __global float* directions, int4 fine_size,
   __global float* coarse, int4 size, float scale)
 {
@@ -192,7 +193,8 @@ __kernel void voxels_down(const __global float* batches, const __global float* d
   }
 }
 
-// Loads a pair of vectors of cells of a row: with FINEST from the grid's voxels, else from the rows of a level.
+// Loads all fields in two vectors of successive cells of a row: with FINEST from the grid's voxels, else from the rows
+// of a pyramid level.
 inline light_pair load_light(
   const __global float* fine, const __global float* directions, int4 size, int x, int y, int z, float scale)
 {
@@ -216,8 +218,9 @@ inline light_pair load_light(
   return light;
 }
 
-// Measures noise and light in the details of a level, by cells of 2 x 2 x 2 (numerics.md, Eq. (101)). Field 0 is the
-// noise, the variance of the batches' mean detail d: sum (d_b - d)^2 / (B (B - 1)). Field 1 is d^2.
+// Measures noise and light in the details of a level (the level less the interpolated level above), by cells of
+// 2 x 2 x 2 (numerics.md, Eq. (101)). Field 0 is the noise, the variance of the batches' mean detail d:
+// sum (d_b - d)^2 / (B (B - 1)). Field 1 is d^2.
 __kernel void measure_details(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, int4 size, __global float* measured)
 {
@@ -273,7 +276,8 @@ __kernel void measure_details(const __global float* fine, const __global float* 
   }
 }
 
-// Smooths fields by binomial weights 1 4 6 4 1 along y and z; the kernels that read the output smooth along x.
+// Smooths `fields` quantities of a level, from number `first` on, by binomial weights 1 4 6 4 1 along y and z; the
+// kernels that read the output smooth along x.
 __kernel void smooth_across(const __global float* from, int4 size, __global float* to, int first, int fields)
 {
   const float weights[5] = { 0.0625f, 0.25f, 0.375f, 0.25f, 0.0625f };
@@ -313,8 +317,8 @@ inline real smoothed(const __global float* row, int x)
     0.0625f * (load_real(x - 2, row) + load_real(x + 2, row));
 }
 
-// Computes the Wiener gain of the details (numerics.md, Eq. (102)). Twice the noise is subtracted, so that random
-// fluctuations are not mistaken for light.
+// Computes the Wiener gain, the fraction of a level's details (the level less the interpolated level above) that is
+// kept (numerics.md, Eq. (102)). Twice the noise is subtracted, so that random fluctuations are not mistaken for light.
 __kernel void find_gains(const __global float* measured, int4 size, __global float* gains)
 {
   const int y = ROW_Y, z = ROW_Z;
@@ -406,8 +410,8 @@ __kernel void begin_errors(const __global float* noise, int4 size, __global floa
 }
 
 #if DIRECTIONS
-// Factor that converts a flux (x, y, z) to the mean direction of light `total`, of length at most 1; 0 where there is
-// no light.
+// Factor by which a flux (x, y, z) is multiplied to give the mean direction of light whose channels add up to `total`,
+// so that its length is at most 1; 0 where there is no light.
 inline real direction_of(real total, real x, real y, real z)
 {
   const real cut = select((real)0.0f, 1.0f / total, total > 0.0f);
@@ -449,7 +453,7 @@ inline __attribute__((always_inline)) void store_voxels(
 }
 
 // Computes the result of a level: the interpolated result of the level above plus the gain times the details of this
-// level.
+// level (its light less the interpolated light of the level above).
 //   fine, fine_size, directions, scale   light of this level
 //   coarse, results, gains               light, result and gains of the level above, of `size`
 //   to          output: rows of RESULTS fields of this level; with FINEST the fluence of the grid's voxels

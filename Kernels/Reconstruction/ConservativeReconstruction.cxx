@@ -26,9 +26,11 @@ struct ConservativeLevel
   /// Result of the level: smoothed quantities, source level (pyramid level from which the light is taken), squared
   /// error.
   LightRows results;
-  LightRows gains; ///< gains of the details of the next finer level, and their errors
-  /// Intermediate results for the gains. `measured`: noise and light of the details, from measure_details. `across`:
-  /// the same, smoothed along y and z.
+  /// Fraction of the details of the next finer level (what it holds beyond this level, interpolated) that is kept, and
+  /// the squared errors (GainField to ErrorField).
+  LightRows gains;
+  /// Intermediate results for the gains. `measured`: noise and squared light of the details of the next finer level,
+  /// from measure_details. `across`: the same, smoothed along y and z.
   LightRows measured, across;
 };
 
@@ -54,19 +56,20 @@ class ConservativePasses
 {
 public:
   /// Allocates the levels. All arguments are referenced and must outlive this object.
-  /// @param light   light of the box; for the levels of the domain only its grid is used, the domain's, and its arrays
-  ///   are null
+  /// @param light   light of the voxels in this rank's box; for the object with the domain's levels only the domain's
+  ///   grid, with null arrays
   /// @param result  arrays must have the size of the light's
   /// @param first, top  lowest and highest level of this object
   ConservativePasses(
     const Reconstruction& task, const NoisyLight& light, ReconstructedLight& result, int first, int top);
 
-  void Build();                      ///< computes the light of all levels, from the voxels or from LightOf(first)
+  /// Computes the light of all levels: from the voxels or, for the domain's levels, from LightOf(first).
+  void Build();
   void Begin();                      ///< computes the result of the top level
   void Refine(int from, int downTo); ///< computes results of levels `from` down to `downTo`, each from the level above
   /// Copies the light of the voxels to the host. To be called before Finish scales it.
   void FetchFluence() const { this->Fluence.Fetch(); }
-  /// Scales the light by a factor per channel, and computes the errors.
+  /// Scales the fluence by a factor per channel, and computes its standard error.
   void Finish(const std::array<float, 3>& factors);
 
   /// Light of a level. May be read, or set instead of being computed by Build.

@@ -24,25 +24,29 @@ constexpr std::size_t FirstPart = std::size_t(1) << 18;
 constexpr LightPyramid::Down Downs[] = { LightPyramid::Down::Gauss, LightPyramid::Down::Sum,
   LightPyramid::Down::MeanOfLit };
 
-/// Passes that compute the light of each voxel from one level of its pyramid (all estimators except the conservative
-/// one).
+/// Passes that compute the light of each voxel from one level of a pyramid of light (all estimators except the
+/// conservative one).
 class LevelPasses
 {
 public:
   /// Allocates the pyramids.
-  /// @param task, result  referenced; the result's arrays must have the size of the box
+  /// @param task, result  referenced; the result's arrays must have the size of this rank's box (its block and a halo)
   LevelPasses(const Reconstruction& task, ReconstructedLight& result);
 
   /// Computes the levels of all pyramids from the voxels up to the shared level, the coarsest one that a rank computes
   /// from its own box.
   void Build();
-  /// Cells of the shared level of a pyramid over this rank's box.
+  /// Cells of a pyramid's shared level (the coarsest one that a rank computes from its own box) in this rank's box.
+  /// @param pyramid  0: light; 1: photon counts; 2: photon weights
   std::vector<float> Shared(std::size_t pyramid) const { return this->Pyramids[pyramid].Read(this->Part.shared); }
-  /// Computes the levels that are coarser than the shared level, whose cells all ranks exchange.
-  /// @param cells  cells of the shared level, over the whole domain
+  /// Computes the levels that are coarser than the shared level, the coarsest one that a rank computes from its own
+  /// box.
+  /// @param cells  cells of the shared level in the whole domain, gathered from all ranks
   void BuildAbove(std::size_t pyramid, const std::vector<float>& cells);
 
-  void Choose(double weightStep); ///< computes light, levels and directions of the result
+  /// Computes light, mean direction and source level (the pyramid level from which the light is taken) of each voxel.
+  /// @param weightStep  for the published estimator: increment of photon weight per level
+  void Choose(double weightStep);
 
 private:
   void Fill(std::size_t pyramid, const float* values, int components, int first, const char* what);
@@ -172,7 +176,9 @@ void LevelPasses::Choose(double weightStep)
   direction.Fetch();
 }
 
-/// Computes the levels of all pyramids above the shared level. Collective.
+/// Computes the levels of all pyramids above the shared level, the coarsest one that a rank computes from its own box.
+/// Collective.
+/// @param passes  no value on ranks without voxels
 void CompletePyramids(const Reconstruction& task, std::optional<LevelPasses>& passes)
 {
   const std::vector<int> fields = FieldsOfPyramids(task);

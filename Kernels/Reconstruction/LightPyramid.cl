@@ -2,8 +2,8 @@
 
 #include "Reconstruction/LightRows.cl"
 
-// Copies voxels of 1 or 3 components from the host's layout, with rows of `pitch` voxels, to a level, from field
-// `first` on.
+// Copies voxels of 1 or 3 components from the host's layout, with rows of `pitch` voxels, to the fields of a level (one
+// field per component), from field number `first` on.
 __kernel void split_voxels(
   const __global float* voxels, int components, int pitch, __global float* level, int4 size, int first)
 {

@@ -177,7 +177,7 @@ void WholeRows::Copy(const cl::Buffer& from, int fromRow, const cl::Buffer& to, 
 
 namespace
 {
-constexpr std::size_t Alignment = 1024; // floats; subbuffers may begin at multiples of this number on every device
+constexpr std::size_t Alignment = 1024; // in floats; on every device, subbuffers may begin at multiples of this
 }
 
 LightPyramid::LightPyramid(

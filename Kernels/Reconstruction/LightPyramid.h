@@ -40,10 +40,11 @@ public:
 
   /// Layout for kernels: numbers of cells along x, y, z, and number of floats per row.
   static cl_int4 LayoutOf(const std::array<int, 3>& size, int width);
-  static std::size_t CountOf(const std::array<int, 3>& size, int fields, int width); ///< number of floats of all fields
+  /// Number of floats of a buffer for `fields` quantities per cell, padding included.
+  static std::size_t CountOf(const std::array<int, 3>& size, int fields, int width);
 
 private:
-  /// Calls act(cell index, x, field, offset in memory) for each field of each cell.
+  /// Calls act(cell index, x, field, offset in memory) for each field (quantity) of each cell.
   template <class Act>
   void ForValues(const Act& act) const;
 
@@ -86,7 +87,8 @@ public:
   /// no array.
   WholeRows(
     const RowKernels& kernels, const float* values, const std::array<int, 3>& size, int components, const char* what);
-  /// Provides an array that kernels write, and that Fetch copies back to `values`; may be empty.
+  /// Provides an array that kernels write, and that Fetch copies back to `values`. If `values` is empty, there is no
+  /// array.
   WholeRows(const RowKernels& kernels, std::vector<float>& values, const std::array<int, 3>& size, int components,
     const char* what);
 
@@ -142,10 +144,11 @@ public:
   LightPyramid(const RowKernels& kernels, const Grid& grid, int fields, int levels, const char* what,
     const PartOfPyramid& part = {});
 
-  /// Copies a voxel array of 1 or 3 components to the fields of level 0, from field `first` on.
+  /// Copies a voxel array of 1 or 3 components to level 0 of the pyramid, as the fields (quantities of a cell) from
+  /// number `first` on.
   void Fill(const WholeRows& voxels, int components, int first);
 
-  /// Enqueues the kernels that compute from level 0 the levels that cover the block only, up to PartOfPyramid::shared.
+  /// Enqueues the kernels that compute the levels above level 0 that cover only the block, up to PartOfPyramid::shared.
   void Build(Down down);
   /// Computes the levels above the shared level (PartOfPyramid::shared), which cover the domain.
   /// @param cells  all cells of the shared level of the domain, in the order of Read
@@ -165,7 +168,7 @@ private:
   std::vector<std::array<int, 3>> Sizes; ///< number of cells along x, y, z of each level
   int Fields;
   PyramidLevels Where = {};
-  Buffer<PyramidLevels> Told; ///< copy of `Where` on the device
+  Buffer<PyramidLevels> Told; ///< copy of `Where`, the layout of the levels, on the device
   Buffer<float> Memory;
   std::vector<cl::Buffer> Parts; ///< subbuffers of Memory, one per level
 };

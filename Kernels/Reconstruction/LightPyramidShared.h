@@ -19,12 +19,12 @@ typedef struct
   ulong offset[LevelsAtMost + 1]; ///< offset of each level in the buffer, in floats
 } PyramidLevels;
 
-/// Fields of the gains, which are stored per cell of a level and apply to the 2 x 2 x 2 cells of the next finer
-/// level.
+/// Fields of the gains: for each cell of a level, the fraction of the details (the finer level less this level,
+/// interpolated) that is kept in its 2 x 2 x 2 cells of the next finer level, and the squared errors.
 enum
 {
   GainField = 0,    ///< fraction of the details that is kept, Eq. (102) of numerics.md
-  RemovedField = 1, ///< removed light squared: (1 - gain)^2 (total - noise), Eq. (104)
+  RemovedField = 1, ///< squared light that is removed: (1 - gain)^2 (d^2 - noise), d the detail, Eq. (104)
   KeptField = 2,    ///< squared noise that is kept: gain^2 noise, Eq. (104)
   ErrorField = 3,   ///< squared error of the cells of the next finer level
   GainFields = 4

@@ -149,8 +149,9 @@ inline size_t row_of(int4 size, int field, int y, int z)
   return field * field_of(size) + within(z, size.z) * layer_of(size) + (size_t)within(y, size.y) * size.w + GUARD;
 }
 
-// Writes a row's guards and padding, if its first or last cell is among the `width` cells that were written from x
-// on.
+// Repeats a row's first value in its guards (the GUARD values before it) and its last one in its padding and the guards
+// after it, if its first or last cell is among the `width` cells that were written from x on. `count` is the number of
+// cells in the row.
 inline void repeat_ends(__global float* row, int x, int width, int count)
 {
   if (x == 0)
@@ -174,8 +175,8 @@ inline real nearer(real near, real far)
   return multiply_add((real)0.25f, far, (real)0.75f * near);
 }
 
-// Offsets, in field 0 of a cell's level, of the four rows from which row k of the cell's children is interpolated. A
-// cell at (y, z) has eight children, in four rows of pairs; row k is at y = k % 2, z = k / 2.
+// Offsets, within a field of a cell's level, of the four rows from which row k of the cell's children is interpolated.
+// A cell at (y, z) has eight children, in four rows of pairs; row k is at y = k % 2, z = k / 2.
 typedef struct
 {
   size_t here, beside, behind, opposite;

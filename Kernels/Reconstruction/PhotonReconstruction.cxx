@@ -26,7 +26,8 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-/// Number of pyramid levels above the grid that each rank computes from its box (its block and a halo).
+/// Number of pyramid levels above the grid that each rank computes from its box (its block and a halo); ranks then
+/// exchange the cells of the last one.
 constexpr int LevelsOfBox = 2;
 
 /// Width in voxels of the halo that a rank needs for the pyramid levels of its box. Conservative: per level one cell
@@ -78,7 +79,8 @@ struct ArrayRange
 /// @param low, high  required range of the values
 ArrayRange RangeOf(const float* values, std::size_t count, std::size_t components, float low, float high)
 {
-  constexpr std::size_t Lanes = 12; // a multiple of each possible number of components
+  // Number of sums that are accumulated in parallel: a multiple of each possible number of components.
+  constexpr std::size_t Lanes = 12;
   constexpr std::size_t Block = 256 * Lanes;
   double sums[Lanes] = {};
   float largest[Lanes] = {};
@@ -169,7 +171,7 @@ ArrayRange CheckedRange(const Domain& domain, const float* values, int width, in
   return range;
 }
 
-/// Sum of the values of each channel over the box `part`, from an array over the box `box`.
+/// Sum of the values of each channel over the voxels of the box `part`, from an array over the larger box `box`.
 std::array<double, 3> TotalOf(const float* values, const VoxelBox& box, const VoxelBox& part, int channels)
 {
   Grid grid;
@@ -443,8 +445,8 @@ bool IsOneColour(const Domain& domain, const NoisyLight& light)
   return !domain.Any(differs);
 }
 
-/// Reconstructs each channel separately as grey light, with its own gains and errors; directions and levels remain
-/// those of the sum of channels. Collective.
+/// Reconstructs each channel separately as grey light, with its own gains (fractions of detail that are kept) and
+/// errors; directions and source levels remain those of the sum of channels. Collective.
 void ReconstructChannels(Device& device, const Domain& domain, const NoisyLight& light,
   const ReconstructionSettings& settings, const Monitor& monitor, ReconstructedLight& result)
 {

@@ -32,19 +32,23 @@ struct ReconstructionSettings
 {
   enum class Estimator
   {
-    /// Light from one level per voxel, the lower one of two: the level up to which differences of successive levels do
-    /// not grow, and a level in proportion to the photon weight (Pfeuti 2009, section 3.2.4).
+    /// Light from one pyramid level per voxel, the lower one of two: the level up to which differences of successive
+    /// levels do not grow, and a level in proportion to the photon weight (Pfeuti 2009, section 3.2.4).
     Published,
-    Conservative,   ///< keeps each level's detail as far as independent batches agree on it, and estimates the error
-    ConstantRadius, ///< light from the same level for all voxels (Pfeuti 2009, section 4.2)
-    NearestPhotons, ///< light from the lowest level with at least `nearest` photons (Pfeuti 2009, section 4.2)
+    /// Keeps the detail of each pyramid level as far as independent batches agree on it, and estimates the error.
+    Conservative,
+    ConstantRadius, ///< light from the same pyramid level for all voxels (Pfeuti 2009, section 4.2)
+    /// Light from the lowest pyramid level with at least `nearest` photons (Pfeuti 2009, section 4.2).
+    NearestPhotons,
   };
   Estimator estimator = Estimator::Conservative;
   int levels = 5; ///< maximum number of pyramid levels above the grid, 1 to 8; limited by the grid's size
-  /// Published: increment of photon weight from one level to the next; 0: 0.999 times the mean weight of lit voxels.
+  /// Published: increment of photon weight from one level to the next; 0: 0.999 times the mean weight of voxels with
+  /// photons.
   double weightStep = 0.0;
-  int level = 1;        ///< ConstantRadius: level of the pyramid from which light is taken, from 0
-  int nearest = 20;     ///< NearestPhotons: minimum number of photons, at least 1
+  int level = 1; ///< ConstantRadius: level of the pyramid from which light is taken, from 0
+  /// NearestPhotons: minimum number of photons in a cell of the level from which light is taken, at least 1.
+  int nearest = 20;
   bool conserve = true; ///< whether the light is scaled so that its total over the volume is unchanged
 };
 

@@ -13,8 +13,8 @@ namespace tyndall
 bool NeedsCounts(ReconstructionSettings::Estimator estimator);  ///< whether the estimator needs photon counts
 bool NeedsWeights(ReconstructionSettings::Estimator estimator); ///< whether the estimator needs photon weights
 
-/// Task of the reconstruction on one rank: the validated light of the rank's box (its block and the halo,
-/// PyramidBlocks), and the settings.
+/// Task of the reconstruction on one rank: the settings, and the validated light of the rank's box, which is its block
+/// and the halo on which the block's result depends (PyramidBlocks).
 class Reconstruction
 {
 public:
@@ -26,7 +26,7 @@ public:
 
   /// Computes the factor of each channel by which the light is scaled to conserve its total, and sets the result's
   /// bias. Collective.
-  /// @param result  light of the box
+  /// @param result  light of this rank's box (block and halo)
   std::array<float, 3> Conserve(ReconstructedLight& result) const;
 
   /// Allocates a result with arrays of the size of the box (block and halo).
@@ -55,7 +55,7 @@ public:
   const Monitor& monitor;
   const bool directions;
   const int levels;                 ///< number of pyramid levels above the grid of the domain
-  const int top;                    ///< highest level from which light is taken
+  const int top;                    ///< highest pyramid level from which light is taken
   const PyramidBlocks blocks;       ///< decomposition of the pyramid among ranks
   float largest = 0.0f;             ///< largest value of the light on any rank
   std::array<double, 3> total = {}; ///< total of the light over the domain, for each channel
@@ -64,7 +64,7 @@ private:
   std::array<std::vector<float>, 4> Storage; ///< memory of the arrays of `light`, if the box is larger than the block
 
 public:
-  const NoisyLight light; ///< light of the box; arrays that the estimator does not need are null
+  const NoisyLight light; ///< light of the box (block and halo); arrays that the estimator does not need are null
 
 private:
   NoisyLight Gathered(const NoisyLight& given);
@@ -72,7 +72,7 @@ private:
 };
 
 /// Computes light by the conservative estimator: of the mean light of all batches, the detail of each pyramid level
-/// is kept as far as the batches agree on it. Collective.
+/// (the level less the interpolated next coarser one) is kept as far as the batches agree on it. Collective.
 /// @param result  arrays must have the size of the box (Reconstruction::MakeRoom)
 void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result);
 

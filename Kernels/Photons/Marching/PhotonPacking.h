@@ -83,20 +83,23 @@ struct StartingPhotons
   /// Packed photons that start on this rank. Its member `numbers` holds indices among the photons of all ranks; its
   /// members `entered` (power that enters the volume) and `missed` (photons that miss it) are totals over all ranks.
   PackedPhotons packed;
-  /// Mark of each photon, if photons are counted: the number that is added to the voxels on its path
-  /// (PhotonMarch.cl).
+  /// Mark of each photon: the number that the kernel adds to a voxel for each photon that crosses it, 1 in the upper
+  /// bits (the count) and the photon's weight in units of weightUnit in the lower ones. Empty if photons are not
+  /// counted.
   std::vector<cl_ulong> marks;
-  /// If photons are counted: photon weight for which 1 is added to the integer sum of weights of a voxel.
+  /// Photon weight that counts as 1 in the integer sums of weights of the voxels; 0 if photons are not counted.
   float weightUnit = 0.0f;
 };
 
 /// Packs the photons of all ranks as in a serial run, and sends each to the rank in whose block it starts.
 /// @param share    this rank's photons
 /// @param numbers  index of each photon of `share` among all photons
-/// @param coloured, depositsAtMost  as in Pack
+/// @param coloured  whether to keep three channels even if one would suffice
+/// @param depositsAtMost  maximum number of deposits of one photon, which determines the fixed-point unit of power
+///   (Pack)
 /// @param settings  whether batches are summed separately, and whether photons are counted
-/// @throws InvalidInput  on every rank, if any rank has a photon that Pack refuses or, if batches are requested,
-///   whose batch is not 0 to 63, or if there are more photons than voxels can count
+/// @throws InvalidInput  on every rank, if any rank has a photon that Pack refuses or, if batches are requested, whose
+///   batch is not 0 to 63, or if there are more photons than voxels can count
 StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon>& share, const PhotonNumbers& numbers,
   bool coloured, double depositsAtMost, const MarchSettings& settings);
 

@@ -16,8 +16,10 @@ namespace
 /// A vertex of a path: the photon starts, changes direction or ends there.
 struct PathVertex
 {
-  cl_ulong photon = 0;  ///< index of the photon, which the kernel carries as the photon's mark
-  cl_ulong round = 0;   ///< round of exchange between ranks in which this section of the path was traced, from 1
+  cl_ulong photon = 0; ///< index of the photon, which the kernel carries as the photon's mark
+  /// Number, from 1, of the round (ranks trace photons, then exchange those that left their blocks) in which this
+  /// vertex was found.
+  cl_ulong round = 0;
   cl_float4 place = {}; ///< position in voxels, and remaining power (sum of channels, units of PackedPhotons::unit)
 
   bool operator<(const PathVertex& other) const
@@ -58,7 +60,8 @@ public:
     return this->Trace(PhotonsOnDevice(this->Medium.device, arrived, 1, this->Channels), marks);
   }
 
-  /// Vertices of all paths so far. Those of a path's section, traced in one round, are in order along the path.
+  /// Vertices of all paths so far. In each round (ranks trace photons, then exchange those that left their blocks) the
+  /// vertices of a photon are appended in order along its path.
   std::vector<PathVertex> vertices;
 
 private:
@@ -70,7 +73,9 @@ private:
   cl_ulong Round = 0;
 };
 
-/// Traces photons through the block by running the kernel twice: it counts vertices, then writes them.
+/// Traces photons through the block. Runs the kernel twice: the first run counts the vertices of each path, the second
+/// writes them.
+/// @param marks  index of each photon, which its vertices receive
 std::vector<PhotonOnItsWay> PathRun::Trace(const PhotonsOnDevice& photons, const std::vector<cl_ulong>& marks)
 {
   ++this->Round;
@@ -122,6 +127,7 @@ std::vector<PhotonOnItsWay> PathRun::Trace(const PhotonsOnDevice& photons, const
 }
 
 /// Traces all paths through this rank's block, and returns their vertices. Collective.
+/// @param through  medium of this rank's block; null if the rank has no voxels
 /// @param packed  photons whose paths are traced, the same on all ranks
 std::vector<PathVertex> TraceVertices(const Domain& domain, const MarchMedium* through, const PackedPhotons& packed)
 {
@@ -141,7 +147,8 @@ std::vector<PathVertex> TraceVertices(const Domain& domain, const MarchMedium* t
 }
 
 /// Builds the path of packed photon i from its vertices.
-/// @param all  vertices of all paths, sorted by photon, then by the round in which they were traced
+/// @param all  vertices of all paths, sorted by photon, then by the round of exchange between ranks in which they were
+///   found
 PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<PathVertex>& all)
 {
   const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;

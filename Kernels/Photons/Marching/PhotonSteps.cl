@@ -193,7 +193,8 @@ static real time_to_wall(real p, real low, real high, real u, real inverse)
   return u == (real)0.0f ? (real)NEVER : greater(time, (real)0.0f);
 }
 
-// Sets the velocity of the photons in a mask to u, and the quantities that depend on it; `inverse` is 1 / u.
+// Sets the velocity of the photons in a mask to u, and the quantities that follow from it: time to cross a voxel, index
+// strides to the next voxels, speed and direction. `inverse` is 1 / u.
 static void aim(const MarchInfo* info, photon_lanes* lanes, integer mask, const real* u, const real* inverse)
 {
   const int strides[3] = { 1, info->grid.size[0] + 2, (info->grid.size[0] + 2) * (info->grid.size[1] + 2) };
@@ -509,7 +510,8 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
 }
 #endif
 
-// Parks lane k, whose photon has ended, in the padding, where it deposits nothing.
+// Parks photon k of the packet, which has ended, at velocity 0 in a voxel of the padding around the grid, where it
+// deposits nothing while the packet's other photons march on.
 static void rest(photon_lanes* lanes, int k)
 {
   lanes->alive[k] = 0;

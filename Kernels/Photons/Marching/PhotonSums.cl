@@ -30,9 +30,11 @@ static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c,
   }
 }
 
-// Power, in units, that is absorbed or scattered in a voxel, from the voxel's sum of deposits; `coefficient` is sigma_a
-// or sigma_s accordingly. In an optically thick voxel the sum is the power that the photons lost, of which the fraction
-// coefficient / extinction is taken.
+// Power, in fixed-point units, that is absorbed or scattered in a voxel, from the voxel's sum of deposits;
+// `coefficient` is sigma_a or sigma_s accordingly. In an optically thick voxel the sum is the power that the photons
+// lost, of which the fraction coefficient / extinction is taken.
+//   carried  with CARRIES: fraction of a unit that the previous voxel left over; receives the one that this voxel
+//            leaves
 static long taken_by(const LightSumsInfo* info, float sum, float coefficient, float extinction, float* carried)
 {
   const float thickness = info->diagonal * extinction;
@@ -45,7 +47,10 @@ static long taken_by(const LightSumsInfo* info, float sum, float coefficient, fl
   return (long)all;
 }
 
-// Adds up the copies of a voxel's record that belong to one batch, and zeroes them. Returns false if all were zero.
+// Adds up the sums of a voxel that belong to one batch, and sets them to 0. The sums are stored in info->copies copies,
+// of which copy w belongs to batch w modulo info->batches. Returns false if all were 0.
+//   record      the voxel's RECORD sums in the first copy
+//   copyStride  distance from one copy of these sums to the next
 static bool take_batch(const LightSumsInfo* info, __global long* record, ulong copyStride, int batch, long* sum)
 {
   for (int c = 0; c < RECORD; ++c)
@@ -108,7 +113,8 @@ static taken_power nothing_taken()
   return taken;
 }
 
-// Stores the absorbed and scattered powers of a work-item's voxels, in units, as [absorbed, scattered][CHANNELS].
+// Stores the absorbed and scattered powers of a work-item's voxels as [absorbed, scattered][CHANNELS], in fixed-point
+// units.
 static void store_taken(const taken_power* taken, __global long* to)
 {
   for (int c = 0; c < 2 * CHANNELS; ++c)
@@ -125,9 +131,9 @@ static float thickness_of(const LightSumsInfo* info, float extinction)
   return fmax(info->diagonal * extinction, 1.0f);
 }
 
-// Converts the sums of one record to the light of a voxel: their mean over the number of `voxels` that share the
-// record (1, or the voxels of an empty brick).
-//   record  index of sigma_a and sigma_s of the record
+// Converts the sums of one record (one voxel or, if sums are stored by bricks, all voxels of an empty brick) to the
+// light of a voxel: their mean over the number `voxels` of these voxels.
+//   record  index of the record, also in sigma_a and sigma_s
 static void finish_record(const LightSumsInfo* info, const __global float* sigma_a, const __global float* sigma_s,
   size_t record, const long* sum, float voxels, __global float* fluence, __global float* mean_direction,
   taken_power* taken)

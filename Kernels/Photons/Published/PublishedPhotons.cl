@@ -110,8 +110,9 @@ static float4 index_at(const PublishedMarchInfo* info, const __global float4* in
 }
 #endif
 
-// Computes the index and its central differences, one-sided at the faces of the domain. At other faces of `known` the
-// differences are wrong but not used, as photons of the block need only one voxel around it.
+// Computes n and its gradient, by central differences that are one-sided at the faces of the domain, in the voxels of
+// the region `known`: the block and two voxels around it. At faces of this region inside the domain the differences are
+// wrong but not used, as photons of the block need only one voxel around it.
 __kernel void published_index(PublishedMarchInfo info, const __global float* ior, __global float4* index)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));

@@ -136,7 +136,8 @@ public:
     device.Finish();
   }
 
-  /// Marches photons to their ends or out of the block, and updates the position, face and counts of each.
+  /// Marches photons to their ends or out of the block, and updates the state of each: position, power, exit face, and
+  /// numbers of steps and deposits.
   /// @param photons  photons that start in the block or enter it
   /// @throws Aborted
   void March(std::vector<PublishedPhoton>& photons, const Monitor& monitor)
@@ -398,7 +399,7 @@ private:
     });
   }
 
-  /// Sum over voxels and channels of the block's fluence times a weight.
+  /// Sum over the block's voxels of the fluence of each channel times a weight.
   /// @param weight  function of voxel and channel
   template <class Weight>
   static Rgb Total(const PhotonLight& result, const Weight& weight)

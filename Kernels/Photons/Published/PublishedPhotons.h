@@ -21,7 +21,7 @@ struct PublishedSettings
 /// Losses of power by packing the light of a voxel into 64 bits.
 struct PackingLoss
 {
-  Rgb deposited = {};       ///< W, sum of all deposits
+  Rgb deposited = {};       ///< W, sum of all deposits, including what packing loses
   Rgb kept = {};            ///< W, the part of `deposited` that the packed light of the voxels still contains
   std::size_t deposits = 0; ///< number of deposits in voxels
   std::size_t givenUp = 0;  ///< number of deposits that were lost because all compare-and-swap attempts failed

@@ -40,7 +40,7 @@ typedef struct
   int done;                ///< number of voxels of the last step in which the photon has deposited its light
   int deposits;            ///< number of deposits of the photon in voxels
   int givenUp;             ///< number of deposits that were lost because all compare-and-swap attempts failed
-  PublishedPlace from, to; ///< states at the beginning and at the end of the last step
+  PublishedPlace from, to; ///< states of the photon at the beginning and at the end of its last step
   float deposited[3];      ///< power of all deposits of the photon, by channel, in the unit of PublishedPlace::power
 } PublishedPhoton;
 SHARED_END

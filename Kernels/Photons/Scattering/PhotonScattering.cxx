@@ -43,7 +43,8 @@ PhaseSampling PhaseOf(const Medium& medium)
   }
 }
 
-/// Values of SampledPhase: parameter of the phase function, one value or one per voxel; or table of cosines.
+/// Values of SampledPhase::values: parameter of the phase function, one value or one per voxel; or table of the cosine
+/// of the scattering angle at equidistant values of its cumulative probability.
 std::vector<float> PhaseValues(const Medium& medium)
 {
   const PhaseSampling phase = PhaseOf(medium);
@@ -87,7 +88,8 @@ std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 
 double ScatteringStepPart(const Field& ior, const std::array<int, 3>& size)
 {
-  // Eq. (99d) of numerics.md: the fraction is Seen over the largest relative jump of n^2, but at least Least.
+  // Eq. (99d) of numerics.md: the fraction of the step size is Seen over the largest relative jump of n^2 between
+  // neighbouring voxels, but at least Least.
   constexpr double Seen = 0.5, Least = 0.1;
   double jump = 0.0;
   const std::array<std::size_t, 3> stride = { 1, static_cast<std::size_t>(size[0]),
@@ -393,7 +395,8 @@ void ScatteredChannels::AddTo(
     double all = 0.0, direct = 0.0;
     for (std::size_t c = 0; c < channels; ++c)
     {
-      const double counts = channels == 1 ? 3.0 : 1.0; // sum over colours: a single channel is red, green and blue
+      // Power summed over red, green and blue, for which a single channel stands.
+      const double counts = channels == 1 ? 3.0 : 1.0;
       all += counts * light.light.fluence[i / 3 * channels + c];
       direct += counts * light.light.fluenceDirect[i / 3 * channels + c];
     }

@@ -20,7 +20,7 @@ struct ScatteredPhotons
   /// Net flux, W / length^2, 3 values per voxel; empty if mean directions are not requested.
   std::vector<float> flow;
   double entered = 0.0;  ///< W, power of the photons that enter the volume
-  double absorbed = 0.0; ///< W, power absorbed before and after the first collision
+  double absorbed = 0.0; ///< W, power absorbed, also on the way to the first collision
   /// W, power of photons that were terminated before a further scattering, or were trapped by total reflection.
   double leftOver = 0.0;
   double exchanged = 0.0;             ///< W, net power added by Russian roulette; its expected value is 0
@@ -37,8 +37,10 @@ struct SampledPhase
   /// @param medium  a medium of one channel, with the phase function
   SampledPhase(Device& device, const Medium& medium);
 
-  std::string options;  ///< definitions of macros for ScatterPhotons.cl
-  Buffer<float> values; ///< parameter of the phase function, one value or one per voxel; or the table of cosines
+  std::string options; ///< definitions of macros for ScatterPhotons.cl
+  /// Parameter of the phase function, one value or one per voxel; or table of the cosine of the scattering angle at
+  /// equidistant values of its cumulative probability.
+  Buffer<float> values;
 };
 
 /// Medium and phase function in which photons are followed along curved rays through successive scatterings
@@ -61,7 +63,7 @@ struct PhotonScattering
   static constexpr double DepositsPerEvent = 4096.0;
 
   const MarchMedium& through;
-  double stepPart;       ///< fraction of MarchSettings::stepSize that is used
+  double stepPart;       ///< factor, 0.1 to 1, by which MarchSettings::stepSize is multiplied (ScatteringStepPart)
   Buffer<float> optical; ///< sigma_s and sigma_a times the voxel diagonal, two values per voxel of the padded grid
   SampledPhase phase;
 };
@@ -133,9 +135,12 @@ public:
     const std::uint8_t* levels; ///< octree levels of the voxels; null: no octree
     // The following members are the same on all ranks.
     const MarchSettings& settings;
-    double stepPart;           ///< ScatteringStepPart of the index in the domain
-    bool coloured;             ///< whether channels differ in their coefficients or phase functions
-    const BrickedBytes* nodes; ///< octree nodes, the argument of MarchMedium::SetNodes; null: `levels` cover the domain
+    /// Factor, 0.1 to 1, by which the step size is multiplied: ScatteringStepPart for the index in the whole domain.
+    double stepPart;
+    bool coloured; ///< whether channels differ in their coefficients or phase functions
+    /// Octree nodes of all voxels of the domain, for MarchMedium::SetNodes; null: the block is the domain, or there is
+    /// no octree.
+    const BrickedBytes* nodes;
   };
   ScatteredChannels(Device& device, const Block& block);
 
@@ -148,13 +153,14 @@ public:
     std::function<ScatteredPhotons(const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor)>;
   /// Adds scattered light to `light`, the uncollided light of the same photons.
   /// @param packed  the photons as they were packed for the uncollided light
-  /// @param follow  follows the photons of each run
+  /// @param follow  follows the photons of one channel; called once per channel or, if medium and light have one
+  ///   colour, once
   void AddTo(PhotonLight& light, const PackedPhotons& packed, const Monitor& monitor, const Follower& follow) const;
 
 private:
   struct Channel
   {
-    std::unique_ptr<const MarchMedium> own; ///< medium of this channel; null unless the medium is coloured
+    std::unique_ptr<const MarchMedium> own; ///< medium of this channel; null if all channels share one medium
     std::unique_ptr<PhotonScattering> photons;
   };
   static Rgb ColourOfRun(const PackedPhotons& packed, bool oneRun, int run);

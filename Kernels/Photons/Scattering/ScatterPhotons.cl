@@ -113,8 +113,8 @@ typedef struct
 } scattered_flight;
 
 #if BLOCKS
-// Whether the position `place` of a scattering is, by rounding, in a voxel of another block. If so, stores position
-// and new direction as the photon's path state, with which it starts anew in that block.
+// Whether rounding puts the position `place` of a scattering into a voxel of another block. If so, stores position and
+// new direction as the photon's path state, with which it starts anew in that block.
 static bool sets_off_elsewhere(const march_arrays* arrays, photon_lanes* lanes, float3 place, float3 direction)
 {
   const MarchInfo* info = arrays->info;
@@ -207,7 +207,8 @@ static void roulette(scattered_flight* flight)
   }
 }
 
-// Moves the photon to its next voxel wall or change of velocity, at time `next`.
+// Moves the photon to its next voxel wall or to the end of its step, where its velocity changes; it arrives at time
+// `next`.
 static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
 {
   FOR_AXES(a)
@@ -358,7 +359,8 @@ static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, c
 }
 
 // Follows photons how.first to how.first + how.count to their ends or into other blocks.
-//   counters  index of the next photon; then, with BLOCKS, the number of photons in `gone`
+//   numbers   index of each photon, which selects its sequence of random numbers
+//   counters  two counters: index of the next photon to fetch; then, with BLOCKS, the number of photons in `gone`
 __kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global float* sigma,
   const __global float* coefficients, const __global uchar* nodes, const __global float2* optical,
   const __global float* phase, const __global float* photons, const __global ulong* numbers, __global ScatterEnd* ends,
