@@ -28,9 +28,9 @@ struct IndexRange
 IndexRange IndexRangeOf(const Field& ior, const Grid& grid);
 
 /// Checks octree levels.
-/// @param levels  one octree level per voxel of `part`, or null
-/// @throws InvalidInput if a level is above that of the single node that would hold the domain `whole`; names the
-///   first such voxel
+/// @param levels  one octree level per voxel of `part`, or null: no octree
+/// @throws InvalidInput if a level is above that of the single node that would hold the domain `whole`; names the first
+///   such voxel
 void CheckLevels(const std::uint8_t* levels, const Grid& part, const Grid& whole);
 
 /// Checks the width of the smoothing filter.

@@ -261,7 +261,8 @@ public:
     index.Fill(0.0f);
   }
 
-  /// Adds the material of one solid to the voxels of one slab; the callback of CountSamplesInside.
+  /// Adds the material of one solid to the voxels of one slab (the voxels whose samples are held at a time); the
+  /// callback of CountSamplesInside.
   void Take(const SamplesInside& inside)
   {
     if (inside.mesh + 1 == this->Solids.size())
@@ -354,7 +355,8 @@ private:
   const bool VariedG;
   Buffer<float>& Index;
   RefractiveMedium& Result;
-  Buffer<float> Covered, SigmaA, SigmaS, G; ///< covered fraction, coefficients and g of one slab
+  /// Covered fraction, coefficients and g of the voxels of one slab (those computed at a time).
+  Buffer<float> Covered, SigmaA, SigmaS, G;
   cl::Kernel AddObject, AddOutside;
 };
 

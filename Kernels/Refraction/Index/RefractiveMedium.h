@@ -63,7 +63,7 @@ struct RefractiveMedium
 {
   std::vector<float> occupancy;   ///< fraction of the voxel's volume inside any solid, [0, 1]
   std::vector<float> ior;         ///< refractive index n, smoothed; empty if n is the same everywhere
-  std::vector<float> iorGradient; ///< gradient of n, 1/length, 3 values per voxel; empty if ior is empty
+  std::vector<float> iorGradient; ///< gradient of n, 1/length, 3 values per voxel; empty if n is the same everywhere
   std::vector<float> sigma_a;     ///< absorption coefficient, 1/length, `components` values per voxel
   std::vector<float> sigma_s;     ///< scattering coefficient, 1/length, `components` values per voxel
   int components = 1;             ///< components of sigma_a, sigma_s and gByVoxel: 3 if any material has colour, else 1

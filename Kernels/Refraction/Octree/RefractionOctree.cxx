@@ -293,9 +293,10 @@ private:
   PyramidBlocks Blocks;              ///< decomposition of the pyramid among ranks
   std::vector<NodesOfLevel> Pyramid; ///< levels of the pyramid, from the voxels up
   std::size_t NodeCount = 0;         ///< number of nodes of all levels above 0
-  Buffer<cl_float2> Ranges;          ///< (min, max) of each node for the quantity that is processed
+  /// (min, max) in each node of the quantity that is currently processed: n, or one channel's extinction.
+  Buffer<cl_float2> Ranges;
   Buffer<cl_uchar> Nodes, Levels;
-  bool Restricted = false; ///< whether `Levels` already holds the levels that earlier quantities allow
+  bool Restricted = false; ///< whether `Levels` already holds the levels that the quantities processed before allow
 };
 }
 
@@ -321,7 +322,7 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
   const int levels = PyramidLayout(domain.Whole().size).LevelCount();
   Octree octree;
   octree.topLevel = levels - 1;
-  std::shared_ptr<Device> found; // the device, which is opened for the first quantity that is not constant
+  std::shared_ptr<Device> found; // the device; null until a quantity is found that is not constant
   std::optional<OctreePyramid> pyramid;
   /// Restricts the octree by one quantity.
   /// @return whether the quantity restricts nodes; false if it is constant, or the domain is one voxel

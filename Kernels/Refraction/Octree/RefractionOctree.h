@@ -15,7 +15,7 @@ struct OctreeSettings
 {
   double tolerance = 0.01; ///< maximum difference of the refractive index in a node (Pfeuti's epsilon), in [0, 1]
   bool includeExtinction = false;   ///< whether the extinction must be nearly constant in a node as well
-  double extinctionTolerance = 0.1; ///< maximum difference of optical thickness across a node, >= 0; see Octree
+  double extinctionTolerance = 0.1; ///< maximum difference of sigma_t within a node, times the node's diagonal; >= 0
 };
 
 /// Octree of voxels with nearly equal refractive index (Pfeuti 2009, section 3.1.3).

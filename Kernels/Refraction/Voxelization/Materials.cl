@@ -60,6 +60,8 @@ inline float gradient_noise(float3 position, uint seed)
 
 // Adds a material to a voxel by its volume fraction `part`. The mean cosine is weighted by sigma_s (numerics.md, Eq.
 // (3e)) and updated with every material, so that a voxel of a single material gets exactly the material's g.
+//   i      index of the voxel in the slab, which sigma_a, sigma_s and g cover
+//   voxel  index of the voxel in the box, which ior covers
 inline void add_material(float part, const MaterialInfo* material, ulong i, ulong voxel, __global float* ior,
   __global float* sigma_a, __global float* sigma_s, __global float* g)
 {
@@ -78,10 +80,11 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
   }
 }
 
-// Adds one material to the voxels of a slab. A voxel of a single material gets exactly the material's values.
-//   inside    for each voxel, the samples inside the material, in units of 1 / UnitsOfSample of a sample: 0 to
+// Adds one material to the voxels of a slab, which are computed at a time. A voxel of a single material gets exactly
+// the material's values.
+//   inside    for each voxel, the number of samples inside the material (with fractions), times UnitsOfSample: 0 to
 //             slab.samples
-//   covered   sum of the counts of all materials added so far
+//   covered   sum of these numbers over all materials added so far
 //   ior       n in the entire box; the other arrays cover the slab
 __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const ushort* inside, __global float* covered,
   __global float* ior, __global float* sigma_a, __global float* sigma_s, __global float* g)
@@ -108,8 +111,8 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const u
   add_material(number / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s, g);
 }
 
-// Adds the outside material to the fraction of each voxel that no mesh covers; `covered` becomes the covered fraction
-// of the voxel.
+// Adds the outside material to the fraction of each voxel that no mesh covers. `covered` holds the sums by add_object,
+// and receives the covered fractions of the voxels.
 __kernel void add_outside(MaterialSlab slab, MaterialInfo material, __global float* covered, __global float* ior,
   __global float* sigma_a, __global float* sigma_s, __global float* g)
 {

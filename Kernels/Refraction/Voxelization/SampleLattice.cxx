@@ -11,13 +11,14 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum length of grid and meshes together, in units of the lattice: a sum of three products of three coordinates
-/// then fits 63 bits.
+/// Maximum length of grid and meshes together, in lattice units: a sum of three products of three coordinates then fits
+/// 63 bits.
 constexpr double Longest = 1 << 20;
 constexpr int TileColumns = 64;
 constexpr int TileRows = 16;
 
-/// Index of the first sample at or above a coordinate, which may be negative; samples are at (index + 1/2) pitch.
+/// Index of the first sample at or above a coordinate (lattice units), which may be negative; samples are at (index +
+/// 1/2) pitch.
 int FirstSampleFrom(int coordinate, int pitch)
 {
   const int above = coordinate - pitch / 2 + pitch - 1;
@@ -30,7 +31,7 @@ struct Interval
 };
 
 /// Interval that a triangle covers along the axis columns.across where its coordinate along the axis columns.up is
-/// between `low` and `high`; widened by one unit of the lattice for rounding.
+/// between `low` and `high`; widened by one lattice unit for rounding.
 Interval AcrossBetween(
   const std::array<const SampleLattice::Point*, 3>& corners, const SampleColumns& columns, double low, double high)
 {
@@ -153,7 +154,8 @@ LatticeMesh::LatticeMesh(Device& device, const SampleLattice& lattice, const Tri
 std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int firstRow, int endRow) const
 {
   SampleBox rows;
-  // An empty range along the columns means no limit: a crossing beyond a column's end counts as a crossing at its end.
+  // An empty range along the columns sets no limit there: a crossing beyond a column's end counts as a crossing at its
+  // end.
   rows.first[columns.axis] = 0;
   rows.end[columns.axis] = 0;
   rows.first[columns.across] = 0;

@@ -32,11 +32,11 @@ public:
   /// Number of lattice units per edge of a fine voxel: a power of 2, at least 2.
   int Pitch() const { return this->UnitsOfSample; }
 
-  /// Points in units of the lattice, rounded.
+  /// Points in lattice units, each coordinate rounded to an integer.
   std::vector<Point> Rounded(const std::vector<std::array<double, 3>>& points) const;
 
-  /// Whether a mesh is closed after rounding to the lattice. A closed mesh stays closed; gaps narrower than a unit
-  /// may close.
+  /// Whether a mesh is closed after rounding to the lattice. A closed mesh stays closed; gaps narrower than a lattice
+  /// unit may close.
   bool Closes(const TriangleMesh& mesh) const;
 
 private:
@@ -58,7 +58,7 @@ struct SampleColumns
   int samplesOfVoxel;       ///< number of samples per edge of a voxel
   int samples;              ///< number of samples in a column
   std::array<int, 2> count; ///< number of columns per row, and number of rows
-  int pitch;                ///< distance of samples, in lattice units; the first one is half a pitch inside the grid
+  int pitch; ///< distance of adjacent samples, in lattice units; the first sample is half of it inside the grid
 };
 
 /// A box of samples (fine voxels): indices from `first` to below `end` along each axis.
@@ -81,7 +81,7 @@ public:
   /// triangle does not keep one work-item busy while the others wait.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, int firstRow, int endRow) const;
 
-  /// Divides the triangles into tiles, as above, of the columns in a box of samples.
+  /// Divides the triangles into tiles for columns in a box of samples; otherwise as above.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, const SampleBox& box) const;
 
 private:

@@ -50,7 +50,7 @@ inline float weight_along(long3 normal)
   return ALONG(n) / ((least + middle) + 1.0f);
 }
 
-// Whether a crossing is hidden: the sample before or after it belongs to a later mesh.
+// Whether a crossing is hidden: the sample before or after it lies inside a later mesh, which has claimed it.
 inline int is_hidden(__global const uint* claimed, const SampleRows* rows, int3 before, int3 after, int first, int last)
 {
   return (!first && is_set(claimed, rows, before)) || (!last && is_set(claimed, rows, after));
@@ -70,8 +70,10 @@ inline int side_of(
   return inBefore == inAfter ? turned : inBefore ? 1 : -1;
 }
 
-// Samples of a slab. `bits`: one bit per sample, 1 inside the mesh that is measured; `claimed`: the same, 1 inside
-// later meshes; `taken`: as in refine_counts. claimed and taken are read only if there are several meshes.
+// Samples of a slab (the voxels that are processed at a time). `bits`: one bit per sample, 1 inside the mesh that is
+// measured; `claimed`: the same, 1 inside later meshes; `taken`: for each voxel, the number of samples (x) and the
+// volume (y, in 1 / UNITS_OF_COUNT of a sample) inside later meshes. claimed and taken are read only if there are
+// several meshes.
 typedef struct
 {
   const SampleRows* rows;
@@ -83,9 +85,11 @@ typedef struct
 
 // Correction of a voxel's volume by one crossing. Returns the index of the voxel in the slab, or -1 if it is outside,
 // and the correction in 1 / UNITS of a sample.
-//   excess      position of the crossing in the column across, up: `excess` of `sheet` there
+//   excess      position of the crossing: ALONG(normal) times the distance from the column's first sample to it, plus
+//               s->tie
+//   across, up  indices of the column
 //   scale       factor that converts `twice`, below, to a correction
-//   turned      as in side_of
+//   turned      1: lines along the column leave the mesh at this triangle; -1: they enter it; 0: not known
 inline int2 correction_at(
   const mesh_samples* mesh, const sheet* s, long excess, int across, int up, float scale, int turned)
 {
@@ -117,10 +121,12 @@ inline int2 correction_at(
   return (int2)(index, side * convert_int_rte(scale * (float)twice));
 }
 
-// Sums the corrections of a slab's voxels by the crossings of one mesh.
-//   tiles          as in mark_crossings
+// Sums the corrections of the volumes of a slab's voxels (the voxels that are processed at a time) by the crossings of
+// one mesh.
+//   tiles          pieces of triangles, one per work-item, as in mark_crossings
 //   samples, bits, claimed, taken  as in mesh_samples
-//   orientation    1, -1 or 0, OrientedMesh::orientation
+//   orientation    of the mesh's triangles, seen from outside: 1 counterclockwise, -1 clockwise, 0 if triangles
+//                  disagree
 //   corrections    output, one value per voxel of the slab, x fastest, in 1 / UNITS of a sample
 __kernel void measure_crossings(int tileCount, __global const uint4* tiles, __global const int* points,
   __global const int* triangles, int pitch, int samples, SampleRows rows, __global const uint* bits,
@@ -235,7 +241,7 @@ __kernel void refine_counts(SampleRows rows, __global const int* corrections, __
   counts[id] = (ushort)clamp(units, 0L, room);
 }
 
-// Adds the samples inside a mesh to the samples claimed by later meshes.
+// Adds the samples inside a mesh to those that later meshes have claimed, in words `first` to first + words.
 __kernel void claim_samples(ulong first, int words, __global const uint* bits, __global uint* claimed)
 {
   const int id = get_global_id(0);

@@ -86,17 +86,19 @@ std::vector<int> MergedPoints(const std::vector<Point>& points)
   return merged;
 }
 
-/// Use of an edge by one triangle. The edge's end with the lower point index is not stored: EdgeUses groups uses by it.
+/// An edge as one of the triangles uses it. The edge's end with the lower point index is not stored: EdgeUses groups
+/// the uses by it.
 struct EdgeUse
 {
   int higher;   ///< point index of the edge's other end, the higher one of the two
   bool upwards; ///< whether the triangle traverses the edge from its lower to its higher index
 };
 
-/// Uses of all edges, sorted by the lower point index of the edge's two ends.
+/// Uses of all edges by triangles, sorted by the lower point index of the edge's two ends.
 struct EdgeUses
 {
-  /// For each point, the index in `uses` of the first edge whose lower end it is; then the number of uses.
+  /// Element i: index in `uses` of the first use of an edge whose lower end is point i. The element after the last
+  /// point's: number of uses.
   std::vector<std::size_t> begin;
   std::vector<EdgeUse> uses;
 };

@@ -105,8 +105,8 @@ inline void mark_crossing(
 #endif
 }
 
-// A triangle over the columns of a tile: the edges that bound the columns it crosses, and the position of its plane
-// along them. Coordinates are (along, across, up).
+// A triangle over the columns of a tile (a rectangle of columns that one work-item processes): the edges that bound the
+// columns it crosses, and the position of its plane along them. Coordinates are (along, across, up).
 typedef struct
 {
   edge e0, e1, e2; // edge functions of the three edges, in the first column of a row
@@ -118,7 +118,8 @@ typedef struct
   long excessAcross, excessUp; // decrements of `excess` to the next column and to the next row
 } sheet;
 
-// Prepares a triangle for the columns of a tile. Returns 0 if the triangle crosses no column.
+// Prepares a triangle for the columns of a tile (a rectangle of columns that one work-item processes). Returns 0 if the
+// triangle crosses no column.
 inline int start_sheet(
   sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int axis, int pitch)
 {
@@ -228,8 +229,11 @@ __kernel void mark_crossings(int tileCount, __global const uint4* tiles, __globa
 
 #if WINDING
 
-// Summarises the winding numbers, times `sign`, of each column's samples in `found`: the smallest, the largest, the
-// number of samples whose winding number is neither 0 nor 1, and the index of the first such sample.
+// Summarises the winding numbers of each column's samples.
+//   sign   1; -1 if the mesh is inside out, so that its winding numbers are negated
+//   found  output for each column: the smallest of 0 and its winding numbers, the largest of 0 and these, the number of
+//          samples whose winding number is neither 0 nor 1, and the index of the first such sample (`samples` if there
+//          is none)
 __kernel void find_windings(
   int columnCount, int words, int samples, int sign, __global const uint* marks, __global int4* found)
 {
@@ -337,7 +341,8 @@ __kernel void fill_columns(int columnCount, int columns, int words, int from_abo
 // Counts the samples of each voxel that are inside the mesh and belong to no later mesh. One work-item per column of
 // voxels.
 //   claimed   samples of later meshes, in the layout of `bits`; the mesh's samples are added. Used only if how.claims
-//   counts    output: number of samples counted in each voxel of the slab, times how.units
+//   counts    output: number of samples counted in each voxel of the slab (the voxels that are processed at a time),
+//             times how.units
 __kernel void count_samples(
   SampleCounts how, __global const uint* bits, __global uint* claimed, __global ushort* counts)
 {

@@ -29,14 +29,16 @@ std::string CrossingOptions(int samplesOfVoxel, bool winding)
   return Define("SAMPLES", samplesOfVoxel) + Define("WINDING", winding);
 }
 
-/// Queues a kernel of Voxelization.cl or SurfaceFraction.cl with one work-item per tile, column or voxel.
+/// Queues a kernel of Voxelization.cl or SurfaceFraction.cl with one work-item per tile (triangle with a rectangle of
+/// sample columns), column or voxel.
 void RunCrossings(Device& device, const cl::Kernel& kernel, std::size_t items)
 {
   device.Queue().enqueueNDRangeKernel(
     kernel, cl::NullRange, cl::NDRange(RoundUp(items, CrossingGroup)), cl::NDRange(CrossingGroup));
 }
 
-/// Tiles of a mesh's triangles on the device; the buffer is kept between uses.
+/// Tiles of a mesh's triangles (a triangle with a rectangle of sample columns each) on the device; the buffer is kept
+/// between uses.
 class TilesOnDevice
 {
 public:
@@ -54,7 +56,7 @@ private:
   Buffer<cl_uint4> Tiles;
 };
 
-/// Marks the crossings of meshes with some rows of columns in a buffer (kernel mark_crossings of Voxelization.cl).
+/// Marks in a buffer where meshes cross the columns of samples in some rows (kernel mark_crossings of Voxelization.cl).
 class CrossingMarker
 {
 public:
@@ -71,8 +73,9 @@ public:
   }
 
   /// Queues the kernel for the columns of rows firstRow to endRow.
-  /// @param marks  output: `words` for each column of the rows
-  /// @param sums   output: one value for each column of the rows; empty if winding numbers are computed
+  /// @param marks  output: `words` 32-bit words for each column of the rows
+  /// @param sums   output: for each column, a sum of random numbers by which fill_columns finds samples whose winding
+  ///   number is neither 0 nor 1; empty if winding numbers are computed
   void Mark(const LatticeMesh& mesh, int firstRow, int endRow, Buffer<cl_uint>& marks, Buffer<cl_uint>& sums)
   {
     marks.Fill(0);
@@ -181,12 +184,13 @@ WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& bo
   return sum.Windings;
 }
 
-/// Rows of voxels along an axis, and the rows of samples that are needed for them.
+/// A slab, the part of the grid that is processed at a time: rows of voxels, and the rows of sample columns that they
+/// need.
 struct SampleSlab
 {
   int firstVoxel, endVoxel; ///< range of rows of voxels along columns.up
-  /// Range of rows of samples: those of the voxels and, for fractions of samples, one more on either side where the
-  /// grid has one.
+  /// Range of rows of sample columns: those of the voxels and, if counts include fractions of samples, one more on
+  /// either side where the grid has one.
   int firstRow, endRow;
 };
 
@@ -201,7 +205,7 @@ SampleColumns Along(int axis, const Grid& grid, const SampleColumns& like)
 class SurfaceFraction
 {
 public:
-  /// Compiles the kernels and allocates the corrections of a slab.
+  /// Compiles the kernels, and allocates the corrections of a slab (the voxels that are processed at a time).
   /// @param columns  columns of the samples' bits, of `words` 32-bit words each
   /// @param voxels   maximum number of voxels in a slab, which take 4 bytes each, and 4 more if there are several
   ///   meshes
@@ -230,8 +234,8 @@ public:
     this->ClaimSamples = kernel("claim_samples", 0);
   }
 
-  /// Prepares the measurement of a slab. Must be called once per slab, before the meshes are measured in it, which is
-  /// done from the last mesh to the first.
+  /// Prepares the measurement of a slab (the voxels that are processed at a time). Must be called once per slab, before
+  /// the meshes are measured in it, which is done from the last mesh to the first.
   void Begin()
   {
     if (this->Several)
@@ -242,7 +246,8 @@ public:
 
   /// Queues the measurement of the difference between the volume of a mesh in the slab's voxels and its count of
   /// samples.
-  /// @param orientation  OrientedMesh::orientation of the mesh
+  /// @param orientation  of the mesh's triangles, seen from outside: 1 counterclockwise, -1 clockwise, 0 if triangles
+  ///   disagree
   /// @param bits         samples inside the mesh, in the slab's rows of samples
   /// @param claimed      samples inside later meshes, in the same rows of samples; empty if there is only one mesh
   void Measure(const LatticeMesh& mesh, int orientation, const SampleSlab& slab, const Buffer<cl_uint>& bits,
@@ -320,12 +325,13 @@ private:
   /// For each voxel of the slab, the mesh's volume less its count of samples, in 1 / UNITS of a sample
   /// (SurfaceFraction.cl).
   Buffer<cl_int> Corrections;
-  /// For each voxel of the slab, what later meshes hold: samples, and units of 1 / UnitsOfSample of a sample.
+  /// For each voxel of the slab, how much of it later meshes occupy: number of samples (x), and volume in 1 /
+  /// UnitsOfSample of a sample (y). Empty if there is only one mesh.
   Buffer<cl_ushort2> Taken;
 };
 
 constexpr int LargestSampleCount = 16;
-/// Maximum number of voxels in a slab, unless one row of voxels has more.
+/// Maximum number of voxels in a slab (the voxels that are processed at a time), unless one row of voxels has more.
 constexpr std::size_t SlabVoxels = std::size_t(4) << 20;
 
 /// Number of 32-bit words in a column of samples along an axis.
@@ -349,7 +355,7 @@ std::size_t VoxelsOfRow(const SampleColumns& columns, const Grid& grid)
   return grid.VoxelCount() / grid.size[columns.up];
 }
 
-/// Number of rows of voxels in a slab whose columns of samples take about `bytes`.
+/// Number of rows of voxels in a slab whose columns of samples take about `bytes` bytes.
 int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::size_t bytes)
 {
   const std::size_t row = static_cast<std::size_t>(columns.count[0]) * columns.samplesOfVoxel * words * sizeof(cl_uint);
@@ -357,7 +363,8 @@ int RowsOfSlab(const SampleColumns& columns, const Grid& grid, int words, std::s
   return static_cast<int>(std::clamp<std::size_t>(rows, 1, static_cast<std::size_t>(grid.size[columns.up])));
 }
 
-/// Counts the samples of each voxel of a box inside each of several meshes, slab by slab.
+/// Counts the samples of each voxel of a box inside each of several meshes, slab by slab: a slab is the set of voxel
+/// rows whose samples are held at a time.
 class Voxelization
 {
 public:
@@ -424,7 +431,8 @@ public:
   }
 
 private:
-  /// Number of rows of samples that are needed on either side of a slab.
+  /// Number of rows of sample columns that a slab (the voxels that are processed at a time) needs beyond either of its
+  /// sides.
   static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
 
   /// Winding numbers of a mesh at the samples of the voxels Counted.own.
@@ -514,7 +522,7 @@ private:
   SampleLattice Lattice;
   SampleColumns Columns;
   int Words; ///< number of 32-bit words per column of samples
-  int Rows;  ///< number of rows of voxels in a slab
+  int Rows;  ///< number of rows of voxels that are processed at a time (a slab)
   cl_int FromAbove;
   CrossingMarker Marker;
   cl::Kernel Fill, Count;
@@ -522,8 +530,9 @@ private:
   std::vector<LatticeMesh> Meshes;
   Buffer<cl_uint> Bits, Sums, Claimed;
   Buffer<cl_ushort> Counts;
-  std::optional<SurfaceFraction> Fractions; ///< present if the settings request fractions of samples
-  /// For each mesh, a flag per row of voxels: nonzero where FindWindings has to look for odd samples (WindingNumbers).
+  std::optional<SurfaceFraction> Fractions; ///< no value if the settings request no fractions of samples
+  /// For each mesh, a flag per row of voxels: nonzero where FindWindings has to look for samples whose winding number
+  /// is neither 0 nor 1.
   Buffer<cl_int> Odd;
 };
 }

@@ -19,7 +19,8 @@ struct WindingNumbers
 {
   std::size_t oddSamples = 0;  ///< number of odd samples
   int lowest = 0, highest = 1; ///< least and largest of 0, 1 and the winding numbers of all samples
-  /// Position of the first odd sample, in the order z, y, x (x fastest) for columns along x.
+  /// Position of the first odd sample, in the order z, y, x (x fastest) for columns along x; (0, 0, 0) if there is
+  /// none.
   std::array<double, 3> firstOddSample = { 0, 0, 0 };
   std::array<int, 3> firstOddNumber = { 0, 0, 0 }; ///< index of the first odd sample along each axis of the domain
 
@@ -44,8 +45,8 @@ struct VoxelizationSettings
   std::size_t slabBytes = std::size_t(16) << 20;
 };
 
-/// Number of units that one sample counts. Counts are integers in this unit, so that they can include fractions of a
-/// sample; the count of a voxel fits 16 bits.
+/// Number that one sample adds to a voxel's count. Counts are integers in units of 1 / UnitsOfSample of a sample, so
+/// that they can include fractions of a sample; the count of a voxel fits 16 bits.
 constexpr int UnitsOfSample(int samples)
 {
   return 65535 / (samples * samples * samples);
@@ -64,10 +65,10 @@ struct OrientedMesh
   int orientation = 1; ///< 1: counterclockwise as seen from outside; -1: clockwise; 0: triangles disagree
 };
 
-/// Counts of the samples inside one of several meshes, for the voxels of a slab.
+/// Counts of the samples inside one of several meshes, for the voxels of a slab, which are processed at a time.
 struct SamplesInside
 {
-  std::size_t mesh; ///< index of the mesh
+  std::size_t mesh; ///< index of the mesh, in the order in which CountSamplesInside was given the meshes
   /// Count of each voxel of the slab, in units of 1 / UnitsOfSample(samples) of a sample: 0 to samples^3
   /// UnitsOfSample(samples), x fastest. Overwritten for the next mesh.
   const Buffer<cl_ushort>& counts;

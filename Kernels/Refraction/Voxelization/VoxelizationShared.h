@@ -28,7 +28,7 @@ typedef struct
   float g;                       ///< mean cosine of the phase function
 } MaterialInfo;
 
-/// Rows of columns of samples in a buffer, and the voxels of the slab that they cover.
+/// Rows of columns of samples in a buffer, and the voxels that they cover: a slab, which is processed at a time.
 typedef struct
 {
   int4 voxels;    ///< number of voxels of the slab along x, y, z
@@ -45,7 +45,7 @@ typedef struct
   int voxels;        ///< number of voxels per column
   int columns, rows; ///< numbers of columns of voxels per row, and of rows
   int words;         ///< number of 32-bit words per column of samples
-  int skipped;       ///< number of rows of samples in the buffer before those of the slab's voxels
+  int skipped;       ///< number of rows of samples in the buffer that precede those of the slab's voxels
   int claims;        ///< 1: samples that belong to later meshes are not counted
   int units;         ///< number that is added to a voxel's count for each sample: 1 or UnitsOfSample
   /// Distance, in the array of counts, between voxels that are neighbours in a column, in a row, and in two rows.
