@@ -20,11 +20,12 @@ constexpr std::size_t VoxelsOfThread = 16384; ///< smallest number of voxels per
 /// Largest number of pixels along each edge of a view from which the exposure is determined: a parallel projection
 /// along an axis of the grid, in which a pixel shows one column of voxels.
 constexpr int ColumnsOfView = 64;
-/// LitColor::distance is at least so long that the largest k sigma_t distance of all voxels (LitColor.h) has this
-/// value: then 8 bits resolve the opacities.
+/// LitColor::distance is at least so long that the largest optical depth k sigma_t distance of all voxels (alpha is 1 -
+/// exp of its negative, see LitColor.h) has this value: then 8 bits resolve the opacities.
 constexpr double ResolvedDepth = 2.0;
-/// The factor k of LitColor.h is chosen so that a voxel blended over black has the right display value at this fraction
-/// of the largest radiance that a ray can receive from it: the 1/4 of numerics.md, Eq. (112d).
+/// A voxel's optical depth is multiplied by a factor k, which compensates for blending in display values (LitColor.h).
+/// It is chosen so that a voxel blended over black has the right display value at this fraction of the largest radiance
+/// that a ray can receive from it: the 1/4 of numerics.md, Eq. (112d).
 constexpr double PartOfVeil = 0.25;
 constexpr double AsGoodAsOpaque = 0.95; ///< opacity of a column of voxels from which on it is taken as 1
 
@@ -165,7 +166,7 @@ struct SeenPixels
   std::vector<float> radiance, alpha;
 };
 
-/// Pixels of the two views along an axis: composites the columns of all blocks.
+/// Pixels of the two views along an axis: composites the columns of voxels of all blocks.
 /// @param byRank  columns of each rank's block, from SeenInBlock
 SeenPixels BehindEachOther(
   const BlockPartition& partition, int axis, const std::vector<std::vector<SeenColumn>>& byRank)
@@ -175,7 +176,8 @@ SeenPixels BehindEachOther(
   std::sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b) { return partition.blocks[a].first[axis] < partition.blocks[b].first[axis]; });
   const std::size_t width = static_cast<std::size_t>(partition.whole.size[AcrossAxis(axis).u]);
-  // For each position in the plane across the axis, the column there as seen from the lower and from the upper end.
+  // Columns of voxels by their position in the plane across the axis: each as seen from the lower and from the upper
+  // end.
   std::map<std::size_t, std::array<SeenColumn, 2>> columns;
   for (int side = 0; side < 2; ++side)
   {
@@ -353,7 +355,8 @@ std::vector<float> LargestOpacities(const Domain& domain, const std::vector<floa
   return opacities;
 }
 
-/// Factor k of numerics.md, Eq. (112d), of each voxel.
+/// Factor k by which each voxel's optical depth is multiplied, to compensate for blending in display values
+/// (numerics.md, Eq. (112d)); at least 1.
 /// @param radiance  largest radiance that a ray shows of the voxel, 3 per voxel
 /// @param colour    tone-mapped radiance, 4 per voxel
 /// @param most      largest opacity along a ray through the voxel

@@ -225,7 +225,8 @@ bool MediumRayCaster::ShowsBackgroundColor() const
   return this->Settings.showBackground && !this->Behind.IsSky() && !this->Behind.HasEnvironment();
 }
 
-/// Packs the samples for a pass of the picture, unless they are already packed for it.
+/// Packs the samples of the medium for a pass of the picture (scattered or unscattered light), unless they are already
+/// packed for it.
 void MediumRayCaster::Pack(Packing what)
 {
   if (this->Samples.PackedFor() != what)
@@ -259,7 +260,7 @@ void MediumRayCaster::FinishSources(const Camera& camera)
     this->Sources.SeeMoments(camera);
   }
   this->Samples.Pack(Packing::Scattered, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
-  this->Omitted = this->LeftOutNow(); // again: whether there are empty bricks is known only after packing
+  this->Omitted = this->LeftOutNow(); // again, because only packing shows whether there are empty bricks
   this->SourcesReady = true;
   if (this->Traits.PacksOnce())
   {

@@ -157,7 +157,7 @@ private:
   Picture Cast(const Camera& camera, const GridBlock* block, const std::vector<float>& ends, const Starts& starts,
     double from, const Monitor& monitor);
 
-  std::optional<BlockOfScene> Part; ///< the block that the medium is; no value if it is the whole domain
+  std::optional<BlockOfScene> Part; ///< position of the medium in a larger grid; no value if it is the whole domain
   bool LampsShine = false;
   bool AskedForShadowRays = false; ///< setting shadowRays as the caller gave it, also if there is no lamp
   ViewSettings Settings;           ///< the caller's settings, with shadow rays as the scene needs them (Needed)

@@ -73,8 +73,8 @@ typedef struct
   real a, b;          // interpolation weights of the next cell along the row, and of the next row
 } face_place;
 
-// Finds the face of the box that a ray through point p, traced back against its direction, meets first, and the cells
-// around the point p there.
+// Finds the face of the box that a ray through point p, traced back against its direction, meets first, and the four
+// cells of this face around p, between whose centres tables are interpolated.
 inline face_place face_behind(real3 p, real3 direction, int4 size)
 {
   // The face is that with the shortest time since the ray crossed its plane.

@@ -56,9 +56,9 @@ int GroundFaces(const SolvedLight& light)
   return faces;
 }
 
-/// Radiance of the reflecting faces, seen from inside, W / (length^2 sr): albedo / pi times the outgoing partial
-/// current in each cell (numerics.md, Eq. (111a)). [face][row][cell of the row] with borders (WithBorders). Empty if no
-/// face reflects or facePower is not known.
+/// Radiance of the reflecting faces (ground), seen from inside, W / (length^2 sr): albedo / pi times the outgoing
+/// partial current in each cell (numerics.md, Eq. (111a)). [face][row][cell of the row], each face with a border of one
+/// cell that repeats the outermost cells. Empty if no face reflects or facePower is not known.
 std::vector<cl_float4> GroundLight(const Grid& grid, const SolvedLight& light)
 {
   if (GroundFaces(light) == 0)
@@ -113,8 +113,8 @@ std::vector<cl_float4> TableLight(
   return lit;
 }
 
-/// The correction SurfaceLight begins where the optical thickness of a voxel at the face is ThickAtSurface, and is
-/// fully applied from this multiple of it on.
+/// The correction SurfaceLight begins where the optical thickness of a voxel at the face is the value ThickAtSurface,
+/// and is fully applied from AllOfIt times this thickness on.
 constexpr double AllOfIt = 2.0;
 /// Optical thickness, in mean free paths, of the medium behind a cell of a face at which the correction SurfaceLight
 /// begins (Translucent) and from which on it is fully applied (Opaque).
@@ -124,7 +124,8 @@ constexpr int MostSteps = 200;
 /// Smallest step of the march for the correction, voxels; smaller steps give equal results.
 constexpr double FinestStep = 0.1;
 
-/// Extinction and source of one channel, as the march of rays uses them.
+/// Extinction and source (emitted and scattered radiance per unit length) of one channel, as the march of rays uses
+/// them.
 struct Coefficients
 {
   double sigma, source;
@@ -286,7 +287,8 @@ std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& lig
   return table;
 }
 
-/// Number of directions per face with which Split separates the environment's peaks from its smooth part.
+/// Number of directions, per face of a cube, of the quadrature with which Split separates the environment's peaks from
+/// its smooth part.
 constexpr int DirectionsOfPeaks = 25;
 
 /// Pixels of the environment with an additional column on either side, for periodic interpolation.
@@ -314,8 +316,8 @@ std::vector<cl_float4> LightOnTable(
     traits.bends ? ior : Field{}, settings.tableFace, fromBelow);
 }
 
-/// Whether the correction SurfaceLight is possible and valid: `surface` is known, and the picture shows all light,
-/// without shadow rays, mean directions or a table.
+/// Whether the correction SurfaceLight is possible and valid: `surface` (the solver's outgoing radiance at the faces)
+/// is known, and the picture shows all light, without shadow rays, mean directions or a table.
 bool ShowsSurface(const SolvedLight& light, const ViewTraits& traits)
 {
   const bool plain = !traits.singleScatteringOnly && !traits.shadowRays && !traits.knowsFlow &&
@@ -344,8 +346,8 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
     std::vector<cl_float4> shown = ClosedEnvironment(environment);
     if (traits.ShowsMoments())
     {
-      // Peaks of the environment are treated as lamps: the pass for unscattered light shows them (numerics.md, section
-      // 14.7).
+      // Peaks of the environment are treated as lamps: of the two passes of a picture of angular moments, that for
+      // unscattered light shows them (numerics.md, section 14.7).
       std::vector<cl_float4> sharp = std::move(shown);
       shown = ClosedEnvironment(Split(environment, EquiangularDirections(DirectionsOfPeaks)).smooth);
       for (std::size_t i = 0; i < sharp.size(); ++i)

@@ -24,7 +24,7 @@ std::array<int, 2> FaceSize(const Grid& grid, int face);
 class Backdrop
 {
 public:
-  /// Computes the tables of numbers from which kernels interpolate this radiance, and copies them to the device.
+  /// Computes the lookup tables from which kernels interpolate this radiance, and copies them to the device.
   /// @throws DeviceError if the tables do not fit the device
   /// @param block  position of the medium in a larger grid; null: the medium is the whole domain
   Backdrop(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
@@ -36,9 +36,9 @@ public:
   bool HasGround() const { return this->GroundBits != 0; }
   bool HasSurfaceLight() const { return this->HasSurface; }
 
-  /// All tables of numbers in one array, at the indices ViewInfo::backdrop; empty if there is none.
+  /// All lookup tables in one array, each beginning at an index in ViewInfo::backdrop; empty if there is none.
   const Buffer<cl_float4>& Tables() const { return this->Cells; }
-  /// Sets the parameters of background, environment and reflecting faces, and the indices of the tables.
+  /// Sets the parameters of background, environment and reflecting faces, and the indices of the lookup tables.
   /// @param sharp  whether the kernel renders the pass for unscattered light: if light is shown by angular moments,
   ///   that pass shows only the peaks of the environment
   void Describe(const ViewSettings& settings, bool sharp, ViewInfo& view) const;
@@ -49,8 +49,10 @@ private:
   std::array<int, 2> Size = {}; ///< width and height of the environment, pixels
   Rotation Turn = {};           ///< rotation from world axes to the environment's axes
   int GroundBits = 0;           ///< bit mask of the reflecting faces that are shown
-  cl_int4 First = {};           ///< index in Cells of the first element of each table, ViewInfo::backdrop
-  int FirstSharp = 0;           ///< index in Cells of the table of the environment's peaks
+  /// Index in Cells at which each lookup table begins: environment, reflecting faces, light at the surface, scene's
+  /// table.
+  cl_int4 First = {};
+  int FirstSharp = 0; ///< index in Cells of the environment's peaks; set only if light is shown by angular moments
   Buffer<cl_float4> Cells;
 };
 }

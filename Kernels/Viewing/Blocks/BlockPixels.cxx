@@ -144,7 +144,8 @@ std::vector<double> SaidByAll(Communicator& communicator, const std::vector<doub
 std::optional<SeenBlocks> ExchangePixels(
   const Domain& domain, const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera)
 {
-  constexpr std::size_t words = 8; // numbers that each rank sends: corners of two rectangles
+  // Numbers that each rank sends: corners of the rectangle that it has rendered and of the one that it wants.
+  constexpr std::size_t words = 8;
   if (domain.Any(failed))
   {
     return std::nullopt;

@@ -38,7 +38,8 @@ struct BlockPixel
   std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< transmittance of the block for radiance from behind it
   /// transmittance for light from behind that is not scattered at all, as Picture::sceneTransmittance
   std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };
-  std::array<float, 3> sharp = {};   ///< unscattered radiance, which blocks in front attenuate by their `seen`
+  /// Radiance, not in `radiance`, that reaches the eye unscattered: blocks in front attenuate it by their `seen`.
+  std::array<float, 3> sharp = {};
   std::array<float, 3> missing = {}; ///< correction for light at the surface, as Picture::missing
   float open = 1.0f;     ///< 0 if the pixel includes the background, which hides everything behind it; else 1
   float depth = FarAway; ///< depth as Picture::depth; FarAway or more: the transmittance stays above 1/2
@@ -48,7 +49,8 @@ struct BlockPixel
   /// Transmittance of the medium for unscattered light, averaged over the channels.
   float Left() const { return (this->seen[0] + this->seen[1] + this->seen[2]) / 3.0f; }
 
-  /// Largest transmittance over the channels: MostLeft for unscattered light, MostThrough for radiance.
+  /// Largest transmittance over the channels: of unscattered light (MostLeft), or of the radiance of blocks behind
+  /// (MostThrough).
   float MostLeft() const { return std::max({ this->seen[0], this->seen[1], this->seen[2] }); }
   float MostThrough() const
   {
@@ -124,15 +126,15 @@ BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 Starts StartsBehind(
   const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum);
 
-/// Replaces the pixels that `starts` selects by those of the picture `again`, which the block rendered with these
-/// starts.
+/// Replaces the pixels that `starts` selects (those with a transmittance above 0) by those of the picture `again`,
+/// which the block rendered with these starts.
 void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels);
 
 /// Pixels of all blocks in view of the camera.
 struct SeenBlocks
 {
   std::vector<BlockPixels> frontToBack;
-  std::size_t own = 0; ///< index of this rank's block in frontToBack, if the rank has a block
+  std::size_t own = 0; ///< index of this rank's block in frontToBack; without meaning if the rank has no block
 };
 
 /// Exchanges pixels: this rank receives the pixels of all blocks within `wanted`. Each rank sends to each other rank
@@ -148,7 +150,7 @@ std::optional<SeenBlocks> ExchangePixels(
 /// @throws InvalidInput on all ranks, if the counts differ
 std::vector<double> SaidByAll(Communicator& communicator, const std::vector<double>& own);
 
-/// Crops radiance, alpha and depth of a picture to a rectangle.
+/// Crops radiance, alpha and depth of a picture to a rectangle of pixels.
 Picture PartOf(Picture&& picture, const PixelRect& rect);
 
 /// Composites the pixels of all blocks in a rectangle to a picture: radiance, alpha (of the medium, without the

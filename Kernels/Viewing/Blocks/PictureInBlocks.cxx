@@ -37,7 +37,8 @@ Picture Nothing(const std::array<int, 2>& size)
 }
 
 /// Adds the radiance of a ray that has ended to the picture.
-/// @param tells  whether a primary ray also sets the picture's alpha, depth and transmittance
+/// @param tells  whether a primary ray also sets the picture's alpha, depth and transmittance; for a picture of angular
+///   moments only in the pass for unscattered light
 void Add(const RayOnItsWay& ray, bool tells, Picture& picture)
 {
   const auto pixel = static_cast<std::size_t>(ray.pixel);
@@ -183,10 +184,11 @@ PictureInBlocks::PictureInBlocks(
   this->Between.emplace(domain.Comm(), domain.Partition(), 1 + static_cast<int>(std::ceil(any[2])));
 }
 
-/// Computes the light of one lamp in a portion of each rank's voxels: every rank computes the optical length of the
-/// shadow rays within its block, and the owner of the voxels sums these lengths in rank order. Collective.
+/// Computes the light of one lamp in a portion of each rank's voxels: every rank computes the optical length, within
+/// its block, of the shadow rays from all these voxels; the rank that owns the voxels sums the lengths in rank order.
+/// Collective.
 /// @param light     index of the lamp
-/// @param portions  the portion of each rank, by rank; empty: all voxels of the rank are done
+/// @param portions  by rank, the portion of its voxels; empty: all voxels of the rank are done
 void PictureInBlocks::Follow(
   int light, const std::vector<VoxelBox>& portions, const Camera& camera, const Monitor& monitor)
 {
@@ -285,7 +287,7 @@ void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
 }
 
 /// Marches rays until they end or leave this rank's block.
-/// @param sharp  whether the pass is that for unscattered light
+/// @param sharp  whether this is the pass for unscattered light, of the two passes of a picture of angular moments
 /// @param picture  receives the radiance of rays that have ended
 /// @return the rays that continue in other blocks
 std::vector<RayOnItsWay> PictureInBlocks::Follow(
@@ -321,7 +323,7 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(
 }
 
 /// Renders the picture in groups of pixel rows; only the rays of one group travel between ranks at a time. Collective.
-/// @param sharp  whether the pass is that for unscattered light
+/// @param sharp  whether this is the pass for unscattered light, of the two passes of a picture of angular moments
 void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor)
 {
   RayPass pass = {};

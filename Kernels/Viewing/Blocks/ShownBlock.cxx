@@ -54,7 +54,8 @@ struct Screen
 };
 }
 
-/// The blocks at one pixel: display value of the first k blocks for k = 0, 1, ..., and transmittance after each block.
+/// The blocks at one pixel: display value of the first k blocks for k = 0, 1, ..., and transmittance of the first k
+/// blocks.
 struct ShownBlock::Column
 {
   std::vector<Shown> shown;

@@ -35,7 +35,7 @@ inline rgb table_light(const surroundings* s, __global const float4* backdrop, r
   return between_four(backdrop + s->v->backdrop.w, first, first + row, across, up);
 }
 
-// Of the rays `left_box`, which leave the box, the mask of those that leave it through the table's face.
+// Of the rays `left_box`, which leave the box, the mask of those that leave it through the face on which the table is.
 inline integer meet_table(const surroundings* s, const ray_packets* t, integer left_box)
 {
   const int axis = s->o->face.x;
@@ -104,7 +104,7 @@ inline spectrum mirrored_part(integer mirrors, spectrum now, spectrum before)
 
 // Adds the radiance at the end of a march: that of background, ground or table, attenuated by the ray's transmittance.
 // A ray that never leaves the box receives the background, divided by n^2 at its entry.
-//   ends_here  rays whose march ends now; other lanes are not changed
+//   ends_here  rays whose march ends now; the other rays of the packet are not changed
 //   set_off    rays of `ends_here` that have been inside the box
 //   primary    rays of `ends_here` that start at the camera
 inline void arrive(const surroundings* s, const ray_packets* t, integer ends_here, integer set_off, integer primary,

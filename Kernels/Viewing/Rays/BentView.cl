@@ -21,8 +21,10 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
 }
 
 // Renders the picture, one work-item per packet of neighbouring pixels.
-//   bending  gradient of n^2 and n^2, see surroundings in RayPackets.cl
-//   limits, picture  see ends_of and PIXELS in View.cl
+//   bending  at voxel centres: x, y, z half the gradient of n^2 in voxels, divided by the squared spacing; w: n^2
+//   bricks   signed distances of bricks, by which rays skip empty ones (Sampling.cl)
+//   limits   depths at which opaque surfaces end the rays, one per pixel if v.has.x
+//   picture  receives radiance, alpha and depth, in the layout of View.cl
 __kernel void cast_bent_rays(RayPass pass, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,

@@ -100,7 +100,7 @@ inline rgb passed_of(light l)
 
 #if BLOCK
 // Transmittance of the blocks in front of this one, per pixel; 1 if there are none.
-//   limits  ends of rays and transmittances, see ends_of
+//   limits  depths at which rays end, one per pixel if v->has.x; then these transmittances, three per pixel if v->has.y
 inline rgb starts_of(const ViewInfo* v, __global const float* limits, int column, int row)
 {
   rgb part = { (real)1.0f, (real)1.0f, (real)1.0f };
@@ -327,7 +327,7 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
 #if MANY_STEPS
 // Subtracts from the transmittance `left` the fraction `part` of it that a step removes. Multiplying by the remaining
 // fraction is less exact: in single precision 1 - 1e-9 is 1.
-//   rest  compensation of rounding errors, see add_to
+//   rest  compensation of rounding errors (Kahan summation), which add_to updates
 inline void lose(real* left, real* rest, real part)
 {
   add_to(left, rest, -lesser(part, (real)1.0f) * *left);

@@ -22,7 +22,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int RoundsAtMost = 16; ///< longest path of a ray, in units of the sum of the box's edges
+constexpr int RoundsAtMost = 16; ///< limit of a ray's path length: this many times the sum of the box's edges
 /// Distance in voxels that rays march between two checks whether the index is constant around them.
 constexpr double BentStretch = 4.0;
 constexpr double SurfacePrecision = 1.0e-3; ///< voxels; accuracy of the point at which a ray is split by the surface
@@ -135,8 +135,8 @@ RayPass RayCasting::PassOf(const Camera& camera, const GridBlock* block, bool sh
   }
   if (sharp)
   {
-    // This is the pass for unscattered light; the pass for scattered light already includes the table's diffuse
-    // radiance.
+    // This is the pass for unscattered light; the pass for scattered light already includes the light that the table (a
+    // face of the box) reflects diffusely.
     pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f;
   }
   return pass;
@@ -171,7 +171,8 @@ cl::Kernel RayCasting::Kernel(bool ofBlock) const
 /// Allocates the picture, and uploads the depths at which rays end and the transmittances of the blocks in front.
 /// Buffers that have the right size are reused.
 /// @param values  number of floats of the picture
-/// @param ends, starts  as in Cast
+/// @param ends    depth at which an opaque surface ends each pixel's ray; empty: no ray ends
+/// @param starts  transmittance of the blocks in front, 3 per pixel; empty: 1
 void RayCasting::Reserve(std::size_t values, const std::vector<float>& ends, const std::vector<float>& starts)
 {
   if (this->Pixels.Size() != values)
@@ -220,7 +221,7 @@ Picture RayCasting::Cast(RayPass pass, const std::vector<float>& ends, const std
   Require(ends.empty() || ends.size() == pixels,
     "There are ends of " + std::to_string(ends.size()) + " rays for a picture of " + std::to_string(pixels) +
       " pixels.");
-  // Radiance 3, alpha 1, depth 1; transmittance 3 and surface light 3 for a block (View.cl).
+  // Floats per pixel: radiance 3, alpha 1, depth 1; for a block transmittance 3, and surface light 3 (View.cl).
   this->Reserve((5 + (ofBlock ? 3 : 0) + (hasMissing ? 3 : 0)) * pixels, ends, starts);
   view.has.s[0] = !ends.empty();
   view.has.s[1] = !starts.empty();

@@ -47,8 +47,8 @@ public:
   /// Kernel parameters of a picture.
   /// @param camera  camera of the picture
   /// @param block  block of a larger grid that the picture shows; null: the picture shows the whole domain
-  /// @param sharp  true for the pass for unscattered light, which shows the environment's peaks and determines the
-  ///   picture's alpha and depth (numerics.md, section 14.7)
+  /// @param sharp  for a picture of angular moments, which has two passes: true for the pass for unscattered light,
+  ///   which shows the environment's peaks and determines the picture's alpha and depth (numerics.md, section 14.7)
   /// @throws InvalidInput for a degenerate camera or one too far away
   RayPass PassOf(const Camera& camera, const GridBlock* block, bool sharp) const;
 

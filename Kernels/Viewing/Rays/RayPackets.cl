@@ -23,14 +23,16 @@ typedef struct
   integer stopped; // whether the rays have reached the depth `end`
 } ray_packets;
 
-// Reflected or mirrored rays, which are marched after the current ones; lanes with zero transmittance hold no ray.
+// Reflected or mirrored rays of a packet, which are marched after the current ones. Zero transmittance: there is no
+// such ray.
 typedef struct
 {
   real3 at, velocity;
   spectrum left;
 } waiting;
 
-// Detection of the surface: values of n^2 along primary rays, and the rays that the surface has reflected.
+// Detection of the surface, where n rises through a given value: n^2 along primary rays, and the rays that the surface
+// has reflected.
 typedef struct
 {
   integer met;       // whether the ray has met the surface already, or is not to be split by it
@@ -40,7 +42,8 @@ typedef struct
   waiting reflected;
 } watch;
 
-// Inputs of a march: parameters, packed samples, bending field and map of empty bricks.
+// Inputs of a march: parameters of the picture (v) and of the optics (o), packed samples (scene), the field that bends
+// rays, and signed distances of bricks, by which rays skip empty ones (Sampling.cl).
 typedef struct
 {
   const ViewInfo* v;

@@ -80,7 +80,7 @@ __kernel void start_rays(RayPass pass, __global const float4* restrict bending, 
 #undef START
 }
 
-// State of a packet of rays that this block receives.
+// State of a packet of rays that are marched through this block.
 typedef struct
 {
   integer pixel, kind, state;
@@ -104,7 +104,7 @@ typedef struct
 #define STORE_SPECTRUM(s, n) ray->left[0] = ray->left[1] = ray->left[2] = LANE(s, n);
 #endif
 
-// Loads a packet of rays from index `first` on. Lanes beyond the last of `count` rays are idle.
+// Loads a packet of rays from index `first` on. The packet's rays beyond the last of `count` rays count as ended.
 inline arrivals load(__global const RayOnItsWay* rays, int first, int count)
 {
   arrivals a;

@@ -10,8 +10,11 @@
 #include "Viewing/Samples/Sampling.cl"
 
 // Renders the medium.
-//   limits   depths at which rays end, and transmittances of the blocks in front, see ends_of in View.cl
-//   picture  receives the picture in the layout of View.cl
+//   bricks   signed distances of bricks, by which rays skip empty ones (Sampling.cl)
+//   records  with BRICKED: index of the first sample of each brick's record
+//   limits   depths at which opaque surfaces end the rays, one per pixel if v.has.x; then the transmittances of the
+//            blocks in front, three per pixel if v.has.y
+//   picture  receives radiance, alpha and depth, in the layout of View.cl
 __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,

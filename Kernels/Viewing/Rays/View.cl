@@ -103,7 +103,7 @@ inline integer in_picture(const ViewInfo* v, int column, int row)
 #define PASSED_PART(v) (5 * PIXELS(v))
 #define MISSING_LIGHT(v) (8 * PIXELS(v))
 
-// Writes three values for each pixel of a packet to an image of the picture.
+// Writes three values for each pixel of a packet to `part`, an image of three values per pixel within the picture.
 inline void paint_triple(const ViewInfo* v, __global float* part, int column, int row, rgb triple)
 {
   const integer pixel = pixels_of(v, column, row), inside = in_picture(v, column, row);

@@ -33,9 +33,9 @@ static int is_filled(
   return filled;
 }
 
-// Index of a packed sample; -1 if it belongs to a brick without record, which is empty.
+// Index of a packed sample; -1 if it belongs to an empty brick, which has no record (no samples of its own).
 //   x, y, z  position of the sample in the grid with its border
-//   records  with BRICKED: index of the first sample of each brick's record
+//   records  with BRICKED: index of the first sample of each brick's record, 0 for empty bricks
 static int place_of(int x, int y, int z, int4 size, __global const int* records)
 {
 #if BRICKED

@@ -19,8 +19,8 @@ namespace tyndall
 {
 namespace
 {
-/// Whether the record of a brick holds the sample of any filled voxel: the border shifts samples by one voxel, so that
-/// a record also holds the last voxels of the preceding bricks.
+/// Whether the record of a brick (the samples at the corners of its cells) holds the sample of any filled voxel: the
+/// border shifts samples by one voxel, so that a record also holds the last voxels of the preceding bricks.
 /// @param cells  indices of the brick of cells along each axis
 bool IsFilled(const FilledBricks& filled, const std::array<int, 3>& cells)
 {
@@ -110,8 +110,8 @@ std::size_t PaddedCount(const Grid& grid)
 
 constexpr int PackedAlong = 64; ///< number of voxels of a row that a work-group packs
 
-/// For each work-group in the rows of a brick: whether rays see any of its voxels. The first sample of a row belongs to
-/// the border.
+/// Flags of the work-groups that pack samples, along x for each row of bricks: 1 if rays see any of the group's voxels,
+/// else 0. The first sample of a row belongs to the border.
 std::vector<cl_uchar> SeenGroups(const SeenBricks& bricks, const Grid& grid)
 {
   const int along = PartsOf(grid.size[0] + 2, PackedAlong);

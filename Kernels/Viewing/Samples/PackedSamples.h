@@ -25,8 +25,10 @@ struct SampleBricks
 {
   std::array<int, 3> count = { 0, 0, 0 }; ///< number of bricks of cells along each axis
   std::array<int, 3> edges = { 0, 0, 0 }; ///< number of samples of a record along each axis
-  std::vector<cl_int> first;              ///< index of the first sample of each brick's record, bricks x fastest
-  std::vector<cl_int> bricks;             ///< index of the brick that each record belongs to; -1: none
+  /// For each brick, x fastest, the index of its record's first sample; 0 for empty bricks.
+  std::vector<cl_int> first;
+  /// For each record, the index of the brick that it belongs to; -1 for record 0, which empty bricks share.
+  std::vector<cl_int> bricks;
 
   std::size_t SamplesEach() const
   {
@@ -72,7 +74,7 @@ public:
   std::string ShownOptions() const; ///< compiler options that define SHOWN and BEAMS
   bool HasEmptyBricks() const { return this->EmptyBricks; }
 
-  /// Source and grey extinction of each sample, see ScatteredLight.cl.
+  /// Source and grey extinction of each sample; layout: ScatteredLight.cl, or ShownSamples.cl with angular moments.
   const cl::Buffer& Samples() const { return this->Sources.Handle(); }
   const cl::Buffer& Extinctions() const { return this->ColouredExtinctions.Handle(); }
   /// The array of samples that holds the extinction: coloured extinctions, or sources with grey extinction.
@@ -84,8 +86,11 @@ public:
   /// mean cosine g by voxel for red, green, blue
   const cl::Buffer& Cosines() const { return this->ColouredG.Handle(); }
   const Buffer<cl_float4>& Bending() const { return this->Gradients; } ///< half the gradient of n^2, and n^2
-  const Buffer<cl_char>& Bricks() const { return this->Distances; } ///< signed distances of bricks, see FindDistances
-  /// first sample of each brick's record, SampleBricks::first
+  /// For each brick, the distance in bricks to the nearest brick of another class: above 0 for empty bricks, below 0
+  /// for filled ones, at most 127; 0 where rays bend.
+  const Buffer<cl_char>& Bricks() const { return this->Distances; }
+  /// For each brick, the index of the first of its samples; 0 for empty bricks. Empty if samples are not stored in
+  /// bricks.
   const Buffer<cl_int>& Records() const { return this->First; }
   const std::array<int, 3>& BrickCount() const { return this->Count; }
 
@@ -100,9 +105,10 @@ private:
   Device& TheDevice;
   const ViewTraits& Traits;
   std::array<int, 3> Count;
-  std::array<int, 3> KnownSize;        ///< number of voxels along each axis whose gradient of n^2 is stored
-  std::array<int, 3> KnownBefore = {}; ///< number of these voxels that precede the first sample, along each axis
-  SampleBricks InBricks;               ///< layout in bricks, if ViewTraits::bricked
+  std::array<int, 3> KnownSize; ///< number of voxels along each axis whose gradient of n^2 is stored
+  /// Number of these voxels that precede the voxels of the medium's arrays, along each axis.
+  std::array<int, 3> KnownBefore = {};
+  SampleBricks InBricks; ///< layout in bricks, if ViewTraits::bricked
   Packing For = Packing::ForShadowRays;
   bool EmptyBricks = false;
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;
@@ -110,6 +116,6 @@ private:
   Buffer<cl_char> Distances;
   Buffer<cl_uchar> Seen;       ///< flags of bricks that rays must sample, SeenBricks::seen
   Buffer<cl_uchar> SeenGroups; ///< for each work-group, whether it packs voxels that rays see (SampleLayout.cl)
-  Buffer<cl_int> First, BricksOfRecords; ///< SampleBricks::first and SampleBricks::bricks of InBricks
+  Buffer<cl_int> First, BricksOfRecords; ///< SampleBricks::first and SampleBricks::bricks on the device
 };
 }

@@ -87,7 +87,8 @@ inline real spread_rows(real square, real along, __global const float* rows)
 }
 #endif
 
-// Parameters of the phase function of a packet's voxels, for red, green and blue.
+// Parameters of the phase function in the voxels of a packet, for red, green and blue: mean cosine g (`first`) and,
+// with two lobes, g of the second lobe and the fraction of light that is scattered in the first (`part`).
 typedef struct
 {
   rgb first, second, part; // as in PhaseInfo (ViewShared.h)
@@ -96,7 +97,8 @@ typedef struct
 // 4 pi times the phase function of one channel.
 //   square  m.m, m the light's mean direction
 //   along   m.v, v the ray's direction, away from the eye
-//   first, second, part  parameters as in PhaseInfo
+//   first, second, part  g of the first and of the second lobe, and fraction of light scattered in the first
+//                        (PhaseInfo)
 //   rows    table of the phase function, with PHASE 2 and 5
 inline real scattered_of_channel(
   real square, real along, real first, real second, real part, __global const float* rows)

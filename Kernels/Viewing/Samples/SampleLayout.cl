@@ -48,14 +48,14 @@ inline int is_seen(__global const uchar* seen, int4 size)
 }
 
 #if BRICKED
-// Index of a work-item's sample in the records: work-items have x along a row of SampleEdge samples, y over the rows of
-// a slice, z over the slices of all records.
+// Index of a work-item's sample among the samples of all records (a record has the samples of one brick): work-items
+// have x along a row of SampleEdge samples, y over the rows of a slice, z over the slices of all records.
 inline int place_in_records()
 {
   return ((int)get_global_id(2) * SAMPLE_ROWS + (int)get_global_id(1)) * SampleEdge + (int)get_global_id(0);
 }
 // Finds the indices of a work-item's sample in the grid with its border.
-// @param bricks  index of the brick of each record
+// @param bricks  for each record (the samples of one brick), index of its brick; -1: none
 // @return false if the record belongs to no brick; the sample is then zero
 inline int find_sample_in_brick(__global const int* bricks, int4 size, int3* sample)
 {

@@ -61,7 +61,7 @@ inline float least_lane(real v)
   const float2 two = lesser(four.lo, four.hi);
   return lesser(two.x, two.y);
 }
-// Whether the condition holds in any lane. PoCL's any() tests lane by lane, which is slow.
+// Whether the condition holds in any lane (element) of a vector. PoCL's any() tests lane by lane, which is slow.
 inline int any_lane(integer condition)
 {
   REDUCED_TO_FOUR(int, condition, either)
@@ -223,7 +223,7 @@ __attribute__((always_inline)) inline void find_corners(real3 p, int4 size, corn
 
 #if BRICKED
 // Finds the eight voxel centres around points p in samples that are stored in bricks.
-// @param records  index of the first sample of each brick's record
+// @param records  for each brick, index of its first sample; 0 for empty bricks, whose samples are zero
 __attribute__((always_inline)) inline void find_corners_in_bricks(
   real3 p, int4 size, __global const int* records, corners* at)
 {
@@ -427,8 +427,8 @@ inline rgb between_four(__global const float4* values, integer lower, integer up
 // rays bend (FindDistances in PackedSamples.cxx).
 
 // The bricks ahead of a packet at p. `steps`: number of steps that every ray can take before one of them leaves the
-// surrounding bricks of its class; `empty`: whether all these steps are in empty bricks; `bends`: whether a ray bends.
-// Finished rays are ignored.
+// surrounding bricks of its class (empty, filled, or with bending rays); `empty`: whether all these steps are in empty
+// bricks; `bends`: whether a ray bends. Finished rays are ignored.
 typedef struct
 {
   int steps, empty, bends;

@@ -92,10 +92,10 @@ static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
 #endif
 
 // Packs samples. Voxels that rays do not see (ViewTraits.h) are skipped.
-//   bricks   with BRICKED: index of the brick of each record (SampleBricks)
+//   bricks   with BRICKED: for each record (the samples of one brick), index of its brick; -1: none
 //   samples  source (red, green, blue) and grey extinction; with GREY source and extinction of this voxel and of the
 //            next voxel along y
-//   flow     the light's mean direction, see FLOW
+//   flow     with FLOW 1 and 3: the light's mean direction; with FLOW 2: times g
 //   cosines  with FLOW 3: g of red, green, blue
 //   glow     with GLOW: emission, which is then not part of `samples`
 //   ior      refractive index; with BENDS sources are divided by its square
