@@ -84,7 +84,7 @@ void Place(vtkSMProperty* property, vtkPVXMLElement* hint, const vtkBoundingBox&
   }
 }
 
-/// Properties of a proxy that have the hint <ScenePlacement> and still have their default value, with their hints.
+/// Properties of a proxy that have the hint <ScenePlacement> and still have their default value, each with its hint.
 std::vector<std::pair<vtkSMProperty*, vtkPVXMLElement*>> PropertiesToPlace(vtkSMProxy* proxy)
 {
   std::vector<std::pair<vtkSMProperty*, vtkPVXMLElement*>> found;

@@ -109,7 +109,8 @@ std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
   return Numbers(view, moves ? property + "Info" : property);
 }
 
-/// Values for a property of the source, taken from the view's camera as an element <Property> of the hint requests.
+/// Values for a property of the source, taken from the view's camera as a <Property> element of the source's hint
+/// requests.
 std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
 {
   std::vector<double> numbers = OfView(view, property->GetAttributeOrEmpty("of"));

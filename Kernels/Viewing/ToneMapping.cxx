@@ -99,8 +99,9 @@ void Check(const ToneMapping& settings)
 
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
-  constexpr float Parts = 16.0f; // what a fully covered pixel adds to the count of its class of luminance
-  constexpr int Shift = 23 - 8;  // number of low bits of a luminance (float) that do not distinguish classes
+  constexpr float Parts = 16.0f; // what a fully covered pixel adds to its entry in the histogram of luminance
+  // Number of low bits of a luminance (float) that are ignored in its entry in the histogram.
+  constexpr int Shift = 23 - 8;
   std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;
   InThreads(radiance.size() / 3, PixelsOfThread, [&](std::size_t begin, std::size_t end) {
@@ -126,11 +127,12 @@ std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::
 double ExposureOfCounts(const std::vector<int>& count)
 {
   const double lit = std::accumulate(count.begin(), count.end(), 0.0);
-  const auto logarithm = [](std::size_t entry) { // binary logarithm of the luminance at the centre of a class
+  // Binary logarithm of the luminance at the centre of an entry of the histogram.
+  const auto logarithm = [](std::size_t entry) {
     return static_cast<double>(entry >> 8) - 127.0 + std::log2(1.0 + ((entry & 255) + 0.5) / 256.0);
   };
 
-  // Mean logarithm over the classes that are not much darker than the 95th percentile.
+  // Mean logarithm over the entries of the histogram that are not much darker than the 95th percentile.
   const double darkest = std::log2(1e-3);
   double sum = 0.0;
   double counted = 0.0;

@@ -13,7 +13,7 @@ import matplotlib.pyplot as pyplot
 import numpy
 import tyndall
 
-# Density of a ball of 480 m with lumps, in voxels of 12 m.
+# Density of a ball with lumps, in a box of 40^3 voxels of 12 m.
 count, edge = 40, 12.0
 x, y, z = (numpy.indices((count,) * 3) - (count - 1) / 2) * edge
 lumps = numpy.sin(x / 37.0) * numpy.sin(y / 29.0 + 1.0) * numpy.sin(z / 41.0 + 2.0)
@@ -21,7 +21,7 @@ density = numpy.clip(1.5 * (1.0 - numpy.sqrt(x**2 + y**2 + z**2) / 200.0) + lump
 
 sun = tyndall.vtkLightRig()
 light = tyndall.solve(density, edge, extinction=0.05, albedo=0.999, lights=sun, Tolerance=1e-3)
-# Indices [x, y, z]; one channel, because sun and cloud are grey.
+# Arrays are indexed [x, y, z]. They have one channel, because sun and cloud are grey.
 fluence, direct = light.fluence, light["fluence_direct"]
 print(", ".join(f"{name} {power:.4g} W" for name, power in light.energy_balance.items()))
 

@@ -32,7 +32,7 @@ struct Scene
 {
   int length; ///< voxels along x; sweeps are compiled for rows of up to 32, 64 and 128
   int preset;
-  double around; ///< density of the box outside of the ellipsoid
+  double around; ///< density of the box outside the ellipsoidal cloud
   bool coloured; ///< whether the light has a colour, so that three channels are solved
 };
 

@@ -28,9 +28,9 @@ typedef struct
   const PackInfo* info;
 } ingredients;
 
-// In-scattered radiance of one channel, W / (length^2 sr), isotropic except for the lamps' light that shadow rays
-// computed (`direct`). The fluence that this light accounts for is subtracted from the total fluence, so that it does
-// not count twice.
+// In-scattered radiance of one channel, W / (length^2 sr): isotropic except for the lamps' light, which shadow rays
+// computed for the direction to the eye (`direct`). The fluence that this light accounts for is subtracted from the
+// total fluence, so that it does not count twice.
 inline float in_scattered(const ingredients* from, int voxel, int channel)
 {
   const int single = from->info->single;

@@ -58,7 +58,7 @@ VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& set
   constexpr int Between = 1; // layers of ghost cells for interpolation at any point of the block
   // A layer of ghost cells reaches half a voxel beyond its centres.
   const int split = static_cast<int>(std::ceil(ReachOfSplit(settings) - 0.5));
-  // With moments, a voxel that does not scatter shows the mean light of its neighbours.
+  // A voxel that does not scatter shows the mean light of its neighbours if light is shown by angular moments.
   VoxelBox held = Grown(own, Between + std::max(split, moments ? 1 : 0), whole);
   for (int axis = 0; surface && axis < 3; ++axis)
   {

@@ -94,7 +94,8 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle, const std::a
   camera.position = Array(centre + glm::length(half) * out);
   const auto axes = Axes(camera);
 
-  // The smallest distance of the camera at which every corner of the box is inside the picture.
+  // Smallest distance of the camera at which every corner of the box is inside the picture; then enlarged by the
+  // margin.
   const double margin = 1.05;
   const double upperEdge = TangentOfHalf(viewAngle);
   double distance = 0.0;

@@ -32,7 +32,7 @@ private:
   std::unique_ptr<HostMappedBuffer<float>> Lent;
 };
 
-/// Arrays of a medium and its light on a device, one element per voxel; arrays that the picture does not need are
+/// Arrays of a medium and its light on a device, one element per voxel. Arrays that the picture does not need are
 /// empty.
 struct SceneOnDevice
 {
@@ -53,7 +53,7 @@ struct SceneOnDevice
   ViewedArray meanDirection;
   Buffer<float> phaseRows;   ///< table of the phase function, see Samples/PhaseFunction.cl
   Buffer<float> meanCosines; ///< mean cosine g by voxel, with the components that the picture needs
-  Buffer<float> ior;         ///< refractive index; 1 if kernels expect one but none is given
+  Buffer<float> ior;         ///< refractive index, 1 in all voxels if none is given; empty if it does not vary
   /// For a block: refractive index of the larger box KnownBox, from which the gradient of n^2 is computed.
   Buffer<float> knownIor;
 };

@@ -21,11 +21,12 @@ struct SolvedLight
   /// SurfaceCosines, or 12 (for each cosine red, green, blue). Null: not known.
   Field surface = {};
   /// Angular moments of scattered light, LightField::scatteredMoments, with (degree + 1)^2 components or 3 times as
-  /// many, and the matching LightField::straightOn and lampsApart. Null: not known.
+  /// many; LightField::straightOn, the fraction of scattering that their solver treated as unscattered; and
+  /// LightField::lampsApart, the lamps whose first scattering they lack. Null: not known.
   Field scatteredMoments = {}, straightOn = {};
   std::vector<Light> lampsApart = {};
   /// Outgoing partial current in the cells of the box's faces, W / length^2, LightField::facePower, with 1 or 3
-  /// components, and albedo of the faces, LightField::faceAlbedo. Null: not known.
+  /// components (null: not known), and albedo of the faces, LightField::faceAlbedo.
   Field facePower = {};
   std::array<Rgb, 6> faceAlbedo = {};
 };

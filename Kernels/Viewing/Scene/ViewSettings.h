@@ -62,6 +62,6 @@ void Check(const ViewSettings& settings);
 /// values than the defaults for them.
 ViewSettings AtQuality(Quality quality, ViewSettings settings);
 
-/// Text "Name = value" for each setting that a quality may choose.
+/// Text "Name = value" for each setting that a quality (AtQuality) may choose.
 std::vector<std::string> Words(const ViewSettings& settings);
 }

@@ -39,12 +39,12 @@ typedef struct
 typedef struct
 {
   int4 size;   ///< number of voxels along each axis
-  int4 bricks; ///< number of bricks along each axis
+  int4 bricks; ///< number of bricks, cubes of 8^3 voxels, along each axis
   int4 known;  ///< number of voxels along each axis whose gradient of n^2 is stored
-  int4 before; ///< number of these voxels that precede the first sample, along each axis
+  int4 before; ///< number of these voxels that precede the first voxel of the medium's arrays, along each axis
   ViewedComponents components;
   int single; ///< 1: only light that was scattered once is shown
-  float g;    ///< mean cosine g, if it is equal in all voxels
+  float g;    ///< mean cosine g of the phase function, if it is equal in all voxels
 } PackInfo;
 
 /// A block of a larger grid, see GridBlock; all indices are those of voxels of the whole grid.
@@ -53,7 +53,7 @@ typedef struct
   int4 whole; ///< size of the whole grid, voxels; 0: the medium is not a block
   /// First voxel of the block's arrays; w = 1: the block shows the background to rays that miss the domain.
   int4 first;
-  int4 begin, end; ///< begin and end of the block's own voxels
+  int4 begin, end; ///< first of the block's own voxels, and the one after its last, along each axis
 } BlockInfo;
 
 /// Parameters of the picture, its camera and the march.
@@ -67,25 +67,29 @@ typedef struct
   /// vector from the picture's centre to its upper edge, as `right`; w: shift upwards
   float4 up;
   float4 inverseSpacing; ///< voxels per length along each axis
-  /// radiance W / (length^2 sr), added to the environment; w = 0: no background is shown
+  /// radiance of the background, W / (length^2 sr), added to the environment; w = 0: no background is shown
   float4 background;
-  /// step in voxels, transmittance at which rays stop, depth of pixels whose transmittance stays above 1/2
+  /// x: step of the march in voxels; y: transmittance at which rays stop; z: depth of pixels whose transmittance stays
+  /// above 1/2
   float4 marching;
-  /// width and height in pixels, first row and first column of packets of a launch
+  /// x, y: width and height in pixels; z, w: first row and first column of a launch, in packets of rays (z in pixels
+  /// for start_rays of RayRounds.cl)
   int4 picture;
   /// number of voxels along each axis; of the whole grid for rays that travel between blocks (RayRounds.cl)
   int4 size;
   int4 held;   ///< number of voxels of the block's arrays, for rays that travel between blocks
-  int4 bricks; ///< number of bricks along each axis
-  /// width and height of the environment in pixels, 0: no environment; bit mask of reflecting faces
+  int4 bricks; ///< number of bricks, cubes of 8^3 voxels, along each axis
+  /// x, y: width and height of the environment in pixels, 0: no environment; z: bit mask of the reflecting faces
   int4 environment;
-  /// indices, in the array of the Backdrop, at which environment, ground, surface light and table begin
+  /// indices, in the array of lookup tables of the Backdrop, at which environment (x), reflecting faces (y), light at
+  /// the surface (z) and the table (w), a face of the box, begin
   int4 backdrop;
-  /// first ray of a launch and the one after its last, for rays that travel between blocks
+  /// x, y: first ray of a launch and the one after its last, for rays that travel between blocks
   int4 range;
   float4 toPicture[3]; ///< rows of the matrix from world axes to the environment's axes
-  /// Flags, 1 if: rays end at a depth given for each pixel; the transmittance of the blocks in front is given for each
-  /// pixel; there is surface light for optically thick voxels; rays skip empty bricks.
+  /// Flags, 1 if: x, rays end at a depth given for each pixel; y, the transmittance of the blocks in front is given for
+  /// each pixel; z, there is a correction for light at the surface of optically thick voxels; w, rays skip empty
+  /// bricks.
   int4 has;
   BlockInfo block;
   PhaseInfo phase;
@@ -95,21 +99,24 @@ typedef struct
 typedef struct
 {
   float4 spacing; ///< edges of a voxel, length
-  /// n^2 at the surface, reflectance, distance in voxels from the surface at which the indices on both sides are read
+  /// x: n^2 at the surface; y: its reflectance, if it is constant; z: distance in voxels from the surface at which the
+  /// indices on both sides are read
   float4 surface;
-  float4 table; ///< diffuse reflectance of red, green, blue; specular reflectance
-  /// The table: axis of its normal; 1 on the upper and 0 on the lower face along this axis; voxels along the rows of
-  /// the face; 1: there is a table.
+  /// The table, a face of the box: diffuse reflectance of red, green, blue (x, y, z); specular reflectance (w).
+  float4 table;
+  /// The table's face of the box. x: axis of its normal; y: 1 on the upper and 0 on the lower face along this axis; z:
+  /// voxels along the rows of the face; w: 1 if there is a table.
   int4 face;
   float4 flip; ///< factors by which reflection at the table multiplies the components of a direction
-  /// largest number of steps of a ray, number of leapfrog steps between two checks of the index, number of bisections
-  /// that locate the surface
+  /// x: largest number of steps of a ray; y: number of leapfrog steps between two checks of the index; z: number of
+  /// bisections that locate the surface
   int4 limits;
   // For a block whose rays travel between blocks: the voxels of the whole grid whose gradient of n^2 is stored.
   int4 knownFirst, knownSize;
 } OpticsInfo;
 
-/// Kernel parameters of a picture, or of one of the two passes of a picture of angular moments.
+/// Kernel parameters of a picture, or of one of the two passes (scattered and unscattered light) of a picture of
+/// angular moments.
 typedef struct
 {
   ViewInfo view;
@@ -148,7 +155,7 @@ typedef struct
   float square;      ///< n^2 at the midpoint of the last bent step
   float since;       ///< time t since that midpoint (RayPackets.cl); negative: n^2 is unknown and must be sampled first
   float entrySquare; ///< n^2 at the primary ray's entry into the domain
-  /// Set once the ray has ended: mean transmittance, and depth at which it was 1/2.
+  /// Set once the ray has ended: transmittance, mean over the channels, and depth at which it was 1/2.
   float seen, depth;
 } RayOnItsWay;
 
@@ -174,7 +181,7 @@ typedef struct
   float4 eye;
   float4 forward;  ///< view axis, unit vector in world coordinates
   int4 size;       ///< number of voxels along each axis
-  int4 bricks;     ///< number of bricks along each axis
+  int4 bricks;     ///< number of bricks, cubes of 8^3 voxels, along each axis
   BlockInfo block; ///< the block, if the medium is a block of a larger grid; else its `first` is 0
   /// First voxel, in the whole grid, of the box for whose voxels optical lengths are computed.
   int4 asked;
@@ -187,7 +194,7 @@ typedef struct
   float nearestSquare;
   int firstLight, lights;   ///< lights of this launch, [firstLight, lights)
   int firstSlice, firstRow; ///< first slice and first row of voxels of this launch
-  int beside;               ///< 1: light is also computed in voxels that have a scattering neighbour
+  int beside;               ///< 1: light is also computed in voxels that do not scatter but have a scattering neighbour
   int isGiven; ///< 1: optical lengths towards the light are given (for a block of a larger grid) and not computed
 } ShadowInfo;
 SHARED_END

@@ -223,7 +223,8 @@ void FindMoments(const PhaseOfMedium& phase, const SolvedLight& light, ViewTrait
   traits.moments.aureoleChannels = traits.shadowRays && !phase.Varies() ? traits.phase.channels : 0;
 }
 
-/// Number of components of each of ViewedFields that the picture reads; 0 for arrays that its mode does not show.
+/// For each of ViewedFields (absorption to fluenceDirect), number of components that the picture reads; 0: it reads
+/// none.
 std::array<int, 5> ComponentsRead(const std::array<Field, 5>& fields, const ViewTraits& traits)
 {
   const bool shadows = traits.shadowRays;

@@ -58,7 +58,7 @@ struct ShownMoments
 {
   int degree = -1; ///< degree of the angular moments; -1: moments are not shown
   int channels = 0, straightOnChannels = 0;
-  /// Number of channels of the tables of repeated forward scattering (AureoleTable); 0: none.
+  /// Number of channels of the tables of repeated forward scattering (AureoleTable in SeenSources.h); 0: no tables.
   int aureoleChannels = 0;
   /// Per channel, smallest fraction of scattering that the solver treats as unscattered.
   std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
@@ -90,7 +90,8 @@ struct ViewTraits
   bool grey = false;      ///< whether neither extinction nor source differs between the channels
   /// Whether the light that voxels emit and scatter depends on the direction to the camera.
   bool sourcesDependOnCamera = false;
-  std::array<int, 5> components = {}; ///< components of each of ViewedFields on the device; 0: not read
+  /// Components of sigma_a, sigma_s, emission, fluence and fluenceDirect (ViewedFields) on the device; 0: not read.
+  std::array<int, 5> components = {};
 
   bool ShowsMoments() const { return this->moments.degree >= 0; }
   bool ShowsBeams() const { return this->ShowsMoments() && this->shadowRays; }
@@ -111,7 +112,7 @@ struct ViewTraits
   /// Whether all rays are straight and do not meet a table; StraightView.cl marches these.
   bool OnlyStraight() const { return !this->bends && !this->hasTable; }
 
-  /// Whether samples are independent of the camera, so that they are packed only once.
+  /// Whether packed samples are independent of the camera and of shadow rays, so that they are packed only once.
   bool PacksOnce() const { return !this->sourcesDependOnCamera && !this->shadowRays; }
 
   double SurfaceIndex(const ViewSettings& settings) const
@@ -139,7 +140,7 @@ std::array<Field, 5> ViewedFields(const Medium& medium, const SolvedLight& light
 
 /// Determines the features of a scene.
 /// @param filled    filled bricks of the medium
-/// @param settings  with shadowRays only if there are lamps
+/// @param settings  its shadowRays must be false if there are no lamps
 /// @param ior       refractive index; null: constant
 /// @param kernelWidth  packet width that is fastest on the device
 /// @param shared       properties of the whole domain, if the medium is one of several blocks; else null

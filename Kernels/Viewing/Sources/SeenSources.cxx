@@ -56,7 +56,7 @@ void AddSamples(const Grid& grid, const glm::dvec3& middle, const std::array<glm
   }
 }
 
-/// Point lights and parallel beams that represent the lights in shadow rays; lights of zero power are left out.
+/// Point lights and parallel beams of which the lights are composed for shadow rays; lights of zero power are left out.
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
 {
   std::vector<SmallLight> small;
@@ -104,8 +104,10 @@ constexpr int MostMoments = 1024;
 /// Trailing Legendre moments with smaller absolute value are dropped.
 constexpr double Negligible = 1e-5;
 
-/// The highest degree of the moments that were solved for: straightOn is the moment of the next degree. Returns
-/// `otherwise` if straightOn equals no moment, as for functions that scatter backwards.
+/// The highest degree of the angular moments that the solver computed: straightOn, the fraction of scattering that it
+/// treated as unscattered, is the Legendre moment of the next degree.
+/// @param moments    Legendre moments of the phase function
+/// @param otherwise  returned if straightOn equals no moment, as for functions that scatter backwards
 int DegreeOf(const std::vector<double>& moments, double straightOn, int otherwise)
 {
   for (std::size_t l = 1; l < moments.size() && straightOn > 0.0; ++l)
@@ -177,8 +179,9 @@ std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn
 
 namespace
 {
-/// Tables by AureoleTable, one per channel, for the smallest straightOn of the scattering voxels; voxels with other
-/// values contribute little.
+/// Tables of the light that repeated forward scattering adds (AureoleTable), one per channel. Computed for the smallest
+/// fraction straightOn of scattering that is treated as unscattered, over the voxels that scatter; voxels with other
+/// fractions contribute little.
 std::vector<float> TablesOfAureole(const Medium& medium, const ViewTraits& traits)
 {
   std::vector<float> tables;

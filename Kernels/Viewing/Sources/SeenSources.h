@@ -75,7 +75,9 @@ private:
   const PackedSamples& Samples;
   const BlockOfScene* Block;
   std::vector<SmallLight> Small;
-  Buffer<float> AureoleTables; ///< tables by AureoleTable; empty unless moments are shown and g does not vary
+  /// Tables of the light that repeated forward scattering adds (AureoleTable), one per channel; empty unless light is
+  /// shown by angular moments and g does not vary.
+  Buffer<float> AureoleTables;
   Buffer<float> OfLights, OfMoments;
   Buffer<SmallLight> Lights;
 };

@@ -126,7 +126,8 @@ inline rgb arriving_through(const SmallLight* light, real arriving, rgb depths)
 }
 
 // Phase function of one channel, per steradian, at a cosine of the scattering angle.
-//   first, second, part  parameters as in PhaseInfo
+//   first, second, part  g of the first and of the second lobe, and fraction of light scattered in the first
+//                        (PhaseInfo)
 //   rows  table of the phase function, with PHASE 2 and 5
 inline real phase_of_channel(real cosine, real first, real second, real part, __global const float* rows)
 {
@@ -197,8 +198,8 @@ inline phase_parameters phases_of(const ShadowInfo* info, integer voxel, __globa
   return p;
 }
 
-// Indices along x of a packet's voxels. Lanes beyond the row's end repeat its last voxel, so that several lanes write
-// equal values.
+// Indices along x of the adjacent voxels that a packet holds, one per lane (vector element). Lanes beyond the row's end
+// repeat its last voxel, so that several lanes write equal values.
 inline integer packet_along_x(int first, int size)
 {
 #if REAL_WIDTH == 16
@@ -238,7 +239,7 @@ inline void put_triples(__global float* values, integer voxel, int stride, int f
 
 // Computes the optical lengths, within this block, of the paths between the voxels of a box of the whole grid and the
 // light `firstLight`. One work-item per packet of voxels.
-//   depths  3 per voxel, see depths_on_the_way
+//   depths  3 per voxel, for red, green and blue; without COLOURED only the first, the others are 0
 __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict lights,
   __global const float4* restrict sigma, __global const char* restrict bricks, __global float* restrict depths)
 {
