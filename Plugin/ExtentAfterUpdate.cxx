@@ -20,8 +20,9 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-/// Copies the whole extent and the update extent from a post filter's input to its output. VTK crops the data to the
-/// update extent (EXACT_EXTENT, which representations request).
+/// Copies the whole extent and the update extent from the input of a post filter (vtkPVPostFilter, which ParaView
+/// appends to each output) to its output. VTK crops the data to the update extent (EXACT_EXTENT, which representations
+/// request).
 void PassExtentOn(vtkObject* caller, unsigned long, void*, void*)
 {
   auto* const filter = vtkAlgorithm::SafeDownCast(caller);
@@ -43,8 +44,8 @@ public:
   static vtkSIExtentAfterUpdateProxy* New();
   vtkTypeMacro(vtkSIExtentAfterUpdateProxy, vtkSISourceProxy);
 
-  /// Output port of the post filter. The superclass creates the post filter in the first call, in which this method
-  /// starts observing it.
+  /// Output port of the post filter, which ParaView appends to each output. The superclass creates it in the first
+  /// call, in which this method starts observing it.
   vtkAlgorithmOutput* GetOutputPort(int port) override
   {
     vtkAlgorithmOutput* const output = this->Superclass::GetOutputPort(port);

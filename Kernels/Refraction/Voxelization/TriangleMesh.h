@@ -55,7 +55,8 @@ MeshTopology Examine(const TriangleMesh& mesh);
 ///   first
 MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, const Grid& grid, int samples);
 
-/// Orientation of a closed mesh's triangles, the value of OrientedMesh::orientation.
+/// Orientation of a closed mesh's triangles as seen from outside: 1 counterclockwise, -1 clockwise, 0 if triangles
+/// disagree.
 int Orientation(const MeshTopology& topology);
 
 /// Describes the irregularities of a closed mesh, one sentence each: triangles without area, edges that disagree

@@ -46,7 +46,7 @@ public:
 private:
   bool UnderSky = false, HasSurface = false;
   Rgb Sky = {};
-  std::array<int, 2> Size = {}; ///< width and height of the environment, pixels
+  std::array<int, 2> Size = {}; ///< width and height of the environment, pixels; 0: no environment
   Rotation Turn = {};           ///< rotation from world axes to the environment's axes
   int GroundBits = 0;           ///< bit mask of the reflecting faces that are shown
   /// Index in Cells at which each lookup table begins: environment, reflecting faces, light at the surface, scene's

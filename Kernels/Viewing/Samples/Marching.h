@@ -45,7 +45,7 @@ inline Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples
   return batches;
 }
 
-/// A rectangle of the cells of a batch.
+/// A rectangle of cells, within one of the batches into which BatchesOfRows splits the work of a kernel.
 struct Patch
 {
   int column, row;

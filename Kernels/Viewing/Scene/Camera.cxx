@@ -15,7 +15,8 @@ namespace tyndall
 {
 namespace
 {
-constexpr double FarthestCamera = 1e15; ///< largest distance, lengths or voxels; its square does not overflow a float
+/// Largest distance of the camera, in lengths or voxels; its square does not overflow a float.
+constexpr double FarthestCamera = 1e15;
 
 std::array<double, 3> Array(const glm::dvec3& v)
 {

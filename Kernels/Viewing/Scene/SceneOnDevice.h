@@ -47,13 +47,15 @@ struct SceneOnDevice
   /// Frees the arrays that only the packing of samples reads.
   void GiveBackWhatIsPacked();
 
-  /// Angular moments and straightOn as in SolvedLight; empty if moments are not shown.
+  /// Angular moments, and fraction of scattering that their solver treated as unscattered (SolvedLight); empty if
+  /// moments are not shown.
   Buffer<float> moments, straightOn;
   std::array<ViewedArray, 5> arrays; ///< sigma_a, sigma_s, emission, fluence and fluenceDirect (ViewedFields)
   ViewedArray meanDirection;
-  Buffer<float> phaseRows;   ///< table of the phase function, see Samples/PhaseFunction.cl
-  Buffer<float> meanCosines; ///< mean cosine g by voxel, with the components that the picture needs
-  Buffer<float> ior;         ///< refractive index, 1 in all voxels if none is given; empty if it does not vary
+  Buffer<float> phaseRows; ///< table of the phase function, see Samples/PhaseFunction.cl
+  /// Mean cosine g by voxel, with 1 or 3 components; empty if g does not vary or is not needed.
+  Buffer<float> meanCosines;
+  Buffer<float> ior; ///< refractive index, 1 in all voxels if none is given; empty if it does not vary
   /// For a block: refractive index of the larger box KnownBox, from which the gradient of n^2 is computed.
   Buffer<float> knownIor;
 };

@@ -43,7 +43,7 @@ int main(int argc, char* argv[])
   medium->SetPreset(vtkParticipatingMedium::CLOUD);
   medium->SetMillimetresPerUnit(1000.0);
 
-  vtkNew<vtkLightRig> sun; // default settings: one sun, 45 degrees above the horizon
+  vtkNew<vtkLightRig> sun; // untouched: one sun, 45 degrees high
 
   vtkNew<vtkLightPropagationMaps> light;
   light->SetInputConnection(medium->GetOutputPort());
