@@ -10,7 +10,8 @@
 #include "vtkNew.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
-// Calls only inline and virtual functions of this class, so that RemotingViews, which needs GLEW, is not linked.
+// This file calls only inline and virtual functions of the class, so that RemotingViews, which needs GLEW, is not
+// linked.
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMTransferFunctionProxy.h"

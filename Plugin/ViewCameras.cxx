@@ -14,7 +14,8 @@
 #include "vtkSMProxyManager.h"
 #include "vtkSMProxySelectionModel.h"
 #include "vtkSMSessionProxyManager.h"
-// Calls only inline and virtual functions of this class, so that RemotingViews, which needs GLEW, is not linked.
+// This file calls only inline and virtual functions of the class, so that RemotingViews, which needs GLEW, is not
+// linked.
 #include "vtkSMViewProxy.h"
 
 #include <algorithm>

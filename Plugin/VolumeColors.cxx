@@ -6,7 +6,8 @@
 #include "vtkCallbackCommand.h"
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
-// Calls only inline and virtual functions of this class, so that RemotingViews, which needs GLEW, is not linked.
+// This file calls only inline and virtual functions of the class, so that RemotingViews, which needs GLEW, is not
+// linked.
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMSessionProxyManager.h"
 

@@ -357,8 +357,9 @@ __kernel void add_errors(
   }
 }
 
-// Computes the result of the top level, its light with a gain of 1. Its noise is smoothed before begin_errors stores
-// it as the squared error.
+// Computes the result of the top level of the pyramid: the quantities that are to be smoothed are taken as they are (a
+// gain of 1). The noise, the variance of the batches' mean light, is smoothed before begin_errors stores it as the
+// squared error.
 __kernel void begin_results(
   const __global float* level, int4 size, __global float* results, float top, __global float* noise)
 {

@@ -34,8 +34,9 @@ struct ConservativeLevel
   LightRows measured, across;
 };
 
-/// Light of all batches in the grid's voxels on the device: the host's own array [voxel][batch][channel] or, unless
-/// AreWoven, a copy [batch][voxel][channel] whose rows are padded to a multiple of two vectors.
+/// Light of all batches in the grid's voxels on the device: the host's own array [voxel][batch][channel] or, where
+/// kernels cannot read that efficiently (AreWoven is false), a copy [batch][voxel][channel] whose rows are padded to a
+/// multiple of two vectors.
 class BatchedLight
 {
 public:
@@ -102,8 +103,8 @@ private:
   std::vector<ConservativeLevel> Levels;
 };
 
-/// Fraction of the removed light that counts as error: the factor 0.4 of numerics.md, Eq. (104), where its fit is
-/// described.
+/// Fraction of the light removed together with the noise that counts as error: the factor 0.4 of numerics.md, Eq.
+/// (104), where its fit is described.
 constexpr float Honesty = 0.4f;
 
 /// Number of voxels that the first launch of a kernel processes; its run time determines the size of later launches.
@@ -248,7 +249,7 @@ void ConservativePasses::Begin()
   this->Kernels.Run(errors, top.light.Cells());
 }
 
-/// Computes the gains of a level's details, and the error of these details.
+/// Computes the gains of a level's details (the fractions of them that are kept), and the error of these details.
 void ConservativePasses::FindGains(int level)
 {
   ConservativeLevel& above = this->At(level + 1);

@@ -81,7 +81,8 @@ double WeightStepOf(const Reconstruction& task, const float* own)
   return task.settings.weightStep > 0.0 ? task.settings.weightStep : total > 0.0 ? 0.999 * total / lit : 1.0;
 }
 
-/// Number of fields of each pyramid that an estimator needs: light and directions, photon counts, photon weights.
+/// Number of fields (quantities per cell) of each pyramid that an estimator needs: light and directions, photon counts,
+/// photon weights.
 std::vector<int> FieldsOfPyramids(const Reconstruction& task)
 {
   std::vector<int> fields = { task.Fields() };

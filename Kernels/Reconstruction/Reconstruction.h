@@ -61,7 +61,8 @@ public:
   std::array<double, 3> total = {}; ///< total of the light over the domain, for each channel
 
 private:
-  std::array<std::vector<float>, 4> Storage; ///< memory of the arrays of `light`, if the box is larger than the block
+  /// Memory of the arrays of `light`; empty if the box is the block, whose arrays are those of the caller.
+  std::array<std::vector<float>, 4> Storage;
 
 public:
   const NoisyLight light; ///< light of the box (block and halo); arrays that the estimator does not need are null

@@ -97,7 +97,8 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
   }
 }
 
-/// The lights to which shadow rays are traced: with angular moments lampsApart, else the illumination's lights.
+/// The lights to which shadow rays are traced: if light is shown by angular moments, the lamps whose first scattering
+/// the moments lack (SolvedLight::lampsApart), else the illumination's lights.
 const std::vector<Light>& LampsOf(const SolvedLight& light, const Illumination& illumination, const ViewSettings& asked)
 {
   return ShownDegree(light, asked) >= 0 ? light.lampsApart : illumination.lights;
@@ -161,7 +162,8 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Fil
 {
   if (this->Traits.PacksOnce())
   {
-    // Sources are computed here and not in Render, because the caller's arrays may not outlive the constructor.
+    // The light that voxels emit and scatter is computed here and not in Render, because the caller's arrays may not
+    // outlive the constructor.
     this->PrepareSources({}, {});
   }
 }

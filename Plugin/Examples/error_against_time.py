@@ -299,7 +299,7 @@ def parse():
     return parser.parse_args()
 
 
-# Names of the properties that switch each method on.
+# For each method, the name of the property of SolverComparison that switches it on.
 SWITCHES = {
     "light propagation maps": "LightPropagationMaps",
     "constant source, not accelerated": "ConstantSource",

@@ -114,7 +114,8 @@ int main(int argc, char* argv[])
     if (helper == 0)
     {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
-      // Without destructors of libraries' static objects, which would wait for threads that fork() does not copy.
+      // _Exit does not run the destructors of libraries' static objects, which would wait for threads that fork() does
+      // not copy.
       std::_Exit(scenes.PrepareThem() ? 0 : 1);
     }
     bool prepared = scenes.PrepareThem();

@@ -16,11 +16,12 @@ namespace
 /// A vertex of a path: the photon starts, changes direction or ends there.
 struct PathVertex
 {
-  cl_ulong photon = 0; ///< index of the photon, which the kernel carries as the photon's mark
+  cl_ulong photon = 0; ///< index of the photon among all photons; the kernel carries it along as the photon's mark
   /// Number, from 1, of the round (ranks trace photons, then exchange those that left their blocks) in which this
   /// vertex was found.
   cl_ulong round = 0;
-  cl_float4 place = {}; ///< position in voxels, and remaining power (sum of channels, units of PackedPhotons::unit)
+  /// Position in voxels (x, y, z), and remaining power (w: sum of channels, in units of PackedPhotons::unit watts).
+  cl_float4 place = {};
 
   bool operator<(const PathVertex& other) const
   {

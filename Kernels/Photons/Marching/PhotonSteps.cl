@@ -328,7 +328,8 @@ static int node_of_whole(const march_arrays* arrays, int3 voxel)
   return brick >= 0 ? brick : arrays->nodes[(ulong)bricks.x * bricks.y * bricks.z * sizeof(int) + uneven];
 }
 
-// Octree nodes (encoding: march_arrays) of the voxels of the photons in a mask; 0 outside the mask.
+// Octree nodes of the voxels of the photons in a mask; 0 outside the mask. 0: n is constant in the voxel; 1 + k: it
+// varies, and the node that contains the voxel has 2^k voxels per edge.
 static integer nodes_of(const march_arrays* arrays, integer mask, const integer* voxel)
 {
   if (!NODE_BRICKS)

@@ -94,8 +94,8 @@ static void put_direction(__global float* mean_direction, const long* sum, float
 }
 #endif
 
-// Absorbed ([0]) and scattered ([1]) power of each channel: the sum in whole units, and the fraction of a unit that is
-// carried to the next voxel.
+// Absorbed ([0]) and scattered ([1]) power of each channel: the sum in whole fixed-point units, and the fraction of a
+// unit that is carried to the next voxel.
 typedef struct
 {
   long units[2][CHANNELS];

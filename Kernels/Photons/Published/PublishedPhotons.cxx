@@ -72,7 +72,8 @@ std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double large
   return photons;
 }
 
-/// Adds the final state of a photon to the tallies. @param unit  the photons' unit of power (TypicalPower), W
+/// Adds the final state of a photon to the energy balance, the face powers and the counts of all photons.
+/// @param unit  the photons' unit of power (TypicalPower), W
 void Tally(const PublishedPhoton& photon, double unit, PhotonLight& result, PackingLoss& loss)
 {
   result.deposits += static_cast<std::size_t>(photon.deposits);
@@ -242,13 +243,15 @@ private:
   const std::size_t Voxels;
   const std::string Options;
   const PublishedMarchInfo Info;
-  Buffer<cl_float4> Index; ///< n and its gradient in the voxels of `known`; empty if rays are straight
+  /// The index n and its gradient in the voxels of the region `known` (the block and a halo); empty if rays are
+  /// straight.
+  Buffer<cl_float4> Index;
   Buffer<float> SigmaA, SigmaS;
   Buffer<cl_uchar> Nodes;
   Buffer<cl_ulong> Packed; ///< light of each voxel, packed into 64 bits
 };
 
-/// Published marching of this rank's photons, in its block of the domain.
+/// Marches this rank's photons through its block of the domain by the published scheme.
 class PublishedOfBlock
 {
 public:
@@ -359,8 +362,8 @@ private:
     return rounds.Traffic();
   }
 
-  /// Unpacks the light of the block, not smoothed, into `result`, and stores its sum over the block's voxels in
-  /// loss.kept. Collective.
+  /// Unpacks the light of the block, not smoothed, into `result`, and stores the power that it contains, summed over
+  /// the block's voxels, in loss.kept. Collective.
   void Gain(double unit, PhotonLight& result, PackingLoss& loss)
   {
     this->TheDomain.Collective([&] {

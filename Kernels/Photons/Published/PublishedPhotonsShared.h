@@ -7,11 +7,13 @@ SHARED_BEGIN
 /// Parameters of marching through a rank's block of the domain. Positions are in voxels of the domain.
 typedef struct
 {
-  IndexGrid whole;   ///< size of the domain
-  IndexGrid own;     ///< size of the block, in which coefficients, octree levels and light are stored
-  IndexGrid known;   ///< size of the region in which the refractive index is known: the block and two voxels around it
+  IndexGrid whole; ///< number of voxels of the domain along each axis
+  /// Number of voxels of the block along each axis; coefficients, octree levels and light are stored in these voxels.
+  IndexGrid own;
+  /// Number of voxels, along each axis, of the region in which n is known: the block and two voxels around it.
+  IndexGrid known;
   int first[3];      ///< first voxel of the block in the domain
-  int knownFirst[3]; ///< first voxel of `known` in the domain
+  int knownFirst[3]; ///< first voxel of the region `known` in the domain
   float spacing[3];  ///< edges of a voxel, length
   int stepLimit;     ///< maximum number of steps of a photon
 } PublishedMarchInfo;
@@ -34,12 +36,13 @@ typedef struct
 /// A photon between steps, or between blocks, with the complete state on which its further path depends.
 typedef struct
 {
-  int voxel[3];            ///< voxel of the domain in which the photon continues, if it is in another block
-  int face;                ///< face through which the photon left, or PublishedGivenUp, PublishedElsewhere
-  int steps;               ///< number of steps begun; 0: the photon has not started
-  int done;                ///< number of voxels of the last step in which the photon has deposited its light
-  int deposits;            ///< number of deposits of the photon in voxels
-  int givenUp;             ///< number of deposits that were lost because all compare-and-swap attempts failed
+  int voxel[3]; ///< voxel of the domain in which the photon continues, if it is in another block
+  /// Face of the volume (0 to 5: -x to +z) through which the photon left; or PublishedGivenUp, PublishedElsewhere.
+  int face;
+  int steps;    ///< number of steps begun; 0: the photon has not started
+  int done;     ///< number of voxels on the line of the last step in which the photon has already deposited its light
+  int deposits; ///< number of deposits of the photon in voxels
+  int givenUp;  ///< number of deposits that were lost because all compare-and-swap attempts failed
   PublishedPlace from, to; ///< states of the photon at the beginning and at the end of its last step
   float deposited[3];      ///< power of all deposits of the photon, by channel, in the unit of PublishedPlace::power
 } PublishedPhoton;

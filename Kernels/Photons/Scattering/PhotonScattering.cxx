@@ -15,8 +15,9 @@ namespace tyndall
 {
 namespace
 {
-constexpr int Block = 16;         ///< number of consecutive photons that a work-item fetches at a time
-constexpr int TableParts = 65536; ///< number of equal intervals of cumulative probability in a table of cosines
+constexpr int Block = 16; ///< number of consecutive photons that a work-item fetches at a time
+/// Number of equal intervals of cumulative probability in a table of cosines of the scattering angle.
+constexpr int TableParts = 65536;
 
 /// Methods of sampling the scattering angle; values of the macro PHASE of ScatterPhotons.cl.
 enum PhaseSampling
@@ -250,7 +251,8 @@ void ScatteringRun::TakeLight()
   }
 }
 
-/// Adds the final states of photons to the tallies. Photons that continue in another block are not counted yet.
+/// Adds the final states of photons to the powers and counts of the result, `Found`. Photons that continue in another
+/// block are not counted yet.
 void ScatteringRun::TakeEnds(const std::vector<ScatterEnd>& ends)
 {
   const double unit = this->Packed.unit;
@@ -301,8 +303,8 @@ struct OneChannelMedium
   Medium seen;
 };
 
-/// Adds the light and tallies of photons that were followed in one channel to every channel of `light`, multiplied by
-/// that channel's factor in `colour`.
+/// Adds the light, powers and counts of photons that were followed in one channel to every channel of `light`,
+/// multiplied by that channel's factor in `colour`.
 void AddRun(const ScatteredPhotons& found, const Rgb& colour, PhotonLight& light)
 {
   const auto channels = static_cast<std::size_t>(light.light.channels);

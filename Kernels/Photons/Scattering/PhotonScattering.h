@@ -97,8 +97,8 @@ public:
   /// @return photons that continue in other blocks, in any order
   /// @throws Aborted
   std::vector<ScatteredOnItsWay> Resume(const std::vector<ScatteredOnItsWay>& arrived, const Monitor& monitor);
-  /// Returns the light that photons deposited in this block by all calls of Start and Resume, and the tallies of
-  /// photons that ended in it.
+  /// Returns the light that photons deposited in this block by all calls of Start and Resume, and the powers and counts
+  /// of the photons that ended in it.
   ScatteredPhotons Finish();
 
 private:

@@ -24,8 +24,8 @@ namespace tyndall
 {
 namespace
 {
-/// Number of levels that a rank builds in its block, which is extended to entire nodes of the last of these levels, 8
-/// voxels per edge.
+/// Number of octree levels that a rank builds in its block, which is extended to entire nodes of the last of these
+/// levels, 8 voxels per edge.
 constexpr int LevelsOfBlock = 3;
 
 std::array<int, 3> Plus(const std::array<int, 3>& a, const std::array<int, 3>& b)
@@ -184,7 +184,7 @@ public:
     this->Restricted = true;
   }
 
-  /// Levels of the block's voxels, after all calls of Restrict. Collective.
+  /// Octree levels of the block's voxels, after all calls of Restrict. Collective.
   std::vector<std::uint8_t> Result() const
   {
     std::vector<std::uint8_t> levels;
@@ -209,9 +209,10 @@ private:
     this->Pyramid.push_back({ level, size, this->NodeCount });
     this->NodeCount += level > 0 ? Count(size[0]) * Count(size[1]) * Count(size[2]) : 0;
   }
-  /// Nodes of the shared level in this rank's box.
+  /// Nodes of the shared level, the highest one that a rank computes from its own box, in this rank's box.
   const NodesOfLevel& OwnShared() const { return this->Pyramid[static_cast<std::size_t>(this->Blocks.Shared())]; }
-  const NodesOfLevel& AllShared() const { return (&this->OwnShared())[1]; } ///< nodes of the shared level in the domain
+  /// Nodes of the shared level in the domain, which follow those of this rank's box.
+  const NodesOfLevel& AllShared() const { return (&this->OwnShared())[1]; }
 
   template <class Step>
   void OnVoxels(const Step& step) const

@@ -53,7 +53,7 @@ struct SampleColumns
 {
   SampleColumns(const Grid& grid, int axis, int samplesOfVoxel, int pitch);
 
-  int axis;                 ///< axis along which the columns run
+  int axis;                 ///< axis along which the columns of samples run
   int across, up;           ///< the lower and the higher one of the other two axes
   int samplesOfVoxel;       ///< number of samples per edge of a voxel
   int samples;              ///< number of samples in a column

@@ -39,7 +39,8 @@ struct MeshTopology
   Edge firstDisagreeingEdge = {};          ///< the disagreeing edge whose ends have the lowest point indices
   std::size_t degenerateTriangles = 0;     ///< number of triangles without area
   std::size_t firstDegenerateTriangle = 0; ///< index of the first triangle without area
-  /// Enclosed volume, length^3, negative if the corners run clockwise; meaningless if edges disagree.
+  /// Enclosed volume, length^3, negative if the corners run clockwise as seen from outside; without meaning if
+  /// disagreeingEdges is above 0.
   double enclosedVolume = 0.0;
 };
 

@@ -20,7 +20,7 @@ namespace
 {
 constexpr std::size_t CrossingGroup = 64; ///< work-items per work-group of the kernels that process crossings
 constexpr int SamplesOfWord = 4;          ///< number of samples per word for winding numbers: one byte per sample
-/// Maximum bytes of crossings held at a time for winding numbers.
+/// Maximum number of bytes of the crossings (one byte per sample) that are held at a time to find winding numbers.
 constexpr std::size_t WindingBytes = std::size_t(16) << 20;
 
 /// Definitions of macros for Voxelization.cl.
@@ -188,7 +188,7 @@ WindingNumbers FindWindings(Device& device, const Grid& grid, const VoxelBox& bo
 /// need.
 struct SampleSlab
 {
-  int firstVoxel, endVoxel; ///< range of rows of voxels along columns.up
+  int firstVoxel, endVoxel; ///< range [firstVoxel, endVoxel) of rows of voxels along columns.up
   /// Range of rows of sample columns: those of the voxels and, if counts include fractions of samples, one more on
   /// either side where the grid has one.
   int firstRow, endRow;

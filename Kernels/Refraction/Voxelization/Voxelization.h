@@ -17,12 +17,13 @@ namespace tyndall
 /// intersects itself, or has parts inside out or within each other.
 struct WindingNumbers
 {
-  std::size_t oddSamples = 0;  ///< number of odd samples
+  std::size_t oddSamples = 0;  ///< number of odd samples, whose winding number is neither 0 nor 1
   int lowest = 0, highest = 1; ///< least and largest of 0, 1 and the winding numbers of all samples
   /// Position of the first odd sample, in the order z, y, x (x fastest) for columns along x; (0, 0, 0) if there is
   /// none.
   std::array<double, 3> firstOddSample = { 0, 0, 0 };
-  std::array<int, 3> firstOddNumber = { 0, 0, 0 }; ///< index of the first odd sample along each axis of the domain
+  /// Index of the first odd sample (winding number neither 0 nor 1) along each axis of the domain.
+  std::array<int, 3> firstOddNumber = { 0, 0, 0 };
 
   /// Adds the winding numbers of the mesh at other samples, which were found with columns along x.
   void Add(const WindingNumbers& others);
@@ -83,7 +84,7 @@ struct SamplesInside
 struct CountedVoxels
 {
   VoxelBox box; ///< voxels whose samples are counted
-  VoxelBox own; ///< voxels in `box` in which winding numbers are examined
+  VoxelBox own; ///< voxels in `box` in which winding numbers are examined: those that belong to no other rank
 
   static CountedVoxels All(const Grid& grid) { return { { {}, grid.size }, { {}, grid.size } }; }
 };

@@ -145,7 +145,7 @@ double Between(double low, double high, double x)
   return part * part * (3.0 - 2.0 * part);
 }
 
-/// Optical thickness of a path of `length` in a voxel, with the solver's transport coefficient, mean free paths.
+/// Optical thickness, in mean free paths, of a path of `length` in a voxel, with the solver's transport coefficient.
 double Thickness(const Medium& medium, std::size_t voxel, int channel, double length)
 {
   return length * medium.TransportSigmaT(voxel, channel);

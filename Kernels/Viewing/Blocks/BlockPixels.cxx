@@ -128,7 +128,8 @@ void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels)
       pixels.pixels[number] = PixelOf(again, pixel);
       if (before <= Half)
       {
-        pixels.pixels[number].depth = BlockPixel::FarAway; // the transmittance falls below 1/2 in a block in front
+        // Its transmittance falls below 1/2 in a block in front, which gives the depth.
+        pixels.pixels[number].depth = BlockPixel::FarAway;
       }
     }
   });

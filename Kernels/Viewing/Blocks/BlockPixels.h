@@ -130,7 +130,7 @@ Starts StartsBehind(
 /// which the block rendered with these starts.
 void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels);
 
-/// Pixels of all blocks in view of the camera.
+/// Pixels of all blocks in view of the camera, from the front block to the rearmost.
 struct SeenBlocks
 {
   std::vector<BlockPixels> frontToBack;

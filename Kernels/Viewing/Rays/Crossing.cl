@@ -404,7 +404,8 @@ __attribute__((always_inline)) inline void cross_sample(
   half_way->after = crossing ? after : half_way->after;
 }
 
-// Records for the rays `where` that the transmittance falls from 1 to 0 at the depth `place`.
+// Records that the surface or the table, at the depth `place`, makes the transmittance of the rays `where` fall to 1/2
+// or less at once; stored as a fall from 1 to 0.
 inline void lose_half(integer where, real place, crossed* half_way)
 {
   half_way->start = where ? place : half_way->start;

@@ -25,7 +25,7 @@ namespace
 constexpr int RoundsAtMost = 16; ///< limit of a ray's path length: this many times the sum of the box's edges
 /// Distance in voxels that rays march between two checks whether the index is constant around them.
 constexpr double BentStretch = 4.0;
-constexpr double SurfacePrecision = 1.0e-3; ///< voxels; accuracy of the point at which a ray is split by the surface
+constexpr double SurfacePrecision = 1.0e-3; ///< accuracy, in voxels, of the point at which the surface splits a ray
 /// Number of rays that are created in one launch, 140 bytes each.
 constexpr std::size_t PixelsStartedAtOnce = 65536;
 /// Number of rays in the first launch of march_rays; its run time determines the number of rays in the next launch.

@@ -95,7 +95,7 @@ private:
   const ViewTraits& Traits;
   const ViewSettings& Settings;
   const BlockOfScene* Part;
-  Buffer<float> Pixels; ///< the picture, in the layout of View.cl
+  Buffer<float> Pixels; ///< the picture on the device, in the layout of View.cl
   Buffer<float> Limits; ///< depths at which rays end, then transmittances of the blocks in front
 };
 }

@@ -23,8 +23,9 @@ namespace tyndall
 /// repeats, so that interpolation reads one record only. All empty bricks have record 0, which is zero.
 struct SampleBricks
 {
-  std::array<int, 3> count = { 0, 0, 0 }; ///< number of bricks of cells along each axis
-  std::array<int, 3> edges = { 0, 0, 0 }; ///< number of samples of a record along each axis
+  std::array<int, 3> count = { 0, 0, 0 }; ///< number of bricks of 8^3 cells along each axis
+  /// Number of samples of a record (the samples of one brick) along each axis.
+  std::array<int, 3> edges = { 0, 0, 0 };
   /// For each brick, x fastest, the index of its record's first sample; 0 for empty bricks.
   std::vector<cl_int> first;
   /// For each record, the index of the brick that it belongs to; -1 for record 0, which empty bricks share.
@@ -71,7 +72,8 @@ public:
 
   // The following functions describe what the last call of Pack packed.
   Packing PackedFor() const { return this->For; }
-  std::string ShownOptions() const; ///< compiler options that define SHOWN and BEAMS
+  /// Compiler options that define SHOWN and BEAMS, by which kernels know what the samples hold.
+  std::string ShownOptions() const;
   bool HasEmptyBricks() const { return this->EmptyBricks; }
 
   /// Source and grey extinction of each sample; layout: ScatteredLight.cl, or ShownSamples.cl with angular moments.
@@ -85,7 +87,8 @@ public:
   const cl::Buffer& Glow() const { return this->Emission.Handle(); } ///< emission, if ViewTraits::GlowsApart
   /// mean cosine g by voxel for red, green, blue
   const cl::Buffer& Cosines() const { return this->ColouredG.Handle(); }
-  const Buffer<cl_float4>& Bending() const { return this->Gradients; } ///< half the gradient of n^2, and n^2
+  /// Half the gradient of n^2 (x, y, z), and n^2 (w).
+  const Buffer<cl_float4>& Bending() const { return this->Gradients; }
   /// For each brick, the distance in bricks to the nearest brick of another class: above 0 for empty bricks, below 0
   /// for filled ones, at most 127; 0 where rays bend.
   const Buffer<cl_char>& Bricks() const { return this->Distances; }
@@ -114,7 +117,7 @@ private:
   ZeroedBuffer<cl_float4> Sources, ColouredExtinctions, Directions, ColouredG, Emission;
   Buffer<cl_float4> Gradients;
   Buffer<cl_char> Distances;
-  Buffer<cl_uchar> Seen;       ///< flags of bricks that rays must sample, SeenBricks::seen
+  Buffer<cl_uchar> Seen;       ///< for each brick, 1 if rays must sample it, else 0 (SeenBricks::seen)
   Buffer<cl_uchar> SeenGroups; ///< for each work-group, whether it packs voxels that rays see (SampleLayout.cl)
   Buffer<cl_int> First, BricksOfRecords; ///< SampleBricks::first and SampleBricks::bricks on the device
 };

@@ -56,7 +56,7 @@ std::vector<float> HeldIndex(const Field& known, const BlockOfScene& block, cons
 VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& settings, bool moments, bool surface)
 {
   constexpr int Between = 1; // layers of ghost cells for interpolation at any point of the block
-  // A layer of ghost cells reaches half a voxel beyond its centres.
+  // The layer `Between` allows interpolation up to half a voxel beyond the block's own voxels.
   const int split = static_cast<int>(std::ceil(ReachOfSplit(settings) - 0.5));
   // A voxel that does not scatter shows the mean light of its neighbours if light is shown by angular moments.
   VoxelBox held = Grown(own, Between + std::max(split, moments ? 1 : 0), whole);
