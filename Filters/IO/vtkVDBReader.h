@@ -72,7 +72,7 @@ public:
   const char* GetFileName(int index = 0); ///< path of the file of this index; null: no such file
   ///@}
 
-  /// Path of the file that was read or listed last.
+  /// Path of the file whose list of grids was read last; empty before the first file.
   const char* GetCurrentFileName();
 
   /// Whether a file starts like an OpenVDB file.

@@ -31,7 +31,9 @@ void CheckCubes(const Grid& grid)
 /// that can be resolved.
 void CheckThickness(const Medium& medium)
 {
-  // 1e-3 / 1e10 = 1e-13 absorbed per collision, well above the relative rounding error of a double, 1e-16
+  // A voxel of an optical thickness (transport extinction times edge) above `thickest` is refused if its absorption
+  // thickness (sigma_a times edge) is below `absorbsAtLeast`. At these two limits a collision absorbs the fraction
+  // 1e-3 / 1e10 = 1e-13 of the light, well above the relative rounding error of a double, 1e-16.
   constexpr double thickest = 1e10, absorbsAtLeast = 1e-3;
   const double edge = medium.grid.spacing[0];
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)

@@ -42,8 +42,8 @@ double CellsOf(const std::array<std::int64_t, 6>& extent);
 /// voxel, otherwise the extent of the active voxels.
 std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid);
 
-/// Whether a grid's metadata record that it was made from an image of this extent, with all of the extent's cells. If
-/// so, the extent does not result from a corrupt file, however few voxels are active.
+/// Whether a grid's metadata record that the grid was made from an image of this extent, and also record the number of
+/// cells of this extent. If so, a large extent with few active voxels is not taken for the sign of a corrupt file.
 bool NotesExtent(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent);
 
 /// Whether the voxels of two grids coincide, up to rounding of their transforms.

@@ -399,8 +399,10 @@ static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, intege
 }
 #endif
 
-// Of the photons that a mask selects, terminates those that are outside, dark or at the limit of path segments, and
-// starts the next steps of the others.
+// Handles the photons that a mask selects: ends those that have left the grid or the block (a photon that enters
+// another block is handed on to it), those whose power is below MarchInfo::darkness, and, in a block, those that have
+// reached the limit of path segments. Starts a new step for those whose step has ended or that have entered a region
+// of varying refractive index.
 static void attend(
   const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {

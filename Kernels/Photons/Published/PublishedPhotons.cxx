@@ -44,8 +44,10 @@ MarchSettings PackingSettings()
   return settings;
 }
 
-/// The unit of power of published photons, W: the mean power of a photon in a channel, rounded to a power of two. In
-/// this unit colours are far from the smallest and the largest exponent of RGBE.
+/// The unit, in W, in which the published method of marching photons stores their powers: the mean power of a photon in
+/// a channel, rounded to a power of two. In this unit colours are far from the smallest and the largest exponent of
+/// RGBE, the format of the voxels' light.
+/// @param entered  power of all photons by channel, W
 /// @param photons  number of photons
 double TypicalPower(const Rgb& entered, std::size_t photons)
 {

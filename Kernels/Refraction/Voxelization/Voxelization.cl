@@ -112,7 +112,7 @@ typedef struct
   edge e0, e1, e2; // edge functions of the three edges, in the first column of a row
   long3 normal;    // normal of the plane, reversed if necessary to point along the columns
   int leaving;     // 1: a line along a column leaves the mesh at the triangle; -1: it enters
-  long step;       // increment of `excess` from sample to sample
+  long step;       // decrease of `excess` from one sample to the next: ALONG(normal) times the distance of samples
   long excess;     // ALONG(normal) times the distance from the column's first sample forward to the plane, plus `tie`
   int tie;         // 1 if a sample on the plane counts as before it, else 0
   long excessAcross, excessUp; // decrements of `excess` to the next column and to the next row

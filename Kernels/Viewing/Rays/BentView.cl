@@ -21,10 +21,12 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
 }
 
 // Renders the picture, one work-item per packet of neighbouring pixels.
-//   bending  at voxel centres: x, y, z half the gradient of n^2 in voxels, divided by the squared spacing; w: n^2
+//   bending  at voxel centres: x, y, z: acceleration of the rays in voxel coordinates (half the difference of n^2 per
+//            voxel along the axis, divided by the squared spacing); w: n^2
 //   bricks   signed distances of bricks, by which rays skip empty ones (Sampling.cl)
-//   limits   depths at which opaque surfaces end the rays, one per pixel if v.has.x
-//   picture  receives radiance, alpha and depth, in the layout of View.cl
+//   limits   depths along the view axis at which opaque surfaces end the rays, one per pixel; not read unless v.has.x
+//   picture  output: radiance (3 values per pixel, W / (length^2 sr)) of all pixels, then alpha (1 - mean
+//            transmittance) of all pixels, then depth along the view axis at which the mean transmittance falls to 1/2
 __kernel void cast_bent_rays(RayPass pass, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict flow,
   __global const float4* restrict glow, __global const float4* restrict cosines,
