@@ -2,8 +2,8 @@
 
 #include "Device/Device.h"
 #include "Distribution/SharedMedium.h"
+#include "LightPropagation/Conservative/BlockTransport.h"
 #include "LightPropagation/Emission/UncollidedEmission.h"
-#include "LightPropagation/Sweep/SweepInMemory.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 #include "Medium/BoxFaces.h"
@@ -109,15 +109,16 @@ void ChannelArrays::AddLamps(
   }
   std::optional<LampScattering> scattering;
   Buffer<float> sigma_t, sigma_s, path;
+  std::optional<BlockTransport> transport;
   this->Scene.domain.Collective([&] {
     scattering.emplace(this->TheDevice, this->Layout.grid, this->Angles.groups, this->Angles.function);
     sigma_t = this->Load("sigma_t", 1.0, 1.0);
     sigma_s = this->Load("sigma_s", 0.0, 1.0);
     path = Buffer<float>(this->TheDevice, this->Layout.Floats(), "the light of a lamp");
+    transport.emplace(this->TheDevice, this->Scene.domain, this->Layout, sigma_t, periodic);
   });
-  const SweepMaker sweeps = [&](const SweepRequest& request) { return this->SweepOf(sigma_t, periodic, request); };
-  const UncollidedVolume volume = { this->TheDevice, this->Scene.domain, this->Layout, sigma_t, periodic, sweeps,
-    { &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr } };
+  const UncollidedVolume volume =
+    transport->VolumeOf({ &path, nullptr, nullptr, nullptr, this->Faces ? &this->Faces->Out() : nullptr }, nullptr);
   const LampTarget target = { source, this->Scale, this->Direct, this->Light };
   const double all = static_cast<double>(this->Scene.lamps.size() + (this->OfVacuum ? 1 : 0));
   for (std::size_t i = 0; i < this->Scene.lamps.size(); ++i)
@@ -166,21 +167,6 @@ SweepTally ChannelArrays::AddVacuum(UncollidedVolume volume, const LampScatterin
     scattering.AddAlong(Buffer<float>(this->TheDevice, ways, "mean directions"), *volume.deposit.path, sigma_s, target);
   });
   return tally;
-}
-
-std::unique_ptr<SweepOperator> ChannelArrays::SweepOf(
-  const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request)
-{
-  if (this->Scene.domain.IsSerial())
-  {
-    return SweepOfDevice(this->TheDevice, this->Layout, sigma_t, periodic, request, this->Workspace);
-  }
-  std::unique_ptr<SweepOperator> sweep;
-  this->Scene.domain.Collective([&] {
-    sweep = std::make_unique<SweepInBlocks>(this->TheDevice, this->Scene.domain.Comm(), this->Scene.domain.Partition(),
-      this->Layout, sigma_t, periodic, request, this->BlocksWorkspace);
-  });
-  return sweep;
 }
 
 /// Adds the uncollided light computed by another solver, and its first-collision source.

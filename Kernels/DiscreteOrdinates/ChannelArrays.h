@@ -4,7 +4,6 @@
 #include "DiscreteOrdinates/LampScattering.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
 #include "LightPropagation/Angular/SweptDirections.h"
-#include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepVolume.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
@@ -81,8 +80,6 @@ private:
   /// Fraction of the scattered power that is not scattered into the forward peak of the phase function.
   double ScatteredAway() const { return 1.0 - this->Angles.phase.Peak(); }
   Buffer<float> Load(const char* what, double absorbed, double scattered) const;
-  std::unique_ptr<SweepOperator> SweepOf(
-    const Buffer<float>& sigma_t, const std::array<bool, 3>& periodic, const SweepRequest& request);
   void AddGiven(const LampScattering& scattering, const Buffer<float>& sigma_s, const Buffer<float>& source,
     OrdinatesResult& result);
   void CountLamp(const SweepTally& tally, EnergyLedger& ledger);
@@ -98,7 +95,5 @@ private:
   /// Quadrature for the emission of empty voxels; null: no empty voxel emits, or EmitEvenly() adds their emission.
   std::unique_ptr<const SweptDirections> OfVacuum;
   double GoingRound = 0.0;
-  SweepWorkspace Workspace;
-  BlockWorkspace BlocksWorkspace;
 };
 }
