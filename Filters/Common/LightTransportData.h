@@ -7,20 +7,12 @@
 #include "Medium/Grid.h"
 #include "Medium/Medium.h"
 
-#include "vtkFloatArray.h"
-#include "vtkSmartPointer.h"
-
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <string>
-#include <utility>
 #include <vector>
 
 class vtkAlgorithm;
-class vtkDataArray;
-class vtkDataObject;
-class vtkDataSetAttributes;
 class vtkImageData;
 class vtkPolyData;
 
