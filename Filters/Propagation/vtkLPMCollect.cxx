@@ -4,6 +4,7 @@
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"
 #include "Common/PrintMembers.h"
+#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
@@ -139,6 +140,7 @@ int vtkLPMCollect::RequestInformation(vtkInformation*, vtkInformationVector** in
 
 int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
+  this->Seconds = 0.0;
   const auto work = [&](vtkMultiProcessController*, tyndall::WholeInputs& inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs.Vectors()[0]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
@@ -147,10 +149,12 @@ int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** g
     const Told told = ReadTold(image, buffers);
     const bool first = tyndall::ReadFact(image, tyndall::OrderFact, 0.0) == 0.0;
 
+    const double start = tyndall::ClockSeconds();
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
     tyndall::ParallelPropagation propagation(*device, input.medium, {}, told.settings, 0, told.channels);
     CollectAll(propagation, buffers, voxels);
     tyndall::LightField light = propagation.Result();
+    this->Seconds = tyndall::ClockSeconds() - start;
 
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
@@ -184,5 +188,5 @@ int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** g
 void vtkLPMCollect::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(Device);
+  tyndallPrintMacro(Device, Seconds);
 }

@@ -47,6 +47,9 @@ public:
 
   tyndallDeviceMacro();
 
+  /// Result of the last update: run time in seconds, from the read input to the light in host memory.
+  vtkGetMacro(Seconds, double);
+
 protected:
   vtkLPMCollect();
   ~vtkLPMCollect() override;
@@ -61,6 +64,7 @@ private:
   void operator=(const vtkLPMCollect&) = delete;
 
   std::string Device;
+  double Seconds = 0.0;
 };
 
 #endif

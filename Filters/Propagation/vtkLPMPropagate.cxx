@@ -3,6 +3,7 @@
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"
 #include "Common/PrintMembers.h"
+#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
@@ -105,14 +106,16 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
 {
   this->Order = 0;
   this->Bytes = 0.0;
+  this->Seconds = 0.0;
   tyndall::WorkOnSubdomains work;
   work.port = MEDIUM;
   work.work = [&](const tyndall::PieceBlocks&, vtkInformationVector** inputs) {
     this->Propagate(inputs, vtkImageData::GetData(outputs, 0));
     return true;
   };
-  work.shareResults = [this](
-                        tyndall::Communicator& ranks) { tyndall::TakeFromFirstRank(ranks, this->Order, this->Bytes); };
+  work.shareResults = [this](tyndall::Communicator& ranks) {
+    tyndall::TakeFromFirstRank(ranks, this->Order, this->Bytes, this->Seconds);
+  };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 
@@ -131,6 +134,7 @@ void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* out
 
   tyndall::Illumination illumination = this->ReadIllumination(inputs);
   tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
+  const double start = tyndall::ClockSeconds();
   const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
   tyndall::ParallelPropagation propagation(*device, input.medium, illumination, settings, 0, channels);
   if (unscattered.IsThere())
@@ -146,6 +150,7 @@ void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* out
   }
   std::array<std::vector<float>, 6> faces =
     PropagateAll(propagation, input.medium.grid.VoxelCount(), tyndall::MonitorOf(this));
+  this->Seconds = tyndall::ClockSeconds() - start;
 
   tyndall::PassOn(image, output);
   for (int face = 0; face < 6; ++face)
@@ -171,5 +176,6 @@ void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* out
 void vtkLPMPropagate::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(Device, DirectionsPerFace, MapResolution, StoredDirections, FaceRadiance, SkyColor, Order, Bytes);
+  tyndallPrintMacro(
+    Device, DirectionsPerFace, MapResolution, StoredDirections, FaceRadiance, SkyColor, Order, Bytes, Seconds);
 }

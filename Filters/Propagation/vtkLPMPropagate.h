@@ -88,9 +88,10 @@ public:
 
   ///@{
   /// Results of the last update: number of the scattering order, from 0; memory of the output arrays `T_xmin` to
-  /// `T_zmax` in bytes.
+  /// `T_zmax` in bytes; run time in seconds, from the read input to the arrays in host memory.
   vtkGetMacro(Order, int);
   vtkGetMacro(Bytes, double);
+  vtkGetMacro(Seconds, double);
   ///@}
 
 protected:
@@ -114,6 +115,7 @@ private:
 
   int Order = 0;
   double Bytes = 0.0;
+  double Seconds = 0.0;
 };
 
 #endif

@@ -148,6 +148,7 @@ void CompareChainWithSolver(test::Claims& claims, const Case& scene)
   const int channels = scene.components == 3 || scene.red != 1.0 ? 3 : 1;
   claims.That(t && t->GetNumberOfComponents() == 9 * channels, "T has a component a direction and channel");
   claims.That(propagate[0]->GetBytes() == 6.0 * 9 * channels * 4 * medium->GetNumberOfCells(), "T says its size");
+  claims.That(propagate[0]->GetSeconds() > 0.0 && collect[0]->GetSeconds() > 0.0, "both halves say their time");
   vtkDataArray* unscattered = chained->GetCellData()->GetArray("unscattered");
   const int sources = scene.storedDirections == 1 ? 6 : scene.storedDirections;
   claims.That(unscattered && unscattered->GetNumberOfComponents() == sources * channels, "U is by direction");

@@ -27,6 +27,7 @@ for order in range(3):
     buffers.UpdatePropertyInformation()
     assert buffers.Order == order, buffers.Order
     assert buffers.Bytes == 6 * 9 * 3 * 4 * 13 * 11 * 9, buffers.Bytes
+    assert buffers.Seconds > 0, buffers.Seconds
     assert cells(buffers, "T_zmin").shape == (13 * 11 * 9, 27)
     light = LPMCollect(Input=buffers)
 
@@ -34,3 +35,5 @@ expected = cells(together, "fluence")
 difference = numpy.abs(cells(light, "fluence") - expected).max()
 assert expected.min() > 0 and difference < 2e-6 * expected.max(), difference
 assert cells(light, "unscattered").shape == (13 * 11 * 9, 18)
+light.UpdatePropertyInformation()
+assert light.Seconds > 0, light.Seconds
