@@ -6,8 +6,8 @@ Transport by its filter's name; Filters or Sources, and an entry of these menus 
 of the panel, followed by the value in italics that is given to it (on or off: of a check box; numbers; an entry of a
 list).
 
-A section goes on from the page's first one, or else, and in another page, from the sections that it links to after the
-words "goes on from".
+A section of start.md continues from the page's first one. Any section may continue from the sections that it links to
+after the words "continue from the state after".
 """
 import os
 import re
@@ -47,9 +47,9 @@ def anchor(heading):
 
 
 def with_prerequisites(page, heading):
-    """@return text of a section, after what it goes on from"""
+    """@return text of a section, after those that it continues from"""
     found = sections(page)
-    named = re.search(r"goes on from\s+((?:\[[^]]*\]\([^)]*\)[,\s]*(?:and\s+)?)+)", found[heading])
+    named = re.search(r"continue\s+from\s+the\s+state\s+after\s+((?:\[[^]]*\]\([^)]*\)[,\s]*(?:and\s+)?)+)", found[heading])
     texts = []
     if named:
         for other, fragment in re.findall(r"\(([^)#]*)#([^)]*)\)", named[1]):
@@ -62,7 +62,7 @@ def with_prerequisites(page, heading):
 
 
 def steps_to(page, picture):
-    """What leads to a picture: the steps of its section, and before them of those that it goes on from.
+    """What leads to a picture: the steps of its section, and before them of those that it continues from.
     @return of each step what is named: (kind of markup, words)"""
     own = [heading for heading, text in sections(page).items() if "(images/%s.png)" % picture in text]
     assert len(own) == 1, "%s has no picture %s, or has it twice" % (page, picture)
