@@ -9,6 +9,81 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
+// Marches a packet of straight rays through the medium in steps of v->marching.x voxels: accumulates radiance in `l`,
+// and reduces its transmittance. Empty bricks are skipped. The march ends once no ray's transmittance exceeds
+// v->marching.y.
+//   bricks    distances between bricks of different classes, see Sampling.cl
+//   records   index of the first sample of each brick's record, with BRICKED
+//   packet    section of the rays in the medium
+//   d         unit vectors along the rays, away from the eye
+//   half_way  receives the step in which the transmittance falls below 1/2
+__attribute__((always_inline)) inline void march_straight(const ViewInfo* v, const scenery* scene,
+  __global const char* bricks, __global const int* records, rays packet, real3 d, light* l, crossed* half_way)
+{
+  const real step = step_length(packet.direction, v->marching.x);
+#if !BRICKED
+  const real soon = step_length(packet.direction, 5.0f);
+#endif
+  const int steps = (int)ceil(most_lanes(packet.length / step));
+  const real3 strides = strides_per_voxel(packet.direction, step);
+  for (int n = 0; n < steps;)
+  {
+    const real so_far = step * (real)(float)n;
+    const integer done = (so_far >= packet.length) | (most_left(*l) <= (real)v->marching.y);
+    if (all_lanes(done))
+    {
+      break;
+    }
+    int stop = n + BrickEdge;
+    if (v->has.w)
+    {
+      const stretch ahead =
+        stretch_ahead(bricks, v->bricks, along(packet, fma(step, (real)0.5f, so_far)), strides, done);
+      stop = n + ahead.steps;
+      if (ahead.empty)
+      {
+        n = stop;
+        continue;
+      }
+    }
+    stop = min(stop, steps);
+    for (; n < stop; ++n)
+    {
+      // Sampling does not depend on the transmittance, so that it overlaps the previous step in the processor.
+      const real start = step * (real)(float)n;
+      const real length = lesser(greater(packet.length - start, (real)0.0f), step);
+      corners at;
+#if BRICKED
+      find_corners_in_bricks(along(packet, fma(length, (real)0.5f, start)), v->size, records, &at);
+#else
+      find_corners(along(packet, fma(length, (real)0.5f, start)), v->size, &at);
+#endif
+      const sample s = take_sample(scene, &at, v->size, d);
+#if !BRICKED
+      fetch_ahead(scene->samples, along(packet, start + soon), v->size);
+#endif
+      cross_sample(s, length, start, length, v->marching.y, l, half_way);
+    }
+  }
+}
+
+// Adds the radiance from behind the medium, attenuated by the transmittance: that of a reflecting face for rays that
+// leave the box through it, else that of the background.
+//   packet       section of the rays in the medium
+//   d            unit vectors along the rays, away from the eye
+//   sees_behind  rays that leave the domain without meeting an opaque surface; other rays receive nothing
+inline void add_light_behind(
+  const ViewInfo* v, __global const float4* backdrop, rays packet, real3 d, integer sees_behind, light* l)
+{
+  rgb behind = look_behind(v, d, backdrop);
+  if (v->environment.z != 0)
+  {
+    behind = ground_or_behind(
+      v, backdrop, along(packet, packet.length), packet.direction, packet.length > (real)0.0f, v->size, behind);
+  }
+  add_background(behind, sees_behind ? (real)v->background.w : (real)0.0f, l);
+}
+
 // Renders the medium.
 //   bricks   signed distances of bricks, by which rays skip empty ones (Sampling.cl)
 //   records  with BRICKED: index of the first sample of each brick's record
@@ -44,57 +119,12 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   const integer sees_behind = open;
 #endif
 
-  // Marches the packet through the medium.
-  const real step = step_length(direction, v.marching.x);
-#if !BRICKED
-  const real soon = step_length(direction, 5.0f);
-#endif
-  const int steps = (int)ceil(most_lanes(packet.length / step));
-  const real3 strides = strides_per_voxel(direction, step);
   light l = unlit((real)1.0f);
 #if BLOCK
   l.before = starts_of(&v, limits, column, row);
 #endif
   crossed half_way = { (real)0.0f, (real)0.0f, (real)1.0f, (real)1.0f };
-  for (int n = 0; n < steps;)
-  {
-    const real so_far = step * (real)(float)n;
-    const integer done = (so_far >= packet.length) | (most_left(l) <= (real)v.marching.y);
-    if (all_lanes(done))
-    {
-      break;
-    }
-    int stop = n + BrickEdge;
-    if (v.has.w)
-    {
-      const stretch ahead =
-        stretch_ahead(bricks, v.bricks, along(packet, fma(step, (real)0.5f, so_far)), strides, done);
-      stop = n + ahead.steps;
-      if (ahead.empty)
-      {
-        n = stop;
-        continue;
-      }
-    }
-    stop = min(stop, steps);
-    for (; n < stop; ++n)
-    {
-      // Sampling does not depend on the transmittance, so that it overlaps the previous step in the processor.
-      const real start = step * (real)(float)n;
-      const real length = lesser(greater(packet.length - start, (real)0.0f), step);
-      corners at;
-#if BRICKED
-      find_corners_in_bricks(along(packet, fma(length, (real)0.5f, start)), v.size, records, &at);
-#else
-      find_corners(along(packet, fma(length, (real)0.5f, start)), v.size, &at);
-#endif
-      const sample s = take_sample(&scene, &at, v.size, seen.d);
-#if !BRICKED
-      fetch_ahead(samples, along(packet, start + soon), v.size);
-#endif
-      cross_sample(s, length, start, length, v.marching.y, &l, &half_way);
-    }
-  }
+  march_straight(&v, &scene, bricks, records, packet, seen.d, &l, &half_way);
 
   // Adds the background, and writes the picture.
   const real left = mean_left(l);
@@ -109,13 +139,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
     add_surface_light(surface_light(&v, backdrop, packet, seen.d, before, v.size), &l);
 #endif
   }
-  rgb behind = look_behind(&v, seen.d, backdrop);
-  if (v.environment.z != 0)
-  {
-    behind = ground_or_behind(
-      &v, backdrop, along(packet, packet.length), direction, packet.length > (real)0.0f, v.size, behind);
-  }
-  add_background(behind, sees_behind ? (real)v.background.w : (real)0.0f, &l);
+  add_light_behind(&v, backdrop, packet, seen.d, sees_behind, &l);
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
 #if BLOCK
   // Transmittance of the background: 0 where a block shows it, which hides all that is behind, so that alpha is 1.
