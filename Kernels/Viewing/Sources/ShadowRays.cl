@@ -179,6 +179,35 @@ inline real scattering_over_depth(__global const float* absorption, __global con
 #undef RATIO
   return over;
 }
+
+// Adds to `radiance`, W / (length^2 sr), the light that repeated forward scattering adds to the first scattering of a
+// lamp's beam (AureoleTable in SeenSources.h).
+//   arrived  irradiance by the light, W / length^2
+//   depths   optical lengths along the shadow rays
+//   cosine   cosine of the angle between the beam and the direction towards the eye
+//   aureole  tables by AureoleTable, one per channel with AUREOLE 3
+inline void add_aureole(const ShadowInfo* info, __global const float* absorption, __global const float* scattering,
+  __global const float* straight_on, __global const float* aureole, integer voxel, rgb arrived, rgb depths, real cosine,
+  rgb* radiance)
+{
+  const int apart = AUREOLE == 3 ? (AureoleRows + 2) * (AureoleColumns + 2) : 0;
+#if COLOURED
+#define DEPTH(c) depths.c
+#else
+#define DEPTH(c) depths.r
+#endif
+#define SPREAD(c, n)                                                                                      \
+  radiance->c = fma(arrived.c,                                                                            \
+    aureole_at(cosine,                                                                                    \
+      DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, &info->components, voxel, n), \
+      aureole + n * apart),                                                                               \
+    radiance->c);
+  SPREAD(r, 0)
+  SPREAD(g, 1)
+  SPREAD(b, 2)
+#undef SPREAD
+#undef DEPTH
+}
 #endif
 
 // Parameters of the phase function in a packet's voxels.
@@ -265,6 +294,56 @@ __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict l
     depths_on_the_way(&info, &way, packet, sigma, bricks));
 }
 
+// Scattering coefficients of a packet's voxels, 1/length, summed over the channels. With info->beside, a voxel that
+// does not scatter but has a scattering neighbour receives 1, because rays interpolate between the two.
+inline real scattering_of_voxels(const ShadowInfo* info, __global const float* scattering, integer voxel)
+{
+  real scatters = (real)0.0f;
+  const int components = info->components.scattering;
+#define SCATTERS(n)                                                           \
+  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), components, 0) + \
+    channel_of(scattering, LANE(voxel, n), components, 1) + channel_of(scattering, LANE(voxel, n), components, 2);
+  EACH_LANE(SCATTERS)
+#undef SCATTERS
+  if (info->beside)
+  {
+#define SCATTERS_BESIDE(n)                                                                                      \
+  if (!(LANE(scatters, n) > 0.0f))                                                                              \
+  {                                                                                                             \
+    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), components, info->size) ? 1.0f : 0.0f; \
+  }
+    EACH_LANE(SCATTERS_BESIDE)
+#undef SCATTERS_BESIDE
+  }
+  return scatters;
+}
+
+// Vectors from points towards the eye, not normalised; opposite to the view axis in a parallel projection.
+//   place  points in world coordinates
+inline real3 way_to_eye(const ShadowInfo* info, real3 place)
+{
+  const real perspective = (real)(1.0f - info->eye.w);
+  const real3 out = { fma(perspective, (real)info->eye.x - place.x, (real)(-info->eye.w * info->forward.x)),
+    fma(perspective, (real)info->eye.y - place.y, (real)(-info->eye.w * info->forward.y)),
+    fma(perspective, (real)info->eye.z - place.z, (real)(-info->eye.w * info->forward.z)) };
+  return out;
+}
+
+// Optical lengths between a packet's voxels and a light, see depths_on_the_way.
+//   centre  centres of the voxels, in voxels of the whole grid
+//   given   if info->isGiven: these lengths, as see_lights receives them; else they are computed
+inline rgb depths_to_light(const ShadowInfo* info, const way_to_light* way, real3 centre, integer voxel,
+  __global const float* given, __global const float4* sigma, __global const char* bricks)
+{
+  if (info->isGiven)
+  {
+    return triples_of(given, voxel - info->size.x * (info->firstRow + info->size.y * info->firstSlice), 3, 0);
+  }
+  real before;
+  const rays packet = clip_to_box(centre, direction_of(info, way), way->distance, info->size, &before);
+  return depths_on_the_way(info, way, packet, sigma, bricks);
+}
+
 // Computes the direct light of the lamps at each voxel's centre, and its scattering towards the eye. One work-item per
 // packet of voxels.
 //   direct  6 per voxel: sum of irradiance times phase function, W / (length^2 sr), and sum of irradiance, W /
@@ -289,33 +368,13 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
   }
   const integer i = packet_along_x(first, info.size.x);
   const integer voxel = i + (k * info.size.y + j) * info.size.x;
-  real scatters = (real)0.0f;
-  const int components = info.components.scattering;
-#define SCATTERS(n)                                                           \
-  LANE(scatters, n) = channel_of(scattering, LANE(voxel, n), components, 0) + \
-    channel_of(scattering, LANE(voxel, n), components, 1) + channel_of(scattering, LANE(voxel, n), components, 2);
-  EACH_LANE(SCATTERS)
-#undef SCATTERS
-  if (info.beside)
-  {
-#define SCATTERS_BESIDE(n)                                                                                     \
-  if (!(LANE(scatters, n) > 0.0f))                                                                             \
-  {                                                                                                            \
-    LANE(scatters, n) = is_beside_scattering(scattering, LANE(voxel, n), components, info.size) ? 1.0f : 0.0f; \
-  }
-    EACH_LANE(SCATTERS_BESIDE)
-#undef SCATTERS_BESIDE
-  }
+  const real scatters = scattering_of_voxels(&info, scattering, voxel);
   const int4 begin = info.block.first;
   const real3 centre = { to_real(i + begin.x) + (real)0.5f, (real)((float)(j + begin.y) + 0.5f),
     (real)((float)(k + begin.z) + 0.5f) }; // in voxels of the whole grid
   const real3 place = { centre.x * (real)info.spacing.x, centre.y * (real)info.spacing.y,
     centre.z * (real)info.spacing.z };
-  // Direction towards the eye; opposite to the view axis in a parallel projection.
-  const real perspective = (real)(1.0f - info.eye.w);
-  const real3 out = { fma(perspective, (real)info.eye.x - place.x, (real)(-info.eye.w * info.forward.x)),
-    fma(perspective, (real)info.eye.y - place.y, (real)(-info.eye.w * info.forward.y)),
-    fma(perspective, (real)info.eye.z - place.z, (real)(-info.eye.w * info.forward.z)) };
+  const real3 out = way_to_eye(&info, place);
   const real out_scale = (real)1.0f / sqrt(greater(fma(out.x, out.x, fma(out.y, out.y, out.z * out.z)), (real)1e-30f));
 
   const phase_parameters scatters_by = phases_of(&info, voxel, mean_cosines);
@@ -334,39 +393,13 @@ __kernel void see_lights(ShadowInfo info, __global const SmallLight* restrict li
     {
       continue;
     }
-    rgb depths;
-    if (info.isGiven)
-    {
-      depths = triples_of(given, voxel - info.size.x * (info.firstRow + info.size.y * info.firstSlice), 3, 0);
-    }
-    else
-    {
-      real before;
-      const rays packet = clip_to_box(centre, direction_of(&info, &way), way.distance, info.size, &before);
-      depths = depths_on_the_way(&info, &way, packet, sigma, bricks);
-    }
+    const rgb depths = depths_to_light(&info, &way, centre, voxel, given, sigma, bricks);
     const rgb arrived = arriving_through(&light, way.arriving, depths);
     // The light travels along -way.d.
     const real cosine = -(fma(way.d.x, out.x, fma(way.d.y, out.y, way.d.z * out.z))) * out_scale;
     const rgb phase = phase_at(cosine, scatters_by, phase_rows);
 #if AUREOLE
-    const int apart = AUREOLE == 3 ? (AureoleRows + 2) * (AureoleColumns + 2) : 0;
-#if COLOURED
-#define DEPTH(c) depths.c
-#else
-#define DEPTH(c) depths.r
-#endif
-#define SPREAD(c, n)                                                                                     \
-  irradiance.c = fma(arrived.c,                                                                          \
-    aureole_at(cosine,                                                                                   \
-      DEPTH(c) * scattering_over_depth(absorption, scattering, straight_on, &info.components, voxel, n), \
-      aureole + n * apart),                                                                              \
-    irradiance.c);
-    SPREAD(r, 0)
-    SPREAD(g, 1)
-    SPREAD(b, 2)
-#undef SPREAD
-#undef DEPTH
+    add_aureole(&info, absorption, scattering, straight_on, aureole, voxel, arrived, depths, cosine, &irradiance);
 #else
     irradiance.r += arrived.r;
     irradiance.g += arrived.g;
