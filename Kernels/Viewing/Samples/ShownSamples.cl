@@ -45,6 +45,30 @@ inline float4 triple(__global const float* values, int voxel)
   return (float4)(values[3 * voxel], values[3 * voxel + 1], values[3 * voxel + 2], 0.0f);
 }
 
+#if SHOWN
+// Mean albedo of the scattering voxels in the 3 x 3 x 3 neighbourhood of a voxel and, with SHOWN 1, their mean diffuse
+// light, W / (length^2 sr); 0 if none of them scatters.
+typedef struct
+{
+  float4 albedo, light;
+} neighbour_means;
+
+inline neighbour_means means_around(__global const float* absorption, __global const float* scattering,
+  __global const float* straight_on, __global const float* diffuse, const ViewedComponents* of, int voxel, int4 size)
+{
+  float4 albedos = (float4)(0.0f), lights = (float4)(0.0f);
+  float count = 0.0f;
+#define ADD(neighbour)                                                                   \
+  albedos += coefficients_of(absorption, scattering, straight_on, of, neighbour).albedo; \
+  lights += SHOWN == 1 ? triple(diffuse, neighbour) : (float4)(0.0f);                    \
+  count += 1.0f;
+  FOR_SCATTERING_AROUND(voxel, size, scattering, of->scattering, ADD)
+#undef ADD
+  const neighbour_means means = { albedos / fmax(count, 1.0f), lights / fmax(count, 1.0f) };
+  return means;
+}
+#endif
+
 // Packs the samples from the light of each voxel, W / (length^2 sr): `diffuse` with 3 values per voxel and `direct`
 // with 6 (ShadowRays.cl). A voxel without scattering receives the mean light of its scattering neighbours, and their
 // mean albedo if it does not absorb either.
@@ -81,18 +105,11 @@ __kernel void pack_shown(PackInfo info, __global const float* restrict absorptio
 #endif
   if (!scatters_at(scattering, voxel, of.scattering))
   {
-    float4 albedos = (float4)(0.0f), lights = (float4)(0.0f);
-    float count = 0.0f;
-#define ADD(neighbour)                                                                    \
-  albedos += coefficients_of(absorption, scattering, straight_on, &of, neighbour).albedo; \
-  lights += SHOWN == 1 ? triple(diffuse, neighbour) : (float4)(0.0f);                     \
-  count += 1.0f;
-    FOR_SCATTERING_AROUND(voxel, size, scattering, of.scattering, ADD)
-#undef ADD
+    const neighbour_means around = means_around(absorption, scattering, straight_on, diffuse, &of, voxel, size);
     // The albedo of a voxel that absorbs but does not scatter is 0.
-    albedo = any(here.sigma_t.xyz > (float3)(0.0f)) ? here.albedo : albedos / fmax(count, 1.0f);
+    albedo = any(here.sigma_t.xyz > (float3)(0.0f)) ? here.albedo : around.albedo;
 #if SHOWN == 1
-    light = lights / fmax(count, 1.0f);
+    light = around.light;
 #endif
   }
 #if SHOWN == 1
