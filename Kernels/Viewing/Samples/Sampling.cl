@@ -292,6 +292,36 @@ inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 
   const float16 upper = (float16)(left.s4567, left.scdef, right.s4567, right.scdef);
   return fma(x, upper - lower, lower);
 }
+
+// Transposes the values of a packet's rays from [ray][value] to [value][ray].
+//   a, b, c, d  results of four_between for the rays 0, 4, 8, c; for 1, 5, 9, d; for 2, 6, a, e; for 3, 7, b, f
+//   colour, w   receive the first three values and the fourth value of each ray
+__attribute__((always_inline)) inline void transpose_quarters(
+  float16 a, float16 b, float16 c, float16 d, rgb* colour, real* w)
+{
+  // All permutations stay within quarters of a register, which is fast.
+  const float16 ab_low =
+    (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd);
+  const float16 cd_low =
+    (float16)(c.s0, d.s0, c.s1, d.s1, c.s4, d.s4, c.s5, d.s5, c.s8, d.s8, c.s9, d.s9, c.sc, d.sc, c.sd, d.sd);
+  const float16 ab_high =
+    (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf);
+  const float16 cd_high =
+    (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se, c.sf, d.sf);
+  // Pairs of floats are moved as longs; otherwise PoCL compiles each of these expressions to ten instructions.
+#define FIRST_PAIRS(p, q)                                                                                            \
+  as_float16((long8)(as_long8(p).s0, as_long8(q).s0, as_long8(p).s2, as_long8(q).s2, as_long8(p).s4, as_long8(q).s4, \
+    as_long8(p).s6, as_long8(q).s6))
+#define SECOND_PAIRS(p, q)                                                                                           \
+  as_float16((long8)(as_long8(p).s1, as_long8(q).s1, as_long8(p).s3, as_long8(q).s3, as_long8(p).s5, as_long8(q).s5, \
+    as_long8(p).s7, as_long8(q).s7))
+  colour->r = FIRST_PAIRS(ab_low, cd_low);
+  colour->g = SECOND_PAIRS(ab_low, cd_low);
+  colour->b = FIRST_PAIRS(ab_high, cd_high);
+  *w = SECOND_PAIRS(ab_high, cd_high);
+#undef FIRST_PAIRS
+#undef SECOND_PAIRS
+}
 #endif
 
 // Interpolates values trilinearly at each ray's point: their xyz to `colour`, their w to `w`. Neighbours along x are
@@ -336,28 +366,7 @@ __attribute__((always_inline)) inline void gather_values(
   FETCH(1) FETCH(5) FETCH(9) FETCH(d) const float16 b = four_between(v1, v5, v9, vd, x.s111155559999dddd);
   FETCH(2) FETCH(6) FETCH(a) FETCH(e) const float16 c = four_between(v2, v6, va, ve, x.s22226666aaaaeeee);
   FETCH(3) FETCH(7) FETCH(b) FETCH(f) const float16 d = four_between(v3, v7, vb, vf, x.s33337777bbbbffff);
-  // All following permutations stay within quarters of a register, which is fast.
-  const float16 ab_low =
-    (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd);
-  const float16 cd_low =
-    (float16)(c.s0, d.s0, c.s1, d.s1, c.s4, d.s4, c.s5, d.s5, c.s8, d.s8, c.s9, d.s9, c.sc, d.sc, c.sd, d.sd);
-  const float16 ab_high =
-    (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf);
-  const float16 cd_high =
-    (float16)(c.s2, d.s2, c.s3, d.s3, c.s6, d.s6, c.s7, d.s7, c.sa, d.sa, c.sb, d.sb, c.se, d.se, c.sf, d.sf);
-  // Pairs of floats are moved as longs; otherwise PoCL compiles each of these expressions to ten instructions.
-#define FIRST_PAIRS(p, q)                                                                                            \
-  as_float16((long8)(as_long8(p).s0, as_long8(q).s0, as_long8(p).s2, as_long8(q).s2, as_long8(p).s4, as_long8(q).s4, \
-    as_long8(p).s6, as_long8(q).s6))
-#define SECOND_PAIRS(p, q)                                                                                           \
-  as_float16((long8)(as_long8(p).s1, as_long8(q).s1, as_long8(p).s3, as_long8(q).s3, as_long8(p).s5, as_long8(q).s5, \
-    as_long8(p).s7, as_long8(q).s7))
-  colour->r = FIRST_PAIRS(ab_low, cd_low);
-  colour->g = SECOND_PAIRS(ab_low, cd_low);
-  colour->b = FIRST_PAIRS(ab_high, cd_high);
-  *w = SECOND_PAIRS(ab_high, cd_high);
-#undef FIRST_PAIRS
-#undef SECOND_PAIRS
+  transpose_quarters(a, b, c, d, colour, w);
 #else
   EACH_LANE(FETCH)
 #define BETWEEN(n) const float4 u##n = fma((float4)(WEIGHT(x, n)), v##n.hi - v##n.lo, v##n.lo);
