@@ -32,6 +32,44 @@ typedef struct
   real halfTime, since;
 } met_step;
 
+// Time that has passed at the step's midpoint since the rays met the surface, found by bisection.
+inline real time_since_surface(const surroundings* s, const met_step* step)
+{
+  // At `outer` the index is below that of the surface, at `inner` it is not.
+  real outer = step->halfTime + step->since;
+  real inner = (real)0.0f;
+  real3 bend;
+  for (int n = 0; n < s->o->limits.z; ++n)
+  {
+    const real between = (real)0.5f * (outer + inner);
+    const real square = index_at(s, kept_within(further(step->middle, -between, step->velocity), s->v->size), &bend);
+    const integer below = square < (real)s->o->surface.x;
+    outer = below ? between : outer;
+    inner = below ? inner : between;
+  }
+  return (real)0.5f * (outer + inner);
+}
+
+// Reflectance of the surface where rays meet it.
+//   at       points on the surface, voxels
+//   t        velocities of the rays there, world coordinates
+//   normal   unit normals of the surface, world coordinates
+//   inwards  component of t along the normal
+inline real reflectance(const surroundings* s, real3 at, real3 t, real3 normal, real inwards)
+{
+#if SURFACE == 1
+  const real3 steps = stretched(normal, s->v->inverseSpacing);
+  const real away = (real)s->o->surface.z / sqrt(greater(product(steps, steps), (real)1e-30f));
+  real3 unused;
+  const real n1 = index_at(s, kept_within(further(at, -away, steps), s->v->size), &unused);
+  const real n2 = index_at(s, kept_within(further(at, away, steps), s->v->size), &unused);
+  const real across = fma(-inwards, inwards, product(t, t));
+  return fresnel(lesser(n1, (real)s->o->surface.x), greater(n2, (real)s->o->surface.x), across);
+#else
+  return (real)s->o->surface.y;
+#endif
+}
+
 // Splits the rays `meets`, which meet the surface in this step, into a transmitted and a reflected part. The
 // transmittance is known at the step's start, but the surface lies somewhat before or behind that point: the medium in
 // between acts on both parts or on one of them.
@@ -40,20 +78,8 @@ inline void split_at_surface(
 {
   const int4 size = s->v->size;
   const float4 spacing = s->o->spacing;
-  // Bisection for the time, before the step's midpoint, at which the ray meets the surface: at `outer` the index is
-  // below that of the surface, at `inner` it is not.
-  real outer = step->halfTime + step->since;
-  real inner = (real)0.0f;
+  const real before = time_since_surface(s, step);
   real3 bend;
-  for (int n = 0; n < s->o->limits.z; ++n)
-  {
-    const real between = (real)0.5f * (outer + inner);
-    const real square = index_at(s, kept_within(further(step->middle, -between, step->velocity), size), &bend);
-    const integer below = square < (real)s->o->surface.x;
-    outer = below ? between : outer;
-    inner = below ? inner : between;
-  }
-  const real before = (real)0.5f * (outer + inner);
   const real3 at = kept_within(further(step->middle, -before, step->velocity), size);
   index_at(s, at, &bend);
 
@@ -64,17 +90,7 @@ inline void split_at_surface(
   const real scale = (real)1.0f / sqrt(greater(product(gradient, gradient), (real)1e-30f));
   const real3 normal = { gradient.x * scale, gradient.y * scale, gradient.z * scale };
   const real inwards = product(t, normal);
-#if SURFACE == 1
-  const real3 steps = stretched(normal, s->v->inverseSpacing);
-  const real away = (real)s->o->surface.z / sqrt(greater(product(steps, steps), (real)1e-30f));
-  real3 unused;
-  const real n1 = index_at(s, kept_within(further(at, -away, steps), size), &unused);
-  const real n2 = index_at(s, kept_within(further(at, away, steps), size), &unused);
-  const real across = fma(-inwards, inwards, product(t, t));
-  const real part = fresnel(lesser(n1, (real)s->o->surface.x), greater(n2, (real)s->o->surface.x), across);
-#else
-  const real part = (real)s->o->surface.y;
-#endif
+  const real part = reflectance(s, at, t, normal, inwards);
   const real3 back = further(t, (real)-2.0f * inwards, normal);
   reflected->at = chosen(meets, at, reflected->at);
   reflected->velocity = chosen(meets, stretched(back, s->v->inverseSpacing), reflected->velocity);
@@ -113,6 +129,43 @@ inline void split_at_surface(
 #undef SPLIT
   lose_half(meets & (whole > (real)0.5f) & (mean_left(*l) <= (real)0.5f), depth_of(at, s->v, spacing), half_way);
 }
+
+// Samples n^2 at the current points of rays that come from straight steps or have just started: for them n^2 at the
+// midpoint of a previous bent step is not known.
+//   moves  rays that take the next step; other lanes are not changed
+__attribute__((always_inline)) inline void sample_unknown_index(
+  const surroundings* s, const ray_packets* t, integer moves, watch* w)
+{
+  const integer asks = moves & w->forgotten;
+  if (any_lane(asks))
+  {
+    real3 unused;
+    const real there = index_at(s, t->at, &unused);
+    w->square = asks ? there : w->square;
+    w->since = asks ? (real)0.0f : w->since;
+    w->forgotten = asks ? (integer)0 : w->forgotten;
+  }
+}
+
+// Splits the rays that meet the surface in a bent step, those whose n^2 has risen through the surface's value since the
+// previous sample (split_at_surface). Records n^2 for the next step.
+//   middle, half_time  the step's midpoint, and half its duration t
+//   square             n^2 at the midpoint
+//   moves              rays that take the step
+__attribute__((always_inline)) inline void detect_surface(const surroundings* s, real3 middle, real half_time,
+  real square, const ray_packets* t, integer moves, light* l, crossed* half_way, watch* w)
+{
+  const integer meets = moves & (w->met == 0) & (w->square < (real)s->o->surface.x) &
+    (square >= (real)s->o->surface.x) & (most_left(*l) > (real)s->v->marching.y);
+  if (any_lane(meets))
+  {
+    const met_step step = { middle, t->velocity, half_time, w->since };
+    split_at_surface(s, &step, meets, l, half_way, &w->reflected);
+    w->met |= meets;
+  }
+  w->square = moves ? square : w->square;
+  w->since = moves ? half_time : w->since;
+}
 #endif
 
 // Distance to the nearest face of the box, voxels.
@@ -143,6 +196,51 @@ inline integer leave(ray_packets* t, integer last, int4 size)
 #endif
 
 #if BENDS
+// Shortens a bent step so that it ends where a ray reaches a face of the box or an opaque surface.
+//   moves      rays that take the step
+//   may_leave  whether any ray can reach a face of the box
+//   time       duration t of the step for each ray; replaced
+//   last       receives the rays whose step ends at a face
+//   returns    the rays whose step ends at an opaque surface
+__attribute__((always_inline)) inline integer shorten_step(
+  const surroundings* s, const ray_packets* t, integer moves, int may_leave, real* time, integer* last)
+{
+  *last = (integer)0;
+  if (may_leave)
+  {
+    const real until = time_to_face(t->at, t->velocity, s->v->size);
+    *last = moves & (until <= *time);
+    *time = lesser(*time, until);
+  }
+  integer stops = (integer)0;
+  if (s->v->has.x)
+  {
+    const real to_end = time_to_end(t, t->velocity, s);
+    stops = moves & (to_end <= *time);
+    *time = lesser(*time, to_end);
+  }
+  return stops;
+}
+
+// Marks the rays whose path ends with a bent step: at a face of the box (leave), or at an opaque surface.
+//   last, stops  rays whose step ends at a face, and at an opaque surface, see shorten_step
+//   returns      those of the rays `moves` that take another step
+__attribute__((always_inline)) inline integer end_step(
+  const surroundings* s, integer moves, int may_leave, integer last, integer stops, ray_packets* t)
+{
+  if (may_leave)
+  {
+    moves = leave(t, last, s->v->size) ? (integer)0 : moves;
+  }
+  if (s->v->has.x)
+  {
+    t->inside = stops ? (integer)0 : t->inside;
+    t->stopped |= stops;
+    moves = stops ? (integer)0 : moves;
+  }
+  return moves;
+}
+
 // Takes a few leapfrog steps along bent rays. Samples outside the box are never read.
 //   done  rays that have ended and are not moved
 __attribute__((always_inline)) inline void bend(
@@ -157,15 +255,7 @@ __attribute__((always_inline)) inline void bend(
   // Checks for faces of the box are needed only if a ray can reach one within these steps; usually none can.
   const int may_leave = any_lane(moves & (room_around(t->at, size) < (real)(stride * (float)(steps + 1) + 1.0f)));
 #if SURFACE
-  const integer asks = moves & w->forgotten;
-  if (any_lane(asks))
-  {
-    real3 unused;
-    const real there = index_at(s, t->at, &unused);
-    w->square = asks ? there : w->square;
-    w->since = asks ? (real)0.0f : w->since;
-    w->forgotten = asks ? (integer)0 : w->forgotten;
-  }
+  sample_unknown_index(s, t, moves, w);
 #endif
   real start = depth_of(t->at, s->v, spacing);
   for (int n = 0; n < steps; ++n)
@@ -182,20 +272,8 @@ __attribute__((always_inline)) inline void bend(
     real time = moves ? (real)stride * per_voxel : (real)0.0f;
     const real3 soon = further(t->at, (real)5.0f * per_voxel, t->velocity);
     FETCH_AHEAD(s, soon)
-    integer last = (integer)0;
-    if (may_leave)
-    {
-      const real until = time_to_face(t->at, t->velocity, size);
-      last = moves & (until <= time);
-      time = lesser(time, until);
-    }
-    integer stops = (integer)0;
-    if (s->v->has.x)
-    {
-      const real to_end = time_to_end(t, t->velocity, s);
-      stops = moves & (to_end <= time);
-      time = lesser(time, to_end);
-    }
+    integer last;
+    const integer stops = shorten_step(s, t, moves, may_leave, &time, &last);
     const real half_time = (real)0.5f * time;
     const real3 middle = kept_within(further(t->at, half_time, t->velocity), size);
     corners around;
@@ -205,16 +283,7 @@ __attribute__((always_inline)) inline void bend(
     gather(s->bending, &around, INDEX_SIZE(s), &xyz, &square);
     const real3 turn = { xyz.r, xyz.g, xyz.b };
 #if SURFACE
-    const integer meets = moves & (w->met == 0) & (w->square < (real)s->o->surface.x) &
-      (square >= (real)s->o->surface.x) & (most_left(*l) > (real)enough);
-    if (any_lane(meets))
-    {
-      const met_step step = { middle, t->velocity, half_time, w->since };
-      split_at_surface(s, &step, meets, l, half_way, &w->reflected);
-      w->met |= meets;
-    }
-    w->square = moves ? square : w->square;
-    w->since = moves ? half_time : w->since;
+    detect_surface(s, middle, half_time, square, t, moves, l, half_way, w);
 #endif
 #if ROUNDS
     corners_of_samples(s, middle, &around);
@@ -224,16 +293,7 @@ __attribute__((always_inline)) inline void bend(
     const sample met = take_sample(&s->scene, &around, SAMPLES_SIZE(s), divided(world, greater(pace, (real)1e-20f)));
     t->velocity = further(t->velocity, time, turn);
     t->at = kept_within(further(middle, half_time, t->velocity), size);
-    if (may_leave)
-    {
-      moves = leave(t, last, size) ? (integer)0 : moves;
-    }
-    if (s->v->has.x)
-    {
-      t->inside = stops ? (integer)0 : t->inside;
-      t->stopped |= stops;
-      moves = stops ? (integer)0 : moves;
-    }
+    moves = end_step(s, moves, may_leave, last, stops, t);
     const real end = depth_of(t->at, s->v, spacing);
     cross_sample(met, time * pace, start, end - start, enough, l, half_way);
     start = end;
