@@ -59,88 +59,137 @@ static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, f
   add_units(flux + v * stride, convert_long_sat_rte(layers * tangent.y * lamp->spacing[v]));
 }
 
-// Advances a beam by one step: each part of its cross-section crosses its voxel and deposits the power lost
-// (numerics.md, Eq. (34)). Updates the remaining power and its rounding compensation.
-// @return power that has not reached the box yet
-static float step_beam(const LampInfo* lamp, const BeamRow* row, int layer, float2 tangent, float2 middle, float2 width,
-  float2 way, float length, const __global float* sigma, __global long* path, ulong stride, BeamOnItsWay* beam,
-  lamp_tally* tally)
+// One step of a beam. Positions along the pyramid's axis are in layers from the beam's start, lateral ones in voxels.
+typedef struct
+{
+  int layer;            // layer of voxels, wrapped around a periodic axis
+  float2 tangent;       // lateral voxels per layer
+  float2 middle, width; // centre and width of the cross-section half way through the step
+  float2 way;           // start and end of the step
+  float length;         // path length of the step
+} beam_step;
+
+// Cross-section of a beam half way through a step, inside the box. It overlaps up to two voxels along each of u and v.
+typedef struct
+{
+  float2 edgesU, edgesV; // edges along u and v, voxels
+  int lowestU, lowestV;  // first voxel that it overlaps
+  float partU, partV;    // fraction of the cross-section in the first voxel
+} cross_section;
+
+// Power of a beam, or of a part of its cross-section, after a step.
+typedef struct
+{
+  float remaining; // power at the end of the step; the losses `taken` are not subtracted from it
+  float taken;     // losses in optically thin voxels
+  float waiting;   // share of the remaining power that has not reached the box yet
+} step_power;
+
+// Centre of the part of an interval that lies in its first voxel (`next` 0) or in the next one (1), relative to that
+// voxel's lower edge.
+static float centre_in_voxel(float2 edges, int first, int next)
+{
+  return next ? 0.5f * (edges.y - first - 1.0f) : 0.5f * (fmin(edges.y - first, 1.0f) + edges.x - first);
+}
+
+// Attenuates the part of a beam's cross-section that lies in one voxel, and deposits the power lost (numerics.md, Eq.
+// (34)).
+//   q  which of the four voxels that the cross-section may overlap: bit 0 is the index along u, bit 1 that along v
+// @return power of this part after the step
+static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const beam_step* step,
+  const cross_section* section, int q, const __global float* sigma, __global long* path, ulong stride,
+  const BeamOnItsWay* beam, const lamp_tally* tally)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
+  int voxel[3];
+  const float part =
+    (q & 1 ? 1.0f - section->partU : section->partU) * (q & 2 ? 1.0f - section->partV : section->partV);
+  const float power = beam->left * part;
+  step_power after = { 0.0f, 0.0f, 0.0f };
+  // With VACUUM, a beam whose power is used up continues, because its deposit in vacuum is summed, too.
+  if ((VACUUM ? part : power) <= 0.0f)
+  {
+    return after;
+  }
+  voxel[row->axis] = tally->along;
+  voxel[u] = section->lowestU + (q & 1);
+  voxel[v] = section->lowestV + (q >> 1);
+  const bool counts = tally->counts && is_lit(lamp, row, voxel);
+  voxel[row->axis] = step->layer;
+  const int at_u = place(lamp, u, step->tangent.x, &voxel[u]);
+  const int at_v = place(lamp, v, step->tangent.y, &voxel[v]);
+  if (at_u != INSIDE || at_v != INSIDE)
+  {
+    after.remaining = power; // power that enters the box later, or never
+    after.waiting = power;
+    return after;
+  }
+  const ulong index = place_in_arrays(lamp, voxel);
+  const float tau = sigma[index] * step->length;
+  float through;
+  const float lost = extinguished(tau, &through);
+  const float mean_length = tau > 1e-20f ? lost / sigma[index] : step->length;
+  const float counted = counts ? power * (mean_length * units_of(sigma[index], lamp->diagonal)) : 0.0f;
+  if (counted > 0.0f)
+  {
+    add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
+  }
+  if (VACUUM && counts && is_image(lamp, row->axis, tally->along - step->layer) &&
+    is_image(lamp, u, section->lowestU + (q & 1) - voxel[u]) &&
+    is_image(lamp, v, section->lowestV + (q >> 1) - voxel[v]))
+  {
+    __global long* in_vacuum = path + FIRST_OF_VACUUM * stride + index;
+    add_units(in_vacuum, convert_long_sat_rte(beam->free * part * step->length * lamp->scale));
+    if (AROUND)
+    {
+      add_units(in_vacuum + stride, convert_long_sat_rte(counted * lamp->scale));
+    }
+  }
+  if (NET_FLUX)
+  {
+    add_flux(lamp, row, step->tangent, step->way, step->length, counted, path + FIRST_OF_FLUX * stride + index, stride);
+  }
+  if (MOMENTS && counts && tau > 0.5f * THIN)
+  {
+    const float2 mean = (float2)(centre_in_voxel(section->edgesU, section->lowestU, q & 1),
+      centre_in_voxel(section->edgesV, section->lowestV, q >> 1));
+    add_moments(lamp, row, voxel, step->way, mean, step->tangent, tau, lost, counted, path + stride + index, stride);
+  }
+  const bool thick = lost < 0.5f * tau;
+  after.remaining = thick ? power * through : power;
+  after.taken = thick ? 0.0f : power * lost;
+  return after;
+}
+
+// Advances a beam by one step, in which each part of its cross-section crosses its voxel (cross_part). Updates the
+// remaining power and its rounding compensation.
+// @return power that has not reached the box yet
+static float step_beam(const LampInfo* lamp, const BeamRow* row, const beam_step* step, const __global float* sigma,
+  __global long* path, ulong stride, BeamOnItsWay* beam, lamp_tally* tally)
+{
+  const float2 middle = step->middle, width = step->width;
   float2 edges_u = (float2)(middle.x - 0.5f * width.x, middle.x + 0.5f * width.x);
   float2 edges_v = (float2)(middle.y - 0.5f * width.y, middle.y + 0.5f * width.y);
-  leave_sides(lamp, row, false, tangent, way, &edges_u, &edges_v, beam, tally);
-  int2 lowest;
+  leave_sides(lamp, row, false, step->tangent, step->way, &edges_u, &edges_v, beam, tally);
+  int lowest_u, lowest_v;
   float part_u, part_v;
-  int voxel[3];
-  overlap(edges_u, &voxel[0], &part_u);
-  overlap(edges_v, &voxel[1], &part_v);
-  lowest = (int2)(voxel[0], voxel[1]);
-  float after = 0.0f, taken = 0.0f, waiting = 0.0f;
+  overlap(edges_u, &lowest_u, &part_u);
+  overlap(edges_v, &lowest_v, &part_v);
+  const cross_section section = { edges_u, edges_v, lowest_u, lowest_v, part_u, part_v };
+  step_power after = { 0.0f, 0.0f, 0.0f };
   for (int q = 0; q < 4; ++q)
   {
-    const float part = (q & 1 ? 1.0f - part_u : part_u) * (q & 2 ? 1.0f - part_v : part_v);
-    const float power = beam->left * part;
-    // With VACUUM, a beam whose power is used up continues, because its deposit in vacuum is summed, too.
-    if ((VACUUM ? part : power) <= 0.0f)
-    {
-      continue;
-    }
-    voxel[row->axis] = tally->along;
-    voxel[u] = lowest.x + (q & 1);
-    voxel[v] = lowest.y + (q >> 1);
-    const bool counts = tally->counts && is_lit(lamp, row, voxel);
-    voxel[row->axis] = layer;
-    const int at_u = place(lamp, u, tangent.x, &voxel[u]);
-    const int at_v = place(lamp, v, tangent.y, &voxel[v]);
-    if (at_u != INSIDE || at_v != INSIDE)
-    {
-      after += power; // power that enters the box later, or never
-      waiting += power;
-      continue;
-    }
-    const ulong index = place_in_arrays(lamp, voxel);
-    const float tau = sigma[index] * length;
-    float through;
-    const float lost = extinguished(tau, &through);
-    const float mean_length = tau > 1e-20f ? lost / sigma[index] : length;
-    const float counted = counts ? power * (mean_length * units_of(sigma[index], lamp->diagonal)) : 0.0f;
-    if (counted > 0.0f)
-    {
-      add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
-    }
-    if (VACUUM && counts && is_image(lamp, row->axis, tally->along - layer) &&
-      is_image(lamp, u, lowest.x + (q & 1) - voxel[u]) && is_image(lamp, v, lowest.y + (q >> 1) - voxel[v]))
-    {
-      __global long* in_vacuum = path + FIRST_OF_VACUUM * stride + index;
-      add_units(in_vacuum, convert_long_sat_rte(beam->free * part * length * lamp->scale));
-      if (AROUND)
-      {
-        add_units(in_vacuum + stride, convert_long_sat_rte(counted * lamp->scale));
-      }
-    }
-    if (NET_FLUX)
-    {
-      add_flux(lamp, row, tangent, way, length, counted, path + FIRST_OF_FLUX * stride + index, stride);
-    }
-    if (MOMENTS && counts && tau > 0.5f * THIN)
-    {
-      const float2 mean = (float2)(q & 1 ? 0.5f * (edges_u.y - lowest.x - 1.0f)
-                                         : 0.5f * (fmin(edges_u.y - lowest.x, 1.0f) + edges_u.x - lowest.x),
-        q & 2 ? 0.5f * (edges_v.y - lowest.y - 1.0f)
-              : 0.5f * (fmin(edges_v.y - lowest.y, 1.0f) + edges_v.x - lowest.y));
-      add_moments(lamp, row, voxel, way, mean, tangent, tau, lost, counted, path + stride + index, stride);
-    }
-    const bool thick = lost < 0.5f * tau;
-    after += thick ? power * through : power;
-    taken += thick ? 0.0f : power * lost;
+    const step_power part = cross_part(lamp, row, step, &section, q, sigma, path, stride, beam, tally);
+    after.remaining += part.remaining;
+    after.taken += part.taken;
+    after.waiting += part.waiting;
   }
   // Compensates rounding of small losses, which would accumulate over thousands of steps.
-  const float change = beam->rest - taken;
-  beam->left = after + change;
-  beam->rest = change - (beam->left - after);
-  return waiting;
+  const float change = beam->rest - after.taken;
+  beam->left = after.remaining + change;
+  beam->rest = change - (beam->left - after.remaining);
+  return after.waiting;
 }
 
 // Lower and upper edge of a beam's cross-section along u or v, t layers from its start, voxels.
@@ -215,12 +264,13 @@ static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float
 
 // Attenuates a beam over one step along its centre, where the beam illuminates no voxel.
 // @return whether the whole cross-section is in the box; if not, nothing is done
-static bool pass_through(const LampInfo* lamp, const BeamRow* row, int layer, float2 middle, float2 width, float length,
-  const __global float* sigma, BeamOnItsWay* beam)
+static bool pass_through(
+  const LampInfo* lamp, const BeamRow* row, const beam_step* step, const __global float* sigma, BeamOnItsWay* beam)
 {
-  const float at[2] = { middle.x, middle.y }, half_width[2] = { 0.5f * width.x, 0.5f * width.y };
+  const float at[2] = { step->middle.x, step->middle.y };
+  const float half_width[2] = { 0.5f * step->width.x, 0.5f * step->width.y };
   int voxel[3];
-  voxel[row->axis] = layer;
+  voxel[row->axis] = step->layer;
   for (int k = 0; k < 2; ++k)
   {
     const int axis = (row->axis + 1 + k) % 3;
@@ -232,7 +282,7 @@ static bool pass_through(const LampInfo* lamp, const BeamRow* row, int layer, fl
     place(lamp, axis, 0.0f, &voxel[axis]);
   }
   float through;
-  extinguished(sigma[place_in_arrays(lamp, voxel)] * length, &through);
+  extinguished(sigma[place_in_arrays(lamp, voxel)] * step->length, &through);
   beam->left *= through;
   return true;
 }
@@ -288,6 +338,64 @@ static bool is_followed(const LampInfo* lamp, const BeamRow* row, int layer, flo
   return followed;
 }
 
+// Layers of voxels that the beams of a row cross, counted along the beams.
+typedef struct
+{
+  int first;  // index of the layer in which the beams start
+  int inside; // number of layers from there to the end of the box; on a periodic axis, to the end of its first period
+  int all;    // number of layers after which beams are traced no further
+  int nearby; // number of layers in which the deposit in vacuum is summed; 0 without VACUUM
+} beam_layers;
+
+static beam_layers layers_of(const LampInfo* lamp, const BeamRow* row)
+{
+  const int n = lamp->size[row->axis];
+  const float start = row->from;
+  beam_layers layers;
+  layers.first =
+    row->outside ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
+  layers.inside = row->up ? n - layers.first : layers.first + 1;
+  layers.all = lamp->periodic[row->axis] ? row->layers : min(row->layers, layers.inside);
+  layers.nearby = VACUUM ? layers.inside + lamp->images[row->axis] * n : 0;
+  return layers;
+}
+
+// Path length of a beam per layer of voxels.
+static float length_per_layer(const LampInfo* lamp, const BeamRow* row, float2 tangent)
+{
+  const int u = (row->axis + 1) % 3;
+  const int v = (row->axis + 2) % 3;
+  const float3 along = (float3)(lamp->spacing[row->axis], tangent.x * lamp->spacing[u], tangent.y * lamp->spacing[v]);
+  return sqrt(dot(along, along));
+}
+
+// Tallies the remaining power of a beam that is traced no further: power that misses the box, that is in transit on a
+// periodic axis, or that escapes at the end of an open axis.
+//   here, end  middle of the last step, and end of the last layer, in layers from the beam's start
+//   waiting    power that had not reached the box at `here`
+static void end_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, float2 tangent, const beam_layers* layers,
+  float here, float end, float waiting, BeamOnItsWay* beam, lamp_tally* tally)
+{
+  if (row->beside && waiting > 0.0f && layers->all >= layers->inside)
+  {
+    miss_box(lamp, row, begin, tangent, here, end, waiting, beam, tally);
+  }
+  tally->counts = true;
+  if (lamp->periodic[row->axis])
+  {
+    const float2 middle = begin + tangent * end;
+    int voxel[3];
+    voxel[row->axis] = tally->along;
+    voxel[(row->axis + 1) % 3] = (int)floor(middle.x);
+    voxel[(row->axis + 2) % 3] = (int)floor(middle.y);
+    tally->stranded += is_lit(lamp, row, voxel) ? beam->left : 0.0f;
+  }
+  else if (layers->all == layers->inside)
+  {
+    leave_end(lamp, row, begin, tangent, end, beam->left, tally);
+  }
+}
+
 // Traces one beam from its entry into the box, or from its saved state, until it leaves.
 // @param begin  position of the beam's centre at its start, voxels
 // @param power  initial power of the beam
@@ -296,16 +404,10 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
   const __global float* sigma, __global long* path, ulong stride, BeamOnItsWay* beam, lamp_tally* tally)
 {
   const int n = lamp->size[row->axis];
-  const int u = (row->axis + 1) % 3;
-  const int v = (row->axis + 2) % 3;
-  const float3 along = (float3)(lamp->spacing[row->axis], tangent.x * lamp->spacing[u], tangent.y * lamp->spacing[v]);
-  const float per_layer = sqrt(dot(along, along));
+  const float per_layer = length_per_layer(lamp, row, tangent);
   const float start = row->from;
-  const int first =
-    row->outside ? (row->up ? 0 : n - 1) : clamp((int)(row->up ? floor(start) : ceil(start) - 1.0f), 0, n - 1);
-  const int layers = row->up ? n - first : first + 1;
-  const int all = lamp->periodic[row->axis] ? row->layers : min(row->layers, layers);
-  const int nearby = VACUUM ? layers + lamp->images[row->axis] * n : 0;
+  const beam_layers layers = layers_of(lamp, row);
+  const int first = layers.first;
   // On a periodic axis beams continue until their power is negligible; on an open axis they leave.
   const float least = lamp->periodic[row->axis] ? 1e-7f * power : 0.0f;
   const int before = beam->layer;
@@ -317,7 +419,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
   {
     enter_box(lamp, row, begin, tangent, beam, tally);
   }
-  for (int k = before; k < all && (beam->left > least || (k < nearby && beam->free > 0.0f)); ++k)
+  for (int k = before; k < layers.all && (beam->left > least || (k < layers.nearby && beam->free > 0.0f)); ++k)
   {
     tally->counts = k >= row->skipped;
     tally->along = row->up ? first + k : first - k;
@@ -346,34 +448,17 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
       {
         return true;
       }
-      if (stretch == SHORT_OF && pass_through(lamp, row, layer, middle, width, length, sigma, beam))
+      const beam_step step = { layer, tangent, middle, width, (float2)(t0, t1), length };
+      if (stretch == SHORT_OF && pass_through(lamp, row, &step, sigma, beam))
       {
         waiting = 0.0f;
         continue;
       }
-      waiting =
-        step_beam(lamp, row, layer, tangent, middle, width, (float2)(t0, t1), length, sigma, path, stride, beam, tally);
+      waiting = step_beam(lamp, row, &step, sigma, path, stride, beam, tally);
     }
     now = end;
   }
-  if (row->beside && waiting > 0.0f && all >= layers)
-  {
-    miss_box(lamp, row, begin, tangent, here, now, waiting, beam, tally);
-  }
-  tally->counts = true;
-  if (lamp->periodic[row->axis])
-  {
-    const float2 end = begin + tangent * now;
-    int voxel[3];
-    voxel[row->axis] = tally->along;
-    voxel[u] = (int)floor(end.x);
-    voxel[v] = (int)floor(end.y);
-    tally->stranded += is_lit(lamp, row, voxel) ? beam->left : 0.0f;
-  }
-  else if (all == layers)
-  {
-    leave_end(lamp, row, begin, tangent, now, beam->left, tally);
-  }
+  end_beam(lamp, row, begin, tangent, &layers, here, now, waiting, beam, tally);
   return true;
 }
 
