@@ -73,6 +73,95 @@ inline float sharpen_at_face(float own, float inner, float t, float s, float spa
   return s * (inner - own) * part_of_first_term(spacing * t) / 24.0f;
 }
 
+// A row of the block's voxels along x whose scattered source is computed. The pointers are those of scatter_row, moved
+// to the row's first voxel; ghost voxels and neighbouring rows are at other indices of the same arrays.
+typedef struct
+{
+  const __global float *path, *sigma_t, *sigma_s;
+  __global float* source;
+  float perVolume;
+} scattering_row;
+
+// Correction of voxel x of a row for its neighbour at index `other`; `spacing` is the distance between their centres.
+inline float sharpen_between(const scattering_row* row, int x, int other, float spacing)
+{
+  return sharpen(row->path[x], row->path[other], row->sigma_t[x], row->sigma_s[x], row->sigma_t[other],
+    row->sigma_s[other], spacing);
+}
+
+// Corrects the source of a row for light that varies linearly along x (numerics.md, Eq. (76f)).
+//   ghosts  whether there is a ghost voxel before the row, and after it
+inline void sharpen_along_row(const CoarseCells* box, const scattering_row* row, const bool* ghosts)
+{
+  const int n = box->size[0];
+  for (int x = 0; x + 1 < n; ++x)
+  {
+    const float more = row->perVolume * sharpen_between(row, x, x + 1, box->spacing[0]);
+    row->source[x] += more;
+    row->source[x + 1] -= more;
+  }
+  if (box->wraps[0])
+  {
+    const int x = n - 1;
+    const float more = row->perVolume * sharpen_between(row, x, 0, box->spacing[0]);
+    row->source[x] += more;
+    row->source[0] -= more;
+  }
+  for (int side = 0; side < 2; ++side)
+  {
+    const int x = side ? n - 1 : 0, other = side ? n : -1;
+    if (ghosts[side])
+    {
+      row->source[x] += row->perVolume * sharpen_between(row, x, other, box->spacing[0]);
+    }
+  }
+}
+
+// Corrects the source of a row for light that varies linearly along y and z (numerics.md, Eq. (76f)).
+//   beside  index steps to the neighbouring rows at -y, +y, -z, +z; 0 at a face of the box
+inline void sharpen_across_rows(const CoarseCells* box, const scattering_row* row, const int* beside)
+{
+  for (int k = 0; k < 4; ++k)
+  {
+    for (int x = 0; x < box->size[0] && beside[k] != 0; ++x)
+    {
+      row->source[x] += row->perVolume * sharpen_between(row, x, x + beside[k], box->spacing[1 + k / 2]);
+    }
+  }
+}
+
+// Corrects the source of a row at the faces of the box (numerics.md, Eq. (76g)).
+//   ghosts, beside  as in sharpen_along_row and sharpen_across_rows
+//   kept            sums of sharpen_at_face() at the faces -x to +z, added to
+inline void sharpen_at_faces(
+  const CoarseCells* box, const scattering_row* row, const bool* ghosts, const int* beside, float* kept)
+{
+  const __global float *path = row->path, *sigma_t = row->sigma_t, *sigma_s = row->sigma_s;
+  const int n = box->size[0];
+  for (int side = 0; side < 2 && !box->wraps[0] && box->held[0] > 1; ++side)
+  {
+    if (ghosts[side])
+    {
+      continue;
+    }
+    const int x = side ? n - 1 : 0, inner = side ? n - 2 : 1;
+    const float more = row->perVolume * sharpen_at_face(path[x], path[inner], sigma_t[x], sigma_s[x], box->spacing[0]);
+    row->source[x] += more;
+    kept[side] += more;
+  }
+  for (int k = 0; k < 4; ++k)
+  {
+    const int inner = beside[k ^ 1];
+    for (int x = 0; x < n && beside[k] == 0 && inner != 0; ++x)
+    {
+      const float more =
+        row->perVolume * sharpen_at_face(path[x], path[x + inner], sigma_t[x], sigma_s[x], box->spacing[1 + k / 2]);
+      row->source[x] += more;
+      kept[2 + k] += more;
+    }
+  }
+}
+
 // Computes the source scattered from path integrals (numerics.md, Eqs. (76f), (76g)). One work-item per row of the
 // block's voxels. `path`, `sigma_t` and `sigma_s` include ghost voxels.
 //   path        path integrals, W length; may be negative
@@ -86,8 +175,6 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
   const int* n = box.size;
   const int r = get_global_id(0), y = r % n[1] + box.lead[1], z = r / n[1] + box.lead[2];
   const int row = box.held[0], plane = box.held[0] * box.held[1], i = z * plane + y * row + box.lead[0];
-  const int n_linear = box.linear ? n[0] : 0;
-  const bool ghosts[2] = { box.lead[0] > 0, box.held[0] > box.lead[0] + n[0] };
   path += box.heldFirst + i;
   source += box.first + r * n[0];
   sigma_s += box.heldFirst + i;
@@ -97,63 +184,16 @@ __kernel void scatter_row(CoarseCells box, const __global float* restrict path, 
   {
     source[x] = (adds ? source[x] : 0.0f) + per_volume * sigma_s[x] * path[x];
   }
-  for (int x = 0; x + 1 < n_linear; ++x)
-  {
-    const float more = per_volume *
-      sharpen(path[x], path[x + 1], sigma_t[x], sigma_s[x], sigma_t[x + 1], sigma_s[x + 1], box.spacing[0]);
-    source[x] += more;
-    source[x + 1] -= more;
-  }
-  if (box.wraps[0] && box.linear)
-  {
-    const int x = n[0] - 1;
-    const float more =
-      per_volume * sharpen(path[x], path[0], sigma_t[x], sigma_s[x], sigma_t[0], sigma_s[0], box.spacing[0]);
-    source[x] += more;
-    source[0] -= more;
-  }
-  for (int side = 0; side < 2; ++side)
-  {
-    const int x = side ? n[0] - 1 : 0, other = side ? n[0] : -1;
-    if (ghosts[side] && box.linear)
-    {
-      source[x] += per_volume *
-        sharpen(path[x], path[other], sigma_t[x], sigma_s[x], sigma_t[other], sigma_s[other], box.spacing[0]);
-    }
-  }
+  const bool ghosts[2] = { box.lead[0] > 0, box.held[0] > box.lead[0] + n[0] };
   const int around_y = box.wraps[1] ? plane - row : 0, around_z = box.wraps[2] ? (box.held[2] - 1) * plane : 0;
   const int beside[4] = { y > 0 ? -row : around_y, y < box.held[1] - 1 ? row : -around_y, z > 0 ? -plane : around_z,
     z < box.held[2] - 1 ? plane : -around_z };
-  for (int k = 0; k < 4; ++k)
+  if (box.linear)
   {
-    for (int x = 0; x < n_linear && beside[k] != 0; ++x)
-    {
-      const int other = x + beside[k];
-      source[x] += per_volume *
-        sharpen(path[x], path[other], sigma_t[x], sigma_s[x], sigma_t[other], sigma_s[other], box.spacing[1 + k / 2]);
-    }
-  }
-  for (int side = 0; side < 2 && !box.wraps[0] && box.held[0] > 1 && box.linear; ++side)
-  {
-    if (ghosts[side])
-    {
-      continue;
-    }
-    const int x = side ? n[0] - 1 : 0, inner = side ? n[0] - 2 : 1;
-    const float more = per_volume * sharpen_at_face(path[x], path[inner], sigma_t[x], sigma_s[x], box.spacing[0]);
-    source[x] += more;
-    kept[side] += more;
-  }
-  for (int k = 0; k < 4; ++k)
-  {
-    const int inner = beside[k ^ 1];
-    for (int x = 0; x < n_linear && beside[k] == 0 && inner != 0; ++x)
-    {
-      const float more =
-        per_volume * sharpen_at_face(path[x], path[x + inner], sigma_t[x], sigma_s[x], box.spacing[1 + k / 2]);
-      source[x] += more;
-      kept[2 + k] += more;
-    }
+    const scattering_row own = { path, sigma_t, sigma_s, source, per_volume };
+    sharpen_along_row(&box, &own, ghosts);
+    sharpen_across_rows(&box, &own, beside);
+    sharpen_at_faces(&box, &own, ghosts, beside, kept);
   }
   for (int x = 0; x < n[0]; ++x)
   {
