@@ -110,6 +110,50 @@ inline real deposit(real radiance, real sigma_s, float length)
   return radiance * depth(gone, tau, length);
 }
 
+#if REAL_WIDTH > 1
+// Copies the radiance of row v of a ray map to the border: along u to the ends of the row, along v to the border row
+// next to the opposite side; only on periodic axes. Called after the last write to the row.
+static void wrap_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
+{
+  __global float* row = ray_row(rays, map, parity, slot, v);
+  if (map->periodicU)
+  {
+    row[map->sizeU] = row[0];
+    row[-1] = row[map->sizeU - 1];
+  }
+  for (int copy = -1; map->periodicV && copy <= 1; copy += 2)
+  {
+    if (v == (copy < 0 ? map->sizeV - 1 : 0))
+    {
+      __global float* border = ray_row(rays, map, parity, slot, copy < 0 ? -1 : map->sizeV);
+      for (int u = -1; u <= map->sizeU; ++u)
+      {
+        border[u] = row[u];
+      }
+    }
+  }
+}
+#else
+// Stores the radiance of the ray in voxel (u, v) of a ray map and, on periodic axes, of its images in the border.
+static void store_with_images(
+  __global float* rays, const PublishedMap* map, int parity, int slot, int u, int v, float radiance)
+{
+  for (int dv = -1; dv <= 1; ++dv)
+  {
+    for (int du = -1; du <= 1; ++du)
+    {
+      const int image_u = u + du * map->sizeU;
+      const int image_v = v + dv * map->sizeV;
+      if ((du == 0 || map->periodicU) && (dv == 0 || map->periodicV) && image_u >= -1 && image_u <= map->sizeU &&
+        image_v >= -1 && image_v <= map->sizeV)
+      {
+        ray_row(rays, map, parity, slot, image_v)[image_u] = radiance;
+      }
+    }
+  }
+}
+#endif
+
 // Moves all rays of all directions of a launch into their next voxel and through it.
 //   crossings         voxel crossings of all launches; those of this launch, one per direction, begin at index `first`
 //   plane             index of the first float of the crossed plane in a volume
@@ -147,22 +191,8 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
     store_real(add ? load_real(u, contributions) + gained : gained, u, contributions);
     store_real(radiance, u, to);
   }
-  to[map.sizeU] = map.periodicU ? to[0] : right_border;
-  if (map.periodicU)
-  {
-    to[-1] = to[map.sizeU - 1];
-  }
-  for (int copy = -1; map.periodicV && copy <= 1; copy += 2)
-  {
-    if (v == (copy < 0 ? map.sizeV - 1 : 0))
-    {
-      __global float* border = ray_row(rays, &map, !crossing.parity, slot, copy < 0 ? -1 : map.sizeV);
-      for (int u = -1; u <= map.sizeU; ++u)
-      {
-        border[u] = to[u];
-      }
-    }
-  }
+  to[map.sizeU] = right_border;
+  wrap_row(rays, &map, !crossing.parity, slot, v);
 #else
   const int u = get_global_id(0);
   if (u >= map.sizeU)
@@ -176,19 +206,7 @@ __kernel void cross_voxels(const PublishedMap map, const int plane, const int ad
   const float radiance = cross_voxel(from[u], sigma_t[u], SOURCE ? sources[u] : 0.0f, length);
   const float gained = deposit(radiance, sigma_s[u], length);
   contributions[u] = add ? contributions[u] + gained : gained;
-  for (int dv = -1; dv <= 1; ++dv) // the voxel itself and its images in the border
-  {
-    for (int du = -1; du <= 1; ++du)
-    {
-      const int image_u = u + du * map.sizeU;
-      const int image_v = v + dv * map.sizeV;
-      if ((du == 0 || map.periodicU) && (dv == 0 || map.periodicV) && image_u >= -1 && image_u <= map.sizeU &&
-        image_v >= -1 && image_v <= map.sizeV)
-      {
-        ray_row(rays, &map, !crossing.parity, slot, image_v)[image_u] = radiance;
-      }
-    }
-  }
+  store_with_images(rays, &map, !crossing.parity, slot, u, v, radiance);
 #endif
 }
 
