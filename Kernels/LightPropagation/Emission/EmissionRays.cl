@@ -113,10 +113,82 @@ static inline real along(const real* values, integer axis, int shift)
   return select(other, values[shift % 3], axis == (integer)0);
 }
 
+// The side of the emitting box to which rays are directed, for each SIMD lane.
+typedef struct
+{
+  integer axis, highSide; // axis of the side's normal; -1: the side at the upper end of this axis, 0: at the lower end
+  real part;              // remainder of the coordinate that selected the side, 0 to 1
+  real share;             // the side's share of the solid angle of all sides
+} box_side;
+
+// Selects a side of the emitting box with a probability in proportion to its solid angle.
+//   choice  coordinate of the lattice, 0 to 1, times `total`
+//   total   sum of the solid angles of the six sides
+static box_side choose_side(const float* solid_angles, float total, real choice)
+{
+  box_side to;
+  to.axis = to.highSide = 0;
+  to.part = 0.0f;
+  to.share = 1.0f;
+  float before = 0.0f;
+  for (int side = 0; side < 6; ++side)
+  {
+    const integer chosen = choice >= (real)(solid_angles[side] > 0.0f ? before : 1e30f);
+    to.axis = select(to.axis, (integer)(side / 2), chosen);
+    to.highSide = select(to.highSide, (integer)(-(side % 2)), chosen);
+    to.part = select(to.part, (choice - before) / fmax(solid_angles[side], 1e-30f), chosen);
+    to.share = select(to.share, (real)(solid_angles[side] / total), chosen);
+    before += solid_angles[side];
+  }
+  to.part = clamp(to.part, (real)0.0f, (real)1.0f);
+  return to;
+}
+
+// Directs rays from points to a side of the emitting box (numerics.md, Eq. (41)): u = to->part and v, from 0 to 1,
+// parametrise the angles by tan(x / 2) and sin.
+//   way      receives unit vectors along the rays
+//   returns  solid angle per unit of u and v, sr, divided by the probability of the side
+static real aim_at_side(
+  const turned_scene* s, const lit_voxel* voxel, const box_side* to, const real* point, real v, real* way)
+{
+  real low[3], high[3], edge[3];
+  for (int a = 0; a < 3; ++a)
+  {
+    low[a] = (s->sourceFirst[a] - point[a]) * s->spacing[a];
+    high[a] = low[a] + s->sourceSize[a] * s->spacing[a];
+    edge[a] = s->spacing[a];
+  }
+  const real low_u = along(low, to->axis, 1), high_u = along(high, to->axis, 1);
+  const real low_v = along(low, to->axis, 2), high_v = along(high, to->axis, 2);
+  const real away = fmax(
+    fabs(select(along(low, to->axis, 0), along(high, to->axis, 0), to->highSide)), 1e-4f * along(edge, to->axis, 0));
+  const real half_low = low_u / (away + sqrt(away * away + low_u * low_u));
+  const real half_range = high_u / (away + sqrt(away * away + high_u * high_u)) - half_low;
+  const real tangent = half_low + half_range * to->part; // tangent of half the angle
+  const real squared = tangent * tangent;
+  // distance from the point to the line on the box's side along which v varies
+  const real across_u = away * (1.0f + squared) / (1.0f - squared);
+  const real sin_low = low_v * rsqrt(across_u * across_u + low_v * low_v);
+  const real sin_range = high_v * rsqrt(across_u * across_u + high_v * high_v) - sin_low;
+  const real sine = sin_low + sin_range * v;
+  const real solid_angle = half_range * 2.0f / (1.0f + squared) * sin_range / to->share;
+  // Above 0, since a ray parallel to the side would miss it.
+  const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f));
+  const integer ahead = voxel->inside ? to->highSide : ~to->highSide;
+  const real forward = cosine * (1.0f - squared) / (1.0f + squared);
+  const real turned[3] = { select(-forward, forward, ahead), cosine * 2.0f * tangent / (1.0f + squared), sine };
+  const integer back = select((integer)0, 3 - to->axis, to->axis > (integer)0);
+  for (int a = 0; a < 3; ++a)
+  {
+    way[a] = along(turned, back, a);
+  }
+  return solid_angle;
+}
+
 // Gathers light along rays to the emitting box. A lattice provides points in the voxel and directions that are uniform
 // over the solid angles of the box's sides: its first coordinate selects the side, in proportion to its solid angle;
 // the remainder of that coordinate and the second one, (u, v) from 0 to 1, parametrise the angles by tan(x / 2) and sin
-// (numerics.md, Eq. (41)).
+// (aim_at_side).
 //   from, end  range of rays, a multiple of REAL_WIDTH
 //   points     lattice, [u, v, x, y, z][MOST]
 //   sums       mean over the rays, W / length^2, [channel][fluence, net flux along x, y, z]
@@ -135,49 +207,13 @@ static void gather_rays(const turned_scene* s, const lit_voxel* voxel, const flo
   }
   for (int i = from; i < end && total > 0.0f; i += REAL_WIDTH)
   {
-    const real choice = load_real(i, points) * total;
-    integer axis = 0, high_side = 0;
-    real part = 0.0f, share = 1.0f;
-    float before = 0.0f;
-    for (int side = 0; side < 6; ++side)
-    {
-      const integer chosen = choice >= (real)(solid_angles[side] > 0.0f ? before : 1e30f);
-      axis = select(axis, (integer)(side / 2), chosen);
-      high_side = select(high_side, (integer)(-(side % 2)), chosen);
-      part = select(part, (choice - before) / fmax(solid_angles[side], 1e-30f), chosen);
-      share = select(share, (real)(solid_angles[side] / total), chosen);
-      before += solid_angles[side];
-    }
-    part = clamp(part, (real)0.0f, (real)1.0f);
-    real point[3], low[3], high[3], edge[3], radiance[CHANNELS];
+    const box_side to = choose_side(solid_angles, total, load_real(i, points) * total);
+    real point[3], way[3], radiance[CHANNELS];
     for (int a = 0; a < 3; ++a)
     {
       point[a] = voxel->at[a] + (a == voxel->across ? (real)voxel->up : load_real(i, points + (2 + a) * MOST));
-      low[a] = (s->sourceFirst[a] - point[a]) * s->spacing[a];
-      high[a] = low[a] + s->sourceSize[a] * s->spacing[a];
-      edge[a] = s->spacing[a];
     }
-    const real low_u = along(low, axis, 1), high_u = along(high, axis, 1);
-    const real low_v = along(low, axis, 2), high_v = along(high, axis, 2);
-    const real away =
-      fmax(fabs(select(along(low, axis, 0), along(high, axis, 0), high_side)), 1e-4f * along(edge, axis, 0));
-    const real half_low = low_u / (away + sqrt(away * away + low_u * low_u));
-    const real half_range = high_u / (away + sqrt(away * away + high_u * high_u)) - half_low;
-    const real tangent = half_low + half_range * part; // tangent of half the angle
-    const real squared = tangent * tangent;
-    // distance from the point to the line on the box's side along which v varies
-    const real across_u = away * (1.0f + squared) / (1.0f - squared);
-    const real sin_low = low_v * rsqrt(across_u * across_u + low_v * low_v);
-    const real sin_range = high_v * rsqrt(across_u * across_u + high_v * high_v) - sin_low;
-    const real sine = sin_low + sin_range * load_real(i, points + MOST);
-    const real solid_angle = half_range * 2.0f / (1.0f + squared) * sin_range / share;
-    // Above 0, since a ray parallel to the side would miss it.
-    const real cosine = sqrt(fmax(1.0f - sine * sine, (real)1e-12f));
-    const integer ahead = voxel->inside ? high_side : ~high_side;
-    const real forward = cosine * (1.0f - squared) / (1.0f + squared);
-    const real turned[3] = { select(-forward, forward, ahead), cosine * 2.0f * tangent / (1.0f + squared), sine };
-    const integer back = select((integer)0, 3 - axis, axis > (integer)0);
-    const real way[3] = { along(turned, back, 0), along(turned, back, 1), along(turned, back, 2) };
+    const real solid_angle = aim_at_side(s, voxel, &to, point, load_real(i, points + MOST), way);
     trace(s, voxel, point, way, sigma, emission, radiance);
     for (int c = 0; c < CHANNELS; ++c)
     {
