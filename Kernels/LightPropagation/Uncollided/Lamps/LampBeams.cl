@@ -59,6 +59,24 @@ static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, f
   add_units(flux + v * stride, convert_long_sat_rte(layers * tangent.y * lamp->spacing[v]));
 }
 
+// Adds the path integral that there would be in vacuum and, with AROUND, the actual one, of light that originates from
+// the rectangle or one of its nearest images.
+//   around   number of voxels by which the light has wrapped around the pyramid's axis, u and v
+//   counted  actual path integral
+static void add_in_vacuum(const LampInfo* lamp, const BeamRow* row, const int* around, float in_vacuum, float counted,
+  __global long* sums, ulong stride)
+{
+  if (is_image(lamp, row->axis, around[0]) && is_image(lamp, (row->axis + 1) % 3, around[1]) &&
+    is_image(lamp, (row->axis + 2) % 3, around[2]))
+  {
+    add_units(sums, convert_long_sat_rte(in_vacuum * lamp->scale));
+    if (AROUND)
+    {
+      add_units(sums + stride, convert_long_sat_rte(counted * lamp->scale));
+    }
+  }
+}
+
 // One step of a beam. Positions along the pyramid's axis are in layers from the beam's start, lateral ones in voxels.
 typedef struct
 {
@@ -135,16 +153,12 @@ static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const bea
   {
     add_units(path + index, convert_long_sat_rte(counted * lamp->scale));
   }
-  if (VACUUM && counts && is_image(lamp, row->axis, tally->along - step->layer) &&
-    is_image(lamp, u, section->lowestU + (q & 1) - voxel[u]) &&
-    is_image(lamp, v, section->lowestV + (q >> 1) - voxel[v]))
+  if (VACUUM && counts)
   {
-    __global long* in_vacuum = path + FIRST_OF_VACUUM * stride + index;
-    add_units(in_vacuum, convert_long_sat_rte(beam->free * part * step->length * lamp->scale));
-    if (AROUND)
-    {
-      add_units(in_vacuum + stride, convert_long_sat_rte(counted * lamp->scale));
-    }
+    const int around[3] = { tally->along - step->layer, section->lowestU + (q & 1) - voxel[u],
+      section->lowestV + (q >> 1) - voxel[v] };
+    add_in_vacuum(
+      lamp, row, around, beam->free * part * step->length, counted, path + FIRST_OF_VACUUM * stride + index, stride);
   }
   if (NET_FLUX)
   {
