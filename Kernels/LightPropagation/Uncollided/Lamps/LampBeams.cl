@@ -95,7 +95,7 @@ typedef struct
   float partU, partV;    // fraction of the cross-section in the first voxel
 } cross_section;
 
-// Power of a beam, or of a part of its cross-section, after a step.
+// Power of a beam after a step, summed over the parts of its cross-section.
 typedef struct
 {
   float remaining; // power at the end of the step; the losses `taken` are not subtracted from it
@@ -112,11 +112,12 @@ static float centre_in_voxel(float2 edges, int first, int next)
 
 // Attenuates the part of a beam's cross-section that lies in one voxel, and deposits the power lost (numerics.md, Eq.
 // (34)).
-//   q  which of the four voxels that the cross-section may overlap: bit 0 is the index along u, bit 1 that along v
-// @return power of this part after the step
+//   q      which of the four voxels that the cross-section may overlap: bit 0 is the index along u, bit 1 that along v
+//   after  sum over the parts that have already crossed their voxels
+// @return the sum including this part
 static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const beam_step* step,
   const cross_section* section, int q, const __global float* sigma, __global long* path, ulong stride,
-  const BeamOnItsWay* beam, const lamp_tally* tally)
+  const BeamOnItsWay* beam, const lamp_tally* tally, step_power after)
 {
   const int u = (row->axis + 1) % 3;
   const int v = (row->axis + 2) % 3;
@@ -124,7 +125,6 @@ static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const bea
   const float part =
     (q & 1 ? 1.0f - section->partU : section->partU) * (q & 2 ? 1.0f - section->partV : section->partV);
   const float power = beam->left * part;
-  step_power after = { 0.0f, 0.0f, 0.0f };
   // With VACUUM, a beam whose power is used up continues, because its deposit in vacuum is summed, too.
   if ((VACUUM ? part : power) <= 0.0f)
   {
@@ -139,8 +139,8 @@ static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const bea
   const int at_v = place(lamp, v, step->tangent.y, &voxel[v]);
   if (at_u != INSIDE || at_v != INSIDE)
   {
-    after.remaining = power; // power that enters the box later, or never
-    after.waiting = power;
+    after.remaining += power; // power that enters the box later, or never
+    after.waiting += power;
     return after;
   }
   const ulong index = place_in_arrays(lamp, voxel);
@@ -171,8 +171,8 @@ static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const bea
     add_moments(lamp, row, voxel, step->way, mean, step->tangent, tau, lost, counted, path + stride + index, stride);
   }
   const bool thick = lost < 0.5f * tau;
-  after.remaining = thick ? power * through : power;
-  after.taken = thick ? 0.0f : power * lost;
+  after.remaining += thick ? power * through : power;
+  after.taken += thick ? 0.0f : power * lost;
   return after;
 }
 
@@ -194,10 +194,7 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, const beam_step
   step_power after = { 0.0f, 0.0f, 0.0f };
   for (int q = 0; q < 4; ++q)
   {
-    const step_power part = cross_part(lamp, row, step, &section, q, sigma, path, stride, beam, tally);
-    after.remaining += part.remaining;
-    after.taken += part.taken;
-    after.waiting += part.waiting;
+    after = cross_part(lamp, row, step, &section, q, sigma, path, stride, beam, tally, after);
   }
   // Compensates rounding of small losses, which would accumulate over thousands of steps.
   const float change = beam->rest - after.taken;
