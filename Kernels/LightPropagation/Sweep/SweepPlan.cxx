@@ -165,8 +165,10 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.stepP = step[this->axes.axis];
   this->plane.width = width;
   this->plane.currents = this->partialCurrents;
-  this->plane.quantities = PLANE_COUNT(this->channels, this->angular ? this->angular->Beams() : 0, this->netFlux,
-    this->partialCurrents, this->octantSource);
+  // Per channel: source, path integral and beams; also net flux, partial currents and sources by octant if used.
+  const int ofChannel = 2 + (this->angular ? this->angular->Beams() : 0) + (this->netFlux ? 3 : 0) +
+    (this->partialCurrents ? CurrentFaces : 0) + (this->octantSource ? WaysAside : 0);
+  this->plane.quantities = PlaneSource + ofChannel * this->channels;
   this->plane.block = this->axes.u == 0 ? 1 : this->vector;
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
@@ -398,12 +400,9 @@ std::size_t SweepPlan::ScratchFloats() const
     : together * RINGS_OF(static_cast<std::size_t>(this->plane.chained)) * RingRows * raysOfRow;
   // With incident radiance per cell of the faces, one more row holds the rays that enter through the faces normal to v.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
-  const int beams = this->angular ? this->angular->Beams() : 0;
-  const std::size_t quantities =
-    PLANE_COUNT(this->channels, beams, this->netFlux, this->partialCurrents, this->octantSource);
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
   // All rows of a plane, even if rowsKept is set: kernels compiled for light per cell of the faces do not use rowsKept.
-  const std::size_t planes = quantities * rows * this->row;
+  const std::size_t planes = this->plane.quantities * rows * this->row;
   // Rows of the moments of the source and of the path integral that are packed (copied to scratch)
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow;
   return ring + planes + rows + packed + 3 * this->vector;

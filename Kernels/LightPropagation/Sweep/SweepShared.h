@@ -72,12 +72,6 @@ enum
   WaysAside = 4
 };
 
-/// Number of quantities stored per row of a plane. Each channel has a source, a path integral and beams; also a net
-/// flux, partial currents and a source per octant if these are used.
-#define PLANE_COUNT(channels, beams, netFlux, currents, octants) \
-  (PlaneSource +                                                 \
-    (2 + (beams) + ((netFlux) ? 3 : 0) + ((currents) ? CurrentFaces : 0) + ((octants) ? WaysAside : 0)) * (channels))
-
 /// Number of ring buffers of rows between the stages of `planes` chained planes, which a bundle crosses together. Each
 /// plane has at most three stages.
 #define RINGS_OF(planes) (3 * (planes)-1)
