@@ -167,12 +167,15 @@ static float model_of_boundary(
   const float area = face_area(layout, axis);
   const float driven = drive_out(layout, arrays, d, i);
   const float light = arrays->model[i] + driven;
-  *dark = -passes / a * incoming * area;
-  *dark += layout->moments ? passes * driven * area : 0.0f;
   if (layout->faces)
   {
     const face_factors factors = reflecting_face(layout, d, passes);
     *dark = area * (factors.ofMedium * passes * driven - factors.ofLight * coming_in(layout, arrays, FaceGiven, d, at));
+  }
+  else
+  {
+    *dark = -passes / a * incoming * area;
+    *dark += layout->moments ? passes * driven * area : 0.0f;
   }
   const float net = passes * (light - incoming / a);
   if (!layout->linear)
