@@ -83,14 +83,13 @@ private:
   std::atomic<int>* Next;
 };
 
-/// Sets the lowest priority for this process, and ends it when the parent process ends.
-void ServeParent(pid_t parent)
+/// Ends this process when its parent process ends.
+void EndWith(pid_t parent)
 {
-  setpriority(PRIO_PROCESS, 0, 19);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) // the parent has already ended
   {
-    std::exit(0);
+    std::_Exit(0);
   }
 }
 }
@@ -99,7 +98,8 @@ int main(int argc, char* argv[])
 {
   if (argc > 2)
   {
-    ServeParent(static_cast<pid_t>(std::atol(argv[2])));
+    setpriority(PRIO_PROCESS, 0, 19);
+    EndWith(static_cast<pid_t>(std::atol(argv[2])));
   }
   try
   {
@@ -110,10 +110,10 @@ int main(int argc, char* argv[])
       return 0;
     }
     ScenesInTurn scenes(std::min(wanted, all));
-    const pid_t helper = wanted > 1 ? fork() : -1;
+    const pid_t self = getpid(), helper = wanted > 1 ? fork() : -1;
     if (helper == 0)
     {
-      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      EndWith(self);
       // _Exit does not run the destructors of libraries' static objects, which would wait for threads that fork() does
       // not copy.
       std::_Exit(scenes.PrepareThem() ? 0 : 1);
