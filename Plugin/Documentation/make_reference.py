@@ -16,20 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 PROXIES = HERE.parent / "ServerManager"
 REFERENCE = HERE / "reference.md"
 COLUMNS = 120
-NAME = re.compile(r"\b[A-Za-z]+(?:_[A-Za-z0-9]+)+\b|\bior\b|"
-                  r"(?<=array )(?:fluence|emission|radiance|importance|directions|unscattered|color|alpha|depth|g)\b|"
-                  r"(?<=arrays )(?:emission|fluence|radiance|color|occupancy|alpha|unscattered|direction)\b|"
-                  r"(?<=arrays: )(?:fluence|occupancy)\b|\bfluence(?= and fluence_direct)|"
-                  r"(?<=field data )(?:g|aborted|exposure)\b|(?<=phase_function and )g\b|"
-                  r"\bdevice(?= \(name of the OpenCL)|\bscattered(?= \(scattered power)|\beven(?= \(see the result)|"
-                  r"\b(?:direction|size|angle)(?= \((?:of travel|lengths of a rec|full opening angle of a spot))|"
-                  r"\bpower(?= \(red, green, (?:blue, W\)|blue; W, for))|\bweight(?= \((?:power of the ph|sr))|"
-                  r"\b(?:light|batch)(?= \(number of the)|\bgradient(?= \(difference of)|\bchosen(?= \(whether)|"
-                  r"\b(?:emission|radiance)(?= \((?:W/|red, green, blue, W/))|\balpha(?= \(1 - )|\bdepth(?= \(length)|"
-                  r"(?<=columns are )(?:direction|terms)\b|\berror(?= \(relative error of the matrix)|"
-                  r"\beigenvalue(?=, singular_value)|(?<=The column )pareto\b|\breference(?= \(description)|"
-                  r"\bseconds(?= \(median)|\bbalance(?= \(relative error)|(?<=\(W\), )pareto\b|"
-                  r"(?<=with the columns )method\b|(?<=columns method, )setting\b")
+NAME = re.compile(r"\b[A-Za-z]+(?:_[A-Za-z0-9]+)+\b")
 
 HEAD = """# Reference
 
