@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -13,6 +14,8 @@ constexpr double OnBorder = 1e-9;
 /// Minimum number of planes of voxels after which the ray pattern along a periodic axis repeats: rays cross shorter
 /// axes several times before it does.
 constexpr int FewestPlanes = 128;
+/// Smaller node of the Gauss-Legendre rule of two points in (0, 1).
+constexpr double GaussNode = 0.21132486540518712;
 
 bool Same(double a, double b)
 {
@@ -212,26 +215,52 @@ void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& 
   }
 }
 
-/// Copies of each bundle of directions, with the sideways moves of its rays, for every point of the finer lattice of
-/// mapResolution x mapResolution rays per voxel.
-std::vector<Bundle> OnLattice(const std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
-  const std::array<bool, 3>& periodic, int mapResolution)
+/// Copies of a bundle of directions for every point of the finer lattice of mapResolution x mapResolution rays in a
+/// voxel.
+std::vector<Bundle> OnLattice(const Bundle& bundle, int mapResolution)
+{
+  std::vector<Bundle> all;
+  for (int j = 0; j < mapResolution; ++j)
+  {
+    for (int i = 0; i < mapResolution; ++i)
+    {
+      Bundle shifted = bundle;
+      shifted.startU = (i + bundle.startU) / mapResolution;
+      shifted.startV = (j + bundle.startV) / mapResolution;
+      shifted.power /= static_cast<double>(mapResolution) * mapResolution;
+      all.push_back(shifted);
+    }
+  }
+  return all;
+}
+
+/// See RayStarts::Pairs.
+std::vector<Bundle> InPairs(const Bundle& bundle)
+{
+  std::vector<Bundle> pair(2, bundle);
+  for (int i = 0; i < 2; ++i)
+  {
+    pair[i].startU = i == 0 ? GaussNode : 1.0 - GaussNode;
+    pair[i].startV = 1.0 - pair[i].startU;
+    pair[i].power /= 2.0;
+  }
+  return pair;
+}
+
+/// The rays of each bundle of directions in a voxel, with their sideways moves.
+std::vector<Bundle> RaysOf(const std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
+  const std::array<bool, 3>& periodic, int mapResolution, RayStarts starts)
 {
   const int planes = PlanesOfPattern(grid.size[axes.axis], periodic[axes.axis]);
   std::vector<Bundle> all;
   for (const Bundle& bundle : bundles)
   {
-    for (int j = 0; j < mapResolution; ++j)
+    const bool pairs = starts == RayStarts::Pairs && mapResolution == 1;
+    std::vector<Bundle> inVoxel = pairs ? InPairs(bundle) : OnLattice(bundle, mapResolution);
+    for (Bundle& rays : inVoxel)
     {
-      for (int i = 0; i < mapResolution; ++i)
-      {
-        Bundle shifted = bundle;
-        shifted.startU = (i + bundle.startU) / mapResolution;
-        shifted.startV = (j + bundle.startV) / mapResolution;
-        AddMoves(shifted, axes, periodic, planes);
-        shifted.power /= static_cast<double>(mapResolution) * mapResolution;
-        all.push_back(shifted);
-      }
+      AddMoves(rays, axes, periodic, planes);
+      all.push_back(std::move(rays));
     }
   }
   return all;
@@ -328,7 +357,7 @@ std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bo
   {
     Stagger(bundles);
   }
-  return OnLattice(bundles, axes, grid, periodic, mapResolution);
+  return RaysOf(bundles, axes, grid, periodic, mapResolution, starts);
 }
 
 std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
@@ -338,7 +367,7 @@ std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool,
   Bundle beam = EmptyBundle(axes, grid, omega);
   const bool forward = omega[axis] > 0.0;
   beam.members.push_back({ forward ? 0 : -1, forward ? -1 : 0, Sign(omega[axes.u]), 0, 0, Sign(omega[axes.v]) });
-  return OnLattice({ beam }, axes, grid, periodic, mapResolution);
+  return RaysOf({ beam }, axes, grid, periodic, mapResolution, RayStarts::Middle);
 }
 
 std::vector<Bundle> LitRays(const std::vector<Bundle>& bundles, int way, const std::function<bool(int)>& isLit)

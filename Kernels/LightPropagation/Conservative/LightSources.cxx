@@ -93,11 +93,11 @@ Illumination AlongUsual(const UncollidedDirections& finer, const Illumination& s
 /// Rays of the finer quadrature.
 /// @param accelerated  whether the solve uses DSA: finer directions are then swept in addition to the usual ones
 std::unique_ptr<const SweptDirections> FinerDirections(
-  const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated)
+  const Grid& grid, const PropagationSettings& settings, int perFace, bool accelerated, const SweptDirections& usual)
 {
   DirectionSet set = FittedDirections(perFace, "UncollidedDirections");
   const bool asAsked = accelerated || !set.orbits.empty();
-  const RayStarts starts = settings.staggeredRays || !asAsked ? RayStarts::Staggered : RayStarts::Middle;
+  const RayStarts starts = asAsked || usual.Starts() == RayStarts::Pairs ? usual.Starts() : RayStarts::Staggered;
   return std::make_unique<SweptDirections>(grid, settings, std::move(set), starts);
 }
 }
@@ -204,7 +204,7 @@ void LightSources::FindBoundaryLight()
   const Grid& grid = this->Problem.Whole();
   if (this->Finer.perFace > 0)
   {
-    this->Fine = FinerDirections(grid, settings, this->Finer.perFace, this->ByBalance);
+    this->Fine = FinerDirections(grid, settings, this->Finer.perFace, this->ByBalance, this->Usual);
   }
   const SplitEnvironment environment = this->SplitFar(shining.environment);
   this->Lamps = shining.lights;

@@ -1,6 +1,7 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
 #include "LightPropagation/Scattering/MomentScattering.h"
+#include "LightPropagation/ThickVoxels/OctantSources.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"
 
@@ -12,9 +13,11 @@ namespace tyndall
 {
 namespace
 {
-RayStarts StartsOf(const PropagationSettings& settings)
+/// Where rays start. Thick voxels need two rays, since light enters and leaves them at their edges. Collective.
+RayStarts StartsOf(const PropagationProblem& problem, IterationScheme how)
 {
-  return settings.staggeredRays ? RayStarts::Staggered : RayStarts::Middle;
+  const RayStarts single = problem.Settings().staggeredRays ? RayStarts::Staggered : RayStarts::Middle;
+  return how == IterationScheme::SourceIteration && OctantSources::Matter(problem) ? RayStarts::Pairs : single;
 }
 
 VolumeLayout LayoutOf(const PropagationProblem& problem)
@@ -44,7 +47,7 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
       NeedsOf(problem, this->Layout, this->ByBalance()))
   , Scattering(
       MakeScattering(device, this->Layout, this->OnDevice, problem.Scattering().Degree(), problem.ComputesScattering()))
-  , Usual(problem.Whole(), problem.Settings(), std::move(usual), StartsOf(problem.Settings()))
+  , Usual(problem.Whole(), problem.Settings(), std::move(usual), StartsOf(problem, how))
   , Lights(problem, this->ByBalance(), this->Layout, this->Usual, finer)
   , Transport(device, problem.TheDomain(), this->Layout, this->OnDevice.SigmaT(), problem.Settings().periodic)
 {
