@@ -34,17 +34,19 @@ struct Scene
   int preset;
   double around; ///< density of the box outside the ellipsoidal cloud
   bool coloured; ///< whether the light has a colour, so that three channels are solved
+  bool ground;   ///< whether the lower face of the box reflects
 };
 
 const Scene Scenes[] = {
-  { 64, vtkParticipatingMedium::CUSTOM, 0.5, false },
-  { 0, 0, 0.0, false },
-  { 64, vtkParticipatingMedium::CLOUD, 0.0, false },
-  { 64, vtkParticipatingMedium::CLOUD, 0.0, true },
-  { 128, vtkParticipatingMedium::CUSTOM, 0.0, false },
-  { 128, vtkParticipatingMedium::CLOUD, 0.0, true },
-  { 128, vtkParticipatingMedium::CLOUD, 0.0, false },
-  { 32, vtkParticipatingMedium::CUSTOM, 0.0, false },
+  { 64, vtkParticipatingMedium::CUSTOM, 0.5, false, false },
+  { 0, 0, 0.0, false, false },
+  { 64, vtkParticipatingMedium::CLOUD, 0.0, false, false },
+  { 64, vtkParticipatingMedium::CLOUD, 0.0, true, false },
+  { 64, vtkParticipatingMedium::CLOUD, 0.0, true, true },
+  { 128, vtkParticipatingMedium::CUSTOM, 0.0, false, false },
+  { 128, vtkParticipatingMedium::CLOUD, 0.0, true, false },
+  { 128, vtkParticipatingMedium::CLOUD, 0.0, false, false },
+  { 32, vtkParticipatingMedium::CUSTOM, 0.0, false, false },
 };
 
 /// Voxels along y and z: few, because only compilation matters, but enough that the same kernels are compiled as for a
@@ -96,6 +98,11 @@ void SolveCloud(const Scene& scene, vtkCommand* listener)
     sun->SetSunPower(4.0, 3.7, 3.2);
     light->SetLightsConnection(sun->GetOutputPort());
     light->SetSkyColor(0.03, 0.06, 0.13);
+    picture->SetLightsConnection(sun->GetOutputPort());
+  }
+  if (scene.ground)
+  {
+    light->SetFaceAlbedo(0.0, 0.0, 0.0, 0.0, 0.8, 0.0);
   }
   picture->SetInputConnection(light->GetOutputPort());
   picture->Update();
