@@ -33,9 +33,9 @@ struct UncollidedDirections
 
 /// Chooses the directions for uncollided boundary light: settings.uncollidedDirections or, if that is -1, the largest
 /// of 36, 49, 64 and 100 directions per cube face, for light of faces, with which a solve with one emitting face is
-/// predicted to take at most a quarter longer. The automatic choice is 0 if a face reflects; with coarse-mesh DSA (more
-/// directions gain nothing without the escape correction, which would change the light of lamps as well); and, for
-/// memory, with DSA and angular moments.
+/// predicted to take at most half as long again. The automatic choice is 0 if a face reflects; with coarse-mesh DSA
+/// (more directions gain nothing without the escape correction, which would change the light of lamps as well); and,
+/// for memory, with DSA and angular moments.
 /// @param usual  quadrature of scattered light; unless it is fitted (DirectionSet::orbits), the automatic choice is 0
 /// Collective.
 UncollidedDirections UncollidedDirectionsFor(
