@@ -5,6 +5,7 @@
 #include "LatticeBoltzmann/LatticeChannel.h"
 #include "LatticeBoltzmann/LatticeLight.h"
 #include "LatticeBoltzmann/LatticeProblem.h"
+#include "Light/LeftOut.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Med
   const Uncollided uncollided = FindUncollided(device, problem, settings, OfPart(monitor, 0.0, 0.1));
   LightField light = BeginLight(problem, settings);
   double thickest = 0.0;
+  int dark = 0;
   for (int c = 0; c < light.channels; ++c)
   {
     LatticeChannel channel(device, problem, settings, uncollided, c);
@@ -27,6 +29,11 @@ LightField SolveLatticeBoltzmann(Device& device, const Domain& domain, const Med
     channel.Solve(OfPart(monitor, 0.1 + 0.9 * c / all, 0.1 + 0.9 * (c + 1) / all));
     channel.AddTo(light);
     thickest = std::max(thickest, channel.Thickest());
+    dark += channel.IsDark() && settings.leaveOut;
+  }
+  if (dark > 0)
+  {
+    light.leftOut.push_back(left_out::DarkChannels(dark, light.channels));
   }
   FinishLight(light, device, problem, illumination, settings, thickest, uncollided.lost);
   return light;

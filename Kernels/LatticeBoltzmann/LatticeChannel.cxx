@@ -338,7 +338,8 @@ LatticeChannel::LatticeChannel(
 void LatticeChannel::Solve(const Monitor& monitor)
 {
   const LatticeBox& box = this->Problem.Box();
-  if (this->Problem.TheDomain().Sum(this->Voxels.Given()) == 0.0)
+  this->Dark = this->Problem.TheDomain().Sum(this->Voxels.Given()) == 0.0;
+  if (this->Dark && this->Settings.leaveOut)
   {
     this->Fluence.assign(box.Count(), 0.0f);
   }

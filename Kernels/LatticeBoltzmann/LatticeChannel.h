@@ -32,6 +32,8 @@ public:
   double Thickest() const { return this->Voxels.thickest; }
   Lattice& TheLattice() { return *this->Densities; } ///< requires a block that has voxels
   const LatticeVoxels& TheVoxels() const { return this->Voxels; }
+  /// Whether no light is scattered or emitted, so that the lattice is dark. Known after Solve().
+  bool IsDark() const { return this->Dark; }
 
   /// Solves for the steady state, or takes lattice steps, depending on the settings.
   void Solve(const Monitor& monitor);
@@ -50,6 +52,7 @@ private:
   const int Channel;
   LatticeVoxels Voxels;
   std::optional<Lattice> Densities; ///< lattice of the block; unset if the block has no voxels
+  bool Dark = false;
   std::vector<float> Fluence;
   std::vector<ConvergenceRow> Rows;
 };

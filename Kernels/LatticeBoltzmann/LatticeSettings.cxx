@@ -78,6 +78,7 @@ PropagationSettings AsPropagation(const LatticeSettings& settings, int angularDe
   of.periodic = settings.periodic;
   of.maximumOrders = settings.maximumSteps;
   of.netFlux = settings.netFlux;
+  of.leaveOut = settings.leaveOut;
   of.angularDegree = angularDegree;
   // with other options for the source, voxels of plane-parallel slabs may be widened; the lattice needs cubes
   of.source = PropagationSource::Constant;

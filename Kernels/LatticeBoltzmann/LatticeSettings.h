@@ -46,6 +46,7 @@ struct LatticeSettings
   bool sideBySide = true;
   std::array<bool, 3> periodic = {};
   bool netFlux = false; ///< whether to compute net_flux
+  bool leaveOut = true; ///< whether to skip work that the scene does not need
 
   bool Solves() const
   {

@@ -7,7 +7,9 @@ namespace tyndall
 namespace left_out
 {
 const char* const Grey = "colour: medium and light are grey, one channel does";
+const char* const GreyMedium = "colour: the medium is grey, one component of sigma_a and sigma_s does";
 const char* const OneColour = "colour: the medium is grey and all light has one colour, one channel stands for three";
+const char* const OneColourOfLight = "colour: light has one colour everywhere, its channels are smoothed at once";
 const char* const GreyExtinction = "sigma_t a channel: red, green and blue share one, and its transmittance";
 const char* const NoScattering = "scattering: sigma_s is zero";
 const char* const NoAbsorption = "absorption: sigma_a is zero";
@@ -34,6 +36,11 @@ const char* const NotByOctant =
 const char* const NotSideBySide =
   "marching beside diffusion: the device does one after the other, and takes no longer than by turns";
 
+std::string EmptyVoxels(double part)
+{
+  return "scattering in empty voxels: " + std::to_string(std::lround(100.0 * part)) + "% of the voxels do not scatter";
+}
+
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid)
 {
   const double part = 1.0 - static_cast<double>(filled.VoxelCount()) / static_cast<double>(grid.VoxelCount());
@@ -45,6 +52,11 @@ std::string DarkDirections(double lit)
 {
   return "dark directions: no light comes from outside along " + std::to_string(std::lround(100.0 * (1.0 - lit))) +
     "% of the rays";
+}
+
+std::string DarkChannels(int dark, int channels)
+{
+  return "dark channels: nothing is scattered or shines in " + std::to_string(dark) + " of " + std::to_string(channels);
 }
 
 std::string MirrorImages(int classes, int directions)

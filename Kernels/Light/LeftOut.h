@@ -11,9 +11,11 @@ namespace tyndall
 /// below say for which scenes. All solvers use the same texts.
 namespace left_out
 {
-extern const char* const Grey;           ///< text if neither medium nor lights are coloured
-extern const char* const OneColour;      ///< text if the medium is grey and all lights have the same colour
-extern const char* const GreyExtinction; ///< text if all channels have the same sigma_t, hence one transmittance
+extern const char* const Grey;             ///< text if neither medium nor lights are coloured
+extern const char* const GreyMedium;       ///< text if all coefficients of a medium are grey
+extern const char* const OneColour;        ///< text if the medium is grey and all lights have the same colour
+extern const char* const OneColourOfLight; ///< text if light has the same colour everywhere
+extern const char* const GreyExtinction;   ///< text if all channels have the same sigma_t, hence one transmittance
 extern const char* const NoScattering;
 extern const char* const NoAbsorption;
 extern const char* const NoEmission;
@@ -36,10 +38,14 @@ extern const char* const
 /// Text if "By octant" was requested for the setting Source but cannot be used in this scene.
 extern const char* const NotByOctant;
 extern const char* const NotSideBySide; ///< text if the device does not run two queues concurrently
+/// Text that a part of the voxels does not scatter, so that no source is computed for them.
+std::string EmptyVoxels(double part);
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 /// Text that many directions carry no incident light.
 /// @param lit  fraction of the rays that carry incident light
 std::string DarkDirections(double lit);
+/// Text that channels without sources are dark, and were not solved.
+std::string DarkChannels(int dark, int channels);
 std::string MirrorImages(int classes, int directions);
 /// Text that the scene varies along one axis only, so that it was solved as plane-parallel layers.
 /// @param polarNodes  number of polar cosines of that solve
