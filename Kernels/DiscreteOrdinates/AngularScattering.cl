@@ -26,6 +26,28 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
+// Whether a block of eight voxels lies beside the box with light, which is given along x and y.
+inline bool is_beside(ScatteringVoxels at, ulong first)
+{
+  if (at.width == 0)
+  {
+    return false;
+  }
+  const int row = (int)(first / (ulong)at.width % (ulong)at.height);
+  const int column = (int)(first % (ulong)at.width);
+  return column + BLOCK <= at.width &&
+    (row < at.first[1] || row > at.last[1] || column > at.last[0] || column + BLOCK <= at.first[0]);
+}
+
+// Whether any of eight voxels scatters.
+inline bool any_scatters(const __global float* sigma_s, ulong voxels, ulong first)
+{
+  bool any = false;
+#define LOOK(b) any |= first + b < voxels && sigma_s[first + b] > 0.0f;
+  EACH_VOXEL(LOOK)
+  return any;
+}
+
 // Computes the angular moments of eight voxels, [voxel][MOMENTS], from their radiance. Adds the directions group by
 // group, and then the groups, so that rounding errors are the same in all voxels of equal radiance.
 //   weights  [direction][MOMENTS]: weight of each direction in each moment, sr
@@ -98,6 +120,31 @@ inline void add_light(const __global float* moments, ulong voxels, ulong first, 
   if (first + b < voxels) \
     STORE8(source##b* sigma_s[first + b], (group * stride + first + b) * 8, source);
 
+// Computes fluence and net flux of eight voxels that do not scatter, and sets their source to 0.
+inline void pass_empty(const __global float* radiance, __global float* source, const __global float* weights,
+  const __global float* angles, ScatteringVoxels at, ulong first, __global float* moments)
+{
+  const ulong voxels = at.voxels, stride = at.stride;
+  if (FLUX)
+  {
+    find_moments(radiance, weights, stride, first, moments);
+  }
+#define CLEAR_LIGHT(b) float8 light##b = (float8)0.0f;
+  EACH_VOXEL(CLEAR_LIGHT)
+  for (int group = 0; group < GROUPS; ++group)
+  {
+    const float8 angle = LOAD8(group * 8, angles);
+#define TAKE_LIGHT(b) light##b = multiply_add8(angle, LOAD8((group * stride + first + b) * 8, radiance), light##b);
+    EACH_VOXEL(TAKE_LIGHT)
+#define STORE_NOTHING(b)  \
+  if (first + b < voxels) \
+    STORE8((float8)0.0f, (group * stride + first + b) * 8, source);
+    EACH_VOXEL(STORE_NOTHING)
+  }
+#define KEEP_LIGHT(b) moments[(first + b) * MOMENTS] = sum8(light##b);
+  EACH_VOXEL(KEEP_LIGHT)
+}
+
 // Scatters by the terms of the phase function. One work-item per BLOCK voxels.
 //   radiance  W / (length^2 sr), padded by BLOCK voxels
 //   source    scattering source, W / (length^3 sr); may be the array `radiance`. With POSITIVE it must still be
@@ -113,6 +160,16 @@ __kernel void scatter_terms(const __global float* radiance, __global float* sour
 {
   const ulong voxels = at.voxels, stride = at.stride;
   const ulong first = at.begin + get_global_id(0) * BLOCK;
+  if (is_beside(at, first))
+  {
+    return;
+  }
+  if (at.skips && !any_scatters(sigma_s, voxels, first))
+  {
+    pass_empty(radiance, source, weights, angles, at, first, moments);
+    add_light(moments, voxels, first, order, fluence, flux);
+    return;
+  }
   find_moments(radiance, weights, stride, first, moments);
   add_light(moments, voxels, first, order, fluence, flux);
   const __global float* mine = moments + first * MOMENTS + 1;
@@ -142,6 +199,16 @@ __kernel void scatter_matrix(const __global float* radiance, __global float* sou
 {
   const ulong voxels = at.voxels, stride = at.stride;
   const ulong first = at.begin + get_global_id(0) * BLOCK;
+  if (is_beside(at, first))
+  {
+    return;
+  }
+  if (at.skips && !any_scatters(sigma_s, voxels, first))
+  {
+    pass_empty(radiance, source, weights, angles, at, first, moments);
+    add_light(moments, voxels, first, order, fluence, flux);
+    return;
+  }
   find_moments(radiance, weights, stride, first, moments);
   add_light(moments, voxels, first, order, fluence, flux);
   EACH_VOXEL(CLEAR_POWER)

@@ -23,11 +23,12 @@ int RowsOf(int terms, bool netFlux, int width)
 }
 
 AngularScattering::AngularScattering(Device& device, const OrdinateGroups& groups, const SeparablePhaseFunction& phase,
-  PairSums sums, bool positive, bool netFlux, std::size_t voxels)
+  PairSums sums, bool positive, bool netFlux, std::size_t voxels, bool skips)
   : TheDevice(device)
   , Sums(sums)
   , Positive(positive)
   , NetFlux(netFlux)
+  , Skips(skips)
   , GroupCount(groups.Count())
   , TermCount(sums == PairSums::Terms ? phase.Terms() : 0)
   , Width(device.KernelWidth(8, 16, 8))
@@ -128,13 +129,26 @@ cl::Kernel AngularScattering::Kernel(const char* name) const
       Define("ROWS", this->Rows) + Define("FLUX", this->NetFlux) + Define("POSITIVE", this->Positive));
 }
 
-ScatteringVoxels AngularScattering::VoxelsFrom(std::size_t item) const
+/// Voxels from `voxel` on; with `lit`, only blocks of voxels that meet this box.
+ScatteringVoxels AngularScattering::VoxelsFrom(std::size_t voxel, const Grid* grid, const VoxelBox* lit) const
 {
-  return { this->Voxels, OrdinateStride(this->Voxels), item * Block };
+  ScatteringVoxels at = {};
+  at.voxels = this->Voxels;
+  at.stride = OrdinateStride(this->Voxels);
+  at.begin = voxel;
+  at.skips = this->Skips;
+  for (int axis = 0; axis < 2 && lit; ++axis)
+  {
+    (axis == 0 ? at.width : at.height) = grid->size[axis];
+    at.first[axis] = lit->first[axis];
+    at.last[axis] = lit->first[axis] + lit->size[axis] - 1;
+  }
+  return at;
 }
 
 void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<float>& sigma_s,
-  const Buffer<float>& source, const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor) const
+  const Buffer<float>& source, const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor,
+  const Grid* grid, const VoxelBox* lit) const
 {
   if (this->Sums == PairSums::Passes)
   {
@@ -143,13 +157,16 @@ void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<floa
     return;
   }
   cl::Kernel scatter = this->Kernel(this->Sums == PairSums::Terms ? "scatter_terms" : "scatter_matrix");
+  const std::size_t layer = lit ? static_cast<std::size_t>(grid->size[0]) * grid->size[1] : 0;
+  const std::size_t from = lit ? lit->first[2] * layer / (Block * GroupSize) * (Block * GroupSize) : 0;
+  const std::size_t end = lit ? (lit->first[2] + lit->size[2]) * layer : this->Voxels;
   Batches batches;
-  batches.count = RoundUp(PartsOf(this->Voxels, Block), GroupSize);
+  batches.count = RoundUp(PartsOf(end - from, Block), GroupSize);
   batches.first = FirstBatch;
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     With(scatter, radiance, source, this->Moments, this->Weights, this->Spread, this->Angles, sigma_s, light.order,
-      light.fluence, light.flux, scale, this->VoxelsFrom(begin));
+      light.fluence, light.flux, scale, this->VoxelsFrom(from + begin * Block, grid, lit));
     Launch(this->TheDevice, scatter, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }
@@ -178,8 +195,8 @@ void AngularScattering::Gather(const Buffer<float>& radiance, const OrdinatesLig
   batches.first = FirstBatch;
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
-    With(
-      gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux, this->VoxelsFrom(begin));
+    With(gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux,
+      this->VoxelsFrom(begin * Block));
     Launch(this->TheDevice, gather, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }

@@ -4,6 +4,8 @@
 #include "Device/Monitor.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "DiscreteOrdinates/OrdinatesShared.h"
+#include "Medium/Grid.h"
+#include "Medium/VoxelBox.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
 #include <cstddef>
@@ -34,8 +36,9 @@ class AngularScattering
 public:
   /// @param positive  true: negative sources, which N terms can produce, are set to 0, and the positive ones of the
   ///   voxel are scaled to conserve power (Eq. (D8)); false: sources are not changed
+  /// @param skips  whether Scatter() skips voxels that do not scatter, eight at a time
   AngularScattering(Device& device, const OrdinateGroups& groups, const SeparablePhaseFunction& phase, PairSums sums,
-    bool positive, bool netFlux, std::size_t voxels);
+    bool positive, bool netFlux, std::size_t voxels, bool skips = false);
 
   /// Number of floats of a radiance or source array: all voxels and directions, plus padding for vector loads that read
   /// beyond the last voxel.
@@ -48,8 +51,11 @@ public:
   /// Adds fluence and net flux of `radiance` to `light`, and writes the scattering source.
   /// @param source  W / (length^3 sr), to be multiplied by `scale`
   /// @param scale  factor by voxel for the sources of all directions; written if `positive`
+  /// @param lit  outside of this box of the grid the radiance is 0 and stays so; null: no such box. Only with
+  ///   WorksInPlace(). The fluence of the last order, OrdinatesLight::order, is then undefined outside of it
   void Scatter(const Buffer<float>& radiance, const Buffer<float>& sigma_s, const Buffer<float>& source,
-    const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor) const;
+    const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor, const Grid* grid = nullptr,
+    const VoxelBox* lit = nullptr) const;
   /// Adds fluence and net flux of `radiance` to `light`, without scattering.
   void Gather(const Buffer<float>& radiance, const OrdinatesLight& light, const Monitor& monitor) const;
 
@@ -59,11 +65,11 @@ private:
   void ScatterByPasses(const Buffer<float>& radiance, const Buffer<float>& sigma_s, const Buffer<float>& source,
     const Monitor& monitor) const;
   cl::Kernel Kernel(const char* name) const;
-  ScatteringVoxels VoxelsFrom(std::size_t item) const;
+  ScatteringVoxels VoxelsFrom(std::size_t voxel, const Grid* grid = nullptr, const VoxelBox* lit = nullptr) const;
 
   Device& TheDevice;
   PairSums Sums;
-  bool Positive, NetFlux;
+  bool Positive, NetFlux, Skips;
   int GroupCount, TermCount, Width, Rows;
   std::size_t Voxels;
   /// By direction: its group, and its place among the eight directions of the group.

@@ -79,6 +79,19 @@ void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
   }
 }
 
+double ChannelArrays::PartWithoutScattering() const
+{
+  constexpr std::size_t Block = 8;
+  std::size_t empty = 0;
+  for (std::size_t first = 0; first < this->Voxels; first += Block)
+  {
+    const auto begin = this->Scattering.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(Block, this->Voxels - first));
+    empty += std::all_of(begin, end, [](float sigma_s) { return sigma_s == 0.0f; }) ? end - begin : 0;
+  }
+  return this->Voxels > 0 ? static_cast<double>(empty) / static_cast<double>(this->Voxels) : 0.0;
+}
+
 void ChannelArrays::LookAtAllRanks()
 {
   this->AnyScattering = this->Scene.domain.Any(this->AnyScattering);

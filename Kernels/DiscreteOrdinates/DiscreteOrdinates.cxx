@@ -186,7 +186,7 @@ LightField SolveChannels(
     domain.Collective([&] { CheckMemory(device, scene.medium.grid, angles, settings); });
     const OrdinatesScene ofChannel = { domain, scene.medium, c, LampsOf(far, scene.shining, c),
       IncomingOf(far, scene.shining, c), FaceAlbedoOf(scene.shining, c), UncollidedOf(scene.shining, c),
-      warm.Begin(c, light.channels, domain, angles) };
+      warm.Begin(c, light.channels, domain, angles), scene.traits.filled };
     const Monitor part = OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
     const OrdinatesResult found = IsPublished(settings)
       ? SolvePublishedOrders(device, ofChannel, angles, settings, part)
@@ -196,7 +196,11 @@ LightField SolveChannels(
       warm.Take(found, c);
     });
     diverged = diverged || found.diverged;
-    light.leftOut = c == 0 ? Words(scene, far, angles.phase.Terms() == 1, settings) : light.leftOut;
+    if (c == 0)
+    {
+      light.leftOut = Words(scene, far, angles.phase.Terms() == 1, settings);
+      light.leftOut.insert(light.leftOut.end(), found.leftOut.begin(), found.leftOut.end());
+    }
   }
   DescribeLight(light, device, far);
   light.doubts = DoubtsOf(settings, thickest, domain.Any(!domain.IsEmpty() && scene.medium.phase.Varies()));

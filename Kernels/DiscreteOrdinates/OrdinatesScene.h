@@ -50,6 +50,7 @@ struct OrdinatesScene
   std::array<Rgb, 6> faceAlbedo = {}; ///< albedo of this channel in all three components
   UncollidedImage uncollided;         ///< uncollided light of this channel, given by another solver
   OrdinatesGuess guess;
+  VoxelBox filled; ///< box of this rank's voxels that contains all of the medium, in all channels
 };
 
 /// Sums the incident and escaped powers of a sweep over all ranks. Collective.
@@ -79,7 +80,8 @@ struct OrdinatesResult
   /// power scattered by first collisions, W; the next solve multiplies its initial guess by the ratio of its own such
   /// power to this one
   double firstScattered = 0.0;
-  double rate = 0.0; ///< ratio of the powers of the last two scattering orders
+  double rate = 0.0;                ///< ratio of the powers of the last two scattering orders
+  std::vector<std::string> leftOut; ///< what the sweeps of this channel omitted (LeftOut.h)
 };
 
 /// Makes the arrays of outgoing and reflected light by cell of the box faces for the directions of a solve: the albedo

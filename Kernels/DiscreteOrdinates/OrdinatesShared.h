@@ -15,11 +15,20 @@ typedef struct
   float meanCosine; ///< mean cosine of the phase function
   float perVolume;  ///< 1 / volume of a voxel, 1 / length^3
 } LampInRays;
+/// Parts of the grid that sweep_upwind can sweep: all voxels; those of a box; those downwind of the box, without it.
+enum
+{
+  SweepsAll = 0,
+  SweepsBox = 1,
+  SweepsBeyondBox = 2
+};
 /// Grid, and the range of layers along z that a launch of sweep_upwind processes.
 typedef struct
 {
   int size[3];
-  int begin, end; ///< range of layers, counted in the order in which the directions of a group cross them
+  int first[3], last[3]; ///< lowest and highest voxel of the box; of the whole grid if part is SweepsAll
+  int part;              ///< SweepsAll, SweepsBox or SweepsBeyondBox
+  int begin, end; ///< range of layers of that part, counted in the order in which the directions of a group cross them
   /// number of voxels from the radiance of one group of directions to that of the next (OrdinateStride)
   ulong stride;
 } SweptLayers;
@@ -30,5 +39,8 @@ typedef struct
   ulong voxels; ///< number of voxels of the grid
   ulong stride; ///< number of voxels from the radiance of one group of directions to that of the next (OrdinateStride)
   ulong begin;  ///< first voxel of the launch
+  int width, height;     ///< number of voxels of the grid along x and y
+  int first[2], last[2]; ///< along x and y: range of the voxels with light; blocks of voxels beside it are left out
+  int skips;             ///< 1: voxels that do not scatter are not scattered from
 } ScatteringVoxels;
 SHARED_END

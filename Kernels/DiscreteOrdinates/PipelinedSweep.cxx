@@ -251,7 +251,7 @@ void PipelinedSweep::GiveTo(const Octant& octant, int number)
 }
 
 FacePowers PipelinedSweep::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-  const Buffer<float>& scale, const IncomingRadiance& incoming, const Monitor& monitor)
+  const Buffer<float>& scale, const IncomingRadiance& incoming, bool, const Monitor& monitor)
 {
   this->Failure = {};
   FacePowers powers;

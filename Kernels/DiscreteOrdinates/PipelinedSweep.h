@@ -60,7 +60,7 @@ public:
   /// @return powers summed over ranks
   /// @throws on every rank if any rank throws
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-    const IncomingRadiance& incoming, const Monitor& monitor) override;
+    const IncomingRadiance& incoming, bool shines, const Monitor& monitor) override;
 
 private:
   struct Octant

@@ -2,6 +2,8 @@
 
 #include "DiscreteOrdinates/PipelinedSweep.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
+#include "Light/LeftOut.h"
+#include "LightPropagation/Conservative/OrderSweeps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +54,7 @@ public:
     , Cells(CellsOf(this->Arrays.Faces.get()))
     , Sweep(SweepOf(device, scene, angles, settings, this->Cells ? &*this->Cells : nullptr))
     , Scattering(device, angles.groups, angles.phase, SumsOf(settings), CanBeNegative(angles, settings),
-        settings.netFlux, this->Arrays.Voxels)
+        settings.netFlux, this->Arrays.Voxels, settings.leaveOut)
     , Radiance(device, AngularScattering::Floats(angles.groups, this->Arrays.Voxels), "radiance of all directions")
     , Source(device, this->Scattering.WorksInPlace() ? 0 : this->Radiance.Size(), "scattered light of all directions")
   {
@@ -63,6 +65,12 @@ public:
     this->Arrays.TakeVacuumApart(AsPropagation(this->Settings));
     this->Arrays.LookAtAllRanks();
     this->FirstOrder(OfPart(monitor, 0.0, 0.1));
+    this->OmitsSlabs = this->MayOmitEmptySlabs();
+    const double empty = this->Settings.leaveOut ? this->Arrays.PartWithoutScattering() : 0.0;
+    if (this->Arrays.Scatters() && empty > 0.0)
+    {
+      this->Result.leftOut.push_back(left_out::EmptyVoxels(empty));
+    }
     while (!this->Done())
     {
       const double residual = std::clamp(this->Record.Residual(), this->Settings.tolerance, 1.0);
@@ -73,11 +81,40 @@ public:
       this->Order(
         monitor ? Monitor([&](double) { return monitor(std::clamp(0.1 + 0.9 * done, 0.1, 0.99)); }) : Monitor());
     }
+    this->SweepEmptySlabs(monitor);
     this->Scene.domain.Collective([&] { this->Finish(); });
     return std::move(this->Result);
   }
 
 private:
+  /// Whether orders after the first are swept in the box of the medium alone, and the light that leaves this box in one
+  /// final sweep.
+  bool MayOmitEmptySlabs() const
+  {
+    return this->Scene.domain.IsSerial() && this->Scattering.WorksInPlace() && this->Arrays.Scatters() &&
+      !this->Arrays.Faces && this->Settings.seriesAfter == 0 &&
+      PaysToOmitEmptySlabs(this->Scene.filled, this->Scene.medium.grid, AsPropagation(this->Settings));
+  }
+
+  /// Final sweep: computes the light of all orders after the first in the empty voxels around the medium, and its
+  /// escaped power by face.
+  void SweepEmptySlabs(const Monitor& monitor)
+  {
+    if (!this->OmitsSlabs || this->Record.All().size() < 2)
+    {
+      return;
+    }
+    auto& sweep = static_cast<UpwindSweep&>(*this->Sweep); // the domain is serial
+    const FacePowers powers =
+      sweep.ApplyBeyond(this->Scene.filled, this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, monitor);
+    this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
+    for (int face = 0; face < 6; ++face)
+    {
+      this->Result.ledger.AssignFace(0, face, powers.out[face]);
+    }
+    this->Result.leftOut.push_back(left_out::EmptySlabs(this->Scene.filled, this->Scene.medium.grid));
+  }
+
   const Buffer<float>& Out() const { return this->Source.Size() > 0 ? this->Source : this->Radiance; }
 
   /// Computes uncollided light, by a sweep for incident light and emission, and along separate rays for lamps, and its
@@ -213,31 +250,54 @@ private:
     this->Result.rate = std::max(this->Record.Rate(), this->Scene.guess.rate);
   }
 
+  /// @param within  whether only the box of the medium is swept
+  FacePowers SweepOrder(const IncomingRadiance& incoming, bool within, const Monitor& monitor)
+  {
+    if (within)
+    {
+      auto& sweep = static_cast<UpwindSweep&>(*this->Sweep); // the domain is serial
+      return sweep.ApplyWithin(this->Scene.filled, this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, monitor);
+    }
+    const bool shines = !this->Record.All().empty() || this->Arrays.Emits() || !this->Settings.leaveOut;
+    if (!shines && this->Scene.domain.IsSerial())
+    {
+      const double lit = static_cast<UpwindSweep&>(*this->Sweep).LitPart(incoming);
+      if (lit < 1.0)
+      {
+        this->Result.leftOut.push_back(left_out::DarkDirections(lit));
+      }
+    }
+    return this->Sweep->Apply(this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, incoming, shines, monitor);
+  }
+
   void SweepAndScatter(const IncomingRadiance& incoming, const Monitor& monitor)
   {
     this->Radiance.Swap(this->Source.Size() > 0 && !this->Record.All().empty() ? this->Source : this->Radiance);
-    const FacePowers powers =
-      this->Sweep->Apply(this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, incoming, monitor);
+    const bool isFirst = this->Record.All().empty(), within = this->OmitsSlabs && !isFirst;
+    const FacePowers powers = this->SweepOrder(incoming, within, monitor);
     for (int face = 0; face < 6; ++face)
     {
       this->Result.ledger.Enter(0, powers.in[face]);
-      this->Result.ledger.Escape(0, face, powers.out[face]);
+      within ? this->Result.ledger.Escape(0, powers.out[face]) : this->Result.ledger.Escape(0, face, powers.out[face]);
     }
     this->WasOnTheWay = std::exchange(this->OnTheWay, powers.onTheWay);
     if (this->Arrays.Scatters() || !this->Settings.leaveOut)
     {
       this->Scene.domain.Collective([&] {
-        this->Scattering.Scatter(
-          this->Radiance, this->Arrays.SigmaS, this->Out(), this->Arrays.Scale, this->Arrays.Light, monitor);
+        this->Scattering.Scatter(this->Radiance, this->Arrays.SigmaS, this->Out(), this->Arrays.Scale,
+          this->Arrays.Light, monitor, &this->Scene.medium.grid, within ? &this->Scene.filled : nullptr);
       });
       return;
     }
     this->Scene.domain.Collective([&] {
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
       // no scattering: the radiance that the next sweep reads as its source is 0; it carries only light that wraps
-      // around periodic axes
-      this->Radiance.Fill(0.0f);
-      this->Source.Fill(0.0f);
+      // around periodic axes or was reflected, and without such light there is no next sweep
+      if (this->OnTheWay > 0.0 || this->Arrays.Faces)
+      {
+        this->Radiance.Fill(0.0f);
+        this->Source.Fill(0.0f);
+      }
     });
   }
 
@@ -297,6 +357,7 @@ private:
   std::vector<float> Guess;
   /// whether the next order's source contains that of the initial guess, which is then to be subtracted
   bool CountsGuess = false;
+  bool OmitsSlabs = false; ///< MayOmitEmptySlabs()
   /// Power that the next order carries, power that wraps around periodic axes in the next sweep, and reflected power,
   /// W.
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0;

@@ -46,7 +46,18 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
   return multiply_add(in, transmitted, gain * p1);
 }
 
-// Sweeps a range of layers along z. One work-item per group of directions, or per direction.
+// Voxels along an axis in the order in which a direction crosses them: x the first one, y the step to the next, z the
+// number of those in the box [first, last], w that of all of the part.
+inline int4 swept_range(int up, int beyond, int first, int last, int size)
+{
+  const int in_box = last - first + 1;
+  const int outside = beyond ? (up ? size - 1 - last : first) : 0;
+  return (int4)(up ? first : last, up ? 1 : -1, in_box, in_box + outside);
+}
+
+// Sweeps a range of layers along z, of all voxels, of a box, or of the voxels downwind of the box. One work-item per
+// group of directions, or per direction. Downwind of a box: x, y, z hold the radiance that left the box, and its voxels
+// are set to 0.
 //   radiance  on entry the source, W / (length^3 sr), to be multiplied by scale; on return the mean radiance
 //   scale     factor by voxel for all sources
 //   shares    [group][x, y, z, chord][8]: weight of the radiance from each upwind neighbour in the incident radiance;
@@ -67,21 +78,30 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
   const real share_z = load_real((group * 4 + 2) * 8 + lane, shares);
   const real chord = load_real((group * 4 + 3) * 8 + lane, shares);
   const int up_x = up[3 * group], up_y = up[3 * group + 1], up_z = up[3 * group + 2];
-  for (int layer = layers.begin; layer < layers.end; ++layer)
+  const int beyond = layers.part == SweepsBeyondBox;
+  const int4 x_range = swept_range(up_x, beyond, layers.first[0], layers.last[0], nx);
+  const int4 y_range = swept_range(up_y, beyond, layers.first[1], layers.last[1], ny);
+  const int4 z_range = swept_range(up_z, beyond, layers.first[2], layers.last[2], nz);
+  for (int layer = layers.begin; layer < min(layers.end, z_range.w); ++layer)
   {
-    const int k = up_z ? layer : nz - 1 - layer;
+    const int k = z_range.x + z_range.y * layer;
     __global float* along_y = y + ((ulong)group * nz + k) * nx * 8 + lane;
-    for (int row = 0; row < ny; ++row)
+    for (int row = 0; row < y_range.w; ++row)
     {
-      const int j = up_y ? row : ny - 1 - row;
+      const int j = y_range.x + y_range.y * row;
       __global float* along_x = x + (((ulong)group * nz + k) * ny + j) * 8 + lane;
       __global float* along_z = z + ((ulong)group * ny + j) * nx * 8 + lane;
       const ulong first = ((ulong)k * ny + j) * nx;
       __global float* cells = radiance + (group * layers.stride + first) * 8 + lane;
       real from_x = load_real(0, along_x);
-      for (int column = 0; column < nx; ++column)
+      int column = 0;
+      for (; beyond && layer < z_range.z && row < y_range.z && column < x_range.z; ++column) // within the box
       {
-        const int i = up_x ? column : nx - 1 - column;
+        store_real((real)0.0f, (x_range.x + x_range.y * column) * 8, cells);
+      }
+      for (; column < x_range.w; ++column)
+      {
+        const int i = x_range.x + x_range.y * column;
         const real from_y = load_real(i * 8, along_y);
         const real from_z = load_real(i * 8, along_z);
         const real source = load_real(i * 8, cells) * (real)scale[first + i];
@@ -97,6 +117,13 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
       store_real(from_x, 0, along_x);
     }
   }
+}
+
+// Adds the radiance that leaves a box to that of earlier sweeps.
+__kernel void add_face(__global float* sum, const __global float* face)
+{
+  const ulong i = get_global_id(0);
+  ((__global float8*)sum)[i] += ((const __global float8*)face)[i];
 }
 
 // Sums the radiance of each row of a face.

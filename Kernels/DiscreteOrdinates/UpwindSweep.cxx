@@ -2,7 +2,6 @@
 
 #include "Device/Batches.h"
 #include "Device/Device.h"
-#include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
@@ -25,6 +24,22 @@ std::size_t FaceVoxels(const Grid& grid, int axis)
 double FaceArea(const Grid& grid, int axis)
 {
   return grid.VoxelVolume() / grid.spacing[axis];
+}
+
+/// All layers of a part of the grid.
+SweptLayers PartOf(const Grid& grid, const VoxelBox& box, int part)
+{
+  SweptLayers layers = {};
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    layers.size[axis] = grid.size[axis];
+    layers.first[axis] = box.first[axis];
+    layers.last[axis] = box.first[axis] + box.size[axis] - 1;
+  }
+  layers.part = part;
+  layers.end = part == SweepsBox ? box.size[2] : grid.size[2];
+  layers.stride = OrdinateStride(grid.VoxelCount());
+  return layers;
 }
 }
 
@@ -56,7 +71,8 @@ UpwindSweep::UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups&
 
 std::size_t UpwindSweep::Bytes(const Grid& grid, const OrdinateGroups& groups)
 {
-  return sizeof(float) * groups.Lanes() * (FaceVoxels(grid, 0) + FaceVoxels(grid, 1) + FaceVoxels(grid, 2));
+  const std::size_t faces = FaceVoxels(grid, 0) + FaceVoxels(grid, 1) + FaceVoxels(grid, 2);
+  return 2 * sizeof(float) * groups.Lanes() * faces; // twice, with the radiance that leaves the box of ApplyWithin()
 }
 
 std::array<int, 2> UpwindSweep::FaceSize(int axis) const
@@ -114,28 +130,106 @@ cl::Kernel UpwindSweep::Kernel(const char* name, int width) const
   return this->TheDevice.Kernel(name, kernel_source::UpwindSweep, Define("REAL_WIDTH", width));
 }
 
+/// Groups with a direction along which light is incident through any face.
+std::vector<bool> UpwindSweep::LitGroups(const IncomingRadiance& incoming) const
+{
+  std::vector<bool> lit;
+  for (const OrdinateGroup& group : this->Groups.All())
+  {
+    bool any = false;
+    for (int lane = 0; lane < group.count; ++lane)
+    {
+      for (int axis = 0; axis < 3 && incoming; ++axis)
+      {
+        any = any || incoming(group.direction[lane], 2 * axis + (group.up[axis] ? 0 : 1)) > 0.0;
+      }
+    }
+    lit.push_back(any);
+  }
+  return lit;
+}
+
+double UpwindSweep::LitPart(const IncomingRadiance& incoming) const
+{
+  const std::vector<bool> lit = this->LitGroups(incoming);
+  return static_cast<double>(std::count(lit.begin(), lit.end(), true)) / static_cast<double>(lit.size());
+}
+
 FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-  const IncomingRadiance& incoming, const Monitor& monitor)
+  const IncomingRadiance& incoming, bool shines, const Monitor& monitor)
 {
   FacePowers powers;
   this->LetIn(incoming, powers);
-  this->SweepGroups(0, this->Groups.Count(), radiance, sigma_t, scale, monitor);
+  const int all = this->Groups.Count();
+  const std::vector<bool> lit = shines ? std::vector<bool>(all, true) : this->LitGroups(incoming);
+  for (int first = 0, end = 0; first < all; first = end)
+  {
+    end = first + 1;
+    while (end < all && lit[end] == lit[first])
+    {
+      ++end;
+    }
+    if (lit[first])
+    {
+      const Monitor ofRun = OfPart(monitor, static_cast<double>(first) / all, static_cast<double>(end) / all);
+      this->SweepGroups(first, end - first, radiance, sigma_t, scale, ofRun);
+    }
+  }
   this->Count(powers);
   this->LeaveByCells();
+  return powers;
+}
+
+FacePowers UpwindSweep::ApplyWithin(const VoxelBox& box, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
+  const Buffer<float>& scale, const Monitor& monitor)
+{
+  FacePowers powers;
+  this->LetIn({}, powers);
+  this->Sweep(0, this->Groups.Count(), PartOf(this->TheGrid, box, SweepsBox), radiance, sigma_t, scale, monitor);
+  this->Count(powers);
+  cl::Kernel add = this->Kernel("add_face");
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (this->Left[axis].Size() == 0)
+    {
+      this->Left[axis] = Buffer<float>(this->TheDevice, this->Faces[axis].Size(), "light that leaves the medium");
+      this->Left[axis].Fill(0.0f);
+    }
+    With(add, this->Left[axis], this->Faces[axis]);
+    Launch(this->TheDevice, add, cl::NDRange(this->Faces[axis].Size() / OrdinateLanes));
+  }
+  return powers;
+}
+
+FacePowers UpwindSweep::ApplyBeyond(const VoxelBox& box, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
+  const Buffer<float>& scale, const Monitor& monitor)
+{
+  this->Faces.swap(this->Left);
+  this->Sweep(0, this->Groups.Count(), PartOf(this->TheGrid, box, SweepsBeyondBox), radiance, sigma_t, scale, monitor);
+  FacePowers powers;
+  this->Count(powers);
   return powers;
 }
 
 void UpwindSweep::SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
   const Buffer<float>& scale, const Monitor& monitor)
 {
+  const SweptLayers all = PartOf(this->TheGrid, { { 0, 0, 0 }, this->TheGrid.size }, SweepsAll);
+  this->Sweep(first, count, all, radiance, sigma_t, scale, monitor);
+}
+
+/// Sweeps `count` groups of directions through a part of the grid.
+void UpwindSweep::Sweep(int first, int count, const SweptLayers& part, const Buffer<float>& radiance,
+  const Buffer<float>& sigma_t, const Buffer<float>& scale, const Monitor& monitor)
+{
   const int width = this->TheDevice.IsCpu() ? OrdinateLanes : 1;
   cl::Kernel sweep = this->Kernel("sweep_upwind", width);
-  const std::array<int, 3>& n = this->TheGrid.size;
   Batches batches;
-  batches.count = static_cast<std::size_t>(n[2]);
+  batches.count = static_cast<std::size_t>(part.end);
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
-    const SweptLayers layers = { { n[0], n[1], n[2] }, static_cast<cl_int>(begin), static_cast<cl_int>(begin + size),
-      OrdinateStride(this->TheGrid.VoxelCount()) };
+    SweptLayers layers = part;
+    layers.begin = static_cast<cl_int>(begin);
+    layers.end = static_cast<cl_int>(begin + size);
     With(
       sweep, radiance, sigma_t, scale, this->Shares, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], layers);
     const std::size_t items = OrdinateLanes / static_cast<std::size_t>(width);

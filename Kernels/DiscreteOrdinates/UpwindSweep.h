@@ -3,7 +3,9 @@
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
+#include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Medium/Grid.h"
+#include "Medium/VoxelBox.h"
 
 #include <array>
 #include <functional>
@@ -31,9 +33,10 @@ public:
   ///   of each voxel, W / (length^2 sr)
   /// @param scale  factor of the source, by voxel
   /// @param incoming  boundary source; empty: no light is incident except reflected light
+  /// @param shines  whether any source may be non-zero; if not, a sweep may omit directions without incident light
   /// @return outgoing power before reflection, and incident power of the boundary source
   virtual FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-    const IncomingRadiance& incoming, const Monitor& monitor) = 0;
+    const IncomingRadiance& incoming, bool shines, const Monitor& monitor) = 0;
 };
 
 /// Light of one channel in each cell of the box's faces: the arrays FaceLight::Out() and In().
@@ -75,7 +78,20 @@ public:
   static std::size_t Bytes(const Grid& grid, const OrdinateGroups& groups);
 
   FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-    const IncomingRadiance& incoming, const Monitor& monitor) override;
+    const IncomingRadiance& incoming, bool shines, const Monitor& monitor) override;
+  /// Fraction of the groups of directions that carry incident light.
+  double LitPart(const IncomingRadiance& incoming) const;
+
+  /// Sweeps the box alone, for an order whose source is zero outside of it and without incident light. The radiance
+  /// that leaves the box is added to that of earlier such orders, for ApplyBeyond(). There must be no periodic axis and
+  /// no reflecting face.
+  /// @return power that leaves the box, through its own faces
+  FacePowers ApplyWithin(const VoxelBox& box, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
+    const Buffer<float>& scale, const Monitor& monitor);
+  /// Carries the radiance that left the box in all calls of ApplyWithin() on to the faces of the grid.
+  /// @param radiance  0 on entry outside of the box; on return the mean radiance of the voxels outside of it, 0 within
+  FacePowers ApplyBeyond(const VoxelBox& box, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
+    const Buffer<float>& scale, const Monitor& monitor);
 
   // Steps of Apply(), for a pipeline over ranks: LetIn() sets the boundary source, SweepGroups() sweeps `count` groups
   // of directions, Count() and LeaveByCells() tally the outgoing power.
@@ -99,6 +115,9 @@ private:
   void FillFace(int axis, const IncomingRadiance& incoming, FacePowers& powers);
   void EnterByCells(int axis) const;
   cl::Kernel Kernel(const char* name, int width = 8) const;
+  std::vector<bool> LitGroups(const IncomingRadiance& incoming) const;
+  void Sweep(int first, int count, const SweptLayers& part, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
+    const Buffer<float>& scale, const Monitor& monitor);
 
   Device& TheDevice;
   Grid TheGrid;
@@ -107,5 +126,6 @@ private:
   Buffer<float> Shares, Across;
   Buffer<cl_int> Up;
   std::array<Buffer<float>, 3> Faces, Sums;
+  std::array<Buffer<float>, 3> Left; ///< radiance that left the box of ApplyWithin(), summed over its calls; like Faces
 };
 }

@@ -1,5 +1,7 @@
 #include "TraitsScenes.h"
 
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Numerics/Constants.h"
@@ -144,6 +146,32 @@ TraitCase AsPublished(Device& device, const std::string& name, const std::array<
           } };
 }
 
+TraitCase Ordinates(Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
+{
+  const auto scene = std::make_shared<TraitScene>(size);
+  change(*scene);
+  return { name, "DiscreteOrdinates", scene->GridName(), Everything,
+    [&device, scene](bool leaveOut) {
+      OrdinatesSettings settings;
+      settings.directionsPerFace = 9;
+      settings.maximumOrders = 8;
+      settings.leaveOut = leaveOut;
+      return SolveDiscreteOrdinates(device, Domain(scene->medium.grid), scene->medium, scene->light, settings).fluence;
+    } };
+}
+
+TraitCase Lattice(Device& device, const std::string& name, const std::array<int, 3>& size, const Change& change)
+{
+  const auto scene = std::make_shared<TraitScene>(size);
+  change(*scene);
+  return { name, "LatticeBoltzmann", scene->GridName(), Everything, [&device, scene](bool leaveOut) {
+            LatticeSettings settings;
+            settings.leaveOut = leaveOut;
+            return SolveLatticeBoltzmann(device, Domain(scene->medium.grid), scene->medium, {}, scene->light, settings)
+              .fluence;
+          } };
+}
+
 /// The grey cloud in one channel beside three that share sigma_t: what colour costs where the sky has two colours.
 TraitCase GreyBesideSharedExtinction(Device& device, const std::array<int, 3>& size)
 {
@@ -201,6 +229,41 @@ std::vector<TraitCase> PropagationCases(Device& device, int edge)
       }),
     AsPublished(device, "grey", cube, [](TraitScene& scene) { scene.BeGrey(); }),
     AsPublished(device, "one colour of light", cube, [](TraitScene& scene) { scene.LightInOneColour(); }),
+  };
+}
+
+std::vector<TraitCase> VoxelCases(Device& device, int edge)
+{
+  const std::array<int, 3> cube = { edge, edge, edge };
+  const auto grey = [](TraitScene& scene) { scene.BeGrey(); };
+  const auto oneColour = [](TraitScene& scene) { scene.LightInOneColour(); };
+  const auto empty = [](double filled) { return [filled](TraitScene& scene) { scene.LeaveEmpty(filled); }; };
+  const auto oneFace = [](TraitScene& scene) {
+    NoScattering(scene);
+    scene.light = {};
+    scene.light.faces[4] = { 0.8, 1.0, 1.3 };
+  };
+  const auto red = [](TraitScene& scene) {
+    scene.medium.emission = {};
+    scene.light.sky = { 1.0, 0.0, 0.0 };
+  };
+  const auto ahead = [](TraitScene& scene) {
+    scene.LeaveEmpty(0.8);
+    scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  };
+  return {
+    Ordinates(device, "grey", cube, grey),
+    Ordinates(device, "one colour of light", cube, oneColour),
+    Ordinates(device, "no scattering", cube, NoScattering),
+    Ordinates(device, "dark directions, one face shines", cube, oneFace),
+    Ordinates(device, "dark channels, red light", cube, red),
+    Ordinates(device, "empty slabs, 1/2 filled", cube, empty(0.8)),
+    Ordinates(device, "empty slabs, 1/2 filled, g 0.6", cube, ahead),
+    Ordinates(device, "empty slabs, 1/8 filled", cube, empty(0.5)),
+    Ordinates(device, "empty slabs, 1/64 filled", cube, empty(0.25)),
+    Lattice(device, "grey", cube, grey),
+    Lattice(device, "one colour of light", cube, oneColour),
+    Lattice(device, "dark channels, red light", cube, red),
   };
 }
 
@@ -293,6 +356,7 @@ std::vector<TraitCase> RayCases(Device& device, int edge)
   return {
     Marching(device, "grey", edge, true, white, grey),
     Marching(device, "shared extinction", edge, true, bluish, grey),
+    Marching(device, "no scattering", edge, true, bluish, NoScattering),
     Marching(device, "constant index", edge, false, bluish, same),
     Viewing(device, "grey", edge, true, true, grey),
     Viewing(device, "constant index", edge, false, false, same),
@@ -304,8 +368,10 @@ std::vector<TraitCase> RayCases(Device& device, int edge)
 std::vector<TraitCase> TraitCases(Device& device, int edge)
 {
   std::vector<TraitCase> cases = PropagationCases(device, edge);
-  const std::vector<TraitCase> ofRays = RayCases(device, edge);
-  cases.insert(cases.end(), ofRays.begin(), ofRays.end());
+  for (const std::vector<TraitCase>& more : { VoxelCases(device, edge), RayCases(device, edge) })
+  {
+    cases.insert(cases.end(), more.begin(), more.end());
+  }
   return cases;
 }
 }

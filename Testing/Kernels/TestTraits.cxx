@@ -3,6 +3,8 @@
 #include "GridVoxels.h"
 #include "MediumScene.h"
 
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
@@ -107,10 +109,17 @@ protected:
   /// Solve with and without leaving out: the same light, and `word` is said in the first case only.
   LightField ExpectLeftOut(Scene& scene, const std::string& word, double same = Same)
   {
-    scene.settings.leaveOut = false;
-    const LightField all = scene.Solve(this->GetDevice());
-    scene.settings.leaveOut = true;
-    const LightField less = scene.Solve(this->GetDevice());
+    const auto solve = [&](bool leaveOut) {
+      scene.settings.leaveOut = leaveOut;
+      return scene.Solve(this->GetDevice());
+    };
+    return this->ExpectLeftOutBy(solve, word, same);
+  }
+
+  LightField ExpectLeftOutBy(
+    const std::function<LightField(bool leaveOut)>& solve, const std::string& word, double same = Same)
+  {
+    const LightField all = solve(false), less = solve(true);
     EXPECT_THAT(less.leftOut, Contains(HasSubstr(word)));
     EXPECT_THAT(all.leftOut, Not(Contains(HasSubstr(word))));
     ExpectSameLight(less, all, same);
@@ -285,6 +294,79 @@ TEST_F(Traits, DarkDirectionsAreNotSwept)
     }
   }
   this->ExpectLeftOut(scene, "dark directions");
+}
+
+class TraitsOfOrdinates : public Traits
+{
+protected:
+  LightField ExpectLeftOut(Scene& scene, OrdinatesSettings settings, const std::string& word)
+  {
+    scene.Attach();
+    settings.directionsPerFace = 9;
+    settings.netFlux = true;
+    const auto solve = [&](bool leaveOut) {
+      settings.leaveOut = leaveOut;
+      const Domain domain(scene.medium.grid);
+      return SolveDiscreteOrdinates(this->GetDevice(), domain, scene.medium, scene.light, settings);
+    };
+    return this->ExpectLeftOutBy(solve, word, 1e-5);
+  }
+};
+
+TEST_F(TraitsOfOrdinates, EmptySlabsAreSweptOnce)
+{
+  for (const double g : { 0.0, 0.6 })
+  {
+    for (const std::array<int, 3>& first : { std::array<int, 3>{ 4, 9, 2 }, { 0, 16, 7 } })
+    {
+      Scene scene = Cloud({ 21, 24, 19 }, first, { 9, 8, 12 });
+      scene.medium.grid.spacing = { 1.0, 1.2, 0.9 };
+      scene.medium.phase = PhaseFunction::HenyeyGreenstein(g);
+      scene.light.sky = { 0.3, 0.3, 0.3 };
+      scene.light.faces[1] = { 2.0, 2.0, 2.0 };
+      scene.light.lights = { Lamp({ 3.0, 3.0, 3.0 }) };
+      scene.emission = g > 0.0 ? scene.sigma_a : std::vector<float>();
+      const LightField light = this->ExpectLeftOut(scene, {}, "empty slabs");
+      EXPECT_GT(light.convergence.size(), 3u);
+      EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+    }
+  }
+}
+
+TEST_F(TraitsOfOrdinates, DarkDirectionsAreNotSwept)
+{
+  Scene scene = Cloud();
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  this->ExpectLeftOut(scene, {}, "dark directions");
+}
+
+TEST_F(TraitsOfOrdinates, AreTheSameByMatrixBesideEmptyVoxels)
+{
+  Scene scene = Cloud({ 21, 24, 19 }, { 4, 9, 2 }, { 9, 8, 12 });
+  scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  OrdinatesSettings settings;
+  settings.scattering = OrdinatesScattering::Matrix;
+  this->ExpectLeftOut(scene, settings, "dark directions");
+  this->ExpectLeftOut(scene, settings, "scattering in empty voxels");
+}
+
+TEST_F(Traits, LatticesSolveOneChannelAndNoDarkOnes)
+{
+  Scene scene = Cloud();
+  scene.Attach();
+  LatticeSettings settings;
+  settings.netFlux = true;
+  const auto solve = [&](bool leaveOut) {
+    settings.leaveOut = leaveOut;
+    return SolveLatticeBoltzmann(this->GetDevice(), Domain(scene.medium.grid), scene.medium, {}, scene.light, settings);
+  };
+  scene.light.sky = { 0.5, 1.0, 0.25 };
+  this->ExpectLeftOutBy(solve, "one channel stands for three", 1e-5);
+  const std::vector<float> bluish = Coloured(scene.sigma_s, { 1.0, 0.9, 0.8 });
+  scene.medium.sigma_s = { bluish.data(), 3 };
+  scene.light.sky = { 1.0, 0.0, 0.5 };
+  this->ExpectLeftOutBy(solve, "in 1 of 3", 1e-5);
 }
 
 TEST_F(Traits, MirrorImagesAreOneDirection)

@@ -19,6 +19,13 @@ constexpr double MostlyFilled = 0.75;
 constexpr int OrdersExpected = 6;
 }
 
+bool PaysToOmitEmptySlabs(const VoxelBox& filled, const Grid& grid, const PropagationSettings& settings)
+{
+  const double part = static_cast<double>(filled.VoxelCount()) / static_cast<double>(grid.VoxelCount());
+  const int later = (settings.maximumOrders > 0 ? settings.maximumOrders : OrdersExpected) - 1;
+  return settings.leaveOut && !settings.IsPeriodic() && part < MostlyFilled && later * (1.0 - part) > 1.0;
+}
+
 OrderSweeps::OrderSweeps(
   TransportParts& parts, const Deposit& deposit, const Buffer<float>* octantSource, bool byCells, bool shines)
   : Parts(parts)
@@ -45,22 +52,14 @@ OrderSweeps::OrderSweeps(
   }
 }
 
-/// Whether later orders sweep only the bounding box of the medium, since light that leaves it does not return. False
-/// with periodic axes, around which rays would be in flight in both sweeps, and if light by cell of the box faces is
-/// needed, which the final sweep does not compute.
+/// Whether later orders sweep only the bounding box of the medium, since light that leaves it does not return. False if
+/// light by cell of the box faces is needed, which the final sweep does not compute.
 bool OrderSweeps::MayOmitEmptySlabs() const
 {
   const PropagationSettings& settings = this->Parts.Problem.Settings();
   const MediumTraits& traits = this->Parts.Problem.Traits();
-  if (!this->Parts.Transport.SweepsParts() || !settings.leaveOut || !traits.scatters ||
-    !this->Parts.Scattering->CanScatterAllOrders() || settings.IsPeriodic() || this->Parts.Faces)
-  {
-    return false;
-  }
-  const double filled =
-    static_cast<double>(traits.filled.VoxelCount()) / static_cast<double>(this->Parts.Layout.grid.VoxelCount());
-  const int later = (settings.maximumOrders > 0 ? settings.maximumOrders : OrdersExpected) - 1;
-  return filled < MostlyFilled && later * (1.0 - filled) > 1.0;
+  return this->Parts.Transport.SweepsParts() && traits.scatters && this->Parts.Scattering->CanScatterAllOrders() &&
+    !this->Parts.Faces && PaysToOmitEmptySlabs(traits.filled, this->Parts.Layout.grid, settings);
 }
 
 /// Makes the sweep of the first order along the directions with incident light alone, if these are few. Not used with
