@@ -507,7 +507,7 @@ ReconstructedLight Reconstruct(Device& device, const Domain& domain, const Noisy
   });
   RequireSame(domain.Comm(), "settings", true,
     { 1.0 * static_cast<int>(settings.estimator), 1.0 * settings.levels, settings.weightStep, 1.0 * settings.level,
-      1.0 * settings.nearest, 1.0 * settings.conserve });
+      1.0 * settings.nearest, 1.0 * settings.conserve, 1.0 * settings.leaveOut });
   NoisyLight light = given;
   const bool directions = AgreeOnKind(domain, light);
   ReconstructedLight result;
@@ -524,9 +524,16 @@ ReconstructedLight Reconstruct(Device& device, const Domain& domain, const Noisy
     }
     task.Crop(result);
   }
-  if (conservative && light.channels == 3 && !IsOneColour(domain, light))
+  if (conservative && light.channels == 3)
   {
-    ReconstructChannels(device, domain, light, settings, monitor, result);
+    if (settings.leaveOut && IsOneColour(domain, light))
+    {
+      result.leftOut.emplace_back(left_out::OneColourOfLight);
+    }
+    else
+    {
+      ReconstructChannels(device, domain, light, settings, monitor, result);
+    }
   }
   SayWhatIsLeftOut(light, directions, result);
   result.device = device.Name();

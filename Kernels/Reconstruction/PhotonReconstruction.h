@@ -49,6 +49,8 @@ struct ReconstructionSettings
   int level = 1; ///< ConstantRadius: level of the pyramid from which light is taken, from 0
   /// NearestPhotons: minimum number of photons in a cell of the level from which light is taken, at least 1.
   int nearest = 20;
+  /// Conservative: whether light of three channels with the same colour everywhere is smoothed once for all channels.
+  bool leaveOut = true;
   bool conserve = true; ///< whether the light is scaled so that its total over the volume is unchanged
 };
 

@@ -245,6 +245,27 @@ struct Smoothed
 };
 }
 
+TEST_P(Reconstruction, SmoothsLightOfOneColourAtOnce)
+{
+  const std::array<int, 3> size = { 12, 10, 9 };
+  const ReconstructionScene one = Lit(size, 1, 2, true);
+  ReconstructionScene scene(size, 3, 2);
+  for (std::size_t i = 0; i < scene.batchFluence.size(); ++i)
+  {
+    scene.batchFluence[i] = one.batchFluence[i / 3] / (1.0f + static_cast<float>(i % 3));
+  }
+  scene.Average();
+  ReconstructionSettings settings;
+  const ReconstructedLight less = this->Of(scene.Seen(), settings);
+  settings.leaveOut = false;
+  const ReconstructedLight all = this->Of(scene.Seen(), settings);
+  EXPECT_THAT(less.leftOut, Contains(HasSubstr("one colour")));
+  EXPECT_THAT(all.leftOut, Not(Contains(HasSubstr("one colour"))));
+  const double brightest = *std::max_element(all.fluence.begin(), all.fluence.end());
+  ExpectNear(less.fluence, all.fluence, 1e-5 * brightest, "fluence");
+  ExpectNear(less.fluenceError, all.fluenceError, 1e-5 * brightest, "error");
+}
+
 /// Blocks that end farther from each other than a box reaches beyond them, light of one and of several colours, and
 /// grids smaller than a cell.
 TEST_P(Reconstruction, LightDoesNotDependOnTheBlocks)

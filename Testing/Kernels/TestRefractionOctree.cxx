@@ -248,13 +248,14 @@ class OctreeOfExtinction
   , public testing::WithParamInterface<int>
 {
 protected:
-  Octree Build(const Size& size, double extinctionTolerance, bool include = true)
+  Octree Build(const Size& size, double extinctionTolerance, bool include = true, bool leaveOut = true)
   {
     this->TheMedium.grid = GridOf(size);
     this->TheMedium.grid.spacing = { 0.5, 1.0, 0.25 };
     OctreeSettings settings;
     settings.tolerance = 0.05;
     settings.includeExtinction = include;
+    settings.leaveOut = leaveOut;
     settings.extinctionTolerance = extinctionTolerance;
     return BuildOn(this->GetParam(), this->TheMedium, this->Index, settings);
   }
@@ -325,6 +326,9 @@ TEST_P(OctreeOfExtinction, IsLeftOutWhereItIsConstant)
   EXPECT_THAT(octree.levels, Each(4));
   EXPECT_EQ(octree.device, "");
   EXPECT_EQ(octree.leftOut.size(), 2u);
+  const Octree all = this->Build(size, 0.0, true, false);
+  EXPECT_EQ(all.levels, octree.levels);
+  EXPECT_TRUE(all.leftOut.empty() && !all.device.empty());
 }
 
 TEST_P(OctreeWithoutDevice, RefusesWhatHasNoMeaning)

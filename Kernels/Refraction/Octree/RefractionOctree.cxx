@@ -317,7 +317,7 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
     Report(monitor, 0.0);
   });
   RequireSame(domain.Comm(), "settings", true,
-    { settings.tolerance, 1.0 * settings.includeExtinction, settings.extinctionTolerance });
+    { settings.tolerance, 1.0 * settings.includeExtinction, settings.extinctionTolerance, 1.0 * settings.leaveOut });
 
   const std::size_t voxels = domain.Own().VoxelCount();
   const int levels = PyramidLayout(domain.Whole().size).LevelCount();
@@ -327,8 +327,9 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
   std::optional<OctreePyramid> pyramid;
   /// Restricts the octree by one quantity.
   /// @return whether the quantity restricts nodes; false if it is constant, or the domain is one voxel
+  const bool skips = settings.leaveOut || domain.Whole().VoxelCount() == 1;
   const auto restrict = [&](const float* values, const char* what, const std::vector<float>& tolerances) {
-    if (IsConstant(domain, values))
+    if (skips && IsConstant(domain, values))
     {
       return false;
     }

@@ -15,6 +15,7 @@ struct OctreeSettings
 {
   double tolerance = 0.01; ///< maximum difference of the refractive index in a node (Pfeuti's epsilon), in [0, 1]
   bool includeExtinction = false;   ///< whether the extinction must be nearly constant in a node as well
+  bool leaveOut = true;             ///< whether to skip quantities that are constant, which restrict no node
   double extinctionTolerance = 0.1; ///< maximum difference of sigma_t within a node, times the node's diagonal; >= 0
 };
 
