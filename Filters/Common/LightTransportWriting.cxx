@@ -1,6 +1,7 @@
 #include "Common/LightTransportWriting.h"
 
 #include "Common/ArrayRanges.h"
+#include "Common/PropertyRange.h"
 #include "Device/Errors.h"
 #include "Medium/BoxFaces.h"
 #include "Medium/Medium.h"
@@ -173,6 +174,12 @@ std::string Lines(const std::vector<std::string>& texts)
     lines += (lines.empty() ? "" : "\n") + text;
   }
   return lines;
+}
+
+void TellLeftOut(vtkAlgorithm* filter, vtkDataObject* output, const std::vector<std::string>& texts)
+{
+  AddFact(output, "left_out", texts);
+  NoteLeftOut(filter, Lines(texts));
 }
 
 namespace

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+class vtkAlgorithm;
 class vtkDataObject;
 class vtkImageData;
 class vtkPolyData;
@@ -83,6 +84,9 @@ constexpr const char* const OrderFact = "scattering_order";
 
 /// Joins texts with line breaks, for ParaView's panel.
 std::string Lines(const std::vector<std::string>& texts);
+
+/// Writes what a filter left out to the field data `left_out` of its output, and to its property LeftOut.
+void TellLeftOut(vtkAlgorithm* filter, vtkDataObject* output, const std::vector<std::string>& texts);
 
 /// Writes everything a solver computed except its convergence. Cell arrays: `fluence` (made the active scalars),
 /// `fluence_direct`, `fluence_error`, `net_flux`, `scattered_radiance` (channels fastest, then stored directions),

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "Common/PropertyRange.h"
+
 #include "vtkIndent.h"
 
 #include <algorithm>
@@ -13,6 +15,13 @@
 
 namespace tyndall
 {
+/// In PrintSelf: prints the read-only properties Seconds and LeftOut, which Guarded keeps for every filter.
+inline void PrintRun(std::ostream& os, vtkIndent indent, vtkAlgorithm* filter)
+{
+  os << indent << "Seconds: " << SecondsOfRun(filter) << "\n";
+  os << indent << "LeftOut: " << LeftOutOfRun(filter) << "\n";
+}
+
 template <class Value>
 void PrintValue(std::ostream& os, const Value& value)
 {

@@ -5,7 +5,9 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
 #include "vtkInformationIntegerKey.h"
+#include "vtkInformationStringKey.h"
 #include "vtkInformationStringVectorKey.h"
 
 #include <string>
@@ -20,6 +22,18 @@ namespace
 vtkInformationStringVectorKey* Refused()
 {
   static auto* const key = vtkInformationStringVectorKey::MakeKey("REFUSED_PROPERTIES", "Tyndall");
+  return key;
+}
+
+vtkInformationDoubleKey* SecondsKey()
+{
+  static auto* const key = vtkInformationDoubleKey::MakeKey("SECONDS_OF_RUN", "Tyndall");
+  return key;
+}
+
+vtkInformationStringKey* LeftOutKey()
+{
+  static auto* const key = vtkInformationStringKey::MakeKey("LEFT_OUT_OF_RUN", "Tyndall");
   return key;
 }
 
@@ -104,6 +118,27 @@ bool SetPointData(vtkAlgorithm* filter, int& held, int kind)
 PointDataKind PointDataOf(vtkAlgorithm* filter)
 {
   return filter->GetInformation()->Get(PointDataKey()) == AverageToCells ? AverageToCells : VoxelsAroundPoints;
+}
+
+double SecondsOfRun(vtkAlgorithm* filter)
+{
+  return filter->GetInformation()->Has(SecondsKey()) ? filter->GetInformation()->Get(SecondsKey()) : 0.0;
+}
+
+const char* LeftOutOfRun(vtkAlgorithm* filter)
+{
+  const char* const lines = filter->GetInformation()->Get(LeftOutKey());
+  return lines ? lines : "";
+}
+
+void NoteSeconds(vtkAlgorithm* filter, double seconds)
+{
+  filter->GetInformation()->Set(SecondsKey(), seconds);
+}
+
+void NoteLeftOut(vtkAlgorithm* filter, const std::string& lines)
+{
+  filter->GetInformation()->Set(LeftOutKey(), lines.c_str());
 }
 
 void CheckProperties(vtkAlgorithm* filter)

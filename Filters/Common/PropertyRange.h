@@ -48,6 +48,16 @@ TYNDALL_EXPORT bool SetPointData(vtkAlgorithm* filter, int& held, int kind);
 /// Value of the property PointData of a filter.
 PointDataKind PointDataOf(vtkAlgorithm* filter);
 
+// Facts of a filter's last run, which its panel shows. Guarded (Pieces/GuardedWork.h) measures the seconds of every
+// filter, and sets both to nothing if the run fails or is aborted; a filter reports what it left out.
+
+/// Wall-clock time of the last run in seconds, from the inputs to the outputs; 0 if it failed.
+TYNDALL_EXPORT double SecondsOfRun(vtkAlgorithm* filter);
+/// Computations that the last run skipped because the scene did not need them, one per line.
+TYNDALL_EXPORT const char* LeftOutOfRun(vtkAlgorithm* filter);
+void NoteSeconds(vtkAlgorithm* filter, double seconds);
+void NoteLeftOut(vtkAlgorithm* filter, const std::string& lines);
+
 /// Checks that all properties are in their ranges. Called by Guarded before a filter works.
 /// @throws InvalidInput that names every property out of its range, with its value and range
 void CheckProperties(vtkAlgorithm* filter);
@@ -186,6 +196,20 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
   void Remove##name()                                    \
   {                                                      \
     this->SetInputConnection(port, nullptr);             \
+  }
+
+/// The read-only property Seconds: SecondsOfRun.
+#define tyndallSecondsMacro()           \
+  virtual double GetSeconds()           \
+  {                                     \
+    return tyndall::SecondsOfRun(this); \
+  }
+
+/// The read-only property LeftOut: LeftOutOfRun.
+#define tyndallLeftOutMacro()           \
+  virtual const char* GetLeftOut()      \
+  {                                     \
+    return tyndall::LeftOutOfRun(this); \
   }
 
 /// The property Device, stored in the member of that name: part of the name of the OpenCL device to use; case does not

@@ -116,7 +116,6 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
 {
   this->Photons = 0;
   std::fill_n(this->Power, 3, 0.0);
-  this->Seconds = 0.0;
   const auto work = [&](vtkMultiProcessController* ranks, tyndall::WholeInputs& all) {
     const tyndall::Grid grid = WholeGrid(this, ranks, all);
     vtkInformationVector** const inputs = all.Vectors();
@@ -145,7 +144,6 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
       tyndall::WritePhotons(emitted, grid, tyndall::OwnAxesOf(this), vtkPolyData::GetData(outputs));
       this->Photons = static_cast<vtkIdType>(emitted.photons.size());
       std::copy_n(emitted.power.begin(), 3, this->Power);
-      this->Seconds = emitted.seconds;
     });
     if (others && settings.parts > 1)
     {
@@ -161,5 +159,6 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
 void vtkPhotonEmitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(PhotonCount, Sampler, Seed, Batches, MaximumDensity, SkyColor, Photons, Power, Seconds);
+  tyndallPrintMacro(PhotonCount, Sampler, Seed, Batches, MaximumDensity, SkyColor, Photons, Power);
+  os << indent << "Seconds: " << this->GetSeconds() << "\n";
 }

@@ -116,7 +116,7 @@ public:
   /// seconds. Photons and power are summed over the ranks that run the update together.
   vtkGetMacro(Photons, vtkIdType);
   vtkGetVector3Macro(Power, double);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   ///@}
 
 protected:
@@ -142,7 +142,6 @@ private:
 
   vtkIdType Photons = 0;
   double Power[3] = { 0.0, 0.0, 0.0 };
-  double Seconds = 0.0;
 };
 
 #endif

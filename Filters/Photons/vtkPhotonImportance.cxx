@@ -209,8 +209,8 @@ int vtkPhotonImportance::RequestData(
     return true;
   };
   work.shareResults = [this](tyndall::Communicator& ranks) {
-    tyndall::TakeFromFirstRank(ranks, this->Even, this->UsedGradientThreshold, this->UsedLuminanceThreshold,
-      this->Seconds, this->LeftOut, this->DeviceName);
+    tyndall::TakeFromFirstRank(
+      ranks, this->Even, this->UsedGradientThreshold, this->UsedLuminanceThreshold, this->DeviceName);
   };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
@@ -238,8 +238,7 @@ void vtkPhotonImportance::Note(const tyndall::Importance& importance)
   this->Even = importance.even;
   this->UsedGradientThreshold = importance.gradientThreshold;
   this->UsedLuminanceThreshold = importance.luminanceThreshold;
-  this->Seconds = importance.seconds;
-  this->LeftOut = tyndall::Lines(importance.leftOut);
+  tyndall::NoteLeftOut(this, tyndall::Lines(importance.leftOut));
 }
 
 void vtkPhotonImportance::PrintSelf(ostream& os, vtkIndent indent)
@@ -250,5 +249,6 @@ void vtkPhotonImportance::PrintSelf(ostream& os, vtkIndent indent)
      << this->PilotDimensions[2] << "\n";
   os << indent << "Thresholds: " << (this->Thresholds == OWN ? "own" : "automatic") << "\n";
   tyndallPrintMacro(GradientThreshold, LuminanceThreshold, Background, Seed, SkyColor, MemoryBudget, Even,
-    UsedGradientThreshold, UsedLuminanceThreshold, Seconds, DeviceName, LeftOut);
+    UsedGradientThreshold, UsedLuminanceThreshold, DeviceName);
+  tyndall::PrintRun(os, indent, this);
 }

@@ -134,9 +134,9 @@ public:
   vtkGetMacro(Even, bool);
   vtkGetMacro(UsedGradientThreshold, double);
   vtkGetMacro(UsedLuminanceThreshold, double);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
+  tyndallLeftOutMacro();
   ///@}
 
   using Superclass::SetInputConnection;
@@ -182,9 +182,7 @@ private:
   bool Even = false;
   double UsedGradientThreshold = 0.0;
   double UsedLuminanceThreshold = 0.0;
-  double Seconds = 0.0;
   std::string DeviceName;
-  std::string LeftOut;
 };
 
 #endif

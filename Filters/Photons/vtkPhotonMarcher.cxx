@@ -408,7 +408,7 @@ int vtkPhotonMarcher::RequestData(vtkInformation* request, vtkInformationVector*
   };
   work.shareResults = [this](tyndall::Communicator& ranks) {
     tyndall::TakeFromFirstRank(ranks, this->PackingLoss, this->Deposits, this->Steps, this->Missed, this->Scatterings,
-      this->BalanceError, this->MediumKept, this->Seconds, this->DeviceName, this->LeftOut);
+      this->BalanceError, this->MediumKept, this->DeviceName);
   };
   const int done = tyndall::Guarded(this, request, given, outputs, work);
   if (!tyndall::IsFirstPiece(request, outputs) && !tyndall::AreEmptied(outputs))
@@ -473,9 +473,8 @@ void vtkPhotonMarcher::Note(const Marched& marched)
   this->Missed = static_cast<vtkIdType>(light.missed);
   this->Scatterings = static_cast<vtkIdType>(light.scatterings);
   this->BalanceError = light.light.balance.RelativeError(light.light.channels);
-  this->Seconds = light.seconds;
   this->DeviceName = light.light.device;
-  this->LeftOut = tyndall::Lines(light.light.leftOut);
+  tyndall::NoteLeftOut(this, tyndall::Lines(light.light.leftOut));
 }
 
 /// Issues the warnings of a march. To be called on the first rank only, because the results of all ranks are equal.
@@ -515,5 +514,6 @@ void vtkPhotonMarcher::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(PointData, Scheme, IntegratorOrder, StepSize, LeaveOut, EmptySpace, Decomposition, PhotonCounts,
     MaximumOrders, Seed, ErrorBatches, PathCount, Smoothing, MemoryBudget, Device, Deposits, Steps, Scatterings, Missed,
-    BalanceError, PackingLoss, MediumKept, Seconds, DeviceName, LeftOut);
+    BalanceError, PackingLoss, MediumKept, DeviceName);
+  tyndall::PrintRun(os, indent, this);
 }

@@ -243,9 +243,9 @@ public:
   vtkGetMacro(BalanceError, double);
   vtkGetMacro(PackingLoss, double);
   vtkGetMacro(MediumKept, bool);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
+  tyndallLeftOutMacro();
   ///@}
 
   using Superclass::SetInputConnection;
@@ -310,9 +310,7 @@ private:
   double BalanceError = 0.0;
   double PackingLoss = 0.0;
   bool MediumKept = false;
-  double Seconds = 0.0;
   std::string DeviceName;
-  std::string LeftOut;
   std::vector<std::string> Ignored; ///< arrays of the medium that the last update ignored
 };
 

@@ -54,6 +54,7 @@ tyndall::ReconstructionSettings SettingsOf(vtkPhotonReconstruction* filter)
   settings.weightStep = filter->GetWeightStep();
   settings.level = filter->GetLevel();
   settings.nearest = filter->GetNearestPhotons();
+  settings.leaveOut = filter->GetLeaveOut();
   settings.conserve = filter->GetConserveFluence() == vtkPhotonReconstruction::ALWAYS ||
     (filter->GetConserveFluence() == vtkPhotonReconstruction::BY_SCHEME &&
       filter->GetScheme() == vtkPhotonReconstruction::CONSERVATIVE);
@@ -185,6 +186,7 @@ vtkPhotonReconstruction::vtkPhotonReconstruction()
   this->WeightStep = defaults.weightStep;
   this->Level = defaults.level;
   this->NearestPhotons = defaults.nearest;
+  this->LeaveOut = defaults.leaveOut;
   // Replaces the default array of vtkImageAlgorithm, the active scalars, by `fluence`.
   this->SetInputArrayToProcess(Fluence, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "fluence");
 }
@@ -257,7 +259,7 @@ int vtkPhotonReconstruction::RequestData(
     return true;
   };
   work.shareResults = [this](tyndall::Communicator& ranks) {
-    tyndall::TakeFromFirstRank(ranks, this->Bias, this->MeanError, this->Seconds, this->DeviceName, this->LeftOut);
+    tyndall::TakeFromFirstRank(ranks, this->Bias, this->MeanError, this->DeviceName);
   };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
@@ -268,14 +270,14 @@ void vtkPhotonReconstruction::Note(const tyndall::ReconstructedLight& light, dou
 {
   this->Bias = light.bias;
   this->MeanError = squares > 0.0 ? std::sqrt(ofErrors / squares) : 0.0;
-  this->Seconds = light.seconds;
   this->DeviceName = light.device;
-  this->LeftOut = tyndall::Lines(light.leftOut);
+  tyndall::NoteLeftOut(this, tyndall::Lines(light.leftOut));
 }
 
 void vtkPhotonReconstruction::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(PointData, Scheme, Levels, WeightStep, Level, NearestPhotons, ConserveFluence, Device, Bias,
-    MeanError, Seconds, DeviceName, LeftOut);
+  tyndallPrintMacro(PointData, Scheme, Levels, WeightStep, Level, NearestPhotons, ConserveFluence, LeaveOut, Device,
+    Bias, MeanError, DeviceName);
+  tyndall::PrintRun(os, indent, this);
 }

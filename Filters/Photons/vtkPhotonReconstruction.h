@@ -111,6 +111,12 @@ public:
   ///@}
 
   ///@{
+  /// With Scheme CONSERVATIVE: whether light that has the same colour everywhere is smoothed once for its three
+  /// channels. Default on; off: for comparison, with the same light in more time.
+  tyndallFlagMacro(LeaveOut);
+  ///@}
+
+  ///@{
   /// How point arrays are read. 0 (default): each point is the centre of a voxel with its value: n points make n
   /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's. 1: points are
   /// averaged to the voxels between them: n points make n - 1 voxels. If a cell array is read as well, the cells are
@@ -131,9 +137,9 @@ public:
   /// that were not needed, one per line.
   vtkGetMacro(Bias, double);
   vtkGetMacro(MeanError, double);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
+  tyndallLeftOutMacro();
   ///@}
 
 protected:
@@ -160,14 +166,13 @@ private:
   double WeightStep;
   int Level;
   int NearestPhotons;
+  bool LeaveOut;
   int ConserveFluence = BY_SCHEME;
   std::string Device;
 
   double Bias = 0.0;
   double MeanError = 0.0;
-  double Seconds = 0.0;
   std::string DeviceName;
-  std::string LeftOut;
 };
 
 #endif

@@ -294,6 +294,7 @@ tyndall::OctreeSettings SettingsOf(vtkRefractionOctree* filter)
   tyndall::OctreeSettings settings;
   settings.tolerance = filter->GetTolerance();
   settings.includeExtinction = filter->GetIncludeExtinction();
+  settings.leaveOut = filter->GetLeaveOut();
   settings.extinctionTolerance = filter->GetExtinctionTolerance();
   return settings;
 }
@@ -355,6 +356,7 @@ vtkRefractionOctree::vtkRefractionOctree()
   const tyndall::OctreeSettings defaults;
   this->Tolerance = defaults.tolerance;
   this->IncludeExtinction = defaults.includeExtinction;
+  this->LeaveOut = defaults.leaveOut;
   this->ExtinctionTolerance = defaults.extinctionTolerance;
   this->SetNumberOfOutputPorts(2);
 }
@@ -397,11 +399,9 @@ void vtkRefractionOctree::Write(vtkImageData* input, vtkImageData* output, tynda
   {
     AddLevels(output, std::move(octree.levels));
   }
-  tyndall::AddFact(output, "left_out", octree.leftOut);
+  tyndall::TellLeftOut(this, output, octree.leftOut);
   tyndall::AddFact(output, "device", std::vector<std::string>{ octree.device });
-  this->Seconds = octree.seconds;
   this->DeviceName = octree.device;
-  this->LeftOut = tyndall::Lines(octree.leftOut);
 }
 
 /// Computes the octree levels of this rank's block, and writes both outputs. Collective.
@@ -436,9 +436,7 @@ int vtkRefractionOctree::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->NodeCount = 0;
-  this->Seconds = 0.0;
   this->DeviceName.clear();
-  this->LeftOut.clear();
   vtkHyperTreeGrid* const nodes = vtkHyperTreeGrid::GetData(outputs, 1);
   const bool isAlone = !tyndall::RanksTogether(request, outputs);
   tyndall::WorkOnSubdomains work;
@@ -453,7 +451,7 @@ int vtkRefractionOctree::RequestData(
     return true;
   };
   work.shareResults = [this](tyndall::Communicator& ranks) {
-    tyndall::TakeFromFirstRank(ranks, this->NodeCount, this->Seconds, this->DeviceName, this->LeftOut);
+    tyndall::TakeFromFirstRank(ranks, this->NodeCount, this->DeviceName);
   };
   const int done = tyndall::Guarded(this, request, given, outputs, work);
   if (!tyndall::AreEmptied(outputs))
@@ -467,5 +465,6 @@ void vtkRefractionOctree::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(
-    PointData, Tolerance, IncludeExtinction, ExtinctionTolerance, Device, NodeCount, Seconds, DeviceName, LeftOut);
+    PointData, Tolerance, IncludeExtinction, ExtinctionTolerance, LeaveOut, Device, NodeCount, DeviceName);
+  tyndall::PrintRun(os, indent, this);
 }

@@ -76,6 +76,12 @@ public:
   ///@}
 
   ///@{
+  /// Whether to skip the index or the extinction if it is constant. Default on; off: for comparison, with the same
+  /// nodes in more time.
+  tyndallFlagMacro(LeaveOut);
+  ///@}
+
+  ///@{
   /// How point arrays are read. 0 (default): each point is the centre of a voxel with its value: n points make n
   /// voxels, the output has cell arrays, and its bounds are half a spacing wider than the input's. 1: points are
   /// averaged to the voxels between them: n points make n - 1 voxels. If a cell array is read as well, the cells are
@@ -91,12 +97,12 @@ public:
   tyndallDeviceMacro();
 
   ///@{
-  /// Results of the last update: number of nodes, run time of the computation of levels in seconds, the device's name
+  /// Results of the last update: number of nodes, run time in seconds, the device's name
   /// (empty if no device was needed), and the computations that the scene did not need, one per line.
   vtkGetMacro(NodeCount, vtkIdType);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
+  tyndallLeftOutMacro();
   ///@}
 
 protected:
@@ -121,13 +127,12 @@ private:
   int PointData = VOXELS_AROUND_POINTS;
   double Tolerance;
   bool IncludeExtinction;
+  bool LeaveOut;
   double ExtinctionTolerance;
   std::string Device;
 
   vtkIdType NodeCount = 0;
-  double Seconds = 0.0;
   std::string DeviceName;
-  std::string LeftOut;
 };
 
 #endif

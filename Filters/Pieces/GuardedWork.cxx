@@ -33,7 +33,9 @@
 #include "vtkVersionMacros.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tyndall
@@ -239,6 +241,40 @@ bool StillHolds(vtkMultiProcessController* ranks, const LastFailure& last)
   return all != 0;
 }
 
+/// Key in a filter's information: the last run gave back the outputs of an earlier one.
+vtkInformationIntegerKey* GivenBack()
+{
+  static auto* const key = vtkInformationIntegerKey::MakeKey("GIVEN_BACK", "Tyndall");
+  return key;
+}
+
+/// Sets the properties Seconds and, after a failure, LeftOut.
+void NoteRun(vtkAlgorithm* filter, bool succeeded, double seconds)
+{
+  if (!succeeded)
+  {
+    NoteSeconds(filter, 0.0);
+    NoteLeftOut(filter, "");
+  }
+  else if (!filter->GetInformation()->Has(GivenBack()))
+  {
+    NoteSeconds(filter, seconds);
+  }
+}
+
+/// Sends the facts of the run from the first rank, which has worked alone, to the other ranks. Collective.
+void ShareRun(Communicator& ranks, vtkAlgorithm* filter)
+{
+  std::string leftOut = LeftOutOfRun(filter);
+  bool givenBack = filter->GetInformation()->Has(GivenBack()) != 0;
+  TakeFromFirstRank(ranks, leftOut, givenBack);
+  NoteLeftOut(filter, leftOut);
+  if (givenBack)
+  {
+    NoteGivenBack(filter);
+  }
+}
+
 int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInformationVector* outputs,
   const std::function<void()>& work)
 {
@@ -260,9 +296,12 @@ int GuardedOn(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInforma
     return 1;
   }
   last.Forget();
+  const double start = ClockSeconds();
   // OpenCL's compiler cannot be interrupted: the listener shows that it runs, and an abort takes effect afterwards.
   const CompilationListener listener([filter] { ReportProgress(filter, Compiling, filter->GetProgress()); });
+  filter->GetInformation()->Remove(GivenBack());
   const Ending ending = EndingOf([&] { WorkOnAllRanks(ranks, filter, work); });
+  NoteRun(filter, ending.kind == Ending::Done, ClockSeconds() - start);
   if (ending.kind == Ending::Aborted)
   {
     EmptyOutputs(outputs, AbortedFact);
@@ -476,9 +515,11 @@ void WorkOnWhole(vtkMultiProcessController* ranks, vtkAlgorithm* filter, vtkInfo
   const bool isFirst = ranks->GetLocalProcessId() == 0;
   inputs.MakeWhole(GatheredImage::On::FirstRank);
   OnFirstRank(ranks, workOnAll);
+  const std::unique_ptr<Communicator> all = CommunicatorOf(ranks, [filter] { return IsStoppedByOthers(filter); });
+  ShareRun(*all, filter);
   if (work.shareResults)
   {
-    work.shareResults(*CommunicatorOf(ranks, [filter] { return IsStoppedByOthers(filter); }));
+    work.shareResults(*all);
   }
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
   {
@@ -523,6 +564,11 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
     }
   };
   return GuardedWithInputs(filter, request, given, outputs, { work.port, work.shares, work.others }, run);
+}
+
+void NoteGivenBack(vtkAlgorithm* filter)
+{
+  filter->GetInformation()->Set(GivenBack(), 1);
 }
 
 bool AreEmptied(vtkInformationVector* outputs)

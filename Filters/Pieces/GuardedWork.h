@@ -25,7 +25,7 @@ Monitor MonitorOf(vtkAlgorithm* filter);
 /// abort empties them without an error; the filter runs again once something has changed. Empty outputs have field data
 /// `failed` or `aborted` (Common/Failure.h), which keep filters downstream empty without further errors. While the
 /// device's compiler works, the filter's progress text says so. Warnings of the device layer (Device::TakeWarnings)
-/// become warnings of the filter.
+/// become warnings of the filter. The run time becomes the filter's property Seconds (SecondsOfRun).
 /// @return the value for RequestData to return, always 1: with 0 the pipeline would add a less specific error, and
 ///   would run the filter again, without effect, on every update
 int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work);
@@ -80,6 +80,10 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector** given,
   vtkInformationVector* outputs, int port,
   const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work);
+
+/// Reports, during the work, that this run gives back the outputs of an earlier run, whose run time remains the value
+/// of Seconds.
+void NoteGivenBack(vtkAlgorithm* filter);
 
 /// Whether the outputs are empty because the filter failed or was aborted. Called after Guarded.
 bool AreEmptied(vtkInformationVector* outputs);

@@ -84,7 +84,6 @@ vtkDiscreteOrdinates::vtkDiscreteOrdinates()
   this->Terms = defaults.terms;
   this->MaximumOrders = defaults.maximumOrders;
   this->NetFlux = defaults.netFlux;
-  this->LeaveOut = defaults.leaveOut;
   this->Last = std::make_unique<tyndall::LastLight>();
 }
 
@@ -129,5 +128,5 @@ void vtkDiscreteOrdinates::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(Scheme, Scattering, DirectionsPerFace, SpiralDirections, Terms, MaximumOrders, WarmStart, NetFlux,
-    LeaveOut, Orders, SweepsSaved, HalfRangeFlux);
+    Orders, SweepsSaved, HalfRangeFlux);
 }

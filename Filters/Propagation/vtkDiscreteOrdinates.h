@@ -136,11 +136,6 @@ public:
   ///@}
 
   ///@{
-  /// Whether to skip computations that the scene does not need. Default on.
-  tyndallFlagMacro(LeaveOut);
-  ///@}
-
-  ///@{
   /// Results of the last update: number of scattering orders; number of additional orders that the last update with
   /// zero initial guess needed to reach the same residual (0 if this was such an update); half-range flux of the
   /// quadrature for isotropic radiance through a face, as a fraction of the exact value. Residual of
@@ -171,7 +166,6 @@ private:
   int MaximumOrders;
   bool WarmStart = false;
   bool NetFlux;
-  bool LeaveOut;
 
   std::unique_ptr<tyndall::LastLight> Last;
   int Orders = 0;

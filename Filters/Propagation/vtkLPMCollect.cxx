@@ -4,7 +4,6 @@
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"
 #include "Common/PrintMembers.h"
-#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
@@ -140,7 +139,6 @@ int vtkLPMCollect::RequestInformation(vtkInformation*, vtkInformationVector** in
 
 int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  this->Seconds = 0.0;
   const auto work = [&](vtkMultiProcessController*, tyndall::WholeInputs& inputs) {
     vtkImageData* image = vtkImageData::GetData(inputs.Vectors()[0]);
     const tyndall::MediumInput input = tyndall::ReadMedium(this, image);
@@ -149,12 +147,10 @@ int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** g
     const Told told = ReadTold(image, buffers);
     const bool first = tyndall::ReadFact(image, tyndall::OrderFact, 0.0) == 0.0;
 
-    const double start = tyndall::ClockSeconds();
     const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
     tyndall::ParallelPropagation propagation(*device, input.medium, {}, told.settings, 0, told.channels);
     CollectAll(propagation, buffers, voxels);
     tyndall::LightField light = propagation.Result();
-    this->Seconds = tyndall::ClockSeconds() - start;
 
     vtkImageData* output = vtkImageData::GetData(outputs, 0);
     tyndall::PassOn(image, output);
@@ -178,6 +174,7 @@ int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** g
     tyndall::AddCells(output, "scattered_radiance", std::move(light.scatteredRadiance), stored);
     tyndall::AddCells(output, "fluence", std::move(light.fluence), light.channels);
     output->GetCellData()->SetActiveScalars("fluence");
+    tyndall::TellLeftOut(this, output, propagation.LeftOut());
     const tyndall::Rgb& left = light.balance.leftOver;
     tyndall::AddFact(
       output, "left_over", std::vector<double>(left.begin(), left.begin() + light.channels), light.channels);
@@ -188,5 +185,6 @@ int vtkLPMCollect::RequestData(vtkInformation* request, vtkInformationVector** g
 void vtkLPMCollect::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(Device, Seconds);
+  tyndallPrintMacro(Device);
+  tyndall::PrintRun(os, indent, this);
 }

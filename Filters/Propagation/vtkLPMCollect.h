@@ -47,8 +47,12 @@ public:
 
   tyndallDeviceMacro();
 
-  /// Result of the last update: run time in seconds, from the read input to the light in host memory.
-  vtkGetMacro(Seconds, double);
+  ///@{
+  /// Results of the last update: run time in seconds, and the computations that the scene did not need, one per line
+  /// (also field data `left_out`).
+  tyndallSecondsMacro();
+  tyndallLeftOutMacro();
+  ///@}
 
 protected:
   vtkLPMCollect();
@@ -64,7 +68,6 @@ private:
   void operator=(const vtkLPMCollect&) = delete;
 
   std::string Device;
-  double Seconds = 0.0;
 };
 
 #endif

@@ -3,7 +3,6 @@
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"
 #include "Common/PrintMembers.h"
-#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "Pieces/GuardedWork.h"
@@ -30,6 +29,7 @@ tyndall::PropagationSettings SettingsOf(vtkLPMPropagate* filter)
   settings.mapResolution = filter->GetMapResolution();
   settings.storedDirections = filter->GetStoredDirections();
   settings.maximumOrders = 1;
+  settings.leaveOut = filter->GetLeaveOut();
   return settings;
 }
 
@@ -99,6 +99,7 @@ vtkLPMPropagate::vtkLPMPropagate()
   this->DirectionsPerFace = defaults.directionsPerFace;
   this->MapResolution = defaults.mapResolution;
   this->StoredDirections = defaults.storedDirections;
+  this->LeaveOut = defaults.leaveOut;
 }
 vtkLPMPropagate::~vtkLPMPropagate() = default;
 
@@ -106,16 +107,14 @@ int vtkLPMPropagate::RequestData(vtkInformation* request, vtkInformationVector**
 {
   this->Order = 0;
   this->Bytes = 0.0;
-  this->Seconds = 0.0;
   tyndall::WorkOnSubdomains work;
   work.port = MEDIUM;
   work.work = [&](const tyndall::PieceBlocks&, vtkInformationVector** inputs) {
     this->Propagate(inputs, vtkImageData::GetData(outputs, 0));
     return true;
   };
-  work.shareResults = [this](tyndall::Communicator& ranks) {
-    tyndall::TakeFromFirstRank(ranks, this->Order, this->Bytes, this->Seconds);
-  };
+  work.shareResults = [this](
+                        tyndall::Communicator& ranks) { tyndall::TakeFromFirstRank(ranks, this->Order, this->Bytes); };
   return tyndall::Guarded(this, request, given, outputs, work);
 }
 
@@ -134,7 +133,6 @@ void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* out
 
   tyndall::Illumination illumination = this->ReadIllumination(inputs);
   tyndall::AddDiffuse(illumination, this->SkyColor, this->FaceRadiance);
-  const double start = tyndall::ClockSeconds();
   const std::shared_ptr<tyndall::Device> device = tyndall::Device::Find(this->Device);
   tyndall::ParallelPropagation propagation(*device, input.medium, illumination, settings, 0, channels);
   if (unscattered.IsThere())
@@ -150,7 +148,6 @@ void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* out
   }
   std::array<std::vector<float>, 6> faces =
     PropagateAll(propagation, input.medium.grid.VoxelCount(), tyndall::MonitorOf(this));
-  this->Seconds = tyndall::ClockSeconds() - start;
 
   tyndall::PassOn(image, output);
   for (int face = 0; face < 6; ++face)
@@ -160,6 +157,7 @@ void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* out
       settings.directionsPerFace * propagation.Model().Channels());
   }
   this->Order = unscattered.IsThere() ? static_cast<int>(tyndall::ReadFact(image, tyndall::OrderFact, 0.0)) + 1 : 0;
+  tyndall::TellLeftOut(this, output, propagation.LeftOut());
   tyndall::AddFact(output, "directions", VectorsOf(propagation.Model().Directions()));
   tyndall::AddFact(output, tyndall::MapResolutionFact, std::vector<double>{ 1.0 * settings.mapResolution });
   tyndall::AddFact(output, tyndall::StoredDirectionsFact, std::vector<double>{ 1.0 * settings.storedDirections });
@@ -177,5 +175,6 @@ void vtkLPMPropagate::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(
-    Device, DirectionsPerFace, MapResolution, StoredDirections, FaceRadiance, SkyColor, Order, Bytes, Seconds);
+    Device, DirectionsPerFace, MapResolution, StoredDirections, FaceRadiance, SkyColor, LeaveOut, Order, Bytes);
+  tyndall::PrintRun(os, indent, this);
 }

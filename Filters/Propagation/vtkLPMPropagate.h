@@ -87,11 +87,19 @@ public:
   ///@}
 
   ///@{
+  /// Whether order 0 of a medium that does not emit is propagated without reading a source. Default on; off: for
+  /// comparison, with the same result.
+  tyndallFlagMacro(LeaveOut);
+  ///@}
+
+  ///@{
   /// Results of the last update: number of the scattering order, from 0; memory of the output arrays `T_xmin` to
-  /// `T_zmax` in bytes; run time in seconds, from the read input to the arrays in host memory.
+  /// `T_zmax` in bytes; run time in seconds; the computations that the scene did not need, one per line (also field
+  /// data `left_out`).
   vtkGetMacro(Order, int);
   vtkGetMacro(Bytes, double);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
+  tyndallLeftOutMacro();
   ///@}
 
 protected:
@@ -110,12 +118,12 @@ private:
   int DirectionsPerFace;
   int MapResolution;
   int StoredDirections;
+  bool LeaveOut;
   double FaceRadiance[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double SkyColor[3] = { 0.0, 0.0, 0.0 };
 
   int Order = 0;
   double Bytes = 0.0;
-  double Seconds = 0.0;
 };
 
 #endif

@@ -3,7 +3,6 @@
 #include "Common/AvailableMemory.h"
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
-#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Distribution/Domain.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
@@ -91,6 +90,7 @@ tyndall::LatticeSettings vtkLatticeBoltzmannLighting::Settings() const
   settings.tolerance = this->Tolerance;
   settings.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
   settings.netFlux = this->NetFlux;
+  settings.leaveOut = this->LeaveOut;
   if (this->Preview)
   {
     settings.directions = 6;
@@ -106,7 +106,6 @@ tyndall::LatticeSettings vtkLatticeBoltzmannLighting::Settings() const
 tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
   const tyndall::SceneBlock& scene, const std::vector<tyndall::Photon>* photons)
 {
-  const double start = tyndall::ClockSeconds();
   const tyndall::LatticeSettings settings = this->Settings();
   std::shared_ptr<tyndall::Device> device;
   scene.domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
@@ -127,7 +126,6 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
     light = this->Preview ? SolvePreviewOf(scene, settings, solve) : solve(scene);
   }
   light.settingsUsed = tyndall::Words(settings);
-  light.secondsOfAll = tyndall::ClockSeconds() - start;
   return light;
 }
 

@@ -170,7 +170,6 @@ vtkLightPropagationMaps::vtkLightPropagationMaps()
   this->MapResolution = defaults.mapResolution;
   this->MaximumOrders = defaults.maximumOrders;
   this->NetFlux = defaults.netFlux;
-  this->LeaveOut = defaults.leaveOut;
   this->StoredDirections = defaults.storedDirections;
   this->Last = std::make_unique<tyndall::LastLight>();
 }
@@ -236,6 +235,6 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Scheme: " << (this->Scheme == CONSERVATIVE ? "conservative" : "as published") << "\n";
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
   tyndallPrintMacro(Source, Acceleration, DirectionsPerFace, UncollidedDirections, AngularDegree, StoreMoments,
-    EmissionError, StaggeredRays, MapResolution, MaximumOrders, WarmStart, NetFlux, LeaveOut, StoredDirections,
-    TargetError, Solves, Orders, SweepsSaved, EstimatedError, HalfRangeFlux);
+    EmissionError, StaggeredRays, MapResolution, MaximumOrders, WarmStart, NetFlux, StoredDirections, TargetError,
+    Solves, Orders, SweepsSaved, EstimatedError, HalfRangeFlux);
 }

@@ -213,12 +213,6 @@ public:
   ///@}
 
   ///@{
-  /// Whether to skip computations that the scene does not need. Default on; off computes everything, for comparison:
-  /// the result is the same in more time.
-  tyndallFlagMacro(LeaveOut);
-  ///@}
-
-  ///@{
   /// Number of directions for which `scattered_radiance` is written. Default 1 (enough for isotropic scattering), valid
   /// from 1 on.
   tyndallRangeMacro(StoredDirections, int, 1, VTK_INT_MAX);
@@ -267,7 +261,6 @@ private:
   int MaximumOrders;
   bool WarmStart = false;
   bool NetFlux;
-  bool LeaveOut;
   int StoredDirections;
   double TargetError = 0.0;
 

@@ -325,6 +325,10 @@ bool vtkScatteringSolver::UpdateCachedOrSolve(
     this->Solved->Keep(std::move(key), axes, outputs);
     this->SolvedInPieces = pieces.IsDecomposed();
   }
+  else
+  {
+    tyndall::NoteGivenBack(this);
+  }
   this->Color(pieces, inputs, outputs);
   this->HasSolved = true;
   return true;
@@ -413,22 +417,21 @@ void vtkScatteringSolver::Note(const tyndall::LightField& light)
 {
   const bool any = !light.convergence.empty();
   this->Residual = any ? light.convergence.back().residual : 0.0;
-  this->Seconds = light.secondsOfAll > 0.0 ? light.secondsOfAll : any ? light.convergence.back().seconds : 0.0;
   this->BalanceError = light.balance.RelativeError(light.channels);
   this->DeviceName = light.device;
-  this->LeftOut = tyndall::Lines(light.leftOut);
+  tyndall::NoteLeftOut(this, tyndall::Lines(light.leftOut));
   this->SettingsUsed = tyndall::Lines(light.settingsUsed);
 }
 
 void vtkScatteringSolver::ShareResults(tyndall::Communicator& ranks)
 {
-  tyndall::TakeFromFirstRank(
-    ranks, this->Residual, this->Seconds, this->BalanceError, this->DeviceName, this->LeftOut, this->SettingsUsed);
+  tyndall::TakeFromFirstRank(ranks, this->Residual, this->BalanceError, this->DeviceName, this->SettingsUsed);
 }
 
 void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(Decomposition, Quality, Preview, MemoryBudget, LitColor, Exposure, ToneCurve, Residual,
-    BalanceError, Seconds, DeviceName, LeftOut, SettingsUsed);
+  tyndallPrintMacro(Decomposition, Quality, Preview, MemoryBudget, LeaveOut, LitColor, Exposure, ToneCurve, Residual,
+    BalanceError, DeviceName, SettingsUsed);
+  tyndall::PrintRun(os, indent, this);
 }

@@ -119,6 +119,12 @@ public:
   ///@}
 
   ///@{
+  /// Whether to skip computations that the scene does not need; `left_out` and LeftOut list them. Default on; off
+  /// computes everything, for comparison: the result is the same in more time.
+  tyndallFlagMacro(LeaveOut);
+  ///@}
+
+  ///@{
   /// Whether to compute the cell array `lit_color`. Default off. The colour does not depend on the view direction:
   /// scattering towards the viewer is taken as isotropic for any phase function.
   void SetLitColor(bool make);
@@ -149,9 +155,9 @@ public:
   /// property that Quality chooses, one per line.
   vtkGetMacro(Residual, double);
   vtkGetMacro(BalanceError, double);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
+  tyndallLeftOutMacro();
   vtkGetCharFromStdStringMacro(SettingsUsed);
   ///@}
 
@@ -208,11 +214,10 @@ protected:
   int Quality = USUAL;
   bool Preview = false;
   int MemoryBudget = 0;
+  bool LeaveOut = true;
   double Residual = 0.0;
   double BalanceError = 0.0;
-  double Seconds = 0.0;
   std::string DeviceName;
-  std::string LeftOut;
   std::string SettingsUsed;
   bool LitColor = false;
   double Exposure = 0.0;

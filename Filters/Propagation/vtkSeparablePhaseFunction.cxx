@@ -148,4 +148,5 @@ void vtkSeparablePhaseFunction::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(PhaseFunction, G, SecondG, FirstPart, DirectionSet, DirectionsPerFace, SpiralDirections, Terms,
     Factorisation, Sampling, Repaired);
+  os << indent << "Seconds: " << this->GetSeconds() << "\n";
 }

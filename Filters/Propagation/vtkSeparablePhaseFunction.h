@@ -134,6 +134,8 @@ public:
   tyndallFlagMacro(Repaired);
   ///@}
 
+  tyndallSecondsMacro(); ///< result of the last update: run time in seconds
+
 protected:
   vtkSeparablePhaseFunction();
   ~vtkSeparablePhaseFunction() override;

@@ -5,7 +5,6 @@
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
 #include "Comparison/SolverComparison.h"
-#include "Device/Clock.h"
 #include "Photons/RefractiveInput.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/UpdateExtent.h"
@@ -292,7 +291,7 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
 int vtkSolverComparison::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  this->Note({}, 0.0);
+  this->Note({});
   tyndall::WorkOnSubdomains work; // on the first rank only: work on other ranks would distort the timings
   work.port = MEDIUM;
   work.others = { REFERENCE };
@@ -308,7 +307,6 @@ int vtkSolverComparison::RequestData(
 
 void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  const double start = tyndall::ClockSeconds();
   const tyndall::RefractiveInput read = tyndall::ReadRefractiveMedium(this, vtkImageData::GetData(inputs[MEDIUM]));
   tyndall::ComparedScene scene;
   scene.medium = read.input.medium;
@@ -323,7 +321,7 @@ void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationV
   TellOfDefaultSky(shining, comparison.leftOut);
   Write(comparison, this->GetOutput());
   this->TellOfIgnored(comparison, vtkImageData::GetData(inputs[MEDIUM]));
-  this->Note(comparison, tyndall::ClockSeconds() - start);
+  this->Note(comparison);
   Write(std::move(comparison.reference), reference.has_value(), vtkImageData::GetData(outputs, REFERENCE_OUTPUT));
   for (const std::string& warning : comparison.warnings)
   {
@@ -346,12 +344,11 @@ void vtkSolverComparison::TellOfIgnored(const tyndall::Comparison& comparison, v
   }
 }
 
-void vtkSolverComparison::Note(const tyndall::Comparison& comparison, double seconds)
+void vtkSolverComparison::Note(const tyndall::Comparison& comparison)
 {
   this->ReferenceText = comparison.reference.text;
-  this->Seconds = seconds;
   this->DeviceName = comparison.device;
-  this->LeftOut = tyndall::Lines(comparison.leftOut);
+  tyndall::NoteLeftOut(this, tyndall::Lines(comparison.leftOut));
 }
 
 void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
@@ -359,6 +356,6 @@ void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(LightPropagationMaps, ConstantSource, AsPublished, AsPublishedSequential, DiscreteOrdinates,
     LatticeBoltzmann, Photons, AdaptivePhotons, PublishedPhotons, MonteCarlo, Directions, MapResolutions, Coarsenings,
-    Orders, PhotonCounts, AllSamplers, MonteCarloReference, Repeats, TimeBudget, ReferenceText, Seconds, DeviceName,
-    LeftOut);
+    Orders, PhotonCounts, AllSamplers, MonteCarloReference, Repeats, TimeBudget, ReferenceText, DeviceName);
+  tyndall::PrintRun(os, indent, this);
 }

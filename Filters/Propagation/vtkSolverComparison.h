@@ -194,9 +194,9 @@ public:
   /// Results of the last update: description of the reference, run time in seconds, the device's name, and the methods
   /// and settings that were not compared, one per line.
   vtkGetCharFromStdStringMacro(ReferenceText);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
+  tyndallLeftOutMacro();
   ///@}
 
 protected:
@@ -213,7 +213,7 @@ private:
   tyndall::ComparisonSettings Settings() const;
   void Compare(vtkInformationVector** inputs, vtkInformationVector* outputs);
   void TellOfIgnored(const tyndall::Comparison& comparison, vtkImageData* medium);
-  void Note(const tyndall::Comparison& comparison, double seconds);
+  void Note(const tyndall::Comparison& comparison);
 
   bool LightPropagationMaps = true;
   bool ConstantSource = true;
@@ -236,9 +236,7 @@ private:
   double TimeBudget;
 
   std::string ReferenceText;
-  double Seconds = 0.0;
   std::string DeviceName;
-  std::string LeftOut;
 };
 
 #endif

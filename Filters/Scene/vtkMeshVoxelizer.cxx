@@ -524,9 +524,8 @@ void vtkMeshVoxelizer::Note(const RefractiveMedium& medium, double volume, const
   }
   this->OccupiedVolume = volume;
   std::copy_n(outside.begin(), 3, this->UsedOutsideScattering);
-  this->Seconds = medium.seconds;
   this->DeviceName = medium.device;
-  this->LeftOut = tyndall::Lines(medium.leftOut);
+  tyndall::NoteLeftOut(this, tyndall::Lines(medium.leftOut));
 }
 
 int vtkMeshVoxelizer::RequestData(vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
@@ -569,5 +568,6 @@ void vtkMeshVoxelizer::PrintSelf(ostream& os, vtkIndent indent)
     OutsideScattering, InsideAbsorption, OutsideAbsorption, InsideMeanCosine, OutsideMeanCosine);
   os << indent << "Materials: " << this->GetNumberOfMaterials() << "\n";
   tyndallPrintMacro(IndexNoise, ScatteringNoise, NoiseSize, NoiseSeed, SupersamplingFactor, FilterSize, Device,
-    OccupiedVolume, UsedOutsideScattering, Seconds, DeviceName, LeftOut);
+    OccupiedVolume, UsedOutsideScattering, DeviceName);
+  tyndall::PrintRun(os, indent, this);
 }

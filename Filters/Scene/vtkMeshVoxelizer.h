@@ -181,9 +181,9 @@ public:
   /// did not need, one per line.
   vtkGetMacro(OccupiedVolume, double);
   vtkGetVector3Macro(UsedOutsideScattering, double);
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
+  tyndallLeftOutMacro();
   ///@}
 
 protected:
@@ -228,9 +228,7 @@ private:
 
   double OccupiedVolume = 0.0;
   double UsedOutsideScattering[3] = { 0.0, 0.0, 0.0 };
-  double Seconds = 0.0;
   std::string DeviceName;
-  std::string LeftOut;
 };
 
 #endif

@@ -6,6 +6,7 @@
 #include "Common/PhaseFunctionData.h"
 #include "Common/PrintMembers.h"
 #include "Device/HostThreads.h"
+#include "Light/LeftOut.h"
 #include "Medium/OpticalSize.h"
 #include "Medium/Presets.h"
 #include "Numerics/NumberText.h"
@@ -306,9 +307,14 @@ void EmptyHidden(vtkImageData* image, std::vector<float>& relative)
   }
 }
 
+bool IsGrey(const Rgb& rgb)
+{
+  return rgb[0] == rgb[1] && rgb[1] == rgb[2];
+}
+
 void AddProduct(vtkImageData* output, const char* name, const std::vector<float>& density, const Rgb& factor)
 {
-  const int components = factor[0] == factor[1] && factor[1] == factor[2] ? 1 : 3;
+  const int components = IsGrey(factor) ? 1 : 3;
   std::vector<float> values(density.size() * components);
   tyndall::InThreads(density.size(), VoxelsOfThread, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -322,6 +328,20 @@ void AddProduct(vtkImageData* output, const char* name, const std::vector<float>
   tyndall::AddCells(output, name, std::move(values), components,
     "Density times scale is more than a float holds (3.4e+38): give ExtinctionScale or EmissionScale less, or "
     "MaximumDensity more.");
+}
+
+std::vector<std::string> LeftOutOf(const Recipe& recipe)
+{
+  std::vector<std::string> words;
+  if (IsGrey(recipe.sigma_a) && IsGrey(recipe.sigma_s))
+  {
+    words.emplace_back(tyndall::left_out::GreyMedium);
+  }
+  if (recipe.emission == Rgb{})
+  {
+    words.emplace_back(tyndall::left_out::NoEmission);
+  }
+  return words;
 }
 
 const tyndall::MediumPreset* PresetOf(int preset)
@@ -545,6 +565,7 @@ void vtkParticipatingMedium::MakeMedium(
   this->DoubtLevelSet(domain, input, hasAll ? all : pieces.Held());
   this->NoteSize(domain.Whole(), tyndall::OpticalSizeOf(domain.Sum(sums), domain.Whole(), LargestExtinction(recipe)));
   pieces.KeepHeld(output);
+  tyndall::TellLeftOut(this, output, LeftOutOf(recipe));
 }
 
 void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
@@ -556,4 +577,5 @@ void vtkParticipatingMedium::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ChannelMeanCosines: " << this->ChannelMeanCosines.size() << " numbers\n";
   tyndallPrintMacro(SecondMeanCosine, FirstPart, EmissionScale, EmissionColor, LengthUnit, PhysicalExtent,
     OpticalThickness, MeanFreePath, MillimetresPerUnit);
+  tyndall::PrintRun(os, indent, this);
 }

@@ -36,7 +36,8 @@ struct VoxelBox;
  * | `emission` | 1 or 3; only if EmissionScale is not 0 | W/(length^3 sr) |
  *
  * and the phase function as field data: `phase_function` (name), `g` (mean cosine; 3 numbers if channels differ), and
- * if needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`. Lengths are in the dataset's own unit.
+ * if needed `phase_second_g`, `phase_first_part`, `phase_cosine`, `phase_value`; and `left_out` (components and arrays
+ * that the medium does not need). Lengths are in the dataset's own unit.
  *
  * With the relative density rho = (density - MinimumDensity) / (MaximumDensity - MinimumDensity), at least 0:
  *
@@ -232,6 +233,13 @@ public:
   vtkGetCharFromStdStringMacro(PhysicalExtent);
   vtkGetMacro(OpticalThickness, double);
   vtkGetMacro(MeanFreePath, double);
+  ///@}
+
+  ///@{
+  /// Results of the last update: run time in seconds, and the arrays or components that the medium does not need, one
+  /// per line (also field data `left_out`).
+  tyndallSecondsMacro();
+  tyndallLeftOutMacro();
   ///@}
 
 protected:

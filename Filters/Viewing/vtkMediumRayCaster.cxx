@@ -11,7 +11,6 @@
 #include "Common/LightTransportWriting.h"
 #include "Common/PhaseFunctionData.h"
 #include "Common/PrintMembers.h"
-#include "Device/Clock.h"
 #include "Device/Device.h"
 #include "Pieces/ControllerCommunicator.h"
 #include "Pieces/GuardedWork.h"
@@ -286,7 +285,6 @@ struct vtkMediumRayCaster::Shot
   tyndall::Picture picture;                    ///< the whole picture, or the part that this rank needs
   std::array<int, 2> first = {};               ///< column and row of the first pixel of `picture`
   double exposure = 0.0;
-  double seconds = 0.0;
   std::vector<std::string> leftOut;
 };
 
@@ -329,7 +327,6 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::See(
   {
     this->SayDoubts(*shot.scene);
   }
-  const double start = tyndall::ClockSeconds();
   const tyndall::PixelRect counted = tyndall::OwnPixels(domain.Comm(), WholePicture(this));
   const tyndall::PixelRect part = tyndall::Around(tyndall::RectOf(asked), counted);
   const std::vector<tyndall::VoxelBox> held =
@@ -357,7 +354,6 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::See(
       take();
     }
   }
-  shot.seconds = tyndall::ClockSeconds() - start;
   shot.first = part.begin;
   shot.leftOut =
     tyndall::OnAllLists(domain.Comm(), caster ? caster->LeftOut() : std::vector<std::string>(), caster != nullptr);
@@ -380,26 +376,23 @@ void vtkMediumRayCaster::CropToRequest(Shot&& shot, vtkInformationVector* output
   std::vector<std::string> settings = tyndall::Words(tyndall::SettingsOf(this, shot.exposure));
   tyndall::AddAveraged(this, settings);
   tyndall::AddFact(output, "exposure", std::vector<double>{ shot.exposure });
-  tyndall::AddFact(output, "left_out", shot.leftOut);
+  tyndall::TellLeftOut(this, output, shot.leftOut);
   tyndall::AddFact(output, "settings_used", settings);
   tyndall::AddFact(output, "device", std::vector<std::string>{ device });
   tyndall::KeepWhatIsAskedFor(outputs->GetInformationObject(0), output);
 
   this->UsedExposure = shot.exposure;
   this->DeviceName = device;
-  this->LeftOut = tyndall::Lines(shot.leftOut);
   this->SettingsUsed = tyndall::Lines(settings);
   this->Kept = std::move(shot.scene);
-  this->Seconds = shot.seconds;
 }
 
 int vtkMediumRayCaster::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
-  this->Seconds = this->UsedExposure = 0.0;
+  this->UsedExposure = 0.0;
   this->SceneKept = false;
   this->DeviceName.clear();
-  this->LeftOut.clear();
   this->SettingsUsed.clear();
   const auto work = [&](vtkMultiProcessController* ranks, tyndall::WholeInputs& inputs) {
     const bool automatic = this->Exposure == 0.0;
@@ -474,5 +467,6 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
     ShowBackground, BackgroundColor, BackgroundRadiance, Exposure, AutoExposure);
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
   tyndallPrintMacro(SurfaceReflection, SurfaceIndex, SurfaceReflectance, TableFace, TableColor, TableReflectance,
-    LeaveOut, Seconds, UsedExposure, SceneKept, MemoryBudget, DeviceName, LeftOut, SettingsUsed);
+    LeaveOut, UsedExposure, SceneKept, MemoryBudget, DeviceName, SettingsUsed);
+  tyndall::PrintRun(os, indent, this);
 }

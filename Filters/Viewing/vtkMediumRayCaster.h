@@ -296,14 +296,14 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: time for casting rays and reading the picture, seconds; the exposure used; whether
+  /// Results of the last update: run time in seconds; the exposure used; whether
   /// medium and light were on the device from an earlier picture; the device's name; and the computations that the
   /// scene did not need, one per line.
-  vtkGetMacro(Seconds, double);
+  tyndallSecondsMacro();
   vtkGetMacro(UsedExposure, double);
   vtkGetMacro(SceneKept, bool);
   vtkGetCharFromStdStringMacro(DeviceName);
-  vtkGetCharFromStdStringMacro(LeftOut);
+  tyndallLeftOutMacro();
   vtkGetCharFromStdStringMacro(SettingsUsed); ///< "Name = value" of the properties that Quality chooses, one per line
   ///@}
 
@@ -380,11 +380,9 @@ private:
   std::shared_ptr<tyndall::Device> Within;    ///< device limited by MemoryBudget; null if that is 0; outlives Kept
   std::unique_ptr<tyndall::CasterScene> Kept; ///< cached scene of the last picture; null after an error
 
-  double Seconds = 0.0;
   double UsedExposure = 0.0;
   bool SceneKept = false;
   std::string DeviceName;
-  std::string LeftOut;
   std::string SettingsUsed;
 };
 

@@ -149,6 +149,11 @@ void CompareChainWithSolver(test::Claims& claims, const Case& scene)
   claims.That(t && t->GetNumberOfComponents() == 9 * channels, "T has a component a direction and channel");
   claims.That(propagate[0]->GetBytes() == 6.0 * 9 * channels * 4 * medium->GetNumberOfCells(), "T says its size");
   claims.That(propagate[0]->GetSeconds() > 0.0 && collect[0]->GetSeconds() > 0.0, "both halves say their time");
+  const auto says = [](const char* leftOut, const char* word) {
+    return std::string(leftOut).find(word) != std::string::npos;
+  };
+  claims.That(says(propagate[2]->GetLeftOut(), "colour") == (channels == 1), "and whether one channel does");
+  claims.That(says(collect[2]->GetLeftOut(), "colour") == (channels == 1), "both of them");
   vtkDataArray* unscattered = chained->GetCellData()->GetArray("unscattered");
   const int sources = scene.storedDirections == 1 ? 6 : scene.storedDirections;
   claims.That(unscattered && unscattered->GetNumberOfComponents() == sources * channels, "U is by direction");

@@ -196,6 +196,8 @@ void UnitsOfLengthHaveNames(test::Claims& claims)
   claims.That(filter->GetPhysicalExtent() == std::string("100 x 75 x 50 m"), "a cloud of a hundred metres");
   claims.Near(filter->GetOpticalThickness(), 100.0 * 0.15867, 1e-3, "its optical thickness along x");
   claims.Near(filter->GetMeanFreePath(), 1.0 / 0.15867, 1e-4, "its mean free path in metres");
+  claims.That(filter->GetSeconds() > 0.0, "its run time");
+  claims.That(std::string(filter->GetLeftOut()).find("emission") != std::string::npos, "and what it left out");
 
   claims.Near(scattering(vtkParticipatingMedium::KILOMETRES), 1e3 * inMetres, 1e-3, "1/km");
   claims.Near(scattering(vtkParticipatingMedium::CENTIMETRES), 1e-2 * inMetres, 1e-8, "1/cm");

@@ -80,6 +80,20 @@ def faults_of_groups(proxy):
             yield "a decorator looks at '%s', which there is not" % widget.get("property")
 
 
+# Proxies that compute: each shows its run time.
+COMPUTING = """ParticipatingMedium MeshVoxelizer RefractionOctree PhotonImportance PhotonEmitter PhotonMarcher
+PhotonReconstruction LPMPropagate LPMCollect LightPropagationMaps DiscreteOrdinates LatticeBoltzmannLighting
+MediumRayCaster SeparablePhaseFunction SolverComparison""".split()
+
+
+def faults_of_runs(proxy):
+    names = {child.get("name") for child in proxy if child.tag.endswith("Property")}
+    if proxy.get("name") in COMPUTING and "Seconds" not in names:
+        yield "it does not show its run time (Seconds)"
+    if "LeaveOut" in names and "LeftOut" not in names:
+        yield "it does not show what it leaves out (LeftOut)"
+
+
 def faults_of_proxy(proxy):
     documentation = proxy.find("Documentation")
     if len(words(documentation)) < 40:
@@ -91,6 +105,7 @@ def faults_of_proxy(proxy):
         if not port.get("name"):
             yield "an output port without name"
     yield from faults_of_groups(proxy)
+    yield from faults_of_runs(proxy)
     hints = proxy.find("Hints")
     places = ("ShowInMenu", "ReaderFactory", "WriterFactory")
     if hints is None or not any(hints.find(place) is not None for place in places):

@@ -30,6 +30,7 @@ class Light:
 
     image: vtkImageData  # the medium's voxels with all arrays, as input of further filters, writers or plotters
     table: vtkTable  # convergence of the solve, one row per iteration
+    seconds: float = 0.0  # run time of the solver
 
     def __getitem__(self, name):
         array = self.image.GetCellData().GetArray(name)
@@ -134,7 +135,7 @@ def solve(medium, spacing=None, *, origin=None, extinction=None, albedo=None, g=
     for name, value in properties.items():
         _set(solver, name, value)
     _light_up(solver, lights, sky, environment)
-    return Light(_result(solver, filters), solver.GetOutputDataObject(1))
+    return Light(_result(solver, filters), solver.GetOutputDataObject(1), solver.GetSeconds())
 
 
 def picture(light, size=(800, 600), **properties):

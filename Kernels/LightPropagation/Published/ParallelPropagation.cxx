@@ -2,6 +2,7 @@
 
 #include "Device/Device.h"
 #include "Light/ChannelReduction.h"
+#include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "TyndallKernelSources.h"
@@ -101,6 +102,24 @@ LightField ParallelPropagation::Result() const
   field.fluenceDirect = this->FluenceDirect;
   field.device = this->TheDevice.Name();
   return field;
+}
+
+std::vector<std::string> ParallelPropagation::LeftOut() const
+{
+  std::vector<std::string> words = LeftOutAsPublished(this->Outside);
+  if (this->TheModel.Channels() == 1)
+  {
+    words.emplace_back(left_out::Grey);
+  }
+  if (!this->Emits)
+  {
+    words.emplace_back(left_out::NoEmission);
+  }
+  if (this->TheMedium.phase.IsIsotropic() && this->Traits.scatters)
+  {
+    words.emplace_back(left_out::Isotropic);
+  }
+  return words;
 }
 
 int ParallelPropagation::FirstDirection(int batch) const

@@ -69,6 +69,8 @@ public:
   void SetSource(const std::vector<float>& source);
 
   LightField Result() const; ///< light of all orders so far
+  /// What the current order does not compute because the scene does not need it, as LightField::leftOut.
+  std::vector<std::string> LeftOut() const;
 
 private:
   using Batch = PublishedPlan::Batch;
