@@ -3,6 +3,7 @@
 #include "Device/Errors.h"
 #include "Numerics/NumberText.h"
 
+#include <cmath>
 #include <string>
 
 namespace tyndall
@@ -38,7 +39,7 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings)
 {
   PropagationSettings as;
   as.directionsPerFace = settings.directionsPerFace;
-  as.adaptDirections = !IsPublished(settings) && settings.spiralDirections == 0;
+  as.adaptDirections = settings.adaptDirections && !IsPublished(settings) && settings.spiralDirections == 0;
   as.source = IsPublished(settings) ? PropagationSource::Constant : PropagationSource::Automatic;
   as.maximumOrders = settings.maximumOrders;
   as.tolerance = settings.tolerance;
@@ -61,25 +62,12 @@ struct Level
 
 constexpr Level Draft = { 3, 9, 1e-2 }, Fine = { 8, 49, 1e-4 }, Reference = { 12, 100, 1e-5 };
 
-/// Largest number of directions along the edge of a cube face, at most `rows`, for which one channel of radiance takes
-/// at most half of `memory`, bytes.
-int RowsThatFit(int rows, int atLeast, std::size_t voxels, double memory)
-{
-  constexpr std::size_t Faces = 6;
-  while (rows > atLeast && static_cast<double>(Faces * rows * rows * sizeof(float) * voxels) > 0.5 * memory)
-  {
-    --rows;
-  }
-  return rows;
-}
-
 /// Sets the settings of a quality level.
-/// @param voxels  number of voxels of the whole grid
-void SetLevel(const Level& level, OrdinatesSettings& settings, std::size_t voxels, bool isIsotropic, double memory)
+/// @param directions  number of directions per cube face
+void SetLevel(const Level& level, OrdinatesSettings& settings, int directions, bool isIsotropic)
 {
   const OrdinatesSettings byDefault;
-  const int rows = RowsThatFit(level.rows, Draft.rows, voxels, memory);
-  SetUnlessChosen(settings.directionsPerFace, byDefault.directionsPerFace, rows * rows);
+  SetUnlessChosen(settings.directionsPerFace, byDefault.directionsPerFace, directions);
   SetUnlessChosen(settings.tolerance, byDefault.tolerance, level.tolerance);
   if (!isIsotropic)
   {
@@ -88,13 +76,25 @@ void SetLevel(const Level& level, OrdinatesSettings& settings, std::size_t voxel
 }
 }
 
+int DirectionsThatFit(const Domain& domain, int most, const DeviceMemory& memory)
+{
+  constexpr std::size_t Faces = 6;
+  const double bytes = -domain.Max(-static_cast<double>(memory.all)); // least of all ranks
+  const std::size_t voxels = domain.Whole().VoxelCount();
+  int rows = static_cast<int>(std::lround(std::sqrt(static_cast<double>(most))));
+  while (rows > Draft.rows && static_cast<double>(Faces * rows * rows * sizeof(float) * voxels) > 0.5 * bytes)
+  {
+    --rows;
+  }
+  return rows * rows;
+}
+
 OrdinatesSettings AtQuality(
   const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory)
 {
   const bool isIsotropic = !domain.Any(!domain.IsEmpty() && !medium.phase.IsIsotropic());
-  const double least = -domain.Max(-static_cast<double>(memory.all));
   const auto set = [&](const Level& level) {
-    SetLevel(level, settings, domain.Whole().VoxelCount(), isIsotropic, least);
+    SetLevel(level, settings, DirectionsThatFit(domain, level.rows * level.rows, memory), isIsotropic);
   };
   switch (quality)
   {

@@ -38,6 +38,7 @@ struct OrdinatesSettings
   OrdinatesScattering scattering = OrdinatesScattering::SphericalHarmonics;
   /// directions per cube face, a square number; a plane-parallel slab may be solved with more
   int directionsPerFace = 25;
+  bool adaptDirections = true; ///< as PropagationSettings::adaptDirections: whether slabs have more directions
   /// Number of directions on a spiral over the unit sphere, at least 16, which replace those of directionsPerFace; 0:
   /// directions of the cube.
   int spiralDirections = 0;
@@ -69,6 +70,11 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings);
 /// @param memory  of this rank's device
 OrdinatesSettings AtQuality(
   const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
+
+/// Largest number of directions per cube face, a square number of at least 9 and at most `most`, with which one channel
+/// of radiance on the whole grid takes at most half of the smallest memory of all ranks. Collective.
+/// @param memory  of this rank's device
+int DirectionsThatFit(const Domain& domain, int most, const DeviceMemory& memory);
 
 /// "Name = value" of each setting that a quality level may choose and that has an effect: directionsPerFace is not
 /// listed if spiralDirections is set, nor terms if scattering is by the full matrix.

@@ -2,8 +2,10 @@
 
 #include "SolvedOnRanks.h"
 
+#include "DiscreteOrdinates/OrdinatesError.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/CoarseBlocks.h"
+#include "LatticeBoltzmann/DiffusionError.h"
 #include "LightPropagation/Accuracy/TargetError.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
 
@@ -155,4 +157,42 @@ TEST_F(ErrorOnRanks, IsBroughtToATargetAsThatOfASerialSolve)
     ExpectSameErrors(found, expected.light, 2e-6);
     EXPECT_EQ(expected.divided, target < 0.1);
   }
+}
+
+/// Of discrete ordinates, with fewer directions and terms on the coarse grid.
+TEST_F(ErrorOnRanks, OfOrdinatesIsThatOfASerialSolve)
+{
+  MediumToCut medium = Everything({ 9, 7, 8 });
+  medium.scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  medium.Attach();
+  OrdinatesSettings settings;
+  settings.directionsPerFace = 9;
+  settings.terms = 9;
+  settings.maximumOrders = 4;
+  const auto estimate = [&](const Domain& domain, const MediumToCut& part) {
+    return EstimateOrdinates(this->GetDevice(), { domain, part.scene.medium, part.scene.light }, settings);
+  };
+  const LightField expected = estimate(Domain(medium.Grid()), medium);
+  EXPECT_GT(expected.relativeError, 1e-3);
+  ExpectSameErrors(LightOnRanks(Uneven(medium.Grid()), medium, estimate), expected, 2e-6);
+}
+
+/// Of the lattice, from solves on the coarse grid, whose voxels are cubes.
+TEST_F(ErrorOnRanks, OfTheLatticeIsThatOfASerialSolve)
+{
+  MediumToCut medium = Everything({ 10, 8, 6 });
+  AddNearLamps(medium.scene);
+  medium.Attach();
+  LatticeSettings settings;
+  settings.tolerance = 1e-7;
+  const auto estimate = [&](const Domain& domain, const MediumToCut& part) {
+    const SceneBlock scene = { domain, part.scene.medium, part.scene.light, part.Index() };
+    LightField light =
+      SolveLatticeBoltzmann(this->GetDevice(), domain, scene.medium, scene.index, scene.illumination, settings);
+    EstimateDiffusionError(this->GetDevice(), scene, settings, false, {}, light);
+    return light;
+  };
+  const LightField expected = estimate(Domain(medium.Grid()), medium);
+  EXPECT_GT(expected.relativeError, 1e-3);
+  ExpectSameErrors(LightOnRanks(Uneven(medium.Grid()), medium, estimate), expected, 1e-5);
 }

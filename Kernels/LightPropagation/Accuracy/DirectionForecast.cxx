@@ -108,7 +108,7 @@ double DirectionForecast::Work(const PropagationSettings& settings) const
   return this->Sweeps * settings.directionsPerFace + UncollidedWork * std::max(0, settings.uncollidedDirections);
 }
 
-PropagationSettings DirectionForecast::Cheapest(const PropagationSettings& settings, double error) const
+PropagationSettings DirectionForecast::Cheapest(const PropagationSettings& settings, double error, int most) const
 {
   const PropagationSettings byDefault;
   PropagationSettings best;
@@ -117,7 +117,7 @@ PropagationSettings DirectionForecast::Cheapest(const PropagationSettings& setti
   {
     for (const int uncollided : UncollidedCounts)
     {
-      if (uncollided > 0 && !this->Separated)
+      if ((uncollided > 0 && !this->Separated) || (directions > most && directions > Directions[0]))
       {
         continue;
       }

@@ -4,6 +4,8 @@
 #include "Light/LightField.h"
 #include "LightPropagation/PropagationSettings.h"
 
+#include <limits>
+
 namespace tyndall
 {
 /// Predicts the error due to the angular discretisation, and the work of a solve, as functions of the number of
@@ -37,7 +39,9 @@ public:
   /// The settings with the least work among those with a predicted error of at most `error`; if there are none, those
   /// with the least error. Only numbers that have their default values in `settings` are changed. Uncollided light uses
   /// the same directions as scattered light unless Separate() was called.
-  PropagationSettings Cheapest(const PropagationSettings& settings, double error) const;
+  /// @param most  largest number of directions per cube face that may be chosen
+  PropagationSettings Cheapest(
+    const PropagationSettings& settings, double error, int most = std::numeric_limits<int>::max()) const;
   /// Multiplies all predicted errors by `factor`, the ratio of observed to predicted error.
   void Correct(double factor);
 

@@ -1,5 +1,7 @@
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 
+#include "Device/Errors.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,8 +14,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double OrderInDirections = 0.9; ///< order of convergence: error ~ (number of directions)^-OrderInDirections
-constexpr double OrderInSpace = 2.0;
 constexpr double FinePart = 0.8; ///< fraction of the progress that is attributed to the solve on the fine grid
 
 /// Number of directions per cube face of the second coarse solve, whose difference from the first one gives the angular
@@ -29,9 +29,10 @@ int OtherDirections(int directionsPerFace)
 
 /// Ratio of the angular error of a solution with `directions` per cube face to its difference from the solution with
 /// `others` per cube face.
-double PartOfDifference(int directions, int others)
+/// @param order  order of convergence: error ~ (number of directions)^-order
+double PartOfDifference(int directions, int others, double order)
 {
-  const double ratio = std::pow(static_cast<double>(others) / directions, OrderInDirections);
+  const double ratio = std::pow(static_cast<double>(others) / directions, order);
   return ratio < 1.0 ? ratio / (1.0 - ratio) : ratio / (ratio - 1.0);
 }
 
@@ -182,6 +183,16 @@ void WriteErrorOfCosines(LightField& light, const LightField& few)
 }
 }
 
+void RefuseAsPublished(bool published, const std::string& property)
+{
+  if (published)
+  {
+    throw InvalidInput(property +
+      " is for the conservative scheme: as published the error need not fall with voxels and directions. Set " +
+      property + " to 0, or Scheme to conservative.");
+  }
+}
+
 ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, const std::vector<float>& same,
   const std::vector<float>& other, double partOfDifference, double orderInSpace)
 {
@@ -204,8 +215,8 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
     light.convergence.empty() ? 0.0 : light.convergence.back().residual };
 }
 
-LightField SolveWithErrorEstimate(
-  const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve)
+LightField SolveWithErrorEstimate(const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor,
+  const PropagationSolver& solve, const ErrorOrders& orders)
 {
   LightField light = solve(scene, settings, OfPart(monitor, 0.0, FinePart));
   if (light.polarNodes > 0)
@@ -238,7 +249,8 @@ LightField SolveWithErrorEstimate(
   }
   const std::vector<float> few = solve(coarse.Scene(), plain, OfPart(monitor, 0.95, 1.0)).fluence;
 
-  WriteErrorEstimate(light, blocks, many, few, PartOfDifference(directions, plain.directionsPerFace), OrderInSpace);
+  WriteErrorEstimate(light, blocks, many, few,
+    PartOfDifference(directions, plain.directionsPerFace, orders.inDirections), orders.inSpace);
   return light;
 }
 }

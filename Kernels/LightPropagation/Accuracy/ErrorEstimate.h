@@ -7,12 +7,32 @@
 #include "LightPropagation/PropagationSettings.h"
 
 #include <functional>
+#include <limits>
+#include <string>
 #include <vector>
 
 namespace tyndall
 {
 /// Function that solves a scene on the grid of its domain. Collective.
 using PropagationSolver = std::function<LightField(const SceneBlock&, const PropagationSettings&, const Monitor&)>;
+
+/// How the error of a solver decreases as voxels become smaller and directions more. Any solver with voxels and
+/// directions per cube face has such orders; as a PropagationSolver it reads only those settings that it knows. The
+/// default values are those of light propagation maps, as measured (numerics.md, section 9.2).
+struct ErrorOrders
+{
+  double inSpace = 2.0;      ///< error ~ (voxel edge)^inSpace
+  double inDirections = 0.9; ///< error ~ (number of directions)^-inDirections
+  /// Orders in space with which a target error is met: in general, and if lamps have positions.
+  double ofTarget = 1.7, ofTargetBesideLamps = 1.4;
+  /// Largest number of directions per cube face that a target error may choose.
+  int mostDirections = std::numeric_limits<int>::max();
+};
+
+/// Refuses an estimate or a target for a scheme as published, whose error need not decrease with voxels and directions.
+/// @param property  name of the property that asks for it
+/// @throws InvalidInput  if `published`
+void RefuseAsPublished(bool published, const std::string& property);
 
 /// Error components of Eq. (84): the errors due to voxel size and due to the number of directions, as root mean squares
 /// relative to that of fluence, and the residual of the iteration.
@@ -32,7 +52,7 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
 
 /// Solves a scene, and estimates the error of its fluence without a reference, from two more solves on a grid of half
 /// the voxels per axis (numerics.md, section 9.2). Components of the error:
-///  - in voxel size, of order 2 (Richardson), Eq. (82);
+///  - in voxel size, of the order of `orders` (Richardson), Eq. (82);
 ///  - in angle, from a solve with 0.6 times as many directions along the edge of a cube face, Eq. (83);
 ///  - of scattering orders not computed: the residual.
 /// fluenceError is a standard error by voxel, Eq. (84); relativeError is the root mean square over all voxels. The
@@ -51,6 +71,6 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
 /// grid. If boundary light had finer directions on the fine grid, the estimate is then too large by the error of the
 /// coarser ones.
 /// @throws the exceptions of `solve`
-LightField SolveWithErrorEstimate(
-  const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor, const PropagationSolver& solve);
+LightField SolveWithErrorEstimate(const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor,
+  const PropagationSolver& solve, const ErrorOrders& orders = {});
 }

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tyndall
@@ -28,8 +29,6 @@ constexpr double LeastRoom = 0.3;
 constexpr double MuchTooCoarse = 1.5;
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
-/// Order of convergence in voxel size; measured: clouds 1.7, lamps in fog 1.4 to 1.7.
-constexpr double OrderOfClouds = 1.7, OrderBesideLamps = 1.4;
 /// One more solve measures the error of uncollided light if that is more than this fraction of the whole angular error.
 constexpr double MuchUncollided = 0.3;
 constexpr int Few = 9, More = 25;
@@ -54,13 +53,14 @@ class TargetSearch
 {
 public:
   TargetSearch(const SceneBlock& scene, const PropagationSettings& settings, double target, const Monitor& monitor,
-    const PropagationSolver& solve)
+    const PropagationSolver& solve, const ErrorOrders& orders)
     : TheScene(scene)
     , Asked(settings)
     , Goal(Aim * target)
     , Target(target)
     , TheMonitor(monitor)
     , Solver(solve)
+    , Orders(orders)
     , Blocks(scene.domain.Comm(), scene.domain.Partition())
     , Coarse(Blocks, scene)
   {
@@ -73,7 +73,7 @@ public:
   TargetLight Run()
   {
     this->LookAtDirections();
-    this->SolveAlong(this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal), 0.12, 0.4);
+    this->SolveAlong(this->CheapestWithin(this->Goal), 0.12, 0.4);
     if (this->Light.relativeError > this->Goal)
     {
       this->TryBetterDirections();
@@ -100,6 +100,12 @@ private:
     settings.storedDirections = 1;
     settings.adaptDirections = false;
     return this->Count(this->Coarse.Scene(), settings, OfPart(this->TheMonitor, from, to));
+  }
+
+  /// Cheapest settings with an angular error below `room`, the error that is allowed for directions.
+  PropagationSettings CheapestWithin(double room) const
+  {
+    return this->Forecast->Cheapest(this->Asked, DirectionPart * room, this->Orders.mostDirections);
   }
 
   /// Solves on the coarse grid with few and with more directions, and initialises Forecast from these solutions.
@@ -132,7 +138,7 @@ private:
   bool MayHaveFinerUncollided() const
   {
     return this->Forecast->UncollidedPart() > MuchUncollided && ShinesThroughFaces(this->TheScene.illumination) &&
-      this->Forecast->Cheapest(this->Asked, DirectionPart * this->Goal).directionsPerFace > More;
+      this->CheapestWithin(this->Goal).directionsPerFace > More;
   }
 
   /// Solves on the scene's grid and, for the error estimate, on the coarse grid.
@@ -147,7 +153,8 @@ private:
                                                                    : nullptr;
     const CoarseLight& other = solved == &this->AlongMore ? this->AlongFew : this->AlongMore;
     const double error = this->Forecast->Error(settings);
-    const double order = AnyHasPosition(this->TheScene.illumination.lights) ? OrderBesideLamps : OrderOfClouds;
+    const double order =
+      AnyHasPosition(this->TheScene.illumination.lights) ? this->Orders.ofTargetBesideLamps : this->Orders.ofTarget;
     if (!solved && this->IsMetAtMost(other.fluence, error, order))
     {
       return;
@@ -175,7 +182,7 @@ private:
       return {};
     }
     this->Forecast->Correct(this->Parts.inDirections / this->Forecast->Error(this->Used));
-    const PropagationSettings better = this->Forecast->Cheapest(this->Asked, DirectionPart * room);
+    const PropagationSettings better = this->CheapestWithin(room);
     return this->Forecast->Error(better) < this->Forecast->Error(this->Used) ? std::optional(better) : std::nullopt;
   }
 
@@ -217,10 +224,13 @@ private:
     return all <= this->Goal;
   }
 
-  /// Solves with voxels of half the edge length, if a quarter of the error in voxel size is small enough.
+  /// Factor by which the error in voxel size falls with voxels of half the edge length: 4 of light propagation maps.
+  double FallInHalves() const { return std::pow(2.0, this->Orders.inSpace); }
+
+  /// Solves with voxels of half the edge length, if the error that is then left of that in voxel size is small enough.
   void TryHalves()
   {
-    const double room = this->RoomBeside(this->Parts.inSpace / 4.0);
+    const double room = this->RoomBeside(this->Parts.inSpace / this->FallInHalves());
     if (room == 0.0 || this->Parts.inSpace <= LeastRoom * this->Goal)
     {
       return;
@@ -258,23 +268,25 @@ private:
     this->Light = std::move(light);
   }
 
-  /// Sets the error estimate of a solution with halved voxels: a third of its difference from the solution with the
-  /// original voxels, and angular error and residual as before.
+  /// Sets the error estimate of a solution with halved voxels, from its difference from the solution with the original
+  /// voxels (Richardson), and angular error and residual as before.
   void EstimateOfDivided(LightField& light)
   {
     double errors = 0.0, all = 0.0;
     const double rest = std::hypot(this->Parts.inDirections, this->Parts.residual);
+    const double part = 1.0 / (this->FallInHalves() - 1.0);
     light.fluenceError.resize(light.fluence.size());
     for (std::size_t i = 0; i < light.fluence.size(); ++i)
     {
       const double error =
-        std::hypot((static_cast<double>(light.fluence[i]) - this->Light.fluence[i]) / 3.0, rest * light.fluence[i]);
+        std::hypot(part * (static_cast<double>(light.fluence[i]) - this->Light.fluence[i]), rest * light.fluence[i]);
       light.fluenceError[i] = static_cast<float>(error);
       errors += error * error;
       all += static_cast<double>(light.fluence[i]) * light.fluence[i];
     }
     const std::vector<double> sums = this->TheScene.domain.Sum(std::vector<double>{ errors, all });
     light.relativeError = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
+    this->Parts.inSpace = std::sqrt(std::max(0.0, light.relativeError * light.relativeError - rest * rest));
   }
 
   TargetLight Finish(LightField&& light)
@@ -296,9 +308,8 @@ private:
   std::string WordsOfMiss(double error, const TargetLight& found) const
   {
     const std::string cost = " after " + std::to_string(found.solves) + " solves in " + Text("%.3g", found.seconds) +
-      " s, of which voxels leave " + Text("%.2g", this->Parts.inSpace / (this->InHalves ? 4.0 : 1.0)) +
-      ", directions " + Text("%.2g", this->Parts.inDirections) + ", orders that were not computed " +
-      Text("%.2g", this->Parts.residual);
+      " s, of which voxels leave " + Text("%.2g", this->Parts.inSpace) + ", directions " +
+      Text("%.2g", this->Parts.inDirections) + ", orders that were not computed " + Text("%.2g", this->Parts.residual);
     return "TargetError " + Text("%g", this->Target) + " is not met: the error of fluence is estimated to be " +
       Text("%.2g", error) + cost + ". " +
       (this->Parts.inSpace > this->Parts.inDirections ? "Give the medium in smaller voxels"
@@ -311,6 +322,7 @@ private:
   double Goal, Target;
   const Monitor& TheMonitor;
   const PropagationSolver& Solver;
+  const ErrorOrders& Orders;
   CoarseBlocks Blocks;
   CoarseScene Coarse;
   const double Start = ClockSeconds();
@@ -326,14 +338,24 @@ private:
 };
 }
 
+LightField LightOf(TargetLight&& found, std::vector<std::string> settings)
+{
+  LightField light = std::move(found.light);
+  light.settingsUsed = std::move(settings);
+  light.settingsUsed.push_back("VoxelsDividedBy = " + std::to_string(found.divided ? 2 : 1));
+  light.solves = found.solves;
+  light.secondsOfAll = found.seconds;
+  return light;
+}
+
 TargetLight SolveToTargetError(const SceneBlock& scene, const PropagationSettings& settings, double target,
-  const Monitor& monitor, const PropagationSolver& solve)
+  const Monitor& monitor, const PropagationSolver& solve, const ErrorOrders& orders)
 {
   if (!(target > 0.0 && target < 1.0))
   {
     throw InvalidInput("TargetError is " + Text("%g", target) + "; it must be above 0 and below 1.");
   }
   Check(scene.domain, scene.medium, scene.illumination, settings); // the scene is checked before solves on coarse grids
-  return TargetSearch(scene, settings, target, monitor, solve).Run();
+  return TargetSearch(scene, settings, target, monitor, solve, orders).Run();
 }
 }

@@ -3,6 +3,9 @@
 #include "Light/LightField.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 
+#include <string>
+#include <vector>
+
 namespace tyndall
 {
 /// Result of SolveToTargetError(): the light, its settings, and the cost.
@@ -16,6 +19,10 @@ struct TargetLight
   int solves = 0;               ///< number of solves, including those on coarse grids
   double seconds = 0.0;         ///< total time of all solves, s
 };
+
+/// The light of a target, with `solves`, `secondsOfAll` and `settingsUsed`.
+/// @param settings  "Name = value" of the settings of the final solve, to which the division of voxels is added
+LightField LightOf(TargetLight&& found, std::vector<std::string> settings);
 
 /// Solves a scene such that the estimated relative error of fluence (root mean square relative to that of fluence) is
 /// below a target, with the least predicted work:
@@ -34,5 +41,5 @@ struct TargetLight
 /// @param target  relative error, in (0, 1)
 /// @throws InvalidInput  if the target or the scene is invalid (SceneChecks.h)
 TargetLight SolveToTargetError(const SceneBlock& scene, const PropagationSettings& settings, double target,
-  const Monitor& monitor, const PropagationSolver& solve);
+  const Monitor& monitor, const PropagationSolver& solve, const ErrorOrders& orders = {});
 }

@@ -1,0 +1,98 @@
+#include "DiscreteOrdinates/OrdinatesError.h"
+
+#include "Device/Errors.h"
+#include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/TargetError.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+constexpr int FewestSpiralDirections = 16;
+/// Most directions per cube face that a target error chooses; with singular values or the full matrix of the phase
+/// function, whose cost rises with the square of their number.
+constexpr int MostDirections = 400, MostWithMatrix = 144;
+
+/// Measured orders of convergence (numerics.md, section 10 b).
+constexpr double OrderInSpace = 1.0, OrderInDirections = 0.4;
+
+/// Number of terms for another number of directions: in proportion to the directions, a square number, as spherical
+/// harmonics have it, and at most the number of directions.
+/// @param mayRise  whether there may be more than the given number
+int TermsFor(const OrdinatesSettings& given, int directionsPerFace, bool mayRise)
+{
+  const double ratio = static_cast<double>(directionsPerFace) / given.directionsPerFace;
+  if (ratio == 1.0 || (ratio > 1.0 && !mayRise))
+  {
+    return given.terms;
+  }
+  const double most = std::min(ratio * given.terms, 6.0 * directionsPerFace);
+  const int rows = std::max(1, static_cast<int>(std::sqrt(most) + 1e-9));
+  return rows * rows;
+}
+
+/// Settings with the resolution and tolerance that an error estimate chooses in `how`.
+/// @param choosesTerms  whether more directions have more terms, too
+OrdinatesSettings With(const OrdinatesSettings& given, const PropagationSettings& how, bool choosesTerms)
+{
+  OrdinatesSettings settings = given;
+  settings.terms = TermsFor(given, how.directionsPerFace, choosesTerms);
+  settings.directionsPerFace = how.directionsPerFace;
+  settings.adaptDirections = how.adaptDirections;
+  settings.tolerance = how.tolerance;
+  settings.netFlux = how.netFlux;
+  if (given.spiralDirections > 0)
+  {
+    const double part = static_cast<double>(how.directionsPerFace) / given.directionsPerFace;
+    settings.spiralDirections =
+      std::max(FewestSpiralDirections, static_cast<int>(std::lround(part * given.spiralDirections)));
+  }
+  return settings;
+}
+
+/// The solver as a function of the settings that error estimates choose.
+PropagationSolver SolverOf(
+  Device& device, const SceneBlock& ofScene, const OrdinatesSettings& given, bool choosesTerms, KeptLight* kept)
+{
+  return [&device, &given, choosesTerms, kept, own = &ofScene.medium](
+           const SceneBlock& scene, const PropagationSettings& how, const Monitor& monitor) {
+    return SolveDiscreteOrdinates(device, scene.domain, scene.medium, scene.illumination,
+      With(given, how, choosesTerms), monitor, &scene.medium == own ? kept : nullptr);
+  };
+}
+}
+
+LightField EstimateOrdinates(
+  Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
+{
+  RefuseAsPublished(IsPublished(settings), "EstimateError");
+  return SolveWithErrorEstimate(scene, AsPropagation(settings), monitor, SolverOf(device, scene, settings, false, kept),
+    { OrderInSpace, OrderInDirections });
+}
+
+LightField SolveOrdinatesToTarget(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,
+  double target, const Monitor& monitor, KeptLight* kept)
+{
+  RefuseAsPublished(IsPublished(settings), "TargetError");
+  if (settings.spiralDirections > 0)
+  {
+    throw InvalidInput("TargetError chooses the number of directions per face of a cube, and SpiralDirections is " +
+      std::to_string(settings.spiralDirections) + ". Set TargetError or SpiralDirections to 0.");
+  }
+  const int most = settings.scattering == OrdinatesScattering::SphericalHarmonics ? MostDirections : MostWithMatrix;
+  const ErrorOrders orders = { OrderInSpace, OrderInDirections, OrderInSpace, OrderInSpace,
+    DirectionsThatFit(scene.domain, most, MemoryOf(device)) };
+  const bool choosesTerms = settings.terms == OrdinatesSettings().terms;
+  TargetLight found = SolveToTargetError(
+    scene, AsPropagation(settings), target, monitor, SolverOf(device, scene, settings, choosesTerms, kept), orders);
+  std::vector<std::string> used = Words(With(settings, found.settings, choosesTerms), found.light);
+  return LightOf(std::move(found), std::move(used));
+}
+}
