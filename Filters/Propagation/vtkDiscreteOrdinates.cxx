@@ -5,6 +5,7 @@
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "DiscreteOrdinates/OrdinatesError.h"
 #include "DiscreteOrdinates/OrdinatesSettings.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Pieces/GuardedWork.h"
@@ -55,10 +56,15 @@ tyndall::OrdinatesSettings OfPreview(tyndall::OrdinatesSettings settings)
 tyndall::OrdinatesSettings SettingsOf(
   vtkDiscreteOrdinates* filter, const tyndall::SolverScene& scene, const tyndall::Device& device)
 {
+  const tyndall::OrdinatesSettings given = GivenSettings(filter);
+  if (filter->GetPreview())
+  {
+    return OfPreview(given);
+  }
   const auto quality = static_cast<tyndall::Quality>(filter->GetQuality());
-  return filter->GetPreview()
-    ? OfPreview(GivenSettings(filter))
-    : tyndall::AtQuality(scene.domain, quality, GivenSettings(filter), scene.medium, tyndall::MemoryOf(device));
+  return filter->GetTargetError() > 0.0
+    ? given
+    : tyndall::AtQuality(scene.domain, quality, given, scene.medium, tyndall::MemoryOf(device));
 }
 
 tyndall::LightField SolvePreview(vtkDiscreteOrdinates* filter, tyndall::Device& device,
@@ -101,11 +107,16 @@ tyndall::LightField vtkDiscreteOrdinates::Solve(const tyndall::SolverScene& scen
   scene.domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, false));
   const tyndall::OrdinatesSettings settings = SettingsOf(this, scene, *device);
-  const tyndall::Illumination& illumination = scene.shining.illumination;
+  const tyndall::SceneBlock block = { scene.domain, scene.medium, scene.shining.illumination };
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
-  tyndall::LightField light = this->Preview
-    ? SolvePreview(this, within, scene, settings)
-    : tyndall::SolveDiscreteOrdinates(within, scene.domain, scene.medium, illumination, settings, monitor, last);
+  if (this->TargetError > 0.0 && !this->Preview)
+  {
+    return tyndall::SolveOrdinatesToTarget(within, block, settings, this->TargetError, monitor, last);
+  }
+  tyndall::LightField light = this->Preview ? SolvePreview(this, within, scene, settings)
+    : this->EstimateError
+    ? tyndall::EstimateOrdinates(within, block, settings, monitor, last)
+    : tyndall::SolveDiscreteOrdinates(within, block.domain, block.medium, block.illumination, settings, monitor, last);
   light.settingsUsed = tyndall::Words(settings, light);
   return light;
 }

@@ -43,6 +43,7 @@ class LastLight;
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
  * | `fluence_direct` | 1 or 3 | W/length^2 | uncollided part of `fluence`; in the published scheme of lamps only |
+ * | `fluence_error` | 1 or 3 | W/length^2 | standard error of `fluence` (if EstimateError or TargetError) |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
  * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | scattered radiance, averaged over directions |
  *
@@ -55,7 +56,8 @@ class LastLight;
  *
  * Source iteration is not accelerated: in optically thick media that absorb little, vtkLightPropagationMaps is faster.
  * The radiance in all directions has to fit in device memory: if it does not, an error states the required memory
- * before any is allocated. EstimateError is not used.
+ * before any is allocated. EstimateError and TargetError need the conservative scheme, TargetError also
+ * SpiralDirections 0. The error of replacing a mean cosine that varies by voxel by its mean is not included.
  *
  * With Decomposition BLOCKS ranks exchange radiance at the boundaries of their pieces (numerics.md, section 10 b);
  * every scattering order is the same as in a serial solve. Quality limits the number of directions such that the

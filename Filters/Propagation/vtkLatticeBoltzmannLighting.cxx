@@ -5,8 +5,10 @@
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
 #include "Distribution/Domain.h"
+#include "LatticeBoltzmann/DiffusionError.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
+#include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "Photons/PhotonData.h"
 #include "Pieces/GuardedWork.h"
@@ -107,6 +109,9 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
   const tyndall::SceneBlock& scene, const std::vector<tyndall::Photon>* photons)
 {
   const tyndall::LatticeSettings settings = this->Settings();
+  const bool estimates = !this->Preview && (this->EstimateError || this->TargetError > 0.0);
+  tyndall::RefuseAsPublished(
+    estimates && this->Scheme == PUBLISHED, this->TargetError > 0.0 ? "TargetError" : "EstimateError");
   std::shared_ptr<tyndall::Device> device;
   scene.domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
@@ -124,6 +129,11 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
   else
   {
     light = this->Preview ? SolvePreviewOf(scene, settings, solve) : solve(scene);
+  }
+  if (estimates)
+  {
+    tyndall::EstimateDiffusionError(within, scene, settings, photons != nullptr, monitor, light);
+    tyndall::JudgeTarget(this->TargetError, light);
   }
   light.settingsUsed = tyndall::Words(settings);
   return light;

@@ -56,6 +56,7 @@ struct SceneBlock;
  * |---|---|---|---|
  * | `fluence` | 1 or 3 | W/length^2 | radiance integrated over all directions |
  * | `fluence_direct` | 1 or 3 | W/length^2 | uncollided part of `fluence`, without light of sky and faces |
+ * | `fluence_error` | 1 or 3 | W/length^2 | estimated error of diffusion (if EstimateError or TargetError) |
  * | `net_flux` | 3 or 9 | W/length^2 | radiance times direction, integrated (if NetFlux) |
  * | `scattered_radiance` | 1 or 3 | W/(length^2 sr) | scattered radiance, averaged over directions |
  *
@@ -67,7 +68,9 @@ struct SceneBlock;
  * With Decomposition BLOCKS lines of links continue from rank to rank (numerics.md, section 10 c). BLOCKS supports only
  * the steady-state solve: PUBLISHED, BlockSize, Interleaved and MaximumOrders, which take steps, are errors.
  *
- * EstimateError is not used.
+ * EstimateError and TargetError need the conservative scheme. The estimate is the error of the diffusion approximation,
+ * from a formula that was fitted to other scenes (numerics.md, section 10 c); noise of photons is not included. No
+ * setting reduces this error: if it is above TargetError, a warning names the solvers that can reach the target.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher vtkParticipatingMedium vtkLightRig
  * @par Thanks
@@ -161,6 +164,7 @@ protected:
   void Note(const tyndall::LightField& light) override;
   void ShareResults(tyndall::Communicator& ranks) override;
   bool KnowsIndex() const override { return this->Scheme == CONSERVATIVE; }
+  bool ReadsQuality() const override { return !this->Preview; } // with a target error, too, which chooses nothing
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
   tyndall::LightField Solve(const tyndall::SolverScene& scene) override;
   int PortOfShares() const override { return PHOTONS; }

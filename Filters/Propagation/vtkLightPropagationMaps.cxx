@@ -75,15 +75,6 @@ std::vector<std::string> UsedFor(
                                                                    : tyndall::Words(settings, light);
 }
 
-tyndall::LightField LightOf(tyndall::TargetLight&& found)
-{
-  found.light.settingsUsed = tyndall::Words(found.settings, found.light);
-  found.light.settingsUsed.push_back("VoxelsDividedBy = " + std::to_string(found.divided ? 2 : 1));
-  found.light.solves = found.solves;
-  found.light.secondsOfAll = found.seconds;
-  return std::move(found.light);
-}
-
 tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
 {
   settings.directionsPerFace = std::min(settings.directionsPerFace, tyndall::PreviewDirections);
@@ -138,17 +129,13 @@ std::shared_ptr<tyndall::Device> DeviceOnAll(vtkLightPropagationMaps* filter, co
 /// @throws InvalidInput if TargetError is set with the published scheme
 tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, const tyndall::SolverScene& scene)
 {
-  tyndall::RequireSame(scene.domain.Comm(), "TargetError or EstimateError", true,
-    { filter->GetTargetError(), filter->GetEstimateError() ? 1.0 : 0.0 });
   if (filter->GetPreview())
   {
     return OfPreview(SettingsOf(filter));
   }
   if (filter->GetTargetError() > 0.0)
   {
-    tyndall::Require(filter->GetScheme() != vtkLightPropagationMaps::PUBLISHED,
-      "TargetError is for the conservative scheme: as published the error does not fall with directions. Set "
-      "TargetError to 0, or Scheme to conservative.");
+    tyndall::RefuseAsPublished(filter->GetScheme() == vtkLightPropagationMaps::PUBLISHED, "TargetError");
     return SettingsOf(filter);
   }
   return tyndall::AtQuality(scene.domain, static_cast<tyndall::Quality>(filter->GetQuality()), SettingsOf(filter),
@@ -197,7 +184,9 @@ tyndall::LightField vtkLightPropagationMaps::Solve(const tyndall::SolverScene& g
   const tyndall::Monitor monitor = tyndall::MonitorOf(this);
   if (this->TargetError > 0.0 && !this->Preview)
   {
-    return LightOf(tyndall::SolveToTargetError(scene, settings, this->TargetError, monitor, solve));
+    tyndall::TargetLight found = tyndall::SolveToTargetError(scene, settings, this->TargetError, monitor, solve);
+    std::vector<std::string> used = tyndall::Words(found.settings, found.light);
+    return tyndall::LightOf(std::move(found), std::move(used));
   }
   tyndall::LightField light = this->Preview
     ? tyndall::SolvePreview(scene, settings, tyndall::PreviewGrid(given.domain.Whole()),
@@ -217,16 +206,13 @@ void vtkLightPropagationMaps::Note(const tyndall::LightField& light)
   this->Superclass::Note(light);
   this->Orders = static_cast<int>(light.convergence.size());
   this->SweepsSaved = light.sweepsSaved.empty() ? 0 : light.sweepsSaved.back();
-  this->EstimatedError = light.relativeError;
   this->HalfRangeFlux = light.halfRangeFlux;
-  this->Solves = light.convergence.empty() ? 0 : light.solves;
 }
 
 void vtkLightPropagationMaps::ShareResults(tyndall::Communicator& ranks)
 {
   this->Superclass::ShareResults(ranks);
-  tyndall::TakeFromFirstRank(
-    ranks, this->Orders, this->SweepsSaved, this->EstimatedError, this->HalfRangeFlux, this->Solves);
+  tyndall::TakeFromFirstRank(ranks, this->Orders, this->SweepsSaved, this->HalfRangeFlux);
 }
 
 void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
@@ -235,6 +221,6 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Scheme: " << (this->Scheme == CONSERVATIVE ? "conservative" : "as published") << "\n";
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
   tyndallPrintMacro(Source, Acceleration, DirectionsPerFace, UncollidedDirections, AngularDegree, StoreMoments,
-    EmissionError, StaggeredRays, MapResolution, MaximumOrders, WarmStart, NetFlux, StoredDirections, TargetError,
-    Solves, Orders, SweepsSaved, EstimatedError, HalfRangeFlux);
+    EmissionError, StaggeredRays, MapResolution, MaximumOrders, WarmStart, NetFlux, StoredDirections, Orders, SweepsSaved,
+    HalfRangeFlux);
 }

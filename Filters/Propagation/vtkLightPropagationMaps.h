@@ -191,14 +191,6 @@ public:
   ///@}
 
   ///@{
-  /// Target for the relative error of fluence (ratio of the root mean squares of error and fluence), as the solver
-  /// estimates it (conservative scheme). To meet the target the solver chooses directions and tolerance if they have
-  /// their default values, and divides voxels that are too coarse; it warns if the estimate stays above the target.
-  /// With a target, Quality is not read. Default 0: no target; valid [0, 0.5].
-  tyndallRangeMacro(TargetError, double, 0.0, 0.5);
-  ///@}
-
-  ///@{
   /// Whether the solution of the last update is the initial guess of the next one: it saves sweeps if medium or lights
   /// changed a little; the result is the same within Tolerance. The solution stays in memory until an update with
   /// WarmStart off: one float per voxel and channel, times (degree + 1)^2 with AngularDegree. Not used by the published
@@ -219,16 +211,13 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: number of solves (more than one with TargetError); number of scattering orders; number
-  /// of additional orders that the last update with zero initial guess needed to reach the same residual (0 if this
-  /// was such an update); estimated total relative error of fluence (0 without EstimateError or TargetError; NaN,
-  /// unknown, after one order); half-range flux of the quadrature for isotropic radiance through a face, as a fraction
-  /// of the exact value (0.99992 with 25 directions per face: the incident power from faces and sky has the same
-  /// relative error). Residual of vtkScatteringSolver is the error due to the omitted orders.
-  vtkGetMacro(Solves, int);
+  /// Results of the last update: number of scattering orders; number of additional orders that the last update with
+  /// zero initial guess needed to reach the same residual (0 if this was such an update); half-range flux of the
+  /// quadrature for isotropic radiance through a face, as a fraction of the exact value (0.99992 with 25 directions per
+  /// face: the incident power from faces and sky has the same relative error). Residual of vtkScatteringSolver is the
+  /// error due to the omitted orders.
   vtkGetMacro(Orders, int);
   vtkGetMacro(SweepsSaved, int);
-  vtkGetMacro(EstimatedError, double);
   vtkGetMacro(HalfRangeFlux, double);
   ///@}
 
@@ -238,7 +227,6 @@ protected:
 
   void Note(const tyndall::LightField& light) override;
   void ShareResults(tyndall::Communicator& ranks) override;
-  bool ReadsQuality() const override { return this->TargetError == 0.0 && this->Superclass::ReadsQuality(); }
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
   std::string ReasonNotToDecompose(const tyndall::SolverScene& scene) override;
   tyndall::LightField Solve(const tyndall::SolverScene& scene) override;
@@ -262,13 +250,10 @@ private:
   bool WarmStart = false;
   bool NetFlux;
   int StoredDirections;
-  double TargetError = 0.0;
 
   std::unique_ptr<tyndall::LastLight> Last;
-  int Solves = 0;
   int Orders = 0;
   int SweepsSaved = 0;
-  double EstimatedError = 0.0;
   double HalfRangeFlux = 0.0;
 };
 

@@ -280,6 +280,8 @@ bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformati
   }
   this->WholeFor = tyndall::WordsOfAny(scene.domain.Comm(), refused);
   tyndall::RequireSame(scene.domain.Comm(), "Preview", true, { this->Preview ? 1.0 : 0.0 });
+  tyndall::RequireSame(
+    scene.domain.Comm(), "TargetError or EstimateError", true, { this->TargetError, this->EstimateError ? 1.0 : 0.0 });
   const bool chooses = !this->Preview && !scene.domain.Any(this->Decomposition == BLOCKS);
   if (this->WholeFor.empty() && chooses)
   {
@@ -417,6 +419,8 @@ void vtkScatteringSolver::Note(const tyndall::LightField& light)
 {
   const bool any = !light.convergence.empty();
   this->Residual = any ? light.convergence.back().residual : 0.0;
+  this->EstimatedError = light.relativeError;
+  this->Solves = any ? light.solves : 0;
   this->BalanceError = light.balance.RelativeError(light.channels);
   this->DeviceName = light.device;
   tyndall::NoteLeftOut(this, tyndall::Lines(light.leftOut));
@@ -425,13 +429,14 @@ void vtkScatteringSolver::Note(const tyndall::LightField& light)
 
 void vtkScatteringSolver::ShareResults(tyndall::Communicator& ranks)
 {
-  tyndall::TakeFromFirstRank(ranks, this->Residual, this->BalanceError, this->DeviceName, this->SettingsUsed);
+  tyndall::TakeFromFirstRank(ranks, this->Residual, this->EstimatedError, this->Solves, this->BalanceError,
+    this->DeviceName, this->SettingsUsed);
 }
 
 void vtkScatteringSolver::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(Decomposition, Quality, Preview, MemoryBudget, LeaveOut, LitColor, Exposure, ToneCurve, Residual,
-    BalanceError, DeviceName, SettingsUsed);
+  tyndallPrintMacro(Decomposition, Quality, TargetError, Preview, MemoryBudget, LeaveOut, LitColor, Exposure, ToneCurve,
+    Residual, EstimatedError, Solves, BalanceError, DeviceName, SettingsUsed);
   tyndall::PrintRun(os, indent, this);
 }

@@ -98,6 +98,15 @@ public:
   ///@}
 
   ///@{
+  /// Target for the relative error of fluence (ratio of the root mean squares of error and fluence), as the solver
+  /// estimates it. To meet the target, vtkLightPropagationMaps and vtkDiscreteOrdinates (conservative scheme) choose
+  /// directions, terms and tolerance if they have their default values, divide voxels that are too coarse, and do not
+  /// read Quality. The error of vtkLatticeBoltzmannLighting is that of diffusion, which no setting reduces. A warning
+  /// says if the estimate stays above the target. Default 0: no target; valid [0, 0.5].
+  tyndallRangeMacro(TargetError, double, 0.0, 0.5);
+  ///@}
+
+  ///@{
   /// Whether to solve for a preview, while lights are moved: on a grid with half as many voxels along each axis (halved
   /// again if that grid is large; LeftOut reports its size), with few directions and a tolerance of a few percent. The
   /// output has only `fluence` and `fluence_direct`, interpolated linearly between the centres of the coarse voxels.
@@ -150,10 +159,14 @@ public:
   vtkMTimeType GetMTime() override;
 
   ///@{
-  /// Results of the last update: estimated relative error of fluence; relative error of the energy balance; run time in
-  /// seconds; the device's name; computations that the scene did not need, one per line; "Name = value" used for each
-  /// property that Quality chooses, one per line.
+  /// Results of the last update: estimated relative error of fluence due to the omitted orders; estimated total
+  /// relative error of fluence (0 without EstimateError or TargetError; NaN, unknown, after one order); number of
+  /// solves (more than one with TargetError); relative error of the energy balance; run time in seconds; the device's
+  /// name; computations that the scene did not need, one per line; "Name = value" used for each property that Quality
+  /// chooses, one per line.
   vtkGetMacro(Residual, double);
+  vtkGetMacro(EstimatedError, double);
+  vtkGetMacro(Solves, int);
   vtkGetMacro(BalanceError, double);
   tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
@@ -207,15 +220,18 @@ protected:
   /// environment, sky and boundary radiance, or the default sky.
   virtual tyndall::IlluminationInput ReadShining(tyndall::SolverScene& scene, vtkInformationVector** inputs);
 
-  /// Whether the solver reads the property Quality: not for previews.
-  virtual bool ReadsQuality() const { return !this->Preview; }
+  /// Whether the solver reads the property Quality: not for previews, nor with a target error.
+  virtual bool ReadsQuality() const { return !this->Preview && this->TargetError == 0.0; }
 
   int Decomposition = AUTOMATIC_DECOMPOSITION;
   int Quality = USUAL;
   bool Preview = false;
+  double TargetError = 0.0;
   int MemoryBudget = 0;
   bool LeaveOut = true;
   double Residual = 0.0;
+  double EstimatedError = 0.0;
+  int Solves = 0;
   double BalanceError = 0.0;
   std::string DeviceName;
   std::string SettingsUsed;

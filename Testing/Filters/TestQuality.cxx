@@ -288,6 +288,70 @@ void SolvesToATarget(test::Claims& claims)
   maps->Update();
   claims.That(errors.None(), "heals");
 }
+
+void OrdinatesSolveToATarget(test::Claims& claims)
+{
+  vtkNew<vtkDiscreteOrdinates> ordinates;
+  test::Errors errors(ordinates);
+  ordinates->SetInputDataObject(Medium());
+  ordinates->SetFaceRadiance(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+  ordinates->EstimateErrorOn();
+  ordinates->Update();
+  const double error = ordinates->GetEstimatedError();
+  claims.That(errors.None() && error > 1e-3 && error < 0.5, "ordinates estimate their error: " + std::to_string(error));
+  claims.That(ordinates->GetOutput()->GetCellData()->GetArray("fluence_error") != nullptr, "by voxel, too");
+  ordinates->EstimateErrorOff();
+  ordinates->SetTargetError(0.9 * error);
+  ordinates->Update();
+  const std::string used = Used(ordinates->GetOutputDataObject(0));
+  claims.That(errors.None() && ordinates->GetEstimatedError() <= 0.9 * error, "ordinates meet a target: " + used);
+  claims.That(ordinates->GetSolves() >= 3 && used.find("VoxelsDividedBy = ") != std::string::npos, "and say how");
+  ordinates->SetTargetError(1e-6);
+  ordinates->Update();
+  claims.That(errors.WasOneWith("TargetError 1e-06 is not met"), "one warning where ordinates miss it");
+  ordinates->SetSpiralDirections(96);
+  ordinates->Update();
+  claims.That(errors.WasOneWith("SpiralDirections is 96"), "no target for directions on a spiral");
+  ordinates->SetSpiralDirections(0);
+  ordinates->SetScheme(vtkDiscreteOrdinates::PUBLISHED);
+  ordinates->Update();
+  claims.That(errors.WasOneWith("TargetError is for the conservative scheme"), "nor for ordinates as published");
+  ordinates->SetTargetError(0.0);
+  ordinates->EstimateErrorOn();
+  ordinates->Update();
+  claims.That(errors.WasOneWith("EstimateError is for the conservative scheme"), "which have no estimate either");
+  ordinates->SetScheme(vtkDiscreteOrdinates::CONSERVATIVE);
+  ordinates->Update();
+  claims.That(errors.None(), "heals");
+}
+
+/// The error of the lattice is that of diffusion.
+void LatticeNamesWhoReachesATarget(test::Claims& claims)
+{
+  vtkNew<vtkLatticeBoltzmannLighting> lattice;
+  test::Errors errors(lattice);
+  lattice->SetInputDataObject(Medium());
+  lattice->SetFaceRadiance(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+  lattice->SetTargetError(0.5);
+  lattice->Update();
+  const double error = lattice->GetEstimatedError();
+  claims.That(errors.None() && error > 1e-3 && error < 0.5, "diffusion has an error: " + std::to_string(error));
+  claims.That(lattice->GetOutput()->GetCellData()->GetArray("fluence_error") != nullptr, "by voxel, too");
+  lattice->SetTargetError(1e-3);
+  lattice->Update();
+  claims.That(errors.WasOneWith("Light Propagation Maps"), "one warning names the solver that reaches less");
+  lattice->SetScheme(vtkLatticeBoltzmannLighting::PUBLISHED);
+  lattice->Update();
+  claims.That(errors.WasOneWith("TargetError is for the conservative scheme"), "as published there is no target");
+  lattice->SetTargetError(0.0);
+  lattice->EstimateErrorOn();
+  lattice->Update();
+  claims.That(errors.WasOneWith("EstimateError is for the conservative scheme"), "and no estimate");
+  lattice->EstimateErrorOff();
+  lattice->SetMaximumOrders(3);
+  lattice->Update();
+  claims.That(lattice->GetEstimatedError() == 0.0, "which is gone where it was not asked for");
+}
 }
 
 int TestQuality(int, char*[])
@@ -308,5 +372,7 @@ int TestQuality(int, char*[])
   DividesRectangles(claims);
   SetsSteps(claims);
   SolvesToATarget(claims);
+  OrdinatesSolveToATarget(claims);
+  LatticeNamesWhoReachesATarget(claims);
   return claims.Result();
 }
