@@ -1,9 +1,11 @@
 // TargetError against the best hand-made setting: true error and time.
 // `./run bench target [tuning] [falls] [size 0.5] [scene 3]`
+// Coverage of the errors that solvers estimate: `./run bench target coverage [maps | ordinates | lattice]`
 
 #include "Measure.h"
 #include "Program.h"
 #include "Report.h"
+#include "TargetCoverage.h"
 #include "TargetFalls.h"
 #include "TargetScenes.h"
 
@@ -240,6 +242,11 @@ int main(int argc, char* argv[])
 {
   using namespace bench;
   return RunOnDevice(argc, argv, [](Device& device, const Arguments& arguments) {
+    if (!arguments.words.empty() && arguments.words.front() == "coverage")
+    {
+      PrintCoverage(device, arguments.quick, arguments.words.size() > 1 ? arguments.words[1] : "");
+      return;
+    }
     const auto word = std::find(arguments.words.begin(), arguments.words.end(), "size");
     const bool sized = word != arguments.words.end() && word + 1 != arguments.words.end();
     const double size = sized ? std::atof((word + 1)->c_str()) : arguments.quick ? 0.2 : 1.0;

@@ -28,4 +28,9 @@ std::vector<TargetScene> TuningScenes(double size);
 /// thick cloud under sun and sky, a plume that shines, two lamps in smoke, a cloud that scatters forwards.
 /// @param size  1: grids of 40 to 48 voxels along the longest edge
 std::vector<TargetScene> HeldOutScenes(double size);
+
+/// 24 scenes of 12 to 24 voxels an axis, even numbers, that no constant of an error estimate was chosen on: thin to
+/// thick, mean cosines from 0 to 0.9, empty parts, lamps inside, emission, three colours, stretched voxels.
+/// @param cubes  whether stretched voxels are made cubes, as the lattice needs them
+std::vector<TargetScene> CoverageScenes(bool cubes);
 }
