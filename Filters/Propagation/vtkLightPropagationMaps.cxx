@@ -75,20 +75,6 @@ std::vector<std::string> UsedFor(
                                                                    : tyndall::Words(settings, light);
 }
 
-tyndall::PropagationSettings OfPreview(tyndall::PropagationSettings settings)
-{
-  settings.directionsPerFace = std::min(settings.directionsPerFace, tyndall::PreviewDirections);
-  settings.uncollidedDirections = 0;
-  settings.adaptDirections = false;
-  settings.angularDegree = 0;
-  settings.storeMoments = false;
-  settings.emissionError = 0.0;
-  settings.storedDirections = 1;
-  settings.netFlux = false;
-  settings.tolerance = std::max(settings.tolerance, tyndall::PreviewTolerance);
-  return settings;
-}
-
 /// Solves by the published scheme on the device.
 /// @throws DeviceError if the arrays of the scheme, which stores one volume per direction, exceed the memory budget
 tyndall::LightField SolvePublished(vtkLightPropagationMaps* filter, tyndall::Device& device,
@@ -131,7 +117,7 @@ tyndall::PropagationSettings SettingsOn(vtkLightPropagationMaps* filter, const t
 {
   if (filter->GetPreview())
   {
-    return OfPreview(SettingsOf(filter));
+    return tyndall::SettingsOfPreview(SettingsOf(filter));
   }
   if (filter->GetTargetError() > 0.0)
   {
@@ -221,6 +207,6 @@ void vtkLightPropagationMaps::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Scheme: " << (this->Scheme == CONSERVATIVE ? "conservative" : "as published") << "\n";
   os << indent << "Algorithm: " << (this->Algorithm == SEQUENTIAL ? "sequential" : "parallel") << "\n";
   tyndallPrintMacro(Source, Acceleration, DirectionsPerFace, UncollidedDirections, AngularDegree, StoreMoments,
-    EmissionError, StaggeredRays, MapResolution, MaximumOrders, WarmStart, NetFlux, StoredDirections, Orders, SweepsSaved,
-    HalfRangeFlux);
+    EmissionError, StaggeredRays, MapResolution, MaximumOrders, WarmStart, NetFlux, StoredDirections, Orders,
+    SweepsSaved, HalfRangeFlux);
 }

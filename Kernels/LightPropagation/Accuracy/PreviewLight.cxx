@@ -174,6 +174,20 @@ Grid CubicPreviewGrid(const Grid& grid)
   });
 }
 
+PropagationSettings SettingsOfPreview(PropagationSettings settings)
+{
+  settings.directionsPerFace = std::min(settings.directionsPerFace, PreviewDirections);
+  settings.uncollidedDirections = 0;
+  settings.adaptDirections = false;
+  settings.angularDegree = 0;
+  settings.storeMoments = false;
+  settings.emissionError = 0.0;
+  settings.storedDirections = 1;
+  settings.netFlux = false;
+  settings.tolerance = std::max(settings.tolerance, PreviewTolerance);
+  return settings;
+}
+
 LightField SolvePreview(const SceneBlock& scene, const PropagationSettings& alike, const Grid& coarse,
   const PreviewSolver& solve, std::size_t small)
 {

@@ -29,6 +29,10 @@ constexpr int PreviewOrders = 24;
 /// Number of voxels for which a preview takes less than 0.2 s on two cores (measurements.md).
 constexpr std::size_t PreviewVoxels = 32768;
 
+/// Settings of light propagation maps for a preview: few directions, isotropic scattering, a large tolerance, and no
+/// further arrays.
+PropagationSettings SettingsOfPreview(PropagationSettings settings);
+
 /// Solves a scene on a coarser grid of averages (Coarsening.h) and interpolates linearly between coarse voxel centres:
 /// fast feedback while parameters change. The result has `fluence`, `fluence_direct`, powers and the table of
 /// iterations. All other data by voxel, face or direction are omitted; `leftOut` states that, and the size of the
