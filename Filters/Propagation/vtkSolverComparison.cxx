@@ -5,9 +5,12 @@
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
 #include "Comparison/SolverComparison.h"
+#include "Numerics/NumberText.h"
 #include "Photons/RefractiveInput.h"
 #include "Pieces/GuardedWork.h"
 #include "Pieces/UpdateExtent.h"
+#include "Scene/MeshSolids.h"
+#include "Viewing/CasterProperties.h"
 
 #include "vtkDataObject.h"
 #include "vtkDoubleArray.h"
@@ -98,13 +101,22 @@ std::string SizeOf(const Row& row)
   return std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]);
 }
 
+/// A recommended row for the user.
+/// @param row  null: there is none
+std::string InWords(const Row* row)
+{
+  return row ? std::string(tyndall::NameOf(row->method)) + ", " + row->setting + ": " +
+      tyndall::Text("%.3g", row->seconds) + " s, error " + tyndall::Text("%.2g", 100.0 * row->errorL2) + "%"
+             : "";
+}
+
 void Write(const tyndall::Comparison& comparison, vtkTable* table)
 {
   const std::vector<Row>& rows = comparison.rows;
+  const Row* const recommended = tyndall::RecommendedOf(rows);
   AddTexts(table, "method", rows, [](const Row& row) { return tyndall::NameOf(row.method); });
   AddTexts(table, "setting", rows, [](const Row& row) { return row.setting; });
-  AddTexts(table, "quantity", rows,
-    [](const Row& row) { return tyndall::IsDirectOnly(row.method) ? "fluence_direct" : "fluence"; });
+  AddTexts(table, "quantity", rows, [](const Row& row) { return tyndall::NameOf(tyndall::QuantityOf(row.method)); });
   AddTexts(table, "grid", rows, SizeOf);
   AddNumbers(table, "seconds", rows, [](const Row& row) { return row.seconds; });
   AddNumbers(table, "peak_bytes", rows, [](const Row& row) { return row.peakBytes; });
@@ -117,10 +129,37 @@ void Write(const tyndall::Comparison& comparison, vtkTable* table)
   AddFacePower(table, rows);
   AddNumbers(table, "power_in", rows, [](const Row& row) { return row.powerIn; });
   AddNumbers<vtkIntArray>(table, "pareto", rows, [](const Row& row) { return row.pareto ? 1 : 0; });
+  AddNumbers<vtkIntArray>(table, "recommended", rows, [](const Row& row) { return row.recommended ? 1 : 0; });
+  AddTexts(table, "filters", rows, [](const Row& row) { return row.filters; });
   AddErrorsByMethod(table, rows);
   tyndall::AddFact(table, "reference", std::vector<std::string>{ comparison.reference.text });
+  tyndall::AddFact(table, "recommended", std::vector<std::string>{ InWords(recommended) });
   tyndall::AddFact(table, "left_out", comparison.leftOut);
   tyndall::AddFact(table, "device", std::vector<std::string>{ comparison.device });
+}
+
+/// Reads the mesh of input 4, and its material from the medium that was made of it.
+/// @return no value if `mesh` is null
+/// @throws InvalidInput if the medium has no occupancy, or as tyndall::MaterialsOf
+std::optional<tyndall::VoxelizedMaterials> ReadMesh(
+  vtkPolyData* mesh, vtkImageData* image, const tyndall::RefractiveInput& read, const tyndall::OwnAxes& axes)
+{
+  if (!mesh)
+  {
+    return std::nullopt;
+  }
+  tyndall::StopIfUpstreamFailed(mesh);
+  const tyndall::FloatField occupancy = tyndall::ReadCells(image, "occupancy", tyndall::Need::Optional, { 1 });
+  tyndall::Require(occupancy.IsThere(),
+    "A Mesh is connected, but the medium has no cell array 'occupancy': connect the medium that MeshVoxelizer made of "
+    "this mesh, or no mesh.");
+  tyndall::TriangleMesh triangles =
+    std::move(tyndall::SolidsOf(mesh, "The mesh", "", 0, [](int) { return tyndall::Material(); }).front().mesh);
+  for (std::array<double, 3>& point : triangles.points)
+  {
+    point = axes.Place(point);
+  }
+  return tyndall::MaterialsOf(read.input.medium, read.ior, occupancy, std::move(triangles));
 }
 
 /// Writes the reference to an image (output 1).
@@ -199,17 +238,14 @@ std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
 vtkStandardNewMacro(vtkSolverComparison);
 
 vtkSolverComparison::vtkSolverComparison()
+  : Tried(std::make_unique<tyndall::ComparedSettings>())
 {
   const tyndall::ComparisonSettings defaults;
-  this->Directions = defaults.tried.directionsPerFace;
-  this->MapResolutions = defaults.tried.mapResolutions;
-  this->Coarsenings = defaults.tried.coarsenings;
-  this->Orders = defaults.tried.orders;
-  this->PhotonCounts = defaults.tried.photonCounts;
   this->Repeats = defaults.repeats;
   this->TimeBudget = defaults.timeBudget;
+  this->AcceptedError = defaults.acceptedError;
   this->EstimateError = defaults.estimates;
-  this->SetNumberOfInputPorts(4);
+  this->SetNumberOfInputPorts(MESH + 1);
   this->SetNumberOfOutputPorts(2);
 }
 
@@ -221,23 +257,40 @@ vtkTable* vtkSolverComparison::GetOutput()
 }
 
 // Defines the methods that add a value to a list property and that clear the list; VTK has no macro for these.
-#define LIST_OF_NUMBERS(add, removeAll, list) \
-  void vtkSolverComparison::add(int value)    \
-  {                                           \
-    this->list.push_back(value);              \
-    this->Modified();                         \
-  }                                           \
-  void vtkSolverComparison::removeAll()       \
-  {                                           \
-    this->list.clear();                       \
-    this->Modified();                         \
+#define LIST_OF_NUMBERS(type, add, removeAll, list) \
+  void vtkSolverComparison::add(type value)         \
+  {                                                 \
+    this->Tried->list.push_back(value);             \
+    this->Modified();                               \
+  }                                                 \
+  void vtkSolverComparison::removeAll()             \
+  {                                                 \
+    this->Tried->list.clear();                      \
+    this->Modified();                               \
   }
-LIST_OF_NUMBERS(AddDirections, RemoveAllDirections, Directions)
-LIST_OF_NUMBERS(AddMapResolution, RemoveAllMapResolutions, MapResolutions)
-LIST_OF_NUMBERS(AddCoarsening, RemoveAllCoarsenings, Coarsenings)
-LIST_OF_NUMBERS(AddOrders, RemoveAllOrders, Orders)
-LIST_OF_NUMBERS(AddPhotonCount, RemoveAllPhotonCounts, PhotonCounts)
+LIST_OF_NUMBERS(int, AddDirections, RemoveAllDirections, directionsPerFace)
+LIST_OF_NUMBERS(int, AddMapResolution, RemoveAllMapResolutions, mapResolutions)
+LIST_OF_NUMBERS(int, AddCoarsening, RemoveAllCoarsenings, coarsenings)
+LIST_OF_NUMBERS(int, AddOrders, RemoveAllOrders, orders)
+LIST_OF_NUMBERS(int, AddPhotonCount, RemoveAllPhotonCounts, photonCounts)
+LIST_OF_NUMBERS(int, AddTerms, RemoveAllTerms, terms)
+LIST_OF_NUMBERS(int, AddIntegratorOrder, RemoveAllIntegratorOrders, integratorOrders)
+LIST_OF_NUMBERS(double, AddStepSize, RemoveAllStepSizes, stepSizes)
+LIST_OF_NUMBERS(double, AddOctreeTolerance, RemoveAllOctreeTolerances, octreeTolerances)
+LIST_OF_NUMBERS(int, AddSupersamplingFactor, RemoveAllSupersamplingFactors, supersamplings)
+LIST_OF_NUMBERS(int, AddFilterSize, RemoveAllFilterSizes, filterSizes)
 #undef LIST_OF_NUMBERS
+
+int vtkSolverComparison::FillInputPortInformation(int port, vtkInformation* information)
+{
+  if (port != MESH)
+  {
+    return this->Superclass::FillInputPortInformation(port, information);
+  }
+  information->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  information->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
 
 int vtkSolverComparison::FillOutputPortInformation(int port, vtkInformation* information)
 {
@@ -245,7 +298,7 @@ int vtkSolverComparison::FillOutputPortInformation(int port, vtkInformation* inf
   return 1;
 }
 
-tyndall::ComparisonSettings vtkSolverComparison::Settings() const
+tyndall::ComparisonSettings vtkSolverComparison::Settings(const tyndall::ComparedScene& scene) const
 {
   using tyndall::ComparedMethod;
   const std::pair<bool, ComparedMethod> methods[] = {
@@ -259,6 +312,9 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
     { this->AdaptivePhotons, ComparedMethod::AdaptivePhotons },
     { this->PublishedPhotons, ComparedMethod::PublishedPhotons },
     { this->MonteCarlo, ComparedMethod::MonteCarlo },
+    { this->PhotonsThenMaps, ComparedMethod::PhotonsThenMaps },
+    { scene.mesh != nullptr, ComparedMethod::Voxelizer },
+    { this->Pictures, ComparedMethod::Pictures },
   };
   tyndall::ComparisonSettings settings;
   settings.methods.clear();
@@ -269,12 +325,9 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
       settings.methods.push_back(method);
     }
   }
+  settings.tried = *this->Tried;
   tyndall::ComparedSettings& tried = settings.tried;
-  tried.directionsPerFace = this->Directions;
-  tried.mapResolutions = this->MapResolutions;
-  tried.coarsenings = this->Coarsenings;
-  tried.orders = this->Orders;
-  tried.photonCounts = this->PhotonCounts;
+  tried.previews = this->Previews;
   tried.tolerance = this->Tolerance;
   tried.monteCarloReference = static_cast<tyndall::MonteCarloReference>(this->MonteCarloReference);
   if (this->AllSamplers)
@@ -284,6 +337,7 @@ tyndall::ComparisonSettings vtkSolverComparison::Settings() const
   }
   settings.repeats = this->Repeats;
   settings.timeBudget = this->TimeBudget;
+  settings.acceptedError = this->AcceptedError;
   settings.estimates = this->EstimateError;
   return settings;
 }
@@ -314,10 +368,16 @@ void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationV
   scene.levels = read.Levels();
   scene.periodic = { this->PeriodicX, this->PeriodicY, this->PeriodicZ };
   tyndall::IlluminationInput shining = this->ReadAllIllumination(inputs, read.input.Emits());
+  const std::array<tyndall::Rgb, 6>& faces = shining.illumination.faces;
+  scene.suitsEmitter = !shining.isDefaultSky && faces == std::array<tyndall::Rgb, 6>();
   scene.illumination = std::move(shining.illumination);
+  const std::optional<tyndall::VoxelizedMaterials> mesh =
+    ReadMesh(vtkPolyData::GetData(inputs[MESH]), vtkImageData::GetData(inputs[MEDIUM]), read, tyndall::OwnAxesOf(this));
+  scene.mesh = mesh ? &*mesh : nullptr;
+  this->TakeCamera(scene);
   const std::optional<tyndall::ReferenceLight> reference = ReadReference(vtkImageData::GetData(inputs[REFERENCE]));
   tyndall::Comparison comparison = tyndall::CompareSolvers(*tyndall::Device::Find(this->Device), scene,
-    this->Settings(), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
+    this->Settings(scene), reference ? &*reference : nullptr, tyndall::MonitorOf(this));
   TellOfDefaultSky(shining, comparison.leftOut);
   Write(comparison, this->GetOutput());
   this->TellOfIgnored(comparison, vtkImageData::GetData(inputs[MEDIUM]));
@@ -327,6 +387,21 @@ void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationV
   {
     vtkWarningMacro(<< warning);
   }
+}
+
+/// Gives the scene the camera of its pictures, unless position and focal point are the same.
+void vtkSolverComparison::TakeCamera(tyndall::ComparedScene& scene)
+{
+  tyndall::Camera camera;
+  camera.position = tyndall::Triple(this->CameraPosition);
+  camera.focalPoint = tyndall::Triple(this->CameraFocalPoint);
+  camera.viewUp = tyndall::Triple(this->CameraViewUp);
+  camera.viewAngle = this->CameraViewAngle;
+  if (camera.position != camera.focalPoint)
+  {
+    scene.camera = tyndall::InOwnAxes(camera, tyndall::OwnAxesOf(this));
+  }
+  std::copy_n(this->ImageSize, 2, scene.imageSize.begin());
 }
 
 /// Warns, also in field data, if the medium's refractive index is not 1 everywhere and a compared method ignores it.
@@ -347,6 +422,9 @@ void vtkSolverComparison::TellOfIgnored(const tyndall::Comparison& comparison, v
 void vtkSolverComparison::Note(const tyndall::Comparison& comparison)
 {
   this->ReferenceText = comparison.reference.text;
+  const Row* const recommended = tyndall::RecommendedOf(comparison.rows);
+  this->Recommended = InWords(recommended);
+  this->RecommendedFilters = recommended ? recommended->filters : "";
   this->DeviceName = comparison.device;
   tyndall::NoteLeftOut(this, tyndall::Lines(comparison.leftOut));
 }
@@ -355,7 +433,14 @@ void vtkSolverComparison::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(LightPropagationMaps, ConstantSource, AsPublished, AsPublishedSequential, DiscreteOrdinates,
-    LatticeBoltzmann, Photons, AdaptivePhotons, PublishedPhotons, MonteCarlo, Directions, MapResolutions, Coarsenings,
-    Orders, PhotonCounts, AllSamplers, MonteCarloReference, Repeats, TimeBudget, ReferenceText, DeviceName);
+    LatticeBoltzmann, Photons, AdaptivePhotons, PublishedPhotons, MonteCarlo, PhotonsThenMaps, Previews, Pictures,
+    CameraPosition, CameraFocalPoint, CameraViewUp, CameraViewAngle, ImageSize, AllSamplers, MonteCarloReference,
+    Repeats, TimeBudget, AcceptedError, ReferenceText, Recommended, RecommendedFilters, DeviceName);
+  const tyndall::ComparedSettings& tried = *this->Tried;
+  tyndall::PrintMembers(os, indent,
+    "Directions, MapResolutions, Coarsenings, Orders, PhotonCounts, Terms, IntegratorOrders, StepSizes, "
+    "OctreeTolerances, SupersamplingFactors, FilterSizes",
+    tried.directionsPerFace, tried.mapResolutions, tried.coarsenings, tried.orders, tried.photonCounts, tried.terms,
+    tried.integratorOrders, tried.stepSizes, tried.octreeTolerances, tried.supersamplings, tried.filterSizes);
   tyndall::PrintRun(os, indent, this);
 }

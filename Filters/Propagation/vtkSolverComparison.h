@@ -5,14 +5,16 @@
 #include "vtkPropagationAlgorithm.h"
 #include "vtkTyndallModule.h" // for export macro
 
+#include <memory>
 #include <string>
-#include <vector>
 
 class vtkImageData;
 class vtkTable;
 
 namespace tyndall
 {
+struct ComparedScene;
+struct ComparedSettings;
 struct Comparison;
 struct ComparisonSettings;
 }
@@ -34,6 +36,10 @@ struct ComparisonSettings;
  * of times smaller or larger, with cell array `fluence`, or `fluence_direct` for photons, or both (W/length^2; as many
  * components as the light has). Voxels where it is NaN are not compared. Light and reference are compared on the
  * coarser of their two grids, by voxel means; light of a coarsened medium is taken as constant in each voxel.
+ * Input 4, optional: the closed mesh (vtkPolyData) from which vtkMeshVoxelizer made the medium, which then needs its
+ * cell array `occupancy`: the mesh is voxelised with all SupersamplingFactors and FilterSizes, and photons march
+ * through each. Without input 3 the reference is then of photons in the mesh, voxelised with half the voxel edge and
+ * supersampling 16.
  *
  * Output 0: vtkTable `error_against_time`, one row per method and setting:
  *
@@ -41,8 +47,8 @@ struct ComparisonSettings;
  * |---|---|---|
  * | `method` |  | name of the method |
  * | `setting` |  | settings of the method, as text |
- * | `quantity` |  | compared array: `fluence`, or `fluence_direct` for photons, which do not follow scattered light |
- * | `grid` | | size in voxels, for example 64x64x64 |
+ * | `quantity` |  | `fluence`; `fluence_direct`: photons without scattered light; `radiance`: pictures |
+ * | `grid` | | size in voxels, for example 64x64x64; of pictures in pixels |
  * | `seconds` | s | median of Repeats runs, from input arrays to output arrays, without compilation of kernels |
  * | `peak_bytes` | byte | peak device memory; NaN for a method on the host |
  * | `error_l2` | 1 | 2-norm of the difference over voxels and channels, divided by the 2-norm of the reference |
@@ -54,10 +60,14 @@ struct ComparisonSettings;
  * | `face_power_out` | W | escaped power, 6 components: through -x, +x, -y, +y, -z, +z, channels summed |
  * | `power_in` | W | incident and emitted power, channels summed |
  * | `pareto` | 1 | 1 if no other row of the same quantity is both faster and more accurate, else 0 |
+ * | `recommended` | 1 | 1 for the recommended row of each quantity, of those with `filters`, see AcceptedError |
+ * | `filters` |  | filters that repeat the row, "Filter Property=Value ... \| Filter ..."; of coarser voxels: empty |
  * | `error of METHOD` | 1 | `error_l2` of METHOD, NaN in other methods' rows: for charts |
  *
- * and field data `reference` (a description), `left_out` (methods and settings that were not compared, with reasons)
- * and `device`.
+ * and field data `reference` (a description), `recommended` (the recommended row in words), `left_out` (methods and
+ * settings that were not compared, with reasons) and `device`. "#1" in `filters` is the output of the first filter,
+ * "@Mesh" what is connected to the input Mesh, and all inputs and properties that are not listed are those of the
+ * comparison.
  *
  * Output 1: the reference, vtkImageData with the cell arrays `fluence` and `fluence_direct`, as far as they are known,
  * for viewing or as input 3 of another comparison of the same scene.
@@ -65,7 +75,10 @@ struct ComparisonSettings;
  * The settings that are tried are, for propagation: all Directions on all Coarsenings of the grid (those that do not
  * divide its size are skipped); MapResolutions above 1 with 25 or more directions; limited Orders with the number of
  * Directions nearest to 25. For photons: all PhotonCounts with the Hammersley sampler, and with AllSamplers the second
- * largest count with the other samplers. The lattices of 18 and of 6 directions are tried on all Coarsenings.
+ * largest count with the other samplers. The lattices of 18 and of 6 directions are tried on all Coarsenings. Terms are
+ * tried for discrete ordinates with the number of Directions nearest to 25. Where light is refracted, the second
+ * largest PhotonCount is tried with all IntegratorOrders and StepSizes, and with octrees of all OctreeTolerances, whose
+ * construction is part of the time.
  *
  * With EstimateError (default on here) solvers estimate their errors, by an additional run that is not timed. Photons
  * do not support periodic axes and are skipped if there are any.
@@ -84,6 +97,7 @@ public:
 
   /// Input port of the reference; lower numbers are the ports of vtkLitMediumAlgorithm.
   static constexpr int REFERENCE = 3;
+  static constexpr int MESH = 4; ///< input port of the mesh
   /// Output port of the reference, a vtkImageData.
   static constexpr int REFERENCE_OUTPUT = 1;
 
@@ -92,6 +106,11 @@ public:
   ///@{
   /// Reference (vtkImageData) by connection or as data; null: a converged or Monte Carlo run (MonteCarloReference).
   tyndallInputMacro(Reference, REFERENCE);
+  ///@}
+
+  ///@{
+  /// Mesh (vtkPolyData) by connection or as data; null: no voxelisations are compared.
+  tyndallInputMacro(Mesh, MESH);
   ///@}
 
   ///@{
@@ -121,6 +140,33 @@ public:
   /// diffusion. Default off. Skipped if voxels are not cubes. If light is refracted, the uncollided light of the
   /// lattice is computed by photons, for each PhotonCount, and the lattice is skipped if Monte Carlo is.
   tyndallFlagMacro(LatticeBoltzmann);
+  ///@}
+
+  ///@{
+  /// Whether a chain is compared: photons along bent rays compute the uncollided light, for each PhotonCount, and light
+  /// propagation maps scatter it, along straight rays. Default off. Skipped where MonteCarlo is.
+  tyndallFlagMacro(PhotonsThenMaps);
+  ///@}
+
+  ///@{
+  /// Whether the preview of light propagation maps is compared (vtkLightPropagationMaps, Preview). Default off.
+  tyndallFlagMacro(Previews);
+  ///@}
+
+  ///@{
+  /// Whether pictures of the reference light are compared, of all qualities of vtkMediumRayCaster, with one of half the
+  /// step of its quality Reference. Default off. They need the camera, whose position must differ from its focal point,
+  /// and are of ImageSize pixels, default 320 x 240.
+  tyndallFlagMacro(Pictures);
+  tyndallSetRange3Macro(CameraPosition, double, tyndall::AnyLow, tyndall::AnyHigh);
+  vtkGetVector3Macro(CameraPosition, double);
+  tyndallSetRange3Macro(CameraFocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh);
+  vtkGetVector3Macro(CameraFocalPoint, double);
+  tyndallSetRange3Macro(CameraViewUp, double, tyndall::AnyLow, tyndall::AnyHigh);
+  vtkGetVector3Macro(CameraViewUp, double);
+  tyndallRangeMacro(CameraViewAngle, double, tyndall::AboveZero, 180.0);
+  tyndallSetRange2Macro(ImageSize, int, 1, VTK_INT_MAX);
+  vtkGetVector2Macro(ImageSize, int);
   ///@}
 
   ///@{
@@ -173,6 +219,31 @@ public:
   ///@}
 
   ///@{
+  /// Adds to the list of numbers of terms of the phase function that discrete ordinates try. Default none; valid 1 to
+  /// the number of directions.
+  void AddTerms(int terms);
+  void RemoveAllTerms();
+  ///@}
+  ///@{
+  /// Adds to the lists of orders (1, 2 or 4) and step sizes (0.05 to 1e4 voxels) of photons' integrators that are
+  /// tried, each order with each step size, and of the tolerances of octrees (0 to 1). Default none.
+  void AddIntegratorOrder(int order);
+  void RemoveAllIntegratorOrders();
+  void AddStepSize(double voxels);
+  void RemoveAllStepSizes();
+  void AddOctreeTolerance(double tolerance);
+  void RemoveAllOctreeTolerances();
+  ///@}
+  ///@{
+  /// Adds to the lists of supersampling factors (1 to 16) and filter sizes (odd, 1 to 65) with which Mesh is voxelised,
+  /// each factor with each size. Default 2, 4, 8 and 5, 9, 13.
+  void AddSupersamplingFactor(int factor);
+  void RemoveAllSupersamplingFactors();
+  void AddFilterSize(int voxels);
+  void RemoveAllFilterSizes();
+  ///@}
+
+  ///@{
   /// Whether photons are tried with all samplers. Default off.
   tyndallFlagMacro(AllSamplers);
   ///@}
@@ -191,9 +262,17 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: description of the reference, run time in seconds, the device's name, and the methods
-  /// and settings that were not compared, one per line.
+  /// Error `error_l2` that the recommended setting may have: the fastest row of at most this error is recommended or,
+  /// if there is none, the most accurate. Default 0.01, valid above 0.
+  tyndallRangeMacro(AcceptedError, double, tyndall::AboveZero, tyndall::AnyHigh);
+  ///@}
+
+  ///@{
+  /// Results of the last update: description of the reference, the recommended row in words and its filters, run time
+  /// in seconds, the device's name, and the methods and settings that were not compared, one per line.
   vtkGetCharFromStdStringMacro(ReferenceText);
+  vtkGetCharFromStdStringMacro(Recommended);
+  vtkGetCharFromStdStringMacro(RecommendedFilters);
   tyndallSecondsMacro();
   vtkGetCharFromStdStringMacro(DeviceName);
   tyndallLeftOutMacro();
@@ -203,6 +282,7 @@ protected:
   vtkSolverComparison();
   ~vtkSolverComparison() override;
 
+  int FillInputPortInformation(int port, vtkInformation* information) override;
   int FillOutputPortInformation(int port, vtkInformation* information) override;
   int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
@@ -210,7 +290,8 @@ private:
   vtkSolverComparison(const vtkSolverComparison&) = delete;
   void operator=(const vtkSolverComparison&) = delete;
 
-  tyndall::ComparisonSettings Settings() const;
+  tyndall::ComparisonSettings Settings(const tyndall::ComparedScene& scene) const;
+  void TakeCamera(tyndall::ComparedScene& scene);
   void Compare(vtkInformationVector** inputs, vtkInformationVector* outputs);
   void TellOfIgnored(const tyndall::Comparison& comparison, vtkImageData* medium);
   void Note(const tyndall::Comparison& comparison);
@@ -225,17 +306,24 @@ private:
   bool AdaptivePhotons = false;
   bool PublishedPhotons = false;
   bool MonteCarlo = false;
-  std::vector<int> Directions;
-  std::vector<int> MapResolutions;
-  std::vector<int> Coarsenings;
-  std::vector<int> Orders;
-  std::vector<int> PhotonCounts;
+  bool PhotonsThenMaps = false;
+  bool Previews = false;
+  bool Pictures = false;
+  double CameraPosition[3] = { 0.0, 0.0, 0.0 };
+  double CameraFocalPoint[3] = { 0.0, 0.0, 0.0 };
+  double CameraViewUp[3] = { 0.0, 0.0, 1.0 };
+  double CameraViewAngle = 30.0;
+  int ImageSize[2] = { 320, 240 };
+  const std::unique_ptr<tyndall::ComparedSettings> Tried; ///< the lists of settings
   bool AllSamplers = false;
   int MonteCarloReference = WHERE_IT_CAN_BEAT;
   int Repeats;
   double TimeBudget;
+  double AcceptedError;
 
   std::string ReferenceText;
+  std::string Recommended;
+  std::string RecommendedFilters;
   std::string DeviceName;
 };
 

@@ -1,8 +1,11 @@
 #include "Comparison/ComparedRun.h"
 
 #include "Device/Errors.h"
+#include "Numerics/NumberText.h"
+#include "Photons/Photons.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace tyndall
 {
@@ -16,22 +19,45 @@ const char* NameOf(ComparedMethod method)
     case ComparedMethod::PublishedSequential: return "as published, sequential";
     case ComparedMethod::DiscreteOrdinates: return "discrete ordinates";
     case ComparedMethod::LatticeBoltzmann: return "lattice Boltzmann";
+    case ComparedMethod::PhotonsThenMaps: return "photons, then maps";
     case ComparedMethod::Photons: return "photons";
     case ComparedMethod::AdaptivePhotons: return "adaptive photons";
     case ComparedMethod::MonteCarlo: return "Monte Carlo";
+    case ComparedMethod::Voxelizer: return "voxelizer and photons";
+    case ComparedMethod::Pictures: return "picture";
     default: return "photons as published";
   }
 }
 
 bool IsOfPhotons(ComparedMethod method)
 {
-  return IsDirectOnly(method) || method == ComparedMethod::MonteCarlo;
+  return QuantityOf(method) == ComparedQuantity::FluenceDirect || method == ComparedMethod::MonteCarlo;
 }
 
-bool IsDirectOnly(ComparedMethod method)
+ComparedQuantity QuantityOf(ComparedMethod method)
 {
-  return method == ComparedMethod::Photons || method == ComparedMethod::AdaptivePhotons ||
-    method == ComparedMethod::PublishedPhotons;
+  switch (method)
+  {
+    case ComparedMethod::Photons:
+    case ComparedMethod::AdaptivePhotons:
+    case ComparedMethod::PublishedPhotons:
+    case ComparedMethod::Voxelizer: return ComparedQuantity::FluenceDirect;
+    case ComparedMethod::Pictures: return ComparedQuantity::Radiance;
+    default: return ComparedQuantity::Fluence;
+  }
+}
+
+const char* NameOf(ComparedQuantity quantity)
+{
+  return quantity == ComparedQuantity::Fluence    ? "fluence"
+    : quantity == ComparedQuantity::FluenceDirect ? "fluence_direct"
+                                                  : "radiance";
+}
+
+int UsualDirections(const ComparedSettings& settings)
+{
+  return *std::min_element(settings.directionsPerFace.begin(), settings.directionsPerFace.end(),
+    [](int a, int b) { return std::abs(a - 25) < std::abs(b - 25); });
 }
 
 std::vector<ComparedRun> RunsOf(
@@ -39,7 +65,12 @@ std::vector<ComparedRun> RunsOf(
 {
   std::vector<ComparedRun> runs = IsOfPhotons(method) ? PhotonRunsOf(method, device, scene, settings)
     : method == ComparedMethod::LatticeBoltzmann      ? LatticeRunsOf(device, scene, settings)
+    : method == ComparedMethod::Pictures              ? PictureRunsOf(device, scene)
                                                       : PropagationRunsOf(method, device, scene, settings);
+  for (ComparedRun& run : runs)
+  {
+    run.filters = scene.suitsEmitter || run.filters.find("PhotonEmitter") == std::string::npos ? run.filters : "";
+  }
   std::stable_sort(
     runs.begin(), runs.end(), [](const ComparedRun& a, const ComparedRun& b) { return a.cost < b.cost; });
   return runs;
@@ -47,30 +78,65 @@ std::vector<ComparedRun> RunsOf(
 
 namespace
 {
-void CheckList(const std::vector<int>& values, const char* name, bool mayBeEmpty, int most = 1 << 30)
+/// Checks that all values of a list are in a range.
+/// @throws InvalidInput, which names the list and the first value that is not
+template <class Number>
+void CheckRange(const std::vector<Number>& values, const char* name, double least, double most)
 {
-  if (values.empty() && !mayBeEmpty)
+  for (Number value : values)
+  {
+    if (!(value >= least && value <= most))
+    {
+      throw InvalidInput(std::string(name) + " has " + Text("%.12g", value) + "; its numbers must be " +
+        Text("%.12g", least) + " to " + Text("%.12g", most) + ".");
+    }
+  }
+}
+
+void CheckList(const std::vector<int>& values, const char* name, int most = 1 << 30)
+{
+  if (values.empty())
   {
     throw InvalidInput(std::string(name) + " is empty: there is nothing to try. Give at least one number.");
   }
-  for (int value : values)
+  CheckRange(values, name, 1, most);
+}
+
+void CheckIntegrators(const ComparedSettings& settings)
+{
+  CheckRange(settings.octreeTolerances, "OctreeTolerances", 0.0, 1.0);
+  MarchSettings marching;
+  for (int order : settings.integratorOrders)
   {
-    if (value < 1 || value > most)
-    {
-      throw InvalidInput(std::string(name) + " has " + std::to_string(value) + "; its numbers must be 1 to " +
-        std::to_string(most) + ".");
-    }
+    marching.order = order;
+    Check(marching);
+  }
+  for (double step : settings.stepSizes)
+  {
+    marching.stepSize = step;
+    Check(marching);
   }
 }
 }
 
 void Check(const ComparedSettings& settings)
 {
-  CheckList(settings.directionsPerFace, "Directions", false);
-  CheckList(settings.mapResolutions, "MapResolutions", false, 16);
-  CheckList(settings.coarsenings, "Coarsenings", false);
-  CheckList(settings.orders, "Orders", true);
-  CheckList(settings.photonCounts, "PhotonCounts", false);
+  CheckList(settings.directionsPerFace, "Directions");
+  CheckList(settings.mapResolutions, "MapResolutions", 16);
+  CheckList(settings.coarsenings, "Coarsenings");
+  CheckRange(settings.orders, "Orders", 1, 1 << 30);
+  CheckRange(settings.terms, "Terms", 1, 6 * UsualDirections(settings));
+  CheckList(settings.photonCounts, "PhotonCounts");
+  CheckIntegrators(settings);
+  CheckList(settings.supersamplings, "SupersamplingFactors", 16);
+  CheckList(settings.filterSizes, "FilterSizes", 65);
+  for (int size : settings.filterSizes)
+  {
+    if (size % 2 == 0)
+    {
+      throw InvalidInput("FilterSizes has " + std::to_string(size) + "; the width of a filter must be an odd number.");
+    }
+  }
   if (settings.samplers.empty())
   {
     throw InvalidInput("There is no sampler to try photons by.");

@@ -23,18 +23,29 @@ enum class ComparedMethod
   PublishedSequential, ///< light propagation maps as published, Algorithm 1, which is slow
   DiscreteOrdinates,   ///< conservative discrete ordinates, anisotropic scattering by spherical harmonics
   LatticeBoltzmann,    ///< diffusion on lattices of 18 and of 6 directions, solved for its steady state
+  PhotonsThenMaps,     ///< uncollided light by photons along bent rays, scattered light by light propagation maps
   Photons,             ///< evenly distributed photons, conservative marching and reconstruction
   AdaptivePhotons,     ///< photons distributed by an importance map, conservative marching and reconstruction
   PublishedPhotons,    ///< photons with marching and Gauss filter as published
   MonteCarlo,          ///< photons scattered until they are absorbed or leave, without a filter: unbiased but noisy
+  Voxelizer,           ///< voxelisation of the scene's mesh, then Photons
+  Pictures,            ///< pictures of the reference light, cast at each quality
 };
 const char* NameOf(ComparedMethod method);
 
+/// What is compared with the reference.
+enum class ComparedQuantity
+{
+  Fluence,
+  FluenceDirect, ///< fluence of uncollided light: all that Photons and their variants compute
+  Radiance,      ///< pixels of a picture
+};
+ComparedQuantity QuantityOf(ComparedMethod method);
+/// Name of the array in which filters return a quantity.
+const char* NameOf(ComparedQuantity quantity);
+
 /// Whether a method traces photons.
 bool IsOfPhotons(ComparedMethod method);
-
-/// Whether a method computes uncollided light only, so that it is compared with ReferenceLight::fluenceDirect.
-bool IsDirectOnly(ComparedMethod method);
 
 /// When Monte Carlo photons are the reference of a comparison whose refractive index is constant.
 enum class MonteCarloReference
@@ -53,8 +64,10 @@ constexpr int FewestForFinerMaps = 25;
 /// Settings that a comparison tries. Propagation: all numbers of directions on all grids; map resolutions (rays per
 /// voxel edge and direction) above 1 on the scene's grid, from 25 directions per face on; limits on the number of
 /// scattering orders with the number of directions nearest to 25. Photons: all counts with the first of `samplers`, and
-/// the second largest count with the others. Lattices: both lattices, on all grids with cubic voxels; with a varying
-/// refractive index on the scene's grid only, with uncollided light from each count of photons.
+/// the second largest count with the others, with the integrators and octrees, and with the voxelisations of a mesh.
+/// Lattices: both lattices, on all grids with cubic voxels; with a varying refractive index on the scene's grid only,
+/// with uncollided light from each count of photons. PhotonsThenMaps: each count of photons, with the number of
+/// directions nearest to 25. Pictures: each quality.
 struct ComparedSettings
 {
   std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };
@@ -66,6 +79,17 @@ struct ComparedSettings
   std::vector<int> orders = { 1, 3, 10 };
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
+  /// Numbers of terms of the phase function that discrete ordinates try with the number of directions nearest to 25, in
+  /// addition to as many terms as the default has and the quadrature supports.
+  std::vector<int> terms;
+  bool previews = false; ///< whether light propagation maps try their preview
+  /// Orders and step sizes (MarchSettings) that Photons try along bent rays, each order with each step size, in
+  /// addition to the defaults; and tolerances of octrees, whose construction counts as run time.
+  std::vector<int> integratorOrders;
+  std::vector<double> stepSizes, octreeTolerances;
+  /// Numbers of samples per voxel edge, and widths of the filter of the index, with which a mesh is voxelised, each
+  /// number with each width.
+  std::vector<int> supersamplings = { 2, 4, 8 }, filterSizes = { 5, 9, 13 };
   double tolerance = PropagationSettings().tolerance; ///< tolerance of propagation, PropagationSettings::tolerance
   /// Whether the photons that give the reference for a varying refractive index are followed through all collisions;
   /// false: only up to the first one, which gives uncollided light.
@@ -75,16 +99,20 @@ struct ComparedSettings
   MonteCarloReference monteCarloReference = MonteCarloReference::WhereItCanBeat;
 };
 
-/// One method with one setting, ready to run.
+/// One method with one setting, ready to run: what becomes a row of the comparison.
 struct ComparedRun
 {
   ComparedMethod method = ComparedMethod::LightPropagationMaps;
   std::string setting; ///< description of the setting, for the user
-  Grid grid;           ///< grid of the resulting light
-  double cost = 1.0;   ///< cost relative to other runs of the method: rays times voxels, or photons
+  /// The filters that repeat the run, in the order of the data: "Filter Property=Value ... | Filter ...". A value is a
+  /// number, "#2" for the output of the second filter, or nothing: nothing is connected. All other inputs and
+  /// properties are those of the comparison. Empty: filters cannot repeat it (coarser voxels).
+  std::string filters;
+  Grid grid;         ///< grid of the resulting light; a picture's pixels
+  double cost = 1.0; ///< cost relative to other runs of the method: rays times voxels, or photons
   bool allOrders = true;
   bool estimates = false; ///< whether the method can estimate its own error
-  /// Computes the light.
+  /// Computes the light; of a picture, its radiance as `fluence` of three channels.
   /// @param estimate  whether to estimate the error as well
   std::function<LightField(bool estimate, const Monitor& monitor)> solve;
 };
@@ -102,10 +130,26 @@ std::vector<ComparedRun> PhotonRunsOf(
 std::vector<ComparedRun> PropagationRunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings);
 
+std::vector<ComparedRun> PictureRunsOf(Device& device, const ComparedScene& scene);
+
+/// The number of directions per face nearest to 25, with which settings are tried that do not concern directions.
+int UsualDirections(const ComparedSettings& settings);
+
 /// Light of `photons` evenly distributed photons without a filter, for a reference.
 /// @param orders  MarchSettings::maximumOrders: 1, unscattered light; 0, all orders
 LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t photons, int orders, std::uint64_t seed,
   const Monitor& monitor);
+
+/// A chain: uncollided light by photons, then scattered light by a solver to which it is given.
+/// @param solve  solves with the given illumination, which has no other light than the photons'
+LightField SolveAfterPhotons(Device& device, const ComparedScene& scene, int photons,
+  const std::function<LightField(const Illumination&, const Monitor&)>& solve, const Monitor& monitor);
+/// ComparedRun::filters of a chain: the filters of the photons, and `solver` with their light as uncollided light.
+std::string FiltersAfterPhotons(int photons, const std::string& solver);
+
+/// Radiance, 3 per pixel, with which pictures are compared: of rays that take small steps and end nowhere in the
+/// medium.
+std::vector<float> ReferencePicture(Device& device, const ComparedScene& scene, const Monitor& monitor);
 
 /// Light by the conservative scheme of light propagation maps.
 LightField Propagate(Device& device, const ComparedScene& scene, PropagationSettings settings, const Monitor& monitor);

@@ -1,9 +1,11 @@
 #include "Comparison/ComparedScene.h"
 
+#include "Device/Errors.h"
 #include "Medium/Coarsening.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tyndall
 {
@@ -76,5 +78,108 @@ std::string ComparedScene::WhyNotByPhotons(bool all) const
     : goesRound                           ? "photons do not return on the other side of periodic axes"
     : all && Reflects(this->illumination) ? "photons do not come back from faces that give back light"
                                           : "";
+}
+
+namespace
+{
+constexpr double Alike = 1e-5; ///< largest relative difference of the coefficients of one material
+
+/// Indices of the voxels that have this occupancy.
+std::vector<std::size_t> VoxelsWith(float occupancy, const Grid& grid, const Field& occupancies)
+{
+  std::vector<std::size_t> voxels;
+  for (std::size_t i = 0; i < grid.VoxelCount(); ++i)
+  {
+    if (occupancies.At(i, 0) == occupancy)
+    {
+      voxels.push_back(i);
+    }
+  }
+  return voxels;
+}
+
+/// The value that all voxels of a material have in a channel.
+double OnlyValueOf(const Field& field, int channel, const std::vector<std::size_t>& voxels, const char* name)
+{
+  const float first = field.At(voxels.front(), channel);
+  for (std::size_t voxel : voxels)
+  {
+    if (std::abs(field.At(voxel, channel) - first) > Alike * std::abs(first))
+    {
+      throw InvalidInput(std::string("The Mesh is of one material, and so is what is outside of it; but voxels of the "
+                                     "medium that are entirely on one side of it differ in ") +
+        name + ". Disconnect Mesh, or voxelise one mesh without noise.");
+    }
+  }
+  return first;
+}
+
+Material MaterialIn(const Medium& medium, const std::vector<std::size_t>& voxels)
+{
+  Material material;
+  for (int channel = 0; channel < 3; ++channel)
+  {
+    material.sigma_a[channel] = OnlyValueOf(medium.sigma_a, channel, voxels, "sigma_a");
+    material.sigma_s[channel] = OnlyValueOf(medium.sigma_s, channel, voxels, "sigma_s");
+  }
+  material.g = medium.phase.MeanCosine(voxels.front(), 0);
+  return material;
+}
+}
+
+VoxelizedMaterials MaterialsOf(const Medium& medium, const Field& ior, const Field& occupancy, TriangleMesh&& mesh)
+{
+  const std::vector<std::size_t> inside = VoxelsWith(1.0f, medium.grid, occupancy),
+                                 outside = VoxelsWith(0.0f, medium.grid, occupancy);
+  if (inside.empty() || outside.empty())
+  {
+    throw InvalidInput("No voxel of the medium is entirely inside, or none is entirely outside the Mesh, so that its "
+                       "material is not known. Use smaller voxels.");
+  }
+  VoxelizedMaterials materials = { { "The mesh", std::move(mesh), MaterialIn(medium, inside) },
+    MaterialIn(medium, outside) };
+  CheckClosed(materials.inside.mesh, materials.inside.name, medium.grid, VoxelizationSettings().samples);
+  if (ior.values)
+  {
+    // The index is smoothed across the surface: the materials have its extremes.
+    const auto less = [&](std::size_t a, std::size_t b) { return ior.values[a] < ior.values[b]; };
+    const auto in = std::minmax_element(inside.begin(), inside.end(), less);
+    const auto out = std::minmax_element(outside.begin(), outside.end(), less);
+    const bool denser = ior.values[*in.second] > ior.values[*out.first];
+    materials.inside.material.n = ior.values[denser ? *in.second : *in.first];
+    materials.outside.n = ior.values[denser ? *out.first : *out.second];
+  }
+  return materials;
+}
+
+namespace
+{
+RefractiveMediumSettings SettingsOn(
+  const ComparedScene& scene, int refinement, const VoxelizationSettings& voxelization, int filterSize)
+{
+  RefractiveMediumSettings settings;
+  settings.grid = Refined(scene.medium.grid, { refinement, refinement, refinement });
+  settings.outside = scene.mesh->outside;
+  settings.voxelization = voxelization;
+  settings.filterSize = filterSize;
+  return settings;
+}
+}
+
+VoxelizedScene::VoxelizedScene(Device& device, const ComparedScene& scene, int refinement,
+  const VoxelizationSettings& voxelization, int filterSize, const Monitor& monitor)
+  : Voxelized(scene)
+{
+  const RefractiveMediumSettings settings = SettingsOn(scene, refinement, voxelization, filterSize);
+  this->Voxels = Voxelize(device, { scene.mesh->inside }, settings, monitor);
+  this->Voxelized.medium.grid = settings.grid;
+  this->Voxelized.medium.sigma_a = { this->Voxels.sigma_a.data(), this->Voxels.components };
+  this->Voxelized.medium.sigma_s = { this->Voxels.sigma_s.data(), this->Voxels.components };
+  this->Voxelized.ior = { this->Voxels.ior.empty() ? nullptr : this->Voxels.ior.data() };
+  this->Voxelized.levels = nullptr;
+  if (!this->Voxels.gByVoxel.empty())
+  {
+    this->Voxelized.medium.phase = scene.medium.phase.WithG({ this->Voxels.gByVoxel.data(), this->Voxels.components });
+  }
 }
 }

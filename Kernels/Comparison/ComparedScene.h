@@ -1,9 +1,13 @@
 #pragma once
 
+#include "Device/Device.h"
+#include "Device/Monitor.h"
 #include "LightPropagation/Accuracy/ResampledScene.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
 #include "Medium/Medium.h"
+#include "Refraction/Index/RefractiveMedium.h"
+#include "Viewing/Scene/Camera.h"
 
 #include <array>
 #include <cstdint>
@@ -29,6 +33,19 @@ std::optional<Factors> FactorsBetween(const Grid& fine, const Grid& coarse);
 /// @param factors  fine voxels per coarse voxel along each axis
 std::vector<float> Averaged(const float* values, int components, const Grid& fine, const Factors& factors);
 
+/// A closed mesh of one material in another.
+struct VoxelizedMaterials
+{
+  Solid inside;
+  Material outside;
+};
+
+/// The materials of a voxelised medium: those of the voxels entirely inside and entirely outside the mesh.
+/// @param occupancy  fraction of each voxel inside the mesh
+/// @throws InvalidInput if no voxel is entirely inside or outside, voxels of one material differ in a coefficient (as
+///   with noise, or several materials), or the mesh is open
+VoxelizedMaterials MaterialsOf(const Medium& medium, const Field& ior, const Field& occupancy, TriangleMesh&& mesh);
+
 /// The scene that all solvers of a comparison solve. Does not own its arrays.
 struct ComparedScene
 {
@@ -37,11 +54,36 @@ struct ComparedScene
   Field ior;                            ///< refractive index; null: 1 everywhere
   const std::uint8_t* levels = nullptr; ///< octree level of each voxel, for photons; null: no octree
   std::array<bool, 3> periodic = { false, false, false };
+  /// Whether a photon emitter can be given the scene's light: false with boundary radiance or a default sky.
+  bool suitsEmitter = true;
+  /// The mesh that the medium was voxelised from, with its material and the one outside (MaterialsOf); null: none.
+  const VoxelizedMaterials* mesh = nullptr;
+  std::optional<Camera> camera; ///< camera of the pictures that are compared
+  std::array<int, 2> imageSize = { 320, 240 };
+  Field seen; ///< fluence that pictures show, W / length^2, in the scene's voxels; null: not known yet
 
   bool BendsLight() const; ///< whether the refractive index varies
   bool Emits() const;      ///< whether any voxel emits
   /// Reason why photons cannot simulate this scene; empty if they can.
   /// @param all  whether scattered light is wanted as well as uncollided light
   std::string WhyNotByPhotons(bool all) const;
+};
+
+/// A scene whose mesh is voxelised anew, on a grid with voxels of the same or of smaller size.
+class VoxelizedScene
+{
+public:
+  /// @param scene  scene with a mesh; must outlive this object
+  /// @param refinement  voxels per voxel of the scene along each axis
+  VoxelizedScene(Device& device, const ComparedScene& scene, int refinement, const VoxelizationSettings& voxelization,
+    int filterSize, const Monitor& monitor);
+  VoxelizedScene(const VoxelizedScene&) = delete;
+  VoxelizedScene& operator=(const VoxelizedScene&) = delete;
+
+  const ComparedScene& Scene() const { return this->Voxelized; }
+
+private:
+  RefractiveMedium Voxels;
+  ComparedScene Voxelized;
 };
 }

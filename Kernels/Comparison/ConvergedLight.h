@@ -48,6 +48,7 @@ struct ReferenceLight
   /// Fluence, W / length^2, `channels` per voxel; empty: unknown; NaN: unknown in this voxel.
   std::vector<float> fluence;
   std::vector<float> fluenceDirect; ///< fluence of uncollided light, in the shape of `fluence`
+  std::vector<float> radiance;      ///< picture of the fluence, 3 per pixel of the compared pictures; empty: unknown
   std::string text;                 ///< description of the reference for the user
 };
 

@@ -11,20 +11,6 @@ namespace
 {
 constexpr int Lattices[] = { 18, 6 }; ///< numbers of directions of the two lattices that are compared
 
-/// Computes uncollided light by photons and scattered light by the lattice Boltzmann method, so that the run time
-/// covers both.
-LightField SolveWithPhotons(
-  Device& device, const ComparedScene& scene, int photons, const LatticeSettings& settings, const Monitor& monitor)
-{
-  const LightField direct =
-    MarchEvenly(device, scene, static_cast<std::size_t>(photons), 1, 1, OfPart(monitor, 0.0, 0.5));
-  Illumination handed;
-  handed.uncollided.fluence = { direct.fluence.data(), direct.channels };
-  handed.uncollided.escaped = direct.facePowerOut;
-  return SolveLatticeBoltzmann(
-    device, Domain(scene.medium.grid), scene.medium, scene.ior, handed, settings, OfPart(monitor, 0.5, 1.0));
-}
-
 LatticeSettings SettingsOf(int directions, const ComparedScene& scene, const ComparedSettings& settings)
 {
   LatticeSettings of;
@@ -39,6 +25,7 @@ ComparedRun RunOf(int directions, const Grid& grid)
   ComparedRun run;
   run.method = ComparedMethod::LatticeBoltzmann;
   run.setting = std::to_string(directions) + " directions";
+  run.filters = "LatticeBoltzmannLighting Lattice=" + std::to_string(directions);
   run.grid = grid;
   run.cost = static_cast<double>(grid.VoxelCount()) * directions;
   return run;
@@ -64,6 +51,7 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     const auto scaled = coarse ? std::make_shared<CoarseScene>(given, grid) : nullptr;
     ComparedRun run = RunOf(directions, grid);
     run.setting += coarse ? ", voxels x " + std::to_string(coarsening) : "";
+    run.filters = coarse ? "" : run.filters;
     run.solve = [=, &device](bool, const Monitor& monitor) {
       const SceneBlock solved = scaled ? scaled->Scene() : given;
       return SolveLatticeBoltzmann(
@@ -86,8 +74,13 @@ void AddBent(std::vector<ComparedRun>& runs, int directions, Device& device, con
     ComparedRun run = RunOf(directions, scene.medium.grid);
     run.setting += ", uncollided light of " + std::to_string(photons) + " photons";
     run.cost += photons;
-    run.solve = [=, &device, &scene](
-                  bool, const Monitor& monitor) { return SolveWithPhotons(device, scene, photons, of, monitor); };
+    run.filters = FiltersAfterPhotons(photons, run.filters);
+    run.solve = [=, &device, &scene](bool, const Monitor& monitor) {
+      const auto solve = [&](const Illumination& handed, const Monitor& part) {
+        return SolveLatticeBoltzmann(device, Domain(scene.medium.grid), scene.medium, scene.ior, handed, of, part);
+      };
+      return SolveAfterPhotons(device, scene, photons, solve, monitor);
+    };
     runs.push_back(std::move(run));
   }
 }

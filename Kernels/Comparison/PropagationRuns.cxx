@@ -2,12 +2,12 @@
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
+#include "LightPropagation/Accuracy/PreviewLight.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 
 namespace tyndall
@@ -18,6 +18,8 @@ namespace
 struct Setting
 {
   int directions = 25, map = 1, coarsening = 1, orders = 0;
+  int terms =
+    0; ///< of the phase function, for discrete ordinates; 0: OrdinatesSettings' or what the quadrature supports
 };
 
 std::string InWords(const Setting& setting)
@@ -27,10 +29,11 @@ std::string InWords(const Setting& setting)
   words += setting.coarsening > 1 ? ", voxels x " + std::to_string(setting.coarsening) : "";
   words += setting.orders == 1 ? ", 1 order" : "";
   words += setting.orders > 1 ? ", " + std::to_string(setting.orders) + " orders" : "";
+  words += setting.terms > 0 ? ", " + std::to_string(setting.terms) + " terms" : "";
   return words;
 }
 
-std::vector<Setting> SettingsToTry(const ComparedSettings& settings)
+std::vector<Setting> SettingsToTry(ComparedMethod method, const ComparedSettings& settings)
 {
   std::vector<Setting> all;
   for (int coarsening : settings.coarsenings)
@@ -46,24 +49,27 @@ std::vector<Setting> SettingsToTry(const ComparedSettings& settings)
       }
     }
   }
-  const auto nearest = std::min_element(settings.directionsPerFace.begin(), settings.directionsPerFace.end(),
-    [](int a, int b) { return std::abs(a - 25) < std::abs(b - 25); });
   for (int orders : settings.orders)
   {
-    all.push_back({ *nearest, 1, 1, orders });
+    all.push_back({ UsualDirections(settings), 1, 1, orders });
+  }
+  for (int terms : method == ComparedMethod::DiscreteOrdinates ? settings.terms : std::vector<int>())
+  {
+    all.push_back({ UsualDirections(settings), 1, 1, 0, terms });
   }
   return all;
 }
 
 /// Settings of discrete ordinates that correspond to those of propagation, with as many spherical harmonics as the
-/// quadrature supports.
-OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
+/// quadrature supports, or with `terms` terms.
+OrdinatesSettings AsOrdinates(const PropagationSettings& settings, int terms)
 {
   OrdinatesSettings as;
   as.directionsPerFace = settings.directionsPerFace;
   as.maximumOrders = settings.maximumOrders;
   as.tolerance = settings.tolerance;
   as.periodic = settings.periodic;
+  as.terms = terms > 0 ? terms : as.terms;
   for (int degree = 4; as.terms > 6 * as.directionsPerFace; --degree)
   {
     as.terms = degree * degree;
@@ -73,20 +79,23 @@ OrdinatesSettings AsOrdinates(const PropagationSettings& settings)
 
 /// The solver of a method.
 /// @param device  must outlive the solver
-PropagationSolver SolverOf(ComparedMethod method, Device& device)
+/// @param terms  Setting::terms
+PropagationSolver SolverOf(ComparedMethod method, Device& device, int terms)
 {
-  return [method, &device](const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor) {
-    const Medium& medium = scene.medium;
-    const Illumination& illumination = scene.illumination;
-    switch (method)
-    {
-      case ComparedMethod::Published: return SolveParallel(device, medium, illumination, settings, monitor);
-      case ComparedMethod::PublishedSequential: return SolveSequential(medium, illumination, settings, monitor);
-      case ComparedMethod::DiscreteOrdinates:
-        return SolveDiscreteOrdinates(device, scene.domain, medium, illumination, AsOrdinates(settings), monitor);
-      default: return SolveConservative(device, scene.domain, medium, illumination, settings, monitor);
-    }
-  };
+  return
+    [method, terms, &device](const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor) {
+      const Medium& medium = scene.medium;
+      const Illumination& illumination = scene.illumination;
+      switch (method)
+      {
+        case ComparedMethod::Published: return SolveParallel(device, medium, illumination, settings, monitor);
+        case ComparedMethod::PublishedSequential: return SolveSequential(medium, illumination, settings, monitor);
+        case ComparedMethod::DiscreteOrdinates:
+          return SolveDiscreteOrdinates(
+            device, scene.domain, medium, illumination, AsOrdinates(settings, terms), monitor);
+        default: return SolveConservative(device, scene.domain, medium, illumination, settings, monitor);
+      }
+    };
 }
 
 PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, const ComparedSettings& settings)
@@ -104,38 +113,117 @@ PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, co
   }
   return of;
 }
+
+std::string FiltersOf(ComparedMethod method, const Setting& setting, int terms)
+{
+  if (setting.coarsening > 1)
+  {
+    return {};
+  }
+  std::string settings = " DirectionsPerFace=" + std::to_string(setting.directions);
+  settings += setting.map > 1 ? " MapResolution=" + std::to_string(setting.map) : "";
+  settings += setting.orders > 0 ? " MaximumOrders=" + std::to_string(setting.orders) : "";
+  switch (method)
+  {
+    case ComparedMethod::DiscreteOrdinates: return "DiscreteOrdinates" + settings + " Terms=" + std::to_string(terms);
+    case ComparedMethod::ConstantSource: return "LightPropagationMaps" + settings + " Source=0 Acceleration=0";
+    case ComparedMethod::Published: return "LightPropagationMaps" + settings + " Scheme=0";
+    case ComparedMethod::PublishedSequential: return "LightPropagationMaps" + settings + " Scheme=0 Algorithm=0";
+    default: return "LightPropagationMaps" + settings;
+  }
+}
+
+/// The run of a method with one setting.
+/// @param factors  of the coarsening
+ComparedRun RunOf(ComparedMethod method, const Setting& setting, const Factors& factors, Device& device,
+  const ComparedScene& scene, const ComparedSettings& settings)
+{
+  const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination };
+  const auto scaled =
+    setting.coarsening > 1 ? std::make_shared<CoarseScene>(given, Coarsened(scene.medium.grid, factors)) : nullptr;
+  const PropagationSolver solver = SolverOf(method, device, setting.terms);
+  const PropagationSettings of = SettingsOf(method, setting, settings);
+  ComparedRun run;
+  run.method = method;
+  run.setting = InWords(setting);
+  run.filters = FiltersOf(method, setting, AsOrdinates(of, setting.terms).terms);
+  run.grid = scaled ? scaled->Scene().medium.grid : scene.medium.grid;
+  run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions * setting.map * setting.map;
+  run.allOrders = setting.orders == 0;
+  run.estimates = method != ComparedMethod::DiscreteOrdinates;
+  run.solve = [=, &scene](bool estimate, const Monitor& monitor) {
+    PropagationSettings now = of;
+    now.periodic = scene.periodic;
+    const SceneBlock solved = scaled ? scaled->Scene() : given;
+    return estimate ? SolveWithErrorEstimate(solved, now, monitor, solver) : solver(solved, now, monitor);
+  };
+  return run;
+}
+
+ComparedRun PreviewOf(Device& device, const ComparedScene& scene, const ComparedSettings& settings)
+{
+  ComparedRun run;
+  run.setting = "preview";
+  run.filters = "LightPropagationMaps Preview=1";
+  run.grid = scene.medium.grid;
+  run.allOrders = false; // so that its short time is not taken for that of a solve
+  run.solve = [=, &device, &scene](bool, const Monitor& monitor) {
+    PropagationSettings of = SettingsOfPreview({});
+    of.tolerance = std::max(of.tolerance, settings.tolerance);
+    of.periodic = scene.periodic;
+    const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination };
+    return SolvePreview(given, of, PreviewGrid(scene.medium.grid), [&](const SceneBlock& block) {
+      return SolveConservative(device, block.domain, block.medium, block.illumination, of, monitor);
+    });
+  };
+  return run;
+}
+
+/// Maps that scatter the light of each count of photons.
+std::vector<ComparedRun> RunsAfterPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings)
+{
+  std::vector<ComparedRun> runs;
+  const Setting setting = { UsualDirections(settings) };
+  const PropagationSettings of = SettingsOf(ComparedMethod::PhotonsThenMaps, setting, settings);
+  for (int photons : settings.photonCounts)
+  {
+    ComparedRun run;
+    run.method = ComparedMethod::PhotonsThenMaps;
+    run.setting = InWords(setting) + ", uncollided light of " + std::to_string(photons) + " photons";
+    run.filters = FiltersAfterPhotons(photons, FiltersOf(run.method, setting, 0));
+    run.grid = scene.medium.grid;
+    run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions + photons;
+    run.solve = [=, &device, &scene](bool, const Monitor& monitor) {
+      const auto solve = [&](const Illumination& handed, const Monitor& part) {
+        return SolveConservative(device, scene.medium, handed, of, part);
+      };
+      return SolveAfterPhotons(device, scene, photons, solve, monitor);
+    };
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
 }
 
 std::vector<ComparedRun> PropagationRunsOf(
   ComparedMethod method, Device& device, const ComparedScene& scene, const ComparedSettings& settings)
 {
-  const PropagationSolver solver = SolverOf(method, device);
+  if (method == ComparedMethod::PhotonsThenMaps)
+  {
+    return RunsAfterPhotons(device, scene, settings);
+  }
   std::vector<ComparedRun> runs;
-  for (const Setting& setting : SettingsToTry(settings))
+  for (const Setting& setting : SettingsToTry(method, settings))
   {
     const std::optional<Factors> factors = CoarseningBy(setting.coarsening, scene.medium.grid);
-    if (!factors || (setting.map > 1 && method == ComparedMethod::DiscreteOrdinates))
+    if (factors && (setting.map == 1 || method != ComparedMethod::DiscreteOrdinates))
     {
-      continue;
+      runs.push_back(RunOf(method, setting, *factors, device, scene, settings));
     }
-    const bool coarse = setting.coarsening > 1;
-    const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination };
-    const auto scaled = coarse ? std::make_shared<CoarseScene>(given, Coarsened(scene.medium.grid, *factors)) : nullptr;
-    const PropagationSettings of = SettingsOf(method, setting, settings);
-    ComparedRun run;
-    run.method = method;
-    run.setting = InWords(setting);
-    run.grid = scaled ? scaled->Scene().medium.grid : scene.medium.grid;
-    run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions * setting.map * setting.map;
-    run.allOrders = setting.orders == 0;
-    run.estimates = method != ComparedMethod::DiscreteOrdinates;
-    run.solve = [=, &scene](bool estimate, const Monitor& monitor) {
-      PropagationSettings now = of;
-      now.periodic = scene.periodic;
-      const SceneBlock solved = scaled ? scaled->Scene() : given;
-      return estimate ? SolveWithErrorEstimate(solved, now, monitor, solver) : solver(solved, now, monitor);
-    };
-    runs.push_back(std::move(run));
+  }
+  if (method == ComparedMethod::LightPropagationMaps && settings.previews)
+  {
+    runs.push_back(PreviewOf(device, scene, settings));
   }
   return runs;
 }

@@ -66,14 +66,32 @@ public:
 
   /// Whether the reference includes the light that a method computes; true without any reference, since runs are then
   /// only timed.
-  bool Has(ComparedMethod method) const { return !this->IsThere || !this->For(method).empty(); }
+  bool Has(ComparedMethod method) const { return !this->IsThere || !this->For(QuantityOf(method)).empty(); }
+
+  /// Fluence of the reference in the scene's voxels, for pictures; empty if it is not known.
+  std::vector<float> Seen() const
+  {
+    std::vector<float> seen = this->Fluence;
+    if (this->ToReference && !seen.empty())
+    {
+      seen = Repeated(seen.data(), this->Reference.channels, this->Reference.grid, *this->ToReference);
+    }
+    std::replace_if(
+      seen.begin(), seen.end(), [](float value) { return std::isnan(value); }, 0.0f);
+    return seen;
+  }
 
   /// Errors of the light of a run; NaN without a reference.
   RelativeErrors ErrorsOf(const LightField& light, const ComparedRun& run) const
   {
+    const ComparedQuantity quantity = QuantityOf(run.method);
     if (!this->IsThere)
     {
       return { ComparisonRow::Unknown, ComparisonRow::Unknown, ComparisonRow::Unknown };
+    }
+    if (quantity == ComparedQuantity::Radiance)
+    {
+      return tyndall::ErrorsOf(light.fluence, this->Reference.radiance);
     }
     const std::optional<Factors> coarsening = FactorsBetween(this->SceneGrid, run.grid);
     std::vector<float> values = Repeated(light.fluence.data(), light.channels, run.grid, *coarsening);
@@ -83,13 +101,13 @@ public:
     }
     const int channels = std::max(light.channels, this->Reference.channels);
     return tyndall::ErrorsOf(InChannels(std::move(values), light.channels, channels),
-      InChannels(this->For(run.method), this->Reference.channels, channels));
+      InChannels(this->For(quantity), this->Reference.channels, channels));
   }
 
 private:
-  const std::vector<float>& For(ComparedMethod method) const
+  const std::vector<float>& For(ComparedQuantity quantity) const
   {
-    return IsDirectOnly(method) ? this->FluenceDirect : this->Fluence;
+    return quantity == ComparedQuantity::FluenceDirect ? this->FluenceDirect : this->Fluence;
   }
 
   std::vector<float> AsCompared(const std::vector<float>& values, const std::optional<Factors>& fromReference) const
@@ -108,28 +126,38 @@ private:
   std::vector<float> Fluence, FluenceDirect;
 };
 
+/// Reason why what a method computes cannot be compared; empty if it can be.
+std::string WhyNotComparable(ComparedMethod method, const Comparator& comparator)
+{
+  return comparator.Has(method)                             ? ""
+    : QuantityOf(method) == ComparedQuantity::FluenceDirect ? "the reference has no 'fluence_direct'"
+                                                            : "the reference has no 'fluence'";
+}
+
 /// Reason why a method is not compared on a scene; empty if it is.
 std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comparator& comparator)
 {
   const bool lattice = method == ComparedMethod::LatticeBoltzmann;
+  const std::string whyNotComparable = WhyNotComparable(method, comparator);
+  if (method == ComparedMethod::Pictures)
+  {
+    return scene.seen.values ? "" : "the reference has no 'fluence'";
+  }
   if (lattice && !HasCubicVoxels(scene.medium.grid))
   {
     return "its voxels have to be cubes";
   }
   // With a varying refractive index, photons compute the uncollided light of a lattice run.
-  if (IsOfPhotons(method) || (lattice && scene.BendsLight()))
+  if (IsOfPhotons(method) || method == ComparedMethod::PhotonsThenMaps || (lattice && scene.BendsLight()))
   {
-    const std::string why = scene.WhyNotByPhotons(!IsDirectOnly(method));
-    return !why.empty()        ? why
-      : comparator.Has(method) ? ""
-      : IsDirectOnly(method)   ? "the reference has no 'fluence_direct'"
-                               : "the reference has no 'fluence'";
+    const std::string why = scene.WhyNotByPhotons(QuantityOf(method) == ComparedQuantity::Fluence);
+    return why.empty() ? whyNotComparable : why;
   }
   const bool published = method == ComparedMethod::Published || method == ComparedMethod::PublishedSequential;
-  return scene.BendsLight()   ? "it does not bend light, and the index of this medium varies"
-    : !comparator.Has(method) ? "the reference has no 'fluence'"
-    : published               ? WhyNotPublished(scene.medium, scene.illumination)
-                              : "";
+  return scene.BendsLight()     ? "it does not bend light, and the index of this medium varies"
+    : !whyNotComparable.empty() ? whyNotComparable
+    : published                 ? WhyNotPublished(scene.medium, scene.illumination)
+                                : "";
 }
 
 /// The runs of one method, cheapest first, and the index of the next one.
@@ -249,6 +277,7 @@ private:
     ComparisonRow row;
     row.method = run.method;
     row.setting = run.setting;
+    row.filters = run.filters;
     row.grid = run.grid;
     row.seconds = seconds;
     row.peakBytes = host ? ComparisonRow::Unknown : static_cast<double>(this->TheDevice.PeakBytes() - before);
@@ -264,7 +293,8 @@ private:
     row.errorL2 = errors.l2;
     row.errorMax = errors.max;
     row.errorRelative = errors.relative;
-    row.balance = light.balance.RelativeError(light.channels);
+    const bool isPicture = QuantityOf(run.method) == ComparedQuantity::Radiance;
+    row.balance = isPicture ? ComparisonRow::Unknown : light.balance.RelativeError(light.channels);
     row.iterations = std::max<int>(1, static_cast<int>(light.convergence.size()));
     row.powerIn = Sum(light.balance.entered) + Sum(light.balance.emitted);
     std::transform(light.facePowerOut.begin(), light.facePowerOut.end(), row.facePowerOut.begin(), Sum);
@@ -341,16 +371,26 @@ std::size_t RunInTurns(
   return count;
 }
 
-/// Reference light, computed by ConvergedLight within half of the time budget; empty, with a warning, if the machine is
-/// too slow for any reference.
+/// Reference light, computed by ConvergedLight within half of the time budget, of the scene's mesh if it has one;
+/// empty, with a warning, if the machine is too slow for any reference.
 /// @param budget  time budget of the comparison, seconds
 ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const ComparedSettings& tried, double budget,
   std::vector<std::string>& warnings, const Monitor& monitor)
 {
+  constexpr int refinement = 2, samples = 16;
+  const Monitor watch = PartUntil(device, device.Now() + 0.5 * budget, monitor, 0.0, 1.0);
   try
   {
-    return ConvergedLight(
-      device, scene, tried, 0.5 * budget, PartUntil(device, device.Now() + 0.5 * budget, monitor, 0.0, 1.0));
+    if (!scene.mesh)
+    {
+      return ConvergedLight(device, scene, tried, 0.5 * budget, watch);
+    }
+    VoxelizationSettings voxelization;
+    voxelization.samples = samples;
+    const VoxelizedScene fine(device, scene, refinement, voxelization, RefractiveMediumSettings().filterSize, watch);
+    ReferenceLight reference = ConvergedLight(device, fine.Scene(), tried, 0.5 * budget, watch);
+    reference.text += "; the mesh in voxels of half the edge, supersampling " + std::to_string(samples);
+    return reference;
   }
   catch (const TimeIsUp&)
   {
@@ -363,7 +403,12 @@ ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const
   }
 }
 
-void Check(const ComparisonSettings& settings)
+bool Compares(const ComparisonSettings& settings, ComparedMethod method)
+{
+  return std::find(settings.methods.begin(), settings.methods.end(), method) != settings.methods.end();
+}
+
+void Check(const ComparisonSettings& settings, const ComparedScene& scene)
 {
   Check(settings.tried);
   if (settings.methods.empty())
@@ -374,6 +419,39 @@ void Check(const ComparisonSettings& settings)
   {
     throw InvalidInput("Repeats must be at least 1, TimeBudget above 0 s.");
   }
+  if (!(settings.acceptedError > 0.0))
+  {
+    throw InvalidInput("AcceptedError must be above 0.");
+  }
+  if (Compares(settings, ComparedMethod::Pictures) && !scene.camera)
+  {
+    throw InvalidInput(
+      "Pictures are compared, but there is no camera: CameraPosition and CameraFocalPoint are the same "
+      "point. Set them (the button Take Camera does), or switch Pictures off.");
+  }
+  if (Compares(settings, ComparedMethod::Voxelizer) && !scene.mesh)
+  {
+    throw InvalidInput("Voxelisations are compared, but there is no mesh.");
+  }
+}
+
+/// Settings of the runs, with the reference that the compared methods need.
+ComparedSettings TriedBy(const ComparisonSettings& settings)
+{
+  ComparedSettings tried = settings.tried;
+  const std::vector<ComparedMethod>& methods = settings.methods;
+  if (tried.monteCarloReference == MonteCarloReference::WhereItCanBeat &&
+    std::all_of(methods.begin(), methods.end(), IsOfPhotons))
+  {
+    // No photons: maps are free of noise, and share no solver with the compared photons.
+    tried.monteCarloReference = MonteCarloReference::Never;
+  }
+  tried.scattersReference = tried.monteCarloReference == MonteCarloReference::Always ||
+    std::any_of(methods.begin(), methods.end(), [](ComparedMethod method) {
+      return method == ComparedMethod::MonteCarlo || method == ComparedMethod::LatticeBoltzmann ||
+        method == ComparedMethod::PhotonsThenMaps || method == ComparedMethod::Pictures;
+    });
+  return tried;
 }
 }
 
@@ -407,7 +485,7 @@ RelativeErrors ErrorsOf(const std::vector<float>& light, const std::vector<float
 void MarkPareto(std::vector<ComparisonRow>& rows)
 {
   const auto beats = [](const ComparisonRow& a, const ComparisonRow& b) {
-    return IsDirectOnly(a.method) == IsDirectOnly(b.method) && a.seconds <= b.seconds && a.errorL2 <= b.errorL2 &&
+    return QuantityOf(a.method) == QuantityOf(b.method) && a.seconds <= b.seconds && a.errorL2 <= b.errorL2 &&
       (a.seconds < b.seconds || a.errorL2 < b.errorL2);
   };
   for (ComparisonRow& row : rows)
@@ -417,31 +495,92 @@ void MarkPareto(std::vector<ComparisonRow>& rows)
   }
 }
 
-Comparison CompareSolvers(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,
+namespace
+{
+/// The row of a quantity that is recommended, among those that filters can repeat; null if there is none.
+ComparisonRow* BestOf(std::vector<ComparisonRow>& rows, ComparedQuantity quantity, double acceptedError)
+{
+  const auto isBetter = [=](const ComparisonRow& a, const ComparisonRow& b) {
+    const bool isEnough = a.errorL2 <= acceptedError;
+    return isEnough != (b.errorL2 <= acceptedError) ? isEnough
+      : isEnough                                    ? a.seconds < b.seconds
+                                                    : a.errorL2 < b.errorL2;
+  };
+  ComparisonRow* best = nullptr;
+  for (ComparisonRow& row : rows)
+  {
+    const bool counts = QuantityOf(row.method) == quantity && !row.filters.empty() && std::isfinite(row.errorL2);
+    best = counts && (!best || isBetter(row, *best)) ? &row : best;
+  }
+  return best;
+}
+
+/// Makes pictures show the light of the filters `light`, or of none if that is empty.
+void ShowLight(const std::string& light, std::vector<ComparisonRow>& rows)
+{
+  const auto last = std::count(light.begin(), light.end(), '|') + 1;
+  for (ComparisonRow& row : rows)
+  {
+    if (QuantityOf(row.method) == ComparedQuantity::Radiance)
+    {
+      row.filters = light.empty() ? "" : light + " | " + row.filters + " Input=#" + std::to_string(last);
+    }
+  }
+}
+}
+
+void MarkRecommended(std::vector<ComparisonRow>& rows, double acceptedError)
+{
+  for (const auto quantity : { ComparedQuantity::Fluence, ComparedQuantity::FluenceDirect, ComparedQuantity::Radiance })
+  {
+    ComparisonRow* const best = BestOf(rows, quantity, acceptedError);
+    if (best)
+    {
+      best->recommended = true;
+    }
+    if (quantity == ComparedQuantity::Fluence)
+    {
+      ShowLight(best ? best->filters : "", rows);
+    }
+  }
+}
+
+const ComparisonRow* RecommendedOf(const std::vector<ComparisonRow>& rows)
+{
+  for (const auto quantity : { ComparedQuantity::Radiance, ComparedQuantity::Fluence, ComparedQuantity::FluenceDirect })
+  {
+    const auto found = std::find_if(rows.begin(), rows.end(),
+      [=](const ComparisonRow& row) { return row.recommended && QuantityOf(row.method) == quantity; });
+    if (found != rows.end())
+    {
+      return &*found;
+    }
+  }
+  return nullptr;
+}
+
+Comparison CompareSolvers(Device& device, const ComparedScene& given, const ComparisonSettings& settings,
   const ReferenceLight* reference, const Monitor& monitor)
 {
-  Check(settings);
-  Check(scene.medium);
-  Check(scene.illumination);
+  Check(settings, given);
+  Check(given.medium);
+  Check(given.illumination);
   const double end = device.Now() + settings.timeBudget;
   const double begun = reference ? 0.0 : 0.4; // progress that is reported when the runs begin, in [0, 1]
   Comparison result;
   result.device = device.Name();
-  ComparedSettings tried = settings.tried;
-  if (tried.monteCarloReference == MonteCarloReference::WhereItCanBeat &&
-    std::all_of(settings.methods.begin(), settings.methods.end(), IsOfPhotons))
+  result.reference = reference ? *reference
+                               : ReferenceWithin(device, given, TriedBy(settings), settings.timeBudget, result.warnings,
+                                   OfPart(monitor, 0.0, begun));
+  const Comparator comparator(given.medium.grid, result.reference);
+  ComparedScene scene = given;
+  const bool shows = Compares(settings, ComparedMethod::Pictures);
+  const std::vector<float> seen = shows ? comparator.Seen() : std::vector<float>();
+  if (!seen.empty())
   {
-    // No photons: maps are free of noise, and share no solver with the compared photons.
-    tried.monteCarloReference = MonteCarloReference::Never;
+    scene.seen = { seen.data(), result.reference.channels };
+    result.reference.radiance = ReferencePicture(device, scene, OfPart(monitor, begun, begun));
   }
-  tried.scattersReference = tried.monteCarloReference == MonteCarloReference::Always ||
-    std::any_of(settings.methods.begin(), settings.methods.end(), [](ComparedMethod method) {
-      return method == ComparedMethod::MonteCarlo || method == ComparedMethod::LatticeBoltzmann;
-    });
-  result.reference = reference
-    ? *reference
-    : ReferenceWithin(device, scene, tried, settings.timeBudget, result.warnings, OfPart(monitor, 0.0, begun));
-  const Comparator comparator(scene.medium.grid, result.reference);
   std::vector<Lane> lanes = LanesOf(device, scene, settings, comparator, result);
   Runner runner(device, settings, comparator, result);
   const std::size_t runs = RunInTurns(device, lanes, runner, end, OfPart(monitor, begun, 1.0));
@@ -454,6 +593,7 @@ Comparison CompareSolvers(Device& device, const ComparedScene& scene, const Comp
   std::stable_sort(result.rows.begin(), result.rows.end(),
     [](const ComparisonRow& a, const ComparisonRow& b) { return a.method < b.method; });
   MarkPareto(result.rows);
+  MarkRecommended(result.rows, settings.acceptedError);
   return result;
 }
 }

@@ -18,6 +18,7 @@ struct ComparisonRow
 
   ComparedMethod method = ComparedMethod::LightPropagationMaps;
   std::string setting;
+  std::string filters; ///< ComparedRun::filters; empty: filters cannot repeat this row
   Grid grid;
   double seconds = Unknown;   ///< median run time, from input arrays in memory to light in memory
   double peakBytes = Unknown; ///< peak memory of buffers on the device, bytes
@@ -35,13 +36,23 @@ struct ComparisonRow
   /// Net escaped power through the faces -x, +x, -y, +y, -z, +z, summed over channels, W.
   std::array<double, 6> facePowerOut = {};
   double powerIn = 0.0; ///< entered and emitted power, summed over channels, W
-  /// Whether no other row for the same quantity (fluence or uncollided fluence) is faster and more accurate.
+  /// Whether no other row for the same quantity is faster and more accurate.
   bool pareto = false;
+  bool recommended = false; ///< see MarkRecommended
 };
 
-/// Sets `pareto` of each row that no other row for the same quantity (fluence or uncollided fluence) dominates, i.e. is
-/// at least as fast and as accurate, and faster or more accurate. Rows without an error are not marked.
+/// Sets `pareto` of each row that no other row for the same quantity (QuantityOf) dominates, i.e. is at least as fast
+/// and as accurate, and faster or more accurate. Rows without an error are not marked.
 void MarkPareto(std::vector<ComparisonRow>& rows);
+
+/// Sets `recommended` of one row per quantity, among those with an error that filters can repeat: the fastest whose L2
+/// error is at most `acceptedError` or, if there is none, the most accurate. Pictures are made to show the recommended
+/// fluence: its filters are prepended to theirs.
+void MarkRecommended(std::vector<ComparisonRow>& rows, double acceptedError);
+
+/// The recommended row that a user wants: of pictures, else of fluence, else of uncollided fluence; null if there is
+/// none.
+const ComparisonRow* RecommendedOf(const std::vector<ComparisonRow>& rows);
 
 struct RelativeErrors
 {
@@ -62,7 +73,8 @@ struct ComparisonSettings
   /// that exceeds the budget is not started, or is stopped. Apart from that, the clock does not influence the
   /// comparison.
   double timeBudget = 300.0;
-  bool estimates = true; ///< whether solvers estimate their errors, in an extra run that is not timed
+  double acceptedError = 0.01; ///< L2 error that the recommended setting may have
+  bool estimates = true;       ///< whether solvers estimate their errors, in an extra run that is not timed
 };
 
 struct Comparison

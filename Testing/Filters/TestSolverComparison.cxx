@@ -1,7 +1,9 @@
 #include "MediumScene.h"
 
 #include "vtkLightRig.h"
+#include "vtkMeshVoxelizer.h"
 #include "vtkSolverComparison.h"
+#include "vtkSphereSource.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkVariant.h"
@@ -84,6 +86,9 @@ void LightIsNoErrorOfItself(test::Claims& claims)
     claims.That(
       light && light->GetComponent(77, 0) == maps->GetOutput()->GetCellData()->GetArray("fluence")->GetComponent(77, 0),
       "as it was");
+    claims.That(std::string(comparison->GetRecommended()).find("light propagation maps, 25 directions: ") == 0 &&
+        Text(table, 0, "filters") == "LightPropagationMaps DirectionsPerFace=25",
+      "what is recommended");
     claims.That(Text(table, 0, "setting") == "25 directions" && Text(table, 0, "grid") == "8x8x8", "what was run");
   }
 }
@@ -289,9 +294,31 @@ void BadInput(test::Claims& claims)
   says("Coarsenings has 0");
   comparison->RemoveAllCoarsenings();
   comparison->AddCoarsening(1);
-  comparison->SetTimeBudget(0.0);
-  says("TimeBudget");
+  for (double budget : { 0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity() })
+  {
+    comparison->SetTimeBudget(budget);
+    says("TimeBudget");
+  }
   comparison->SetTimeBudget(1e6);
+  comparison->SetAcceptedError(0.0);
+  says("AcceptedError");
+  comparison->SetAcceptedError(0.01);
+  comparison->AddTerms(0);
+  says("Terms has 0");
+  comparison->RemoveAllTerms();
+  comparison->AddStepSize(0.0);
+  says("voxels");
+  comparison->RemoveAllStepSizes();
+  comparison->AddOctreeTolerance(std::nan(""));
+  says("OctreeTolerances has nan");
+  comparison->RemoveAllOctreeTolerances();
+  comparison->AddFilterSize(4);
+  says("FilterSizes has 4");
+  comparison->RemoveAllFilterSizes();
+  comparison->AddFilterSize(9);
+  comparison->PicturesOn();
+  says("there is no camera");
+  comparison->PicturesOff();
   comparison->SetTolerance(0.0);
   says("Tolerance");
   comparison->SetTolerance(1e-3);
@@ -301,6 +328,50 @@ void BadInput(test::Claims& claims)
   comparison->Update();
   claims.That(
     errors.None() && comparison->GetOutput()->GetNumberOfRows() == 1, "good input after all the bad is compared");
+}
+
+/// A mesh needs the medium that was made of it, and must be closed as for vtkMeshVoxelizer; then it is voxelised anew.
+void MeshesAreVoxelised(test::Claims& claims)
+{
+  vtkNew<vtkSphereSource> ball;
+  ball->SetThetaResolution(16);
+  ball->SetPhiResolution(16);
+  vtkNew<vtkMeshVoxelizer> voxelizer;
+  voxelizer->SetInputConnection(ball->GetOutputPort());
+  voxelizer->SetSampleDimensions(16, 16, 16);
+  voxelizer->SetFilterSize(3);
+  vtkNew<vtkLightRig> rig;
+  vtkNew<vtkSolverComparison> comparison;
+  test::Errors errors(comparison);
+  AskForOne(comparison);
+  comparison->SetInputConnection(voxelizer->GetOutputPort());
+  comparison->SetLightsConnection(rig->GetOutputPort());
+  comparison->SetMeshConnection(ball->GetOutputPort());
+  comparison->RemoveAllPhotonCounts();
+  comparison->AddPhotonCount(5000);
+  comparison->RemoveAllSupersamplingFactors();
+  comparison->AddSupersamplingFactor(2);
+  comparison->RemoveAllFilterSizes();
+  comparison->AddFilterSize(3);
+  comparison->SetTimeBudget(120.0);
+  comparison->Update();
+  vtkTable* table = comparison->GetOutput();
+  if (claims.That(errors.None() && table->GetNumberOfRows() == 1, "a voxelisation"))
+  {
+    claims.That(Text(table, 0, "method") == "voxelizer and photons" && Number(table, 0, "recommended") == 1.0, "row");
+    claims.That(Number(table, 0, "error_l2") < 0.5, "near that of half the voxel edge");
+    claims.That(std::string(comparison->GetRecommendedFilters()) == Text(table, 0, "filters") &&
+        Text(table, 0, "filters").find("MeshVoxelizer Input=@Mesh SampleDimensions=16,16,16") == 0,
+      "the filters that repeat it: " + Text(table, 0, "filters"));
+  }
+  ball->SetEndTheta(180.0);
+  voxelizer->SetInputData(nullptr);
+  comparison->SetInputDataObject(voxelizer->GetOutput());
+  comparison->Update();
+  claims.That(errors.WasOneWith("open"), "an open mesh");
+  comparison->SetInputDataObject(test::MakeMedium({ { 4, 4, 4 } }, 0.5, 1.0));
+  comparison->Update();
+  claims.That(errors.WasOneWith("'occupancy'"), "a medium that was not made of a mesh");
 }
 
 /// What is not known, or not there, is said so.
@@ -413,6 +484,7 @@ int TestSolverComparison(int, char*[])
   MonteCarloIsComparedWithAllLight(claims);
   LatticesAreComparedWithPhotons(claims);
   BadInput(claims);
+  MeshesAreVoxelised(claims);
   UnknownIsSaid(claims);
   ThePublishedSchemeIsLeftOutWhereGVaries(claims);
   ReportsAndStops(claims);

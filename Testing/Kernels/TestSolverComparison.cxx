@@ -1,5 +1,6 @@
 #include "DeviceTest.h"
 #include "ErrorWords.h"
+#include "MeshShapes.h"
 
 #include "Comparison/PhotonReference.h"
 #include "Comparison/SolverComparison.h"
@@ -9,7 +10,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 
 namespace
 {
@@ -42,6 +47,32 @@ TEST(SolverComparison, KeepsBothOfTwoThatAreAlike)
   MarkPareto(rows);
   EXPECT_TRUE(rows[0].pareto);
   EXPECT_TRUE(rows[1].pareto);
+}
+
+ComparisonRow Made(const char* filters, double seconds, double error, ComparedMethod method)
+{
+  ComparisonRow row = Row(seconds, error, method);
+  row.filters = filters;
+  return row;
+}
+
+TEST(SolverComparison, RecommendsTheFastestThatIsGoodEnoughAndCanBeMade)
+{
+  const ComparedMethod maps = ComparedMethod::LightPropagationMaps, photons = ComparedMethod::Photons;
+  std::vector<ComparisonRow> rows = { Made("A", 1.0, 0.1, maps), Made("", 2.0, 0.001, maps), Made("B", 3.0, 0.01, maps),
+    Made("C | D Input=#1", 4.0, 0.001, maps), Made("E", 1.0, 0.3, photons), Made("F", 2.0, 0.2, photons),
+    Made("G", 0.1, std::nan(""), maps), Made("H", 1.0, 0.0001, ComparedMethod::Pictures) };
+  MarkRecommended(rows, 0.01);
+  const bool expected[] = { false, false, true, false, false, true, false, true };
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    EXPECT_EQ(rows[i].recommended, expected[i]) << "row " << i;
+  }
+  EXPECT_EQ(rows[7].filters, "B | H Input=#1") << "pictures show the recommended light";
+  EXPECT_EQ(RecommendedOf(rows), &rows[7]);
+  rows.pop_back();
+  EXPECT_EQ(RecommendedOf(rows), &rows[2]);
+  EXPECT_EQ(RecommendedOf({}), nullptr);
 }
 
 TEST(SolverComparison, MeasuresErrorsAgainstTheReferenceAlone)
@@ -541,4 +572,194 @@ TEST_F(ComparedByTheClock, GiveTheirRowsWithoutAReferenceThatTakesTooLong)
     EXPECT_TRUE(std::isnan(row.errorL2)) << row.setting;
     EXPECT_LT(row.balance, 1e-4) << row.setting;
   }
+}
+
+/// Rows of kinds that are not solvers, against light that the tests know better.
+class ComparedStages : public DeviceTest
+{
+protected:
+  /// Error by setting of a method's rows against its most expensive row, without noise: photons are the same.
+  std::map<std::string, double> ErrorsOf(SunlitCube& cube, ComparedMethod method)
+  {
+    cube.settings.methods = { method };
+    cube.settings.estimates = false;
+    const Comparison found =
+      CompareSolvers(this->GetDevice(), cube.scene, cube.settings, this->Reference(cube, method));
+    EXPECT_TRUE(found.leftOut.empty()) << found.leftOut.front();
+    std::map<std::string, double> errors;
+    for (const ComparisonRow& row : found.rows)
+    {
+      errors[row.setting] = row.errorL2;
+    }
+    return errors;
+  }
+
+  /// Light by the run of `method` with the best setting.
+  const ReferenceLight* Reference(const SunlitCube& cube, ComparedMethod method)
+  {
+    if (this->Best.empty())
+    {
+      return nullptr;
+    }
+    for (const ComparedRun& run : RunsOf(method, this->GetDevice(), cube.scene, cube.settings.tried))
+    {
+      if (run.setting == this->Best)
+      {
+        this->Light = {};
+        this->Light.grid = run.grid;
+        LightField light = run.solve(false, {});
+        (QuantityOf(method) == ComparedQuantity::Fluence ? this->Light.fluence : this->Light.fluenceDirect) =
+          std::move(light.fluence);
+      }
+    }
+    return &this->Light;
+  }
+
+  /// A ball of glass in fog.
+  void PutBallInto(SunlitCube& cube)
+  {
+    const int edge = cube.scene.medium.grid.size[0];
+    this->Occupancy.assign(cube.ior.size(), 0.0f);
+    cube.sigma_s.assign(cube.ior.size(), 0.5f);
+    for (std::size_t i = 0; i < cube.ior.size(); ++i)
+    {
+      const std::array<int, 3> voxel = cube.scene.medium.grid.VoxelAt(i);
+      double square = 0.0;
+      for (int at : voxel)
+      {
+        square += std::pow((at + 0.5) / edge - 0.5, 2.0);
+      }
+      const bool inside = std::sqrt(square)<0.3 - 1.0 / edge, outside = std::sqrt(square)> 0.3 + 1.0 / edge;
+      this->Occupancy[i] = inside ? 1.0f : outside ? 0.0f : 0.5f;
+      cube.ior[i] = 1.0f + 0.4f * this->Occupancy[i];
+      cube.sigma_s[i] = 0.5f - 0.5f * this->Occupancy[i];
+    }
+    cube.scene.ior = { cube.ior.data() };
+  }
+
+  std::string Best;
+  ReferenceLight Light;
+  std::vector<float> Occupancy;
+};
+
+TEST_F(ComparedStages, FewerTermsArePoorerOrdinates)
+{
+  SunlitCube cube(8);
+  cube.scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  cube.settings.tried.directionsPerFace = { 9 };
+  cube.settings.tried.coarsenings = { 1 };
+  cube.settings.tried.orders = {};
+  cube.settings.tried.terms = { 1, 4 };
+  this->Best = "9 directions";
+  std::map<std::string, double> errors = this->ErrorsOf(cube, ComparedMethod::DiscreteOrdinates);
+  EXPECT_EQ(errors.size(), 3u);
+  EXPECT_EQ(errors["9 directions"], 0.0);
+  EXPECT_GT(errors["9 directions, 4 terms"], 0.0);
+  EXPECT_GT(errors["9 directions, 1 terms"], 2.0 * errors["9 directions, 4 terms"]);
+  cube.settings.tried.terms = { 55 };
+  EXPECT_THAT(ErrorWords([&] { CompareSolvers(this->GetDevice(), cube.scene, cube.settings); }),
+    testing::HasSubstr("Terms has 55; its numbers must be 1 to 54."));
+}
+
+TEST_F(ComparedStages, PreviewsAreFastAndPoor)
+{
+  SunlitCube cube(16);
+  cube.settings.tried.directionsPerFace = { 25 };
+  cube.settings.tried.mapResolutions = cube.settings.tried.coarsenings = { 1 };
+  cube.settings.tried.orders = {};
+  cube.settings.tried.previews = true;
+  this->Best = "25 directions";
+  std::map<std::string, double> errors = this->ErrorsOf(cube, ComparedMethod::LightPropagationMaps);
+  EXPECT_EQ(errors.size(), 2u);
+  EXPECT_GT(errors["preview"], 0.005);
+  EXPECT_LT(errors["preview"], 0.3);
+}
+
+TEST_F(ComparedStages, LongStepsAndLowOrdersBendLightWrongly)
+{
+  SunlitCube cube(12);
+  this->PutBallInto(cube);
+  ComparedSettings& tried = cube.settings.tried;
+  tried.photonCounts = { 20000 };
+  tried.integratorOrders = { 1, 2 };
+  tried.stepSizes = { 0.25, 2.0 };
+  tried.octreeTolerances = { 0.0, 0.5 };
+  const std::string photons = "20000 photons, Hammersley", steps = " voxels";
+  this->Best = photons + ", order 2, steps of 0.25 voxels";
+  std::map<std::string, double> errors = this->ErrorsOf(cube, ComparedMethod::Photons);
+  EXPECT_EQ(errors.size(), 7u);
+  EXPECT_EQ(errors[this->Best], 0.0);
+  const double usual = errors[photons], coarse = errors[photons + ", order 2, steps of 2 voxels"];
+  EXPECT_GT(usual, 0.0);
+  EXPECT_GT(coarse, usual);
+  EXPECT_GT(errors[photons + ", order 1, steps of 2 voxels"], coarse);
+  EXPECT_GT(errors[photons + ", octree of 0.5"], errors[photons + ", octree of 0"]);
+}
+
+TEST_F(ComparedStages, MapsScatterTheLightOfPhotons)
+{
+  SunlitCube cube(8);
+  cube.scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.5);
+  cube.settings.tried.photonCounts = { 500, 100000 };
+  std::map<std::string, double> errors = this->ErrorsOf(cube, ComparedMethod::PhotonsThenMaps);
+  EXPECT_EQ(errors.size(), 2u);
+  EXPECT_LT(errors["25 directions, uncollided light of 100000 photons"], 0.02);
+  EXPECT_GT(errors["25 directions, uncollided light of 500 photons"],
+    errors["25 directions, uncollided light of 100000 photons"]);
+}
+
+TEST_F(ComparedStages, FinePicturesAreNearerThanDrafts)
+{
+  SunlitCube cube(8);
+  for (std::size_t i = 0; i < cube.sigma_s.size(); i += 3)
+  {
+    cube.sigma_s[i] = 12.0f;
+  }
+  EXPECT_THAT(ErrorWords([&] { this->ErrorsOf(cube, ComparedMethod::Pictures); }), testing::HasSubstr("no camera"));
+  cube.scene.imageSize = { 40, 30 };
+  cube.scene.camera = FrameGrid(cube.scene.medium.grid, 4.0 / 3.0);
+  cube.settings.timeBudget = 20.0;
+  std::map<std::string, double> errors = this->ErrorsOf(cube, ComparedMethod::Pictures);
+  EXPECT_EQ(errors.size(), 4u);
+  EXPECT_LT(errors["quality draft"], 0.2);
+  EXPECT_GT(errors["quality draft"], errors["quality default"]);
+  EXPECT_GT(errors["quality default"], errors["quality fine"]);
+  EXPECT_GT(errors["quality fine"], errors["quality reference"]);
+  EXPECT_LT(errors["quality reference"], 0.002);
+}
+
+TEST_F(ComparedStages, AVoxelizationIsComparedWithAFinerOne)
+{
+  SunlitCube cube(12);
+  this->PutBallInto(cube);
+  const VoxelizedMaterials materials = MaterialsOf(
+    cube.scene.medium, cube.scene.ior, { this->Occupancy.data() }, shapes::Sphere({ 0.5, 0.5, 0.5 }, 0.3, 4));
+  EXPECT_FLOAT_EQ(materials.inside.material.n, 1.4);
+  EXPECT_FLOAT_EQ(materials.outside.n, 1.0);
+  EXPECT_EQ(materials.outside.sigma_s, (Rgb{ 0.5, 0.5, 0.5 }));
+  cube.scene.mesh = &materials;
+  ComparedSettings& tried = cube.settings.tried;
+  tried.photonCounts = { 20000 };
+  tried.supersamplings = { 1, 4 };
+  tried.filterSizes = { 5, 17 };
+  std::map<std::string, double> errors = this->ErrorsOf(cube, ComparedMethod::Voxelizer);
+  EXPECT_EQ(errors.size(), 4u);
+  const std::string photons = ", 20000 photons, Hammersley";
+  EXPECT_LT(errors["supersampling 4, filter 5" + photons], 0.2);
+  EXPECT_LT(errors["supersampling 4, filter 5" + photons], errors["supersampling 4, filter 17" + photons]);
+}
+
+TEST_F(ComparedStages, AMeshMustBeClosedAndOfOneMaterial)
+{
+  SunlitCube cube(12);
+  this->PutBallInto(cube);
+  const auto words = [&](TriangleMesh mesh) {
+    return ErrorWords(
+      [&] { MaterialsOf(cube.scene.medium, cube.scene.ior, { this->Occupancy.data() }, std::move(mesh)); });
+  };
+  TriangleMesh open = shapes::Sphere({ 0.5, 0.5, 0.5 }, 0.3, 3);
+  open.triangles.pop_back();
+  EXPECT_THAT(words(open), testing::HasSubstr("open"));
+  cube.sigma_s[0] *= 2.0f;
+  EXPECT_THAT(words(shapes::Sphere({ 0.5, 0.5, 0.5 }, 0.3, 3)), testing::HasSubstr("differ in sigma_s"));
 }

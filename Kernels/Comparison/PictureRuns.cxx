@@ -1,0 +1,58 @@
+#include "Comparison/ComparedRun.h"
+
+#include "Viewing/MediumRayCaster.h"
+
+#include <utility>
+
+namespace tyndall
+{
+namespace
+{
+constexpr std::pair<Quality, const char*> Qualities[] = { { Quality::Draft, "draft" }, { Quality::Default, "default" },
+  { Quality::Fine, "fine" }, { Quality::Reference, "reference" } };
+
+/// Radiance of the scene's picture, 3 per pixel, without background.
+std::vector<float> Rendered(
+  Device& device, const ComparedScene& scene, const ViewSettings& settings, const Monitor& monitor)
+{
+  ViewSettings of = settings;
+  of.imageSize = scene.imageSize;
+  of.showBackground = false;
+  SolvedLight light;
+  light.fluence = scene.seen;
+  MediumRayCaster caster(device, scene.medium, light, scene.illumination, of, scene.ior);
+  return caster.Render(*scene.camera, monitor).radiance;
+}
+}
+
+std::vector<ComparedRun> PictureRunsOf(Device& device, const ComparedScene& scene)
+{
+  std::vector<ComparedRun> runs;
+  for (const auto& [quality, name] : Qualities)
+  {
+    const ViewSettings settings = AtQuality(quality, ViewSettings());
+    ComparedRun run;
+    run.method = ComparedMethod::Pictures;
+    run.setting = std::string("quality ") + name;
+    run.filters = "MediumRayCaster Quality=" + std::to_string(static_cast<int>(quality));
+    run.grid.size = { scene.imageSize[0], scene.imageSize[1], 1 };
+    run.cost = 1.0 / settings.stepSize;
+    run.solve = [=, &device, &scene](bool, const Monitor& monitor) {
+      LightField picture;
+      picture.channels = 3;
+      picture.fluence = Rendered(device, scene, settings, monitor);
+      return picture;
+    };
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+std::vector<float> ReferencePicture(Device& device, const ComparedScene& scene, const Monitor& monitor)
+{
+  ViewSettings settings = AtQuality(Quality::Reference, ViewSettings());
+  settings.stepSize *= 0.5;
+  settings.minimumTransmittance = 0.0;
+  return Rendered(device, scene, settings, monitor);
+}
+}
