@@ -5,8 +5,9 @@
 
 MEDIUM is a .vti or .vdb file with cells sigma_a and sigma_s, or with a density, of which ParticipatingMedium then makes the medium
 (--extinction and --albedo say how). Runs the filter SolverComparison; writes FOLDER/NAME.csv, NAME.jsonl and NAME.png, and prints
-what to use for errors of 10%, 1% and 0.1%. bench_error.py does the same for scenes with trusted reference values, with the functions
-here.
+what to use for errors of 10%, 1% and 0.1%, and the filters of the recommended setting. bench_error.py does the same for scenes with
+trusted reference values, with the functions here. In a script, make_recommended(comparison) creates the recommended filters on the
+inputs of a comparison, as the button Make Recommended does.
 """
 import argparse
 import csv
@@ -36,7 +37,12 @@ STYLES = {
     "adaptive photons": ((86, 180, 233), vtkPlotPoints.SQUARE),
     "photons as published": ((110, 110, 110), vtkPlotPoints.DIAMOND),
     "Monte Carlo": ((0, 0, 0), vtkPlotPoints.CIRCLE),
+    "photons, then maps": ((0, 60, 120), vtkPlotPoints.SQUARE),
+    "voxelizer and photons": ((150, 75, 0), vtkPlotPoints.SQUARE),
+    "picture": ((200, 0, 60), vtkPlotPoints.CIRCLE),
 }
+# What the legend adds to the method for what is compared.
+QUANTITIES = {"fluence": "", "fluence_direct": " (unscattered light)", "radiance": " (radiance)"}
 
 
 def rows_of(comparison):
@@ -53,7 +59,7 @@ def rows_of(comparison):
                 row[column.GetName()] = column.GetValue(i)
         rows.append(row)
     facts = {}
-    for name in ("reference", "left_out", "device"):
+    for name in ("reference", "recommended", "left_out", "device"):
         array = table.GetFieldData().GetAbstractArray(name)
         facts[name] = [array.GetValue(i) for i in range(array.GetNumberOfValues())] if array else []
     return rows, facts
@@ -130,7 +136,7 @@ def methods_of(rows):
 
 def advice(rows):
     """Lines that say what to use."""
-    for quantity in ("fluence", "fluence_direct"):
+    for quantity in QUANTITIES:
         of = [row for row in rows if row["quantity"] == quantity and not math.isnan(row["error_l2"])]
         for target in TARGETS if of else ():
             best = fastest_for(of, target)
@@ -240,23 +246,24 @@ class Plot:
 
 
 def plot(rows, path, title, error="error_l2", error_title="Relative error of fluence (L2)"):
-    """Writes a PNG. Rows that have no such error, or none at all (0), are not in it."""
+    """Writes a PNG, the recommended settings crossed. Rows that have no such error, or none at all (0), are not in it."""
     rows = [row for row in rows if error in row and row[error] > 0.0 and row["seconds"] > 0.0]
     if not rows:
         return
     chart = Plot(title, error_title)
-    for quantity in ("fluence", "fluence_direct"):
+    for quantity, suffix in QUANTITIES.items():
         of = [row for row in rows if row["quantity"] == quantity]
-        if len(front(of, error)) > 1:
-            label = "best of all" if quantity == "fluence" else "best of unscattered light"
-            chart.line(front(of, error), label, error, (200, 200, 200), 12.0)
+        if len(methods_of(of)) > 1 and len(front(of, error)) > 1:
+            chart.line(front(of, error), "best of all" + suffix, error, (200, 200, 200), 12.0)
     for name in methods_of(rows):
         of = [row for row in rows if row["method"] == name]
         color, marker = STYLES[name]
-        direct = of[0]["quantity"] == "fluence_direct"
         if len(front(of, error)) > 1:
             chart.line(front(of, error), name, error, color, 2.5).LegendVisibilityOff()
-        chart.points(of, name + (" (unscattered light)" if direct else ""), error, color, marker, 13.0)
+        chart.points(of, name + QUANTITIES[of[0]["quantity"]], error, color, marker, 13.0)
+    chosen = [row for row in rows if row.get("recommended")]
+    if chosen and error == "error_l2":
+        chart.points(chosen, "recommended", error, (220, 0, 0), vtkPlotPoints.CROSS, 26.0)
     chart.limits(vtkAxis.BOTTOM, [row["seconds"] for row in rows])
     chart.limits(vtkAxis.LEFT, [row[error] for row in rows])
     chart.save(path)
@@ -268,7 +275,7 @@ def print_table(rows, error="error_l2"):
     for row in rows:
         print("%-34s %-38s %-12s %9.3g %9.3g %9.2e %9.2e %6s" % (
             row["method"], row["setting"], row["grid"], row["seconds"], row["peak_bytes"] / 2 ** 20, row[error],
-            row["estimated_error"], "*" if (row["pareto"] if error == "error_l2" else row in best) else ""))
+            row["estimated_error"], "recommended" if row["recommended"] else "*" if (row["pareto"] if error == "error_l2" else row in best) else ""))
 
 
 def load():
@@ -289,10 +296,13 @@ def parse():
     parser.add_argument("--save-reference", metavar="FILE.vti", help="keep the converged run for the next time")
     parser.add_argument("--extinction", type=float, default=1.0, help="per density, 1/length, where the medium has no sigma_a")
     parser.add_argument("--albedo", type=float, nargs=3, default=[0.99] * 3, help="where the medium has no sigma_a")
-    parser.add_argument("--methods", nargs="+", choices=list(STYLES), default=["light propagation maps", "constant source, not accelerated", "as published", "photons"])
+    parser.add_argument("--methods", nargs="+", choices=list(SWITCHES), default=["light propagation maps", "constant source, not accelerated", "as published", "photons"])
     parser.add_argument("--directions", type=int, nargs="+", default=[4, 9, 25, 64, 100])
     parser.add_argument("--coarsenings", type=int, nargs="+", default=[1, 2, 4])
     parser.add_argument("--photons", type=int, nargs="+", default=[10000, 100000, 1000000])
+    parser.add_argument("--more", nargs="+", default=[], metavar="PROPERTY=VALUE", help="further properties of SolverComparison, as Terms=[4,9] StepSizes=[0.5,2] Previews=1")
+    parser.add_argument("--mesh", help=".ply or .stl of which the medium was voxelised")
+    parser.add_argument("--accept", type=float, default=0.01, help="error of the recommended setting")
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--budget", type=float, default=300.0, help="seconds")
     parser.add_argument("--output", default=".")
@@ -311,7 +321,16 @@ SWITCHES = {
     "adaptive photons": "AdaptivePhotons",
     "photons as published": "PublishedPhotons",
     "Monte Carlo": "MonteCarlo",
+    "photons, then maps": "PhotonsThenMaps",
+    "picture": "Pictures",
 }
+
+
+def make_recommended(comparison):
+    """The last of the filters with the recommended setting, on the inputs of a SolverComparison that has run."""
+    known = set(GetSources())
+    comparison.InvokeCommand("MakeRecommended")
+    return GetActiveSource() if set(GetSources()) - known else None
 
 
 def compare(methods, save_reference=None, **settings):
@@ -354,10 +373,11 @@ def main():
         "Lights": lights_of(arguments),
         "Environment": EnvironmentReader(FileName=arguments.environment) if arguments.environment else None,
         "Reference": XMLImageDataReader(FileName=[arguments.reference]) if arguments.reference else None,
+        "Mesh": OpenDataFile(arguments.mesh) if arguments.mesh else None,
     }
     rows, facts = compare(arguments.methods, arguments.save_reference, Input=medium_of(arguments), SkyColor=arguments.sky, Directions=arguments.directions,
                           Coarsenings=arguments.coarsenings, PhotonCounts=arguments.photons, Repeats=arguments.repeats,
-                          TimeBudget=arguments.budget, MonteCarloReference=["never", "always", "auto"].index(arguments.monte_carlo_reference), **{name: proxy for name, proxy in inputs.items() if proxy})
+                          TimeBudget=arguments.budget, AcceptedError=arguments.accept, **{name: json.loads(value) for name, value in (more.split("=", 1) for more in arguments.more)}, MonteCarloReference=["never", "always", "auto"].index(arguments.monte_carlo_reference), **{name: proxy for name, proxy in inputs.items() if proxy})
     if not rows:
         raise SystemExit("Nothing was compared: " + "; ".join(facts["left_out"] or ["see the error above"]))
     name = os.path.splitext(os.path.basename(arguments.medium))[0]
@@ -370,6 +390,9 @@ def main():
     print_left_out(facts["left_out"])
     for line in advice(rows):
         print(line)
+    for row in rows:
+        if row["recommended"]:
+            print("recommended for %s: %s" % (row["quantity"], row["filters"]))
 
 
 if __name__ == "__main__":
