@@ -1,7 +1,8 @@
 """Error against run time of every solver, scene by scene.    ./run bench error [SCENE...] [--output FOLDER] [--references FOLDER] [--patience 1] [--quick]
 
 Scenes: slabs and cubes with trusted reference values, Kobayashi's void and shield, the CT scan under a photographed sky and a thick cloud
-against converged runs, and the caustic of a glass ball. Prints a JSON line a method and setting; writes FOLDER/error.csv and
+against converged runs, the caustic of a glass ball, forward scattering (a cloud and tissue) and Rayleigh scattering against Monte Carlo,
+and pictures. Prints a JSON line a method and setting; writes FOLDER/error.csv and
 FOLDER/error-SCENE.png; and ends with what the default gains over the method as published at equal error, and with a table of what to use
 when. TYNDALL_BENCH_QUICK: small grids, few seconds.
 """
@@ -23,11 +24,12 @@ import error_against_time as eat  # noqa: E402
 from paraview import servermanager  # noqa: E402
 from paraview.simple import ImageReader, ResampleToImage, Sphere, TrivialProducer, XMLImageDataReader  # noqa: E402
 from paraview.vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
+from paraview.vtk.vtkCommonCore import vtkStringArray  # noqa: E402
 from paraview.vtk.vtkCommonDataModel import vtkImageData  # noqa: E402
 
 DEFAULT, PLAIN, PUBLISHED = "light propagation maps", "constant source, not accelerated", "as published"
 PROPAGATION = (DEFAULT, PLAIN, PUBLISHED)
-MONTE_CARLO, LATTICE = "Monte Carlo", "lattice Boltzmann"
+MONTE_CARLO, LATTICE, ORDINATES, CHAIN = "Monte Carlo", "lattice Boltzmann", "discrete ordinates", "photons, then maps"
 EXACT = {"DirectionsPerFace": 400, "MapResolution": 2, "EmissionError": 0.005}
 
 
@@ -36,8 +38,8 @@ def reference_rows(name):
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
-def image(arrays, length, size):
-    """A source of an image of the box from 0 to `length`; arrays are [z][y][x] or numbers."""
+def image(arrays, length, size, phase=None, g=0.0):
+    """A source of an image of the box from 0 to `length`; arrays are [z][y][x] or numbers. phase: name of the phase function."""
     data = vtkImageData()
     data.SetDimensions(*(n + 1 for n in size))
     data.SetSpacing(*(l / n for l, n in zip(length, size)))
@@ -46,6 +48,14 @@ def image(arrays, length, size):
         array = numpy_to_vtk(numpy.ascontiguousarray(full).ravel(), deep=True)
         array.SetName(name)
         data.GetCellData().AddArray(array)
+    if phase:
+        name = vtkStringArray()
+        name.SetName("phase_function")
+        name.InsertNextValue(phase)
+        data.GetFieldData().AddArray(name)
+        cosine = numpy_to_vtk(numpy.array([g]), deep=True)
+        cosine.SetName("g")
+        data.GetFieldData().AddArray(cosine)
     source = TrivialProducer()
     source.GetClientSideObject().SetOutput(data)
     source.UpdatePipeline()
@@ -234,10 +244,38 @@ def caustic(bench):
                               InsideScattering=[0.02] * 3, OutsideScattering=[0.35] * 3, OutsideAbsorption=[0.03] * 3)
     octree = eat.RefractionOctree(Input=glass)
     lamp = eat.LightRig(Sun=0, PointLights=[0.9, 1.1, 3.6, 110, 110, 110])
-    rows, facts = bench.compare_converged("glass-ball", ("photons", "adaptive photons", "photons as published", MONTE_CARLO, LATTICE), 60.0, Input=octree, Lights=lamp, AllSamplers=1,
+    rows, facts = bench.compare_converged("glass-ball", ("photons", "adaptive photons", "photons as published", MONTE_CARLO, LATTICE, CHAIN), 90.0, Input=octree, Lights=lamp, AllSamplers=1,
+                                StepSizes=[0.5, 2], IntegratorOrders=[2, 4], OctreeTolerances=[0.01, 0.1],
                                 PhotonCounts=[1000, 10000] if bench.quick else [10000, 30000, 100000, 300000, 1000000])
     bench.report("glass-ball", "Caustic of a glass ball, %d voxels an edge" % edge, rows, facts,
                  error_title="Relative error (L2): of photons of unscattered fluence, of Monte Carlo of all")
+
+
+def scattering(bench):
+    """A cloud (g 0.85), tissue (g 0.9) and air (Rayleigh), all solvers, against Monte Carlo."""
+    edge = 12 if bench.quick else 32
+    cloudy = lognormal(edge, numpy.random.default_rng(7))
+    for case, title, sigma, albedo, phase, g in (
+            ("forward-cloud", "Cloud of optical thickness 20, g 0.85", 20.0 * cloudy, 0.999, "henyey_greenstein", 0.85),
+            ("tissue", "Tissue of optical thickness 50, g 0.9, albedo 0.99", 50.0, 0.99, "henyey_greenstein", 0.9),
+            ("rayleigh", "Rayleigh scattering, optical thickness 1, albedo 1", 1.0, 1.0, "rayleigh", 0.0)):
+        medium = image({"sigma_a": (1.0 - albedo) * sigma, "sigma_s": albedo * sigma}, (1, 1, 1), (edge,) * 3, phase, g)
+        sun = eat.LightRig(SunElevation=50, SunAzimuth=130, SunPower=[3, 3, 3])
+        rows, facts = bench.compare_converged(case, PROPAGATION + (ORDINATES, LATTICE, MONTE_CARLO), 90.0, Input=medium, Lights=sun, MonteCarloReference=1,
+                                              Directions=[4, 25] if bench.quick else [4, 9, 25, 64], Orders=[], MapResolutions=[1], Terms=[4, 9, 16], Previews=1,
+                                              PhotonCounts=[10000] if bench.quick else [10000, 100000, 1000000])
+        bench.report(case, "%s, %d voxels an edge" % (title, edge), rows, facts)
+
+
+def pictures(bench):
+    """Qualities of pictures of a cloud."""
+    edge = 16 if bench.quick else 64
+    extinction = 30.0 * lognormal(edge, numpy.random.default_rng(5))
+    medium = image({"sigma_a": 1e-3 * extinction, "sigma_s": extinction}, (1, 1, 1), (edge,) * 3)
+    sun = eat.LightRig(SunElevation=50, SunAzimuth=130, SunPower=[3, 3, 3])
+    rows, facts = bench.compare_converged("pictures", ("picture",), 60.0, Input=medium, Lights=sun, MonteCarloReference=0, ImageSize=[800, 600],
+                                          CameraPosition=[2.5, -2, 1.5], CameraFocalPoint=[0.5, 0.5, 0.5])
+    bench.report("pictures", "Pictures of a cloud, %d voxels an edge, 800 x 600 pixels" % edge, rows, facts, error_title="Relative error of radiance (L2)")
 
 
 def percent(error):
@@ -273,7 +311,7 @@ def print_advice(bench):
     print("\n| scene | error 10% | 1% | 0.1% | best |\n|---|---|---|---|---|")
     for case, title in bench.titles.items():
         rows, error = bench.of(case), bench.errors[case]
-        for quantity in ("fluence", "fluence_direct"):
+        for quantity, suffix in eat.QUANTITIES.items():
             of = [row for row in rows if row["quantity"] == quantity]
             if not of:
                 continue
@@ -283,13 +321,13 @@ def print_advice(bench):
                 cells.append("%s, %s: %.2g s" % (best["method"], best["setting"], best["seconds"]) if best else "none")
             least = min(of, key=lambda row: row[error])
             cells.append("%s, %s: %s in %.2g s" % (least["method"], least["setting"], percent(least[error]), least["seconds"]))
-            more = ", unscattered light" if quantity == "fluence_direct" else ""
-            print("| %s%s | %s |" % (title, more, " | ".join(cells)))
+            print("| %s%s | %s |" % (title, suffix, " | ".join(cells)))
     print("", flush=True)
 
 
 def main():
-    scenes = {"slabs": slabs, "cubes": cubes, "kobayashi": kobayashi, "scan": scan, "cloud": cloud, "caustic": caustic}
+    scenes = {"slabs": slabs, "cubes": cubes, "kobayashi": kobayashi, "scan": scan, "cloud": cloud, "caustic": caustic,
+              "scattering": scattering, "pictures": pictures}
     parser = argparse.ArgumentParser()
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(scenes))
     parser.add_argument("--output", default=os.path.join(root, "build", "bench"))
