@@ -136,6 +136,7 @@ struct SolvedScene
   const Illumination& shining;
   int channels;
   int directionsPerFace;
+  bool muchThinner; ///< along one axis (IsMuchThinnerAlongOneAxis)
 };
 
 std::vector<std::string> Words(
@@ -181,8 +182,8 @@ LightField SolveChannels(
   {
     thickest = std::max(thickest, domain.Max(ThickestStep(scene.medium, c)));
     const PhaseFunction function = FunctionOf(domain, scene.medium, c);
-    const OrdinatesAngles angles = { OrdinateGroups(far.directions), SeparableOf(function, far.directions, settings),
-      function };
+    const OrdinatesAngles angles = { OrdinateGroups(far.directions),
+      SeparableOf(function, far.directions, settings, scene.muchThinner), function };
     domain.Collective([&] { CheckMemory(device, scene.medium.grid, angles, settings); });
     const OrdinatesScene ofChannel = { domain, scene.medium, c, LampsOf(far, scene.shining, c),
       IncomingOf(far, scene.shining, c), FaceAlbedoOf(scene.shining, c), UncollidedOf(scene.shining, c),
@@ -255,7 +256,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
   shining.uncollided = UncollidedKnown(domain, shining.uncollided);
   LightField light = SolveChannels(device,
     { problem.TheDomain(), problem.TheMedium(), problem.Traits(), shining, problem.Channels(),
-      problem.Settings().directionsPerFace },
+      problem.Settings().directionsPerFace, problem.IsMuchThinner() },
     settings, monitor, kept);
   domain.Collective([&] { problem.Undo(light); });
   light.faceAlbedo = illumination.faceAlbedo;

@@ -171,8 +171,8 @@ UncollidedImage UncollidedOf(const Illumination& shining, int channel)
   return image;
 }
 
-SeparablePhaseFunction SeparableOf(
-  const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings)
+SeparablePhaseFunction SeparableOf(const PhaseFunction& function, const std::vector<Direction>& directions,
+  const OrdinatesSettings& settings, bool nowhereNegative)
 {
   const bool matrix = settings.scattering == OrdinatesScattering::Matrix;
   SeparableSettings separable;
@@ -183,6 +183,7 @@ SeparablePhaseFunction SeparableOf(
   separable.repaired = !IsPublished(settings);
   separable.sampling = IsPublished(settings) ? PhaseSampling::PointValues : PhaseSampling::CellMeans;
   separable.truncatesPeak = !IsPublished(settings) && !matrix;
+  separable.nowhereNegative = nowhereNegative && !IsPublished(settings);
   return { function, directions, separable };
 }
 

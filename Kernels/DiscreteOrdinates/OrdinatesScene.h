@@ -142,8 +142,9 @@ std::vector<std::string> DoubtsOf(const OrdinatesSettings& settings, double thic
 std::array<Rgb, 6> FaceAlbedoOf(const Illumination& shining, int channel);
 UncollidedImage UncollidedOf(const Illumination& shining, int channel);
 
-SeparablePhaseFunction SeparableOf(
-  const PhaseFunction& function, const std::vector<Direction>& directions, const OrdinatesSettings& settings);
+/// @param nowhereNegative  whether the terms are damped until their sum is nowhere negative (SeparableSettings)
+SeparablePhaseFunction SeparableOf(const PhaseFunction& function, const std::vector<Direction>& directions,
+  const OrdinatesSettings& settings, bool nowhereNegative);
 
 /// Checks that the solve fits the device.
 /// @throws DeviceError if it does not; the message states the memory needed

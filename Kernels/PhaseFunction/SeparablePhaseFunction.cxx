@@ -31,6 +31,7 @@ struct Basis
 {
   MatrixXd columns;
   VectorXd values;
+  std::vector<int> degrees = {}; ///< of spherical harmonics
 };
 
 void Check(const std::vector<Direction>& directions, const SeparableSettings& settings)
@@ -143,7 +144,7 @@ std::vector<double> CellMeanMatrix(const PhaseFunction& function, const std::vec
 /// Orthonormalises columns in their order (Gram-Schmidt); linearly dependent ones are omitted.
 Basis Orthonormal(const MatrixXd& columns, const VectorXd& values)
 {
-  Basis basis = { MatrixXd(columns.rows(), columns.cols()), VectorXd(columns.cols()) };
+  Basis basis = { MatrixXd(columns.rows(), columns.cols()), VectorXd(columns.cols()), {} };
   int kept = 0;
   for (int k = 0; k < columns.cols(); ++k)
   {
@@ -157,6 +158,7 @@ Basis Orthonormal(const MatrixXd& columns, const VectorXd& values)
     {
       basis.columns.col(kept) = column / column.norm();
       basis.values[kept++] = values[k];
+      basis.degrees.push_back(DegreeOfTerm(k));
     }
   }
   basis.columns.conservativeResize(Eigen::NoChange, kept);
@@ -193,7 +195,7 @@ Basis Eigenvectors(const MatrixXd& matrix)
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
     [&](int a, int b) { return std::abs(solver.eigenvalues()[a]) > std::abs(solver.eigenvalues()[b]); });
-  Basis basis = { MatrixXd(matrix.rows(), matrix.cols()), VectorXd(matrix.cols()) };
+  Basis basis = { MatrixXd(matrix.rows(), matrix.cols()), VectorXd(matrix.cols()), {} };
   for (std::size_t k = 0; k < order.size(); ++k)
   {
     basis.columns.col(k) = solver.eigenvectors().col(order[k]);
@@ -217,7 +219,7 @@ Basis RepairedEigenvectors(
     largest = std::max(largest, std::abs(moments[l]));
   }
   const int free = static_cast<int>(matrix.rows() - given.columns.cols());
-  Basis all = { MatrixXd(matrix.rows(), matrix.cols()), VectorXd(matrix.cols()) };
+  Basis all = { MatrixXd(matrix.rows(), matrix.cols()), VectorXd(matrix.cols()), {} };
   all.columns << given.columns, rest.columns.leftCols(free);
   all.values << given.values, rest.values.head(free).cwiseMax(-largest).cwiseMin(largest);
   return all;
@@ -228,6 +230,42 @@ Basis RepairedEigenvectors(
 double PeakBeyond(const std::vector<double>& moments, int terms)
 {
   return std::max(0.0, moments[DegreeOfTerm(terms - 1) + 1]);
+}
+
+/// Multiplies the eigenvalues of degree l, without a peak of the fraction `peak`, by exp(-s l (l + 1)), with the
+/// smallest s for which their sum is nowhere negative, and sets the peak such that the mean cosine stays.
+void DampNegatives(const VectorXd& roots, double g, Basis& basis, double& peak)
+{
+  constexpr double LeastPart = 1e-3, MostDamping = 16.0; // as WithoutNegatives() in Problem/TruncatedScattering
+  const VectorXd whole = basis.values;
+  const double forward = g < 0.0 ? 0.0 : peak;
+  const MatrixXd factors = std::sqrt(4.0 * Pi) * roots.cwiseInverse().asDiagonal() * basis.columns;
+  const auto damped = [&](double s) {
+    VectorXd values = ((whole.array() - forward) / (1.0 - forward)).matrix();
+    for (int k = 0; k < values.size(); ++k)
+    {
+      values[k] *= std::exp(-s * basis.degrees[k] * (basis.degrees[k] + 1));
+    }
+    return values;
+  };
+  const auto least = [&](const VectorXd& values) {
+    return (factors * values.asDiagonal() * factors.transpose()).minCoeff();
+  };
+  if (least(((whole.array() - peak) / (1.0 - peak)).matrix()) >= LeastPart)
+  {
+    return;
+  }
+  double low = 0.0, high = MostDamping;
+  for (int i = 0; i < 20; ++i)
+  {
+    const double s = 0.5 * (low + high);
+    (least(damped(s)) >= LeastPart ? high : low) = s;
+  }
+  const VectorXd values = damped(high);
+  const auto first = std::find(basis.degrees.begin(), basis.degrees.end(), 1) - basis.degrees.begin();
+  const double cosine = first < values.size() ? values[first] : 0.0;
+  peak = (g - cosine) / (1.0 - cosine);
+  basis.values = (peak + (1.0 - peak) * values.array()).matrix(); // with the peak, as it was
 }
 
 Basis BasisOf(const PhaseFunction& function, const std::vector<Direction>& directions,
@@ -297,7 +335,7 @@ SeparablePhaseFunction::SeparablePhaseFunction(
   Check(this->Directions, settings);
   const std::vector<double> moments = function.Moments(DegreeOfTerm(settings.terms - 1) + 1);
   this->Whole = PhaseMatrix(function, this->Directions, settings.sampling);
-  const Basis basis = BasisOf(function, this->Directions, settings, moments, this->Whole);
+  Basis basis = BasisOf(function, this->Directions, settings, moments, this->Whole);
   const int count = this->DirectionCount();
   const VectorXd roots = RootsOfWeights(this->Directions);
   if (settings.factorisation == PhaseFactorisation::SingularValues && settings.repaired)
@@ -308,6 +346,10 @@ SeparablePhaseFunction::SeparablePhaseFunction(
   }
   const bool whole = settings.factorisation == PhaseFactorisation::SingularValues && settings.terms == count;
   this->PeakPart = settings.truncatesPeak && !whole ? PeakBeyond(moments, settings.terms) : 0.0;
+  if (settings.nowhereNegative && !basis.degrees.empty())
+  {
+    DampNegatives(roots, this->MeanCosine, basis, this->PeakPart);
+  }
   for (int k = 0; k < basis.values.size(); ++k)
   {
     this->Singular.push_back(std::abs(basis.values[k]));

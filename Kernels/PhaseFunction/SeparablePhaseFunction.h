@@ -35,6 +35,10 @@ struct SeparableSettings
   /// the terms represent the remainder. Ignored with singular values if all terms are kept, since nothing is then
   /// truncated.
   bool truncatesPeak = false;
+  /// Whether to damp the terms by their degrees until the sum is nowhere negative, as angular moments are damped in
+  /// boxes that are thin along one axis (numerics.md, Eq. (8d)); power and mean cosine stay. With spherical harmonics
+  /// only.
+  bool nowhereNegative = false;
 };
 
 /// Errors of the sum of N terms relative to the full phase matrix.
@@ -75,7 +79,8 @@ public:
   } ///< number of terms kept, at most SeparableSettings::terms
   int DirectionCount() const { return static_cast<int>(this->Directions.size()); }
   const std::vector<Direction>& TheDirections() const { return this->Directions; }
-  /// Fraction of scattered light treated as unscattered.
+  /// Fraction of scattered light treated as unscattered; may be negative with SeparableSettings::nowhereNegative, if
+  /// the mean cosine is.
   double Peak() const { return this->PeakPart; }
   double Eigenvalue(int term) const { return this->Eigenvalues[term]; } ///< lambda_k of term k, in [-1, 1] if repaired
   double Factor(int direction, int term) const ///< value u_k(i) of a term k in direction i, 1/sqrt(sr)

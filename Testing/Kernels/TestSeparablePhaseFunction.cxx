@@ -311,3 +311,26 @@ TEST(SeparablePhaseFunction, RefusesWhatHasNoMeaning)
   EXPECT_THROW(SpiralDirections(0), InvalidInput);
   EXPECT_THROW(WeightedSpiralDirections(15), InvalidInput);
 }
+
+TEST(SeparablePhaseFunction, IsNowhereNegativeWhereThatIsAskedFor)
+{
+  for (const double g : { -0.95, -0.9, 0.5, 0.9, 0.999 })
+  {
+    SeparableSettings settings;
+    settings.truncatesPeak = settings.nowhereNegative = true;
+    const SeparablePhaseFunction phase(
+      PhaseFunction::HenyeyGreenstein(g), EquiangularDirections(25).directions, settings);
+    double least = 1.0;
+    for (int i = 0; i < phase.DirectionCount(); ++i)
+    {
+      for (int j = 0; j < phase.DirectionCount(); ++j)
+      {
+        least = std::min(least, 4.0 * Pi * phase.Value(i, j));
+      }
+    }
+    EXPECT_GT(least, 0.0) << g;
+    const SeparableErrors errors = phase.ErrorsByTerms().back();
+    EXPECT_LT(errors.rowSum, 1e-9) << g;
+    EXPECT_LT(errors.meanCosine, 1e-9) << g;
+  }
+}

@@ -73,9 +73,10 @@ void PropagationProblem::Truncate(const DeviceMemory& memory)
       : 0;
   });
   degree = -static_cast<int>(domain.Max(-1.0 * degree)); // lowest degree of all ranks
+  this->MuchThinner = IsMuchThinnerAlongOneAxis(detail, this->Whole(), this->ChannelCount, this->TheSettings.periodic);
   domain.Collective([&] {
     std::optional<DirectionKernel> kernel;
-    if (degree > 0 && IsMuchThinnerAlongOneAxis(detail, this->Whole(), this->ChannelCount, this->TheSettings.periodic))
+    if (degree > 0 && this->MuchThinner)
     {
       kernel.emplace(DirectionsForVoxels(this->TheSettings.directionsPerFace, this->Whole().spacing), degree);
     }

@@ -65,6 +65,8 @@ public:
   /// Whether scattering is computed: the medium scatters, or leaveOut is off in the settings.
   bool ComputesScattering() const { return !this->TheSettings.leaveOut || this->TheTraits.scatters; }
   bool IsSlab() const { return this->Unvarying.IsSlab(); }
+  /// Whether the box is much thinner along one axis, so that sources must be nowhere negative (numerics.md, Eq. (8c)).
+  bool IsMuchThinner() const { return this->MuchThinner; }
 
   /// Converts light to the user's units, channels and voxels, and reports simplifications in light.leftOut.
   void Undo(LightField& light) const;
@@ -88,6 +90,6 @@ private:
   std::optional<SceneChannels> Reduction;
   std::optional<TruncatedScattering> Truncated;
   int ChannelCount = 3;
-  bool Given = false, Isotropic = false;
+  bool Given = false, Isotropic = false, MuchThinner = false;
 };
 }
