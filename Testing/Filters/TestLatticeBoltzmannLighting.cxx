@@ -71,6 +71,28 @@ void StepsByBlocksToTheSameLight(test::Claims& claims)
   }
 }
 
+void SolvesOneChannelUnlessAllIsComputed(test::Claims& claims)
+{
+  vtkNew<vtkLatticeBoltzmannLighting> lattice;
+  lattice->SetInputDataObject(test::MakeMedium({ { 9, 6, 7 } }, 0.05, 0.5));
+  lattice->SetFaceRadiance(0.0, 0.0, 1.0, 0.0, 0.0, 0.0);
+  const auto solvesOne = [&] {
+    lattice->Update();
+    return std::string(lattice->GetLeftOut()).find("one channel does") != std::string::npos;
+  };
+  claims.That(solvesOne() && lattice->GetSeconds() > 0.0, "one channel does");
+  vtkNew<vtkImageData> one;
+  one->DeepCopy(lattice->GetOutput());
+  lattice->LeaveOutOff();
+  claims.That(!solvesOne(), "not with LeaveOut off");
+  vtkDataArray* less = one->GetCellData()->GetArray("fluence");
+  vtkDataArray* all = lattice->GetOutput()->GetCellData()->GetArray("fluence");
+  for (vtkIdType i = 0; i < less->GetNumberOfTuples(); ++i)
+  {
+    claims.Near(all->GetTuple1(i) / less->GetTuple1(i), 1.0, 1e-5, "the same light");
+  }
+}
+
 /// A beam of photons through a prism of higher index, and the same light handed on by the marcher.
 void DiffusesWhatPhotonsLeave(test::Claims& claims)
 {
@@ -177,6 +199,7 @@ int TestLatticeBoltzmannLighting(int, char*[])
   FillsAFurnace(claims, 1.0);
   FillsAFurnace(claims, 1.5);
   StepsByBlocksToTheSameLight(claims);
+  SolvesOneChannelUnlessAllIsComputed(claims);
   DiffusesWhatPhotonsLeave(claims);
   WarnsBeforeItIsNotPositive(claims);
   SaysWhatIsWrong(claims);

@@ -274,6 +274,10 @@ void AConstantIndexNeedsNoDevice(test::Claims& claims)
   claims.That(errors.None() && filter->GetNodeCount() == 1, "a constant index is one node");
   claims.That(LevelsOf(filter)->GetRange()[0] == 7 && LevelsOf(filter)->GetRange()[1] == 7, "of 128 voxels an edge");
   claims.That(filter->GetDeviceName()[0] == '\0' && filter->GetLeftOut()[0] != '\0', "nothing ran on a device");
+  filter->LeaveOutOff();
+  filter->Update();
+  claims.That(errors.WasOneWith("no such device"), "unless a constant index is not left out");
+  filter->LeaveOutOn();
   filter->SetInputDataObject(WithIndex({ { 10, 3, 7 } }, Waves));
   filter->Update();
   claims.That(errors.WasOneWith("no such device"), "another index needs one");
