@@ -351,11 +351,13 @@ bool ScatteredManyTimes(const ScatteringOfScene& scene)
   return PlainSetUp + OrdersNeeded(scene) > AcceleratedTimeOf(scene).InOrders();
 }
 
-/// Whether the settings request acceleration, or let it depend on the scene.
+/// Whether the settings request acceleration, or let it depend on the scene. Without scattering there is nothing to
+/// accelerate.
 bool MayBeAccelerated(const PropagationSettings& settings, bool scatters)
 {
-  return settings.source == PropagationSource::Linear ||
-    (settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0 && scatters);
+  return scatters &&
+    (settings.source == PropagationSource::Linear ||
+      (settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0));
 }
 }
 
