@@ -107,6 +107,7 @@ void PropagationProblem::TakeUnits(const Illumination& illumination)
   const AllThatShines here =
     this->Solving.IsEmpty() ? AllThatShines() : ShiningOn(this->Whole(), this->Solved, this->SolvedLight);
   const std::vector<double> all = this->Solving.Max(std::vector<double>{ here.power, here.first });
+  this->Solving.Collective([&] { CheckBrightness(this->Whole(), { all[0], all[1] }); });
   this->PowerUnit = PowerUnitFor({ all[0], all[1] });
   if (this->PowerUnit != 1.0)
   {

@@ -31,6 +31,11 @@ AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illuminati
 /// W.
 double PowerUnitFor(const AllThatShines& all);
 
+/// Checks that light is not too faint for floats.
+/// @param grid  grid of the domain, in the unit of length of `all`
+/// @throws InvalidInput  if no voxel can have a fluence of 1.2e-38 W / length^2, the least normal float
+void CheckBrightness(const Grid& grid, const AllThatShines& all);
+
 /// A scene converted to `unit` of power, W.
 struct SceneInUnits
 {

@@ -127,9 +127,10 @@ std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot
 
 /// Checks that the photons' powers are in the range of float: not 0, not infinite, and not so small that digits are
 /// lost.
-/// @param parts  number of parts of the emission, each of which a separate call computes; if there are several, only
-///   too large a power is an error, because photons of other parts may be brighter
-void CheckPowers(const EmittedPhotons& emitted, int parts)
+/// @param parts  number of parts of the emission, each of which a separate call computes; if there are several, `mean`
+///   tells whether power is too small, because photons of other parts may be brighter
+/// @param mean   power of all lights over the number of photons of all parts, W
+void CheckPowers(const EmittedPhotons& emitted, int parts, double mean)
 {
   float largest = 0.0f;
   std::size_t brightest = 0;
@@ -144,7 +145,8 @@ void CheckPowers(const EmittedPhotons& emitted, int parts)
     }
   }
   const bool tooLarge = std::isinf(largest);
-  if (emitted.photons.empty() || (!tooLarge && (parts > 1 || largest >= std::numeric_limits<float>::min())))
+  const double most = parts > 1 ? std::max<double>(mean, largest) : largest;
+  if (emitted.photons.empty() || (!tooLarge && most >= std::numeric_limits<float>::min()))
   {
     return;
   }
@@ -276,7 +278,12 @@ EmittedPhotons EmitPhotons(
       EmitFrom(grid, lights[s], tries[s], settings.seed == 0 ? 0 : settings.seed + s, settings, monitor, emitted);
     }
   }
-  CheckPowers(emitted, settings.parts);
+  double power = 0.0;
+  for (const Tried& light : tried)
+  {
+    power += light.power;
+  }
+  CheckPowers(emitted, settings.parts, power / static_cast<double>(settings.photonCount));
   emitted.seconds = ClockSeconds() - start;
   return emitted;
 }
