@@ -97,9 +97,10 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   {
     this->Result.ledger = this->Cells->WithOut(this->Result.ledger);
   }
-  // Fluence can be slightly negative: behind voxels with sources by octant, and in dark voxels after a warm start or
-  // coarse-mesh DSA, whose corrections stop before later sweeps would have removed the difference.
-  if (this->AtFaces || this->Warm.Begins() || this->Cells)
+  // Fluence can be slightly negative: behind voxels with sources by octant, in dark voxels after a warm start or
+  // coarse-mesh DSA, whose corrections stop before later sweeps would have removed the difference, and where sources
+  // by angular moments are negative in some directions.
+  if (this->AtFaces || this->Warm.Begins() || this->Cells || this->Parts.Problem.Scattering().Degree() > 0)
   {
     Communicator& comm = this->TheDomain.Comm();
     CutOffNegative(comm, Halo(comm, this->TheDomain.Partition(), this->Settings.periodic, 1), this->Parts.Layout,
