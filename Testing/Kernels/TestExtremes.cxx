@@ -3,6 +3,7 @@
 #include "PhotonScene.h"
 #include "SolvedOnRanks.h"
 
+#include "Numerics/Constants.h"
 #include "Photons/Emission/PhotonEmitter.h"
 
 #include <gmock/gmock.h>
@@ -366,5 +367,34 @@ TEST_F(Extremes, PhotonsLightIsInProportionToTheirPower)
     {
       ASSERT_NEAR(fluence[i] / power, usual[i], 1e-3 * usual[i]) << power;
     }
+  }
+}
+
+TEST_F(Extremes, LightTooFaintForFloatsIsRefusedBeforeItIsSolved)
+{
+  Scene scene({ 5, 5, 5 }, 0.3f, 0.3f);
+  scene.light.lights = { PointLamp({ 2.0, 2.0, 1e160 }, { 1e38, 1e38, 1e38 }) };
+  EXPECT_THAT(WhyRefused(this->GetDevice(), scene), testing::HasSubstr("less than a float holds"));
+  for (const int parts : { 1, 3 })
+  {
+    EmissionSettings settings;
+    settings.photonCount = 999;
+    settings.parts = parts;
+    EXPECT_THAT(ErrorWords([&] { EmitPhotons(scene.medium.grid, scene.light, settings); }),
+      testing::HasSubstr("less power than 1.2e-38 W"))
+      << parts;
+  }
+}
+
+TEST_F(Extremes, ALinearSourceNeedsNoScattering)
+{
+  Scene scene({ 1, 1, 200 }, 0.1f, 0.0f);
+  scene.settings.source = PropagationSource::Linear;
+  scene.emission = scene.sigma_a;
+  scene.ShineFromEverywhere(1.0);
+  const LightField light = scene.Solve(this->GetDevice());
+  for (const float fluence : light.fluence)
+  {
+    EXPECT_NEAR(fluence / (4.0 * Pi), 1.0, 1e-4);
   }
 }
