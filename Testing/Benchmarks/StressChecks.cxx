@@ -25,30 +25,29 @@ class LightChecks
 {
 public:
   LightChecks(
-    StressSolver solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin)
+    const StressSolver& solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin)
     : Solver(solver)
     , Case(stressCase)
     , Scene(stressCase.scene)
     , Outcome(outcome)
     , Twin(twin)
-    , Published(solver == StressSolver::MapsParallel || solver == StressSolver::MapsSequential ||
-        solver == StressSolver::PhotonsPublished || solver == StressSolver::RebuiltPublished)
-    , Rebuilt(solver == StressSolver::Rebuilt || solver == StressSolver::RebuiltPublished)
+    , Published(solver.Is(bench::Published))
+    , Rebuilt(solver.family == StressFamily::Rebuilt)
   {
   }
 
   std::vector<StressCheck> All()
   {
     this->Numbers();
-    if (!this->Rebuilt)
-    {
-      this->Energy();
-    }
-    else if (this->Solver == StressSolver::Rebuilt)
+    if (this->Rebuilt)
     {
       this->Conserves();
     }
-    if (IsGrid(this->Solver) && !this->Published)
+    else if (!this->Solver.Is(Preview) && this->Solver.family != StressFamily::Steps)
+    {
+      this->Energy();
+    }
+    if (this->Solver.IsGrid() && !this->Published)
     {
       this->Bounds();
       this->Exact();
@@ -61,10 +60,17 @@ public:
     {
       this->SameAsTwin();
     }
-    if (this->Solver == StressSolver::Octree)
+    if (this->Solver.family == StressFamily::Octree)
     {
       this->Levels();
     }
+    return std::move(this->Found);
+  }
+
+  std::vector<StressCheck> OfPhotons()
+  {
+    this->Found = this->Outcome.checks;
+    this->Entering();
     return std::move(this->Found);
   }
 
@@ -124,8 +130,10 @@ private:
     }
     this->Add("bad_directions", static_cast<double>(bad), 0.0);
     bad = 0;
-    // What is left over by a lattice, and what photons win or lose by chance, is a difference: in Energy().
-    const bool differs = IsLattice(this->Solver) || this->Solver == StressSolver::PhotonsScattered;
+    // What lattices and corrected iterations leave over, and what photons win or lose by chance, is a difference: in
+    // Energy().
+    const bool differs = this->Solver.EndsByTolerance() || this->Solver.IsOfLattice() ||
+      this->Solver.Is(Scattered | Warm | Reflecting | Preview);
     const auto signless =
       static_cast<std::ptrdiff_t>(differs ? static_cast<std::size_t>(LeftOver * o.channels) : o.balance.size());
     for (const auto& [begin, end] :
@@ -149,16 +157,17 @@ private:
   double CarriedByLinks(int a, int b) const
   {
     const auto edges = [this](int axis) { return this->Scene.periodic[axis] ? 0.0 : 1.0 / this->Scene.cells[axis]; };
-    return this->Solver == StressSolver::LatticeOfSix ? 2.0 / 3.0
-      : this->Solver == StressSolver::Lattice         ? 1.0 - (edges(a) + edges(b)) / 6.0
-                                                      : 1.0;
+    return !this->Solver.IsOfLattice() || this->Solver.Is(bench::OfPhotons) ? 1.0
+      : this->Solver.Is(SixLinks)                                           ? 2.0 / 3.0
+                                                                            : 1.0 - (edges(a) + edges(b)) / 6.0;
   }
 
   /// Power that shines on the box, by the scene alone.
   /// Sky and faces by what the directions carry of them.
   double Shining(int c) const
   {
-    const double carried = this->Outcome.halfRangeFlux.empty() ? 1.0 : this->Outcome.halfRangeFlux[0];
+    const bool own = !this->Outcome.halfRangeFlux.empty() && !this->Solver.Is(bench::OfPhotons);
+    const double carried = own ? this->Outcome.halfRangeFlux[0] : 1.0;
     const Vector& h = this->Scene.spacing;
     double area[3], power = 0.0;
     for (int axis = 0; axis < 3; ++axis)
@@ -171,36 +180,53 @@ private:
     }
     for (const Lamp& lamp : this->Scene.lamps)
     {
-      power += lamp.power[c] * (lamp.kind == Lamp::Sun ? area[2] : 1.0);
+      power += lamp.power[c] * (lamp.kind == Lamp::Sun ? area[2] : this->Case.lampsInside);
     }
     return power;
   }
 
-  void Energy()
+  void Entering()
   {
-    const bool photons = IsPhotons(this->Solver);
-    const auto imbalance = [&](int c) {
-      return (this->Fact(Absorbed, c) + this->Fact(Escaped, c) + this->Fact(LeftOver, c)) / this->In(c) - 1.0;
-    };
-    if (this->Published)
+    if (this->Case.lampsInside < 0.0 || (this->Solver.Is(bench::OfPhotons) && !this->Outcome.warnings.empty()))
     {
-      // The published deposit knows of scattering only: of what a voxel shines itself up to a quarter more is absorbed
-      // and escapes.
-      const double made = this->Scene.emission.empty() ? 1e-3 : 0.3;
-      this->Add("energy_made", this->Solver == StressSolver::PhotonsPublished ? 0.0 : this->Worst(imbalance), made);
-      return;
+      return; // not known, or photons have said that floats do not hold their light
     }
-    this->Add("balance", this->Worst([&](int c) { return std::abs(imbalance(c)); }), 1e-4);
     // Lamps outside the box are seen by beams, and photons come by chance.
-    const bool exact = !photons &&
+    const bool exact = this->Solver.IsGrid() && !this->Solver.Is(bench::OfPhotons | Unturned) &&
       std::all_of(
         this->Scene.lamps.begin(), this->Scene.lamps.end(), [](const Lamp& lamp) { return lamp.kind == Lamp::Sun; });
     this->Add("entered", this->Worst([&](int c) {
       return this->Shining(c) == 0.0 ? 0.0 : std::abs(this->Fact(Entered, c) / this->Shining(c) - 1.0);
     }),
-      !exact                      ? 1e-3
-        : IsLattice(this->Solver) ? 1e-5 // of light that is handed over
-                                  : 1e-6);
+      !exact                         ? 1e-3
+        : this->Solver.IsOfLattice() ? 1e-5 // of light that is handed over
+                                     : 1e-6);
+  }
+
+  void Energy()
+  {
+    const bool photons = this->Solver.IsPhotons();
+    const auto imbalance = [&](int c) {
+      return (this->Fact(Absorbed, c) + this->Fact(Escaped, c) + this->Fact(LeftOver, c)) / this->In(c) - 1.0;
+    };
+    if (this->Published && this->Solver.family != StressFamily::Maps && !this->Solver.IsPhotons())
+    {
+      return; // explicit steps promise no more than to be stable
+    }
+    if (this->Published)
+    {
+      // The published deposit knows of scattering only: of what a voxel shines itself up to a quarter more is absorbed
+      // and escapes.
+      const double made = this->Scene.emission.empty() ? 1e-3 : 0.3;
+      this->Add("energy_made", this->Solver.IsPhotons() ? 0.0 : this->Worst(imbalance), made);
+      return;
+    }
+    this->Add("balance", this->Worst([&](int c) { return std::abs(imbalance(c)); }), 1e-4);
+    if (this->Solver.EndsByTolerance())
+    {
+      this->Add("left_below_0", this->Worst([&](int c) { return -this->Fact(LeftOver, c) / this->In(c); }), 1e-4);
+    }
+    this->Entering();
     if (!photons && !this->Scene.emission.empty())
     {
       this->Add("emitted", this->Worst([&](int c) {
@@ -219,12 +245,12 @@ private:
       return std::abs(out - this->Fact(Escaped, c)) / this->In(c);
     }),
       1e-4);
-    if (IsLattice(this->Solver))
+    if (this->Solver.IsOfLattice() && !this->Solver.Is(ByOrders))
     {
       this->Add("left_over", this->Worst([&](int c) { return std::abs(this->Fact(LeftOver, c)) / this->In(c); }), 1e-4);
     }
     // Of photons that are followed to where they are first scattered, scattering takes away as well.
-    const bool first = photons && this->Solver != StressSolver::PhotonsScattered;
+    const bool first = photons && !this->Solver.Is(Scattered);
     this->Add("absorbed_by_fluence", this->Worst([&](int c) {
       const int s = this->SceneChannel(c);
       const double lost = this->Scene.VoxelVolume() * this->Sum([&](std::size_t i) {
@@ -246,6 +272,10 @@ private:
 
   void Conserves()
   {
+    if (this->Published)
+    {
+      return;
+    }
     double total = 0.0;
     for (const float fluence : this->Outcome.fluence)
     {
@@ -265,7 +295,7 @@ private:
       excess = std::max<double>(excess, std::hypot(flux[3 * i], flux[3 * i + 1], flux[3 * i + 2]) - fluence[i]);
     }
     // A lattice's diagonal links are longer than those along axes, and all are gone in one step.
-    const double longest = this->Solver == StressSolver::Lattice ? std::sqrt(2.0) - 1.0 : 0.0;
+    const double longest = this->Solver.IsOfLattice() && !this->Solver.Is(SixLinks) ? std::sqrt(2.0) - 1.0 : 0.0;
     this->Add("flux_above_fluence", excess == 0.0 ? 0.0 : excess / this->Largest(fluence), longest + 1e-3);
     if (std::isfinite(this->Case.bound))
     {
@@ -282,7 +312,7 @@ private:
         this->Add(std::string("mirrored_" + std::string(1, "xyz"[axis])).c_str(), this->Asymmetry(axis), limit);
       }
     }
-    if (!CountsOrders(this->Solver))
+    if (!this->Solver.Is(ByOrders | OwnTolerance | Preview))
     {
       this->Add("residual_by_tolerance", this->Outcome.warnings.empty() ? this->Outcome.residual : 0.0, 1.0);
     }
@@ -322,7 +352,7 @@ private:
   void Exact()
   {
     const double left = this->Worst([&](int c) { return this->Fact(LeftOver, c) / this->In(c); });
-    if (CountsOrders(this->Solver) && !(left < 1e-5))
+    if (this->Solver.Is(ByOrders) && !(left < 1e-5))
     {
       return;
     }
@@ -333,7 +363,8 @@ private:
       {
         worst = std::max(worst, std::abs(fluence / (4.0 * Pi * this->Case.furnace) - 1.0));
       }
-      this->Add("furnace", worst, 1e-3);
+      // what a preview's tolerance and a target ask for
+      this->Add("furnace", worst, this->Solver.Is(Preview) ? 0.1 : this->Solver.Is(OwnTolerance) ? 0.05 : 1e-3);
     }
     if (this->Case.middle > 0.0)
     {
@@ -343,19 +374,19 @@ private:
       // free path each.
       this->Add("middle", std::abs(fluence / (4.0 * Pi * this->Case.middle) - 1.0), 5e-3);
     }
-    const bool linear = !CountsOrders(this->Solver); // a constant source has no diffusion limit
+    const bool linear = !this->Solver.Is(ByOrders); // a constant source has no diffusion limit
     if (this->Case.transmitted >= 0.0 && linear)
     {
       const double part = this->Outcome.facePowerOut[5] / this->Fact(Entered, 0) * this->CarriedByLinks(0, 1);
       this->Add("transmitted", std::abs(part / this->Case.transmitted - 1.0), 0.02);
     }
-    if (this->Case.pathInBox > 0.0 && !IsLattice(this->Solver)) // in vacuum diffusion knows no length
+    if (this->Case.pathInBox > 0.0 && !this->Solver.IsOfLattice()) // in vacuum diffusion knows no length
     {
       const double path =
         this->Scene.VoxelVolume() * this->Sum([&](std::size_t i) { return this->Fluence(i, 0); }) / this->In(0);
       // Upwind differences spread a beam aside, by first order in the voxel's edge: the published step loses 8.5% of
       // the way on 9 voxels, 3.1% on 27, 0.9% on 81 (limits.md).
-      const bool upwind = this->Solver == StressSolver::Ordinates;
+      const bool upwind = this->Solver.family == StressFamily::Ordinates;
       this->Add("path_in_box", std::abs(path / this->Case.pathInBox - 1.0), upwind ? 0.1 : 0.03);
     }
   }
@@ -364,7 +395,7 @@ private:
   /// by layers.
   void Beam()
   {
-    const bool photons = IsPhotons(this->Solver);
+    const bool photons = this->Solver.IsPhotons();
     const std::array<int, 3>& n = this->Scene.cells;
     std::vector<double> light(static_cast<std::size_t>(n[0] * n[1]), this->Scene.lamps[0].power[0]);
     std::vector<double> depth(light.size(), 0.0);
@@ -406,9 +437,13 @@ private:
     const bool colours = this->Case.twinChannel >= 0;
     // As published photons lose some of their power by chance, and mean cosines are not solved by similarity. To
     // lattices it is what diffuses that is similar, not the light that comes to them.
-    const bool similar = IsMaps(this->Solver) && !this->Published;
-    const bool known = this->Case.similarity ? similar : this->Solver != StressSolver::PhotonsPublished;
-    return known && !(colours && (this->Rebuilt || this->Solver == StressSolver::Octree));
+    const bool similar = this->Solver.IsOfMaps() && !this->Published;
+    const bool known =
+      this->Case.similarity ? similar : !(this->Solver.IsPhotons() && this->Published && !this->Rebuilt);
+    const bool adds =
+      this->Solver.IsGrid() && !this->Published; // photons of a lamp among others are not those of it alone
+    return known && (adds || !this->Case.rest) &&
+      !(colours && (this->Rebuilt || this->Solver.family == StressFamily::Octree));
   }
 
   void SameAsTwin()
@@ -454,7 +489,7 @@ private:
     this->Add("no_nodes", this->Outcome.nodes > 0.0 ? 0.0 : 1.0, 0.0);
   }
 
-  StressSolver Solver;
+  const StressSolver& Solver;
   const StressCase& Case;
   const StressScene& Scene;
   const StressOutcome& Outcome;
@@ -468,7 +503,7 @@ bool IsEven(const std::vector<float>& values)
   return std::all_of(values.begin(), values.end(), [&](float value) { return value == values[0]; });
 }
 
-std::vector<StressCheck> CheckView(const StressScene& scene, const StressOutcome& outcome)
+std::vector<StressCheck> CheckView(const StressSolver& solver, const StressScene& scene, const StressOutcome& outcome)
 {
   std::vector<StressCheck> found;
   double bad = outcome.radiance.empty() || outcome.through.empty() ? 1.0 : 0.0;
@@ -488,7 +523,8 @@ std::vector<StressCheck> CheckView(const StressScene& scene, const StressOutcome
     // Steps of half a voxel do not resolve an index that steps from voxel to voxel.
     found.push_back({ "furnace", worst, scene.index.empty() ? 5e-3 : 0.02 });
   }
-  if (IsEven(scene.absorption) && IsEven(scene.scattering) && scene.channels == 1 && scene.index.empty() &&
+  if (!solver.Is(Reflecting) && IsEven(scene.absorption) && IsEven(scene.scattering) && scene.channels == 1 &&
+    scene.index.empty() &&
     *std::max_element(scene.spacing.begin(), scene.spacing.end()) <= 2.0 *
         *std::min_element(scene.spacing.begin(), scene.spacing.end())) // or a soft ball of glass bends rays out of it
   {
@@ -509,9 +545,12 @@ std::vector<StressCheck> CheckView(const StressScene& scene, const StressOutcome
 }
 
 std::vector<StressCheck> CheckOutcome(
-  StressSolver solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin)
+  const StressSolver& solver, const StressCase& stressCase, const StressOutcome& outcome, const StressOutcome* twin)
 {
-  return IsView(solver) ? CheckView(stressCase.scene, outcome) : LightChecks(solver, stressCase, outcome, twin).All();
+  return solver.IsView()                      ? CheckView(solver, stressCase.scene, outcome)
+    : solver.family == StressFamily::Emission ? LightChecks(solver, stressCase, outcome, nullptr).OfPhotons()
+    : solver.IsStage()                        ? outcome.checks
+                                              : LightChecks(solver, stressCase, outcome, twin).All();
 }
 
 StressCheck CheckTurned(
@@ -545,23 +584,25 @@ StressCheck CheckTurned(
   return { "as_its_turned_self", worst == 0.0 ? 0.0 : error, std::max(1e-5, told) };
 }
 
-bool MayRefuse(StressSolver solver, const StressCase& stressCase, const std::string& error)
+bool MayRefuse(const StressSolver& solver, const StressCase& stressCase, const std::string& error)
 {
-  const std::string name = NameOf(solver);
+  const std::string& name = solver.name;
   const auto [least, most] = std::minmax_element(stressCase.scene.spacing.begin(), stressCase.scene.spacing.end());
-  if (IsLattice(solver) && *least < *most && error.find("voxels have to be cubes") != std::string::npos)
+  if (solver.IsOfLattice() && *least < *most && error.find("voxels have to be cubes") != std::string::npos)
   {
     return true;
   }
   const std::vector<float>& scattering = stressCase.scene.scattering;
   const double h = *least;
   const bool white = std::any_of(scattering.begin(), scattering.end(), [&](float sigma) { return h * sigma > 1e10; });
-  if (IsLattice(solver) && white && error.find("the lattice's numbers hold up to 1e10") != std::string::npos)
+  if (solver.IsOfLattice() && white && error.find("the lattice's numbers hold up to 1e10") != std::string::npos)
   {
     return true;
   }
   return std::any_of(stressCase.refusals.begin(), stressCase.refusals.end(), [&](const Refusal& refusal) {
-    return name.compare(0, refusal.method.size(), refusal.method) == 0 &&
+    const bool ofPhotons = refusal.method == "photons" &&
+      (solver.Is(OfPhotons) || solver.family == StressFamily::Emission || solver.family == StressFamily::Importance);
+    return (ofPhotons || name.compare(0, refusal.method.size(), refusal.method) == 0) &&
       error.find(refusal.words) != std::string::npos;
   });
 }

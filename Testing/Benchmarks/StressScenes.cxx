@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <random>
 
 namespace bench
 {
@@ -55,6 +56,19 @@ StressScene Turned(const StressScene& scene, const CubeTurn& turn)
     turned.faces[turn.Face(face)] = scene.faces[face];
   }
   return turned;
+}
+
+StressScene ShoneUpon(StressScene scene, double part)
+{
+  for (double& radiance : scene.sky)
+  {
+    radiance *= part;
+  }
+  for (double& radiance : scene.faces)
+  {
+    radiance *= part;
+  }
+  return scene;
 }
 
 namespace
@@ -186,7 +200,7 @@ void AddThicknesses(std::vector<StressCase>& cases)
 
 void AddMeanCosines(std::vector<StressCase>& cases)
 {
-  for (const double g : { -0.99, -0.5, 0.5, 0.99 })
+  for (const double g : { -0.99, -0.95, -0.5, 0.5, 0.95, 0.99 })
   {
     StressScene scene = OfAlbedo(1.0, 0.9);
     scene.g = g;
@@ -264,8 +278,9 @@ void AddContrasts(std::vector<StressCase>& cases)
 {
   for (const double albedo : { 0.0, 0.5, NearlyWhite, 1.0 })
   {
-    const std::string name = "1e-4 and 1e4, albedo " + (albedo == NearlyWhite ? "1 - 1e-7" : Number(albedo));
-    AddMedium(cases, "checkerboard 1e8", name, Checkerboard(1e-4, 1e4, albedo), albedo == 1.0);
+    const std::string name = ", albedo " + (albedo == NearlyWhite ? "1 - 1e-7" : Number(albedo));
+    AddMedium(cases, "checkerboard 1e8", "1e-4 and 1e4" + name, Checkerboard(1e-4, 1e4, albedo), albedo == 1.0);
+    AddMedium(cases, "checkerboard 1e12", "1e-6 and 1e6" + name, Checkerboard(1e-6, 1e6, albedo), albedo == 0.5);
   }
   AddMedium(cases, "checkerboard 1e8", "0 and 1e8, albedo 1", Checkerboard(0.0, 1e8, 1.0), false);
 }
@@ -349,20 +364,13 @@ void AddLampsInside(std::vector<StressCase>& cases)
 
 void Scale(StressScene& scene, double by)
 {
+  scene = ShoneUpon(scene, by);
   for (Lamp& lamp : scene.lamps)
   {
     for (double& power : lamp.power)
     {
       power *= by;
     }
-  }
-  for (double& radiance : scene.sky)
-  {
-    radiance *= by;
-  }
-  for (double& radiance : scene.faces)
-  {
-    radiance *= by;
   }
   for (float& emission : scene.emission)
   {
@@ -452,7 +460,8 @@ void AddSpacings(std::vector<StressCase>& cases)
 
 void AddShapes(std::vector<StressCase>& cases)
 {
-  const std::array<int, 3> shapes[] = { { 1, 1, 1 }, { 1, 1, 1000 }, { 1000, 1, 1 }, { 1, 1000, 1 } };
+  const std::array<int, 3> shapes[] = { { 1, 1, 1 }, { 1, 1, 1000 }, { 1000, 1, 1 }, { 1, 1000, 1 }, { 9, 9, 1 },
+    { 1, 9, 9 }, { 9, 1, 9 } };
   for (const std::array<int, 3>& shape : shapes)
   {
     const std::string name = std::to_string(shape[0]) + "x" + std::to_string(shape[1]) + "x" + std::to_string(shape[2]);
@@ -473,6 +482,132 @@ void AddShapes(std::vector<StressCase>& cases)
     made.transmitted = ThickSlabTransmittance(tau);
     made.bound = 1.0;
     cases.push_back(made);
+  }
+}
+
+/// Lamps on the box's upper face, its edge and its corner, and where voxels meet.
+void AddLampsOnEdges(std::vector<StressCase>& cases)
+{
+  const char* const names[] = { "sun", "point", "spot", "rectangle" };
+  const struct
+  {
+    const char* name;
+    Vector at;
+    double ofPoint, ofSpot; ///< parts of their power that get into the box
+  } places[] = { { "face", { 4.5, 4.5, 9.0 }, 0.5, 1.0 }, { "edge", { 0.0, 4.5, 9.0 }, 0.25, 0.5 },
+    { "corner", { 0.0, 0.0, 9.0 }, 0.125, 0.25 }, { "voxels' corner", { 3.0, 4.0, 6.0 }, 1.0, 1.0 } };
+  for (const double sigma : { 0.0, 0.3, 1e3 })
+  {
+    for (const auto& place : places)
+    {
+      for (const Lamp::Kind kind : { Lamp::Point, Lamp::Spot, Lamp::Rectangle })
+      {
+        StressScene scene = OfAlbedo(sigma, 0.8);
+        scene.lamps = { { kind, place.at } };
+        StressCase made =
+          Named("lamp on an edge", std::string(names[kind]) + ", " + place.name + ", sigma " + Number(sigma), scene);
+        made.lampsInside = kind == Lamp::Point ? place.ofPoint : place.ofSpot;
+        if (kind == Lamp::Rectangle && place.ofSpot < 1.0)
+        {
+          made.lampsInside = -1.0; // what is beside the box shines in through its sides
+        }
+        made.quick = kind == Lamp::Point && sigma == 0.3;
+        cases.push_back(made);
+      }
+    }
+  }
+}
+
+/// A lamp so far away that it is a sun.
+void AddFarLamps(std::vector<StressCase>& cases)
+{
+  for (const double distance : { 1e6, 1e17, 1e160 })
+  {
+    StressScene scene = OfAlbedo(0.3, 0.8);
+    scene.lamps = { Lamp() };
+    StressCase made = Named("far lamp", "at " + Number(distance), scene);
+    made.twin = std::make_shared<StressScene>(scene);
+    Lamp& lamp = made.scene.lamps[0];
+    lamp.kind = Lamp::Point;
+    lamp.at = { 4.5, 4.5, distance };
+    lamp.power.fill(std::min(4.0 * std::acos(-1.0) * distance * distance, 1e38));
+    made.scale = lamp.power[0] / (4.0 * std::acos(-1.0)) / distance / distance;
+    made.lampsInside = 81.0 * made.scale / lamp.power[0];
+    if (distance > 1e100)
+    {
+      made.refusals = { { "", "which is less than a float holds" }, { "", "would carry less power than" } };
+    }
+    cases.push_back(made);
+  }
+}
+
+/// One voxel emits among others of up to a thousand mean free paths, in a box of unlike edges.
+void AddScatterersAround(std::vector<StressCase>& cases)
+{
+  for (const double albedo : { 0.5, 0.998, 1.0 })
+  {
+    for (const unsigned seed : { 1u, 2u, 3u })
+    {
+      StressScene scene = Uniform(0.0, 0.0, { 9, 8, 7 });
+      std::mt19937 random(seed);
+      for (std::size_t i = 0; i < scene.VoxelCount(); ++i)
+      {
+        const double sigma = std::pow(10.0, 6.0 * static_cast<double>(random()) / 4294967296.0 - 3.0);
+        scene.absorption[i] = static_cast<float>((1.0 - albedo) * sigma);
+        scene.scattering[i] = static_cast<float>(albedo * sigma);
+      }
+      scene.emission.assign(scene.VoxelCount(), 0.0f);
+      scene.emission[MiddleVoxel(scene)] = 1.0f;
+      cases.push_back(
+        Named("hot voxel in scatterers", "albedo " + Number(albedo) + ", medium " + std::to_string(seed), scene));
+    }
+  }
+}
+
+/// All faces and periodic axes; what all lights make is the sum of what they make one by one.
+void AddBoundaries(std::vector<StressCase>& cases)
+{
+  const std::pair<const char*, std::array<bool, 3>> axes[] = { { "no axis", { false, false, false } },
+    { "x", { true, false, false } }, { "z", { false, false, true } }, { "x and y", { true, true, false } },
+    { "y and z", { false, true, true } }, { "all axes", { true, true, true } } };
+  for (const auto& [name, periodic] : axes)
+  {
+    for (const double sigma : { 0.0, 0.3, 1e3 })
+    {
+      const bool closed = periodic[0] && periodic[1] && periodic[2];
+      StressScene scene = OfAlbedo(sigma, 0.5);
+      scene.periodic = periodic;
+      const std::string called = std::string("periodic: ") + name + ", sigma " + Number(sigma);
+      if (!(closed && sigma == 0.0))
+      {
+        cases.push_back(Furnace("boundaries", called, scene));
+      }
+      if (!periodic[2])
+      {
+        cases.push_back(Beam("boundaries", called, scene));
+      }
+      scene.emission = scene.absorption;
+      for (int face = 0; face < 6; ++face)
+      {
+        scene.faces[face] = periodic[face / 2] ? 0.0 : face + 1.0;
+      }
+      StressCase lit = Named("boundaries", called + ", all lights", scene);
+      lit.scene.lamps = { { Lamp::Point, { 3.3, 4.4, 5.2 } } };
+      lit.scene.sky = { 0.5, 0.5, 0.5 };
+      if (periodic[0] + periodic[1] + periodic[2] !=
+        2) // else a part of the light is that of layers, by other directions
+      {
+        lit.twin = std::make_shared<StressScene>(lit.scene);
+        lit.twin->faces = {};
+        lit.twin->emission.clear();
+        lit.rest = std::make_shared<StressScene>(scene);
+      }
+      lit.quick = sigma == 0.3;
+      if (sigma > 0.0 || !(periodic[0] || periodic[1] || periodic[2]))
+      {
+        cases.push_back(lit);
+      }
+    }
   }
 }
 
@@ -513,7 +648,7 @@ void AddColours(std::vector<StressCase>& cases)
 std::vector<StressCase> Forward(const std::vector<StressCase>& cases)
 {
   std::vector<StressCase> forward;
-  for (const double g : { -0.9, 0.5, 0.9, 0.99, 0.999 })
+  for (const double g : { -0.95, -0.9, 0.5, 0.9, 0.99, 0.999 })
   {
     for (const StressCase& one : cases)
     {
@@ -538,6 +673,11 @@ std::vector<StressCase> Forward(const std::vector<StressCase>& cases)
         made.twin = std::make_shared<StressScene>(*one.twin);
         made.twin->g = g;
       }
+      if (made.rest)
+      {
+        made.rest = std::make_shared<StressScene>(*one.rest);
+        made.rest->g = g;
+      }
       forward.push_back(made);
     }
   }
@@ -558,6 +698,10 @@ std::vector<StressCase> StressCases()
   AddPowers(cases);
   AddSpacings(cases);
   AddShapes(cases);
+  AddLampsOnEdges(cases);
+  AddFarLamps(cases);
+  AddScatterersAround(cases);
+  AddBoundaries(cases);
   AddColours(cases);
   const std::vector<StressCase> forward = Forward(cases);
   cases.insert(cases.end(), forward.begin(), forward.end());

@@ -55,6 +55,9 @@ struct StressScene
 /// The scene turned or mirrored.
 StressScene Turned(const StressScene& scene, const CubeTurn& turn);
 
+/// The scene with so much of its sky and of its faces' light.
+StressScene ShoneUpon(StressScene scene, double part);
+
 /// What a solver has to say to refuse a case that it cannot do.
 struct Refusal
 {
@@ -81,6 +84,8 @@ struct StressCase
   std::shared_ptr<StressScene> twin; ///< a scene that is easy, whose light is the same but for `scale`
   double scale = 1.0;                ///< fluence here is that of the twin times this
   int twinChannel = -1;              ///< the twin is grey: this channel alone
+  std::shared_ptr<StressScene> rest; ///< light of the twin and of this one add up to that of the scene
+  double lampsInside = 1.0;          ///< part of the lamps' power that gets into the box; negative: not known
   bool similarity = false;           ///< the twin is one by the similarity relation, for scattered light
   std::vector<Refusal> refusals;
 };

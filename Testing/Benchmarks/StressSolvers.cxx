@@ -1,13 +1,9 @@
-#include "StressSolvers.h"
+#include "StressFilters.h"
 
 #include "Measure.h"
 
-#include "../Filters/MediumScene.h"
-
 #include "vtkDiscreteOrdinates.h"
-#include "vtkFieldData.h"
 #include "vtkLatticeBoltzmannLighting.h"
-#include "vtkLightRig.h"
 #include "vtkMediumRayCaster.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonImportance.h"
@@ -24,198 +20,59 @@ namespace bench
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
-constexpr double MostScatterings = 300.0; ///< of a photon: a cell is to take seconds
-constexpr int ViewEdge = 12;              ///< pixels
+constexpr int ViewEdge = 12; ///< pixels
 
-/// Keeps what a filter says.
-class Listener : public vtkCommand
+/// Ports and properties that the solvers on grids share.
+template <class Solver>
+void Shine(Solver* solver, const StressScene& scene, double tolerance)
 {
-public:
-  static Listener* New() { return new Listener; }
-  void Execute(vtkObject*, unsigned long event, void* text) override
-  {
-    (event == vtkCommand::ErrorEvent ? this->Outcome->errors : this->Outcome->warnings)
-      .emplace_back(static_cast<const char*>(text));
-  }
-  void Hear(vtkAlgorithm* filter)
-  {
-    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
-    {
-      filter->AddObserver(event, this);
-      filter->GetExecutive()->AddObserver(event, this);
-    }
-  }
-  StressOutcome* Outcome = nullptr;
-};
-
-void AddField(vtkImageData* image, const char* name, const std::vector<float>& values, int components)
-{
-  if (!values.empty())
-  {
-    test::AddValues<vtkFloatArray>(image->GetCellData(), name, image->GetNumberOfCells(), components,
-      [&](vtkIdType i, int c) { return values[static_cast<std::size_t>(i * components + c)]; });
-  }
+  solver->SetInputDataObject(ImageOf(scene));
+  solver->SetSkyColor(scene.sky.data());
+  std::array<double, 6> faces = scene.faces;
+  solver->SetFaceRadiance(faces.data());
+  solver->SetPeriodicX(scene.periodic[0]);
+  solver->SetPeriodicY(scene.periodic[1]);
+  solver->SetPeriodicZ(scene.periodic[2]);
+  solver->SetNetFlux(true);
+  solver->SetTolerance(tolerance);
 }
 
-vtkSmartPointer<vtkImageData> ImageOf(const StressScene& scene)
+void SetOrders(vtkLightPropagationMaps* maps, const StressSolver& row)
 {
-  test::Box box;
-  box.cells = scene.cells;
-  box.spacing = scene.spacing;
-  const vtkSmartPointer<vtkImageData> image = test::MakeImage(box);
-  AddField(image, "sigma_a", scene.absorption, scene.channels);
-  AddField(image, "sigma_s", scene.scattering, scene.channels);
-  AddField(image, "emission", scene.emission, scene.channels);
-  AddField(image, "ior", scene.index, 1);
-  test::AddValues<vtkDoubleArray>(image->GetFieldData(), "g", 1, 1, [&](vtkIdType, int) { return scene.g; });
-  return image;
-}
-
-void AddLamp(vtkLightRig* rig, const Lamp& lamp, const StressScene& scene)
-{
-  const Vector &at = lamp.at, &to = lamp.along, &p = lamp.power;
-  const double width = lamp.width > 0.0 ? lamp.width : 0.5 * scene.spacing[0];
-  switch (lamp.kind)
-  {
-    case Lamp::Sun: rig->AddDirectionalLight(to[0], to[1], to[2], p[0], p[1], p[2]); break;
-    case Lamp::Point: rig->AddPointLight(at[0], at[1], at[2], p[0], p[1], p[2]); break;
-    case Lamp::Spot: rig->AddSpotLight(at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], 60.0); break;
-    case Lamp::Rectangle:
-      rig->AddRectangleLight(at[0], at[1], at[2], to[0], to[1], to[2], p[0], p[1], p[2], width, width);
-      break;
-  }
-}
-
-void SetRig(vtkLightRig* rig, const StressScene& scene)
-{
-  rig->SetSun(false);
-  for (const Lamp& lamp : scene.lamps)
-  {
-    AddLamp(rig, lamp, scene);
-  }
-}
-
-std::vector<float> Floats(vtkDataSetAttributes* attributes, const char* name)
-{
-  std::vector<float> values;
-  vtkDataArray* array = attributes->GetArray(name);
-  for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
-  {
-    const int components = array->GetNumberOfComponents();
-    values.push_back(static_cast<float>(array->GetComponent(i / components, static_cast<int>(i % components))));
-  }
-  return values;
-}
-
-std::vector<double> Facts(vtkDataObject* data, const char* name)
-{
-  std::vector<double> values;
-  vtkDataArray* array = data->GetFieldData()->GetArray(name);
-  for (vtkIdType i = 0; array && i < array->GetNumberOfValues(); ++i)
-  {
-    const int components = array->GetNumberOfComponents();
-    values.push_back(array->GetComponent(i / components, static_cast<int>(i % components)));
-  }
-  return values;
-}
-
-void ReadLight(vtkImageData* image, StressOutcome& outcome)
-{
-  vtkCellData* cells = image->GetCellData();
-  outcome.empty = image->GetNumberOfCells() == 0;
-  outcome.fluence = Floats(cells, "fluence");
-  outcome.fluenceDirect = Floats(cells, "fluence_direct");
-  outcome.fluenceError = Floats(cells, "fluence_error");
-  outcome.netFlux = Floats(cells, "net_flux");
-  outcome.directions = Floats(cells, "mean_direction");
-  outcome.balance = Facts(image, "energy_balance");
-  outcome.facePowerOut = Facts(image, "face_power_out");
-  outcome.halfRangeFlux = Facts(image, "half_range_flux");
-  outcome.scattered = Facts(image, "scattered");
-  vtkDataArray* fluence = cells->GetArray("fluence");
-  outcome.channels = fluence ? fluence->GetNumberOfComponents() : 1;
-}
-
-void RunMaps(
-  StressSolver solver, const StressScene& scene, double tolerance, Listener* listener, StressOutcome& outcome)
-{
-  vtkNew<vtkLightRig> rig;
-  SetRig(rig, scene);
-  vtkNew<vtkLightPropagationMaps> maps;
-  listener->Hear(rig);
-  listener->Hear(maps);
-  maps->SetInputDataObject(ImageOf(scene));
-  maps->SetLightsConnection(rig->GetOutputPort());
-  maps->SetSkyColor(scene.sky.data());
-  maps->SetFaceRadiance(scene.faces.data());
-  maps->SetPeriodicX(scene.periodic[0]);
-  maps->SetPeriodicY(scene.periodic[1]);
-  maps->SetPeriodicZ(scene.periodic[2]);
-  maps->SetNetFlux(true);
-  maps->SetTolerance(tolerance);
-  maps->SetAngularDegree(0); // the similarity relation, as the twins of the row of g have it
-  const bool sequential = solver == StressSolver::MapsSequential;
-  if (sequential || solver == StressSolver::MapsParallel)
-  {
-    maps->SetScheme(vtkLightPropagationMaps::PUBLISHED);
-    maps->SetAlgorithm(sequential ? vtkLightPropagationMaps::SEQUENTIAL : vtkLightPropagationMaps::PARALLEL);
-  }
-  maps->SetLeaveOut(solver != StressSolver::MapsAll);
-  maps->SetAngularDegree(solver == StressSolver::MapsMoments ? -1 : 0);
-  if (!EndsByTolerance(solver))
+  maps->SetAngularDegree(
+    row.Is(Moments) ? -1 : 0); // else the similarity relation, as the twins of the row of g have it
+  maps->SetScheme(row.Is(Published) ? vtkLightPropagationMaps::PUBLISHED : vtkLightPropagationMaps::CONSERVATIVE);
+  if (row.Is(Published | ByOrders))
   {
     maps->SetSource(vtkLightPropagationMaps::CONSTANT);
     maps->SetAcceleration(vtkLightPropagationMaps::NONE);
-    maps->SetMaximumOrders(solver == StressSolver::MapsByOrders ? StressOrders : StressOrdersPublished);
+    maps->SetMaximumOrders(row.Is(ByOrders) ? StressOrders : StressOrdersPublished);
   }
-  maps->Update();
-  outcome.residual = maps->GetResidual() / maps->GetTolerance();
-  ReadLight(maps->GetOutput(), outcome);
 }
 
-void RunOrdinates(const StressScene& scene, Listener* listener, StressOutcome& outcome)
+void SetOrders(vtkDiscreteOrdinates* ordinates, const StressSolver& row)
 {
-  vtkNew<vtkLightRig> rig;
-  SetRig(rig, scene);
-  vtkNew<vtkDiscreteOrdinates> ordinates;
-  listener->Hear(rig);
-  listener->Hear(ordinates);
-  ordinates->SetInputDataObject(ImageOf(scene));
-  ordinates->SetLightsConnection(rig->GetOutputPort());
-  ordinates->SetSkyColor(scene.sky[0], scene.sky[1], scene.sky[2]);
-  std::array<double, 6> faces = scene.faces;
-  ordinates->SetFaceRadiance(faces.data());
-  ordinates->SetPeriodicX(scene.periodic[0]);
-  ordinates->SetPeriodicY(scene.periodic[1]);
-  ordinates->SetPeriodicZ(scene.periodic[2]);
-  ordinates->SetNetFlux(true);
-  ordinates->SetMaximumOrders(StressOrdersOrdinates);
-  ordinates->Update();
-  outcome.residual = ordinates->GetResidual() / ordinates->GetTolerance();
-  ReadLight(ordinates->GetOutput(), outcome);
+  ordinates->SetScheme(row.Is(Published) ? vtkDiscreteOrdinates::PUBLISHED : vtkDiscreteOrdinates::CONSERVATIVE);
+  ordinates->SetMaximumOrders(row.Is(Published | ByOrders) ? StressOrdersOrdinates : 0);
 }
 
-void RunLattice(int directions, const StressScene& scene, double tolerance, Listener* listener, StressOutcome& outcome)
+void SetOrders(vtkLatticeBoltzmannLighting* lattice, const StressSolver& row)
 {
-  vtkNew<vtkLightRig> rig;
-  SetRig(rig, scene);
-  vtkNew<vtkLatticeBoltzmannLighting> lattice;
-  listener->Hear(rig);
-  listener->Hear(lattice);
-  lattice->SetInputDataObject(ImageOf(scene));
-  lattice->SetLightsConnection(rig->GetOutputPort());
-  lattice->SetSkyColor(scene.sky[0], scene.sky[1], scene.sky[2]);
-  std::array<double, 6> faces = scene.faces;
-  lattice->SetFaceRadiance(faces.data());
-  lattice->SetPeriodicX(scene.periodic[0]);
-  lattice->SetPeriodicY(scene.periodic[1]);
-  lattice->SetPeriodicZ(scene.periodic[2]);
-  lattice->SetLattice(directions);
-  lattice->SetNetFlux(true);
-  lattice->SetTolerance(tolerance);
-  lattice->Update();
-  outcome.residual = lattice->GetResidual() / lattice->GetTolerance();
-  ReadLight(vtkImageData::SafeDownCast(lattice->GetOutputDataObject(0)), outcome);
+  lattice->SetScheme(
+    row.Is(Published) ? vtkLatticeBoltzmannLighting::PUBLISHED : vtkLatticeBoltzmannLighting::CONSERVATIVE);
+  lattice->SetLattice(row.Is(SixLinks) ? 6 : 18);
+  lattice->SetMaximumOrders(row.Is(Published | ByOrders) ? StressStepsLattice : 0);
+}
+
+void SetGivenLight(vtkScatteringSolver* solver, vtkPhotonEmitter*, vtkPhotonMarcher* marcher)
+{
+  solver->SetUncollidedLightConnection(marcher->GetOutputPort());
+}
+
+void SetGivenLight(vtkLatticeBoltzmannLighting* lattice, vtkPhotonEmitter* emitter, vtkPhotonMarcher* marcher)
+{
+  lattice->GetInterleaved() ? lattice->SetPhotonsConnection(emitter->GetOutputPort())
+                            : lattice->SetUncollidedLightConnection(marcher->GetOutputPort());
 }
 
 /// Emitter and marcher, and what may stand before and after them.
@@ -228,16 +85,17 @@ struct PhotonChain
   vtkNew<vtkPhotonMarcher> marcher;
   vtkNew<vtkPhotonReconstruction> reconstruction;
 
-  PhotonChain(StressSolver solver, StressScene scene, Listener* listener)
+  PhotonChain(const StressSolver& row, StressScene scene, StressListener* listener)
   {
     SetRig(this->rig, scene);
-    if (solver == StressSolver::Octree && scene.index.empty())
+    if (row.family == StressFamily::Octree && scene.index.empty())
     {
       scene.index.assign(scene.VoxelCount(), 1.0f); // which it groups by extinction then
     }
     const vtkSmartPointer<vtkImageData> medium = ImageOf(scene);
-    for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{
-           this->rig, this->importance, this->emitter, this->octree, this->marcher, this->reconstruction })
+    const std::array<vtkAlgorithm*, 6> filters = { this->rig, this->importance, this->emitter, this->octree,
+      this->marcher, this->reconstruction };
+    for (vtkAlgorithm* filter : filters)
     {
       listener->Hear(filter);
     }
@@ -247,18 +105,16 @@ struct PhotonChain
     this->emitter->SetInputDataObject(medium);
     this->emitter->SetLightsConnection(this->rig->GetOutputPort());
     this->emitter->SetSkyColor(scene.sky[0], scene.sky[1], scene.sky[2]);
-    this->emitter->SetPhotonCount(StressPhotons);
+    this->emitter->SetPhotonCount(static_cast<vtkIdType>(PhotonsFor(row, scene)));
     this->octree->SetInputDataObject(medium);
     this->octree->SetIncludeExtinction(true);
     this->marcher->SetInputDataObject(medium);
     this->marcher->SetPhotonsConnection(this->emitter->GetOutputPort());
     this->reconstruction->SetInputConnection(this->marcher->GetOutputPort());
-  }
-
-  void Scatter(StressOutcome& outcome)
-  {
-    this->marcher->SetMaximumOrders(0);
-    this->March(false, outcome);
+    for (vtkAlgorithm* filter : filters)
+    {
+      row.set(filter);
+    }
   }
 
   void March(bool published, StressOutcome& outcome)
@@ -293,6 +149,42 @@ struct PhotonChain
     outcome.nodes = static_cast<double>(this->octree->GetNodeCount());
   }
 };
+
+template <class Solver>
+void RunGrid(
+  const StressSolver& row, const StressScene& scene, double tolerance, StressListener* listener, StressOutcome& outcome)
+{
+  PhotonChain chain(row, scene, listener);
+  vtkNew<Solver> solver;
+  listener->Hear(solver);
+  Shine(solver.Get(), scene, tolerance);
+  SetOrders(solver.Get(), row);
+  row.set(solver);
+  if (row.Is(OfPhotons))
+  {
+    SetGivenLight(solver.Get(), chain.emitter, chain.marcher);
+  }
+  else
+  {
+    solver->SetLightsConnection(chain.rig->GetOutputPort());
+  }
+  std::array<double, 6> albedo = {};
+  for (std::size_t face = 0; face < 6; ++face)
+  {
+    albedo[face] = row.Is(Reflecting) && !scene.periodic[face / 2] ? StressAlbedo : 0.0;
+  }
+  solver->SetFaceAlbedo(albedo.data());
+  solver->SetPreview(row.Is(Preview));
+  if (row.Is(Warm))
+  {
+    solver->SetSkyColor(scene.sky[0] + 0.3, scene.sky[1] + 0.3, scene.sky[2] + 0.3);
+    solver->Update();
+    solver->SetSkyColor(scene.sky.data());
+  }
+  solver->Update();
+  outcome.residual = solver->GetResidual() / solver->GetTolerance();
+  ReadLight(vtkImageData::SafeDownCast(solver->GetOutputDataObject(0)), outcome);
+}
 
 /// The medium in a light of 4 pi everywhere, so that where it is in equilibrium with that all is 1 to the eye. Where
 /// rays bend radiance is n^2 of that.
@@ -338,19 +230,20 @@ void LookDown(vtkMediumRayCaster* caster, const StressScene& scene)
   caster->SetCameraParallelScale(0.3 * std::min(length[0], length[1]));
 }
 
-void RunView(bool bent, const StressScene& scene, Listener* listener, StressOutcome& outcome)
+void RunView(const StressSolver& row, const StressScene& scene, StressListener* listener, StressOutcome& outcome)
 {
   for (const bool lit : { true, false })
   {
     vtkNew<vtkMediumRayCaster> caster;
     listener->Hear(caster);
-    caster->SetInputDataObject(ImageToView(scene, bent, lit));
+    caster->SetInputDataObject(ImageToView(scene, row.Is(Bent), lit));
     caster->SetImageSize(ViewEdge, ViewEdge);
     caster->SetBackgroundRadiance(1.0, 1.0, 1.0);
     if (!lit)
     {
       LookDown(caster, scene);
     }
+    row.set(caster);
     caster->Update();
     vtkPointData* pixels = caster->GetOutput()->GetPointData();
     outcome.empty = caster->GetOutput()->GetNumberOfPoints() == 0;
@@ -363,103 +256,6 @@ void RunView(bool bent, const StressScene& scene, Listener* listener, StressOutc
     }
   }
 }
-
-/// How often a photon is scattered, about, until it is absorbed or has left: as often as its mean way through the box
-/// has mean free paths, or the square of the box or the thickest voxel if it begins inside.
-double ScatteringsOf(const StressScene& scene)
-{
-  double scatters = 0.0, removes = 0.0, thickest = 0.0, area = 0.0, longest = 0.0, edge = 0.0;
-  for (std::size_t i = 0; i < scene.VoxelCount() * static_cast<std::size_t>(scene.channels); ++i)
-  {
-    const double one = scene.scattering.empty() ? 0.0 : scene.scattering[i];
-    scatters += one;
-    thickest = std::max(thickest, one);
-    removes += one + (scene.absorption.empty() ? 0.0 : scene.absorption[i]);
-  }
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    area += 2.0 * scene.cells[a] * scene.spacing[a] * scene.cells[b] * scene.spacing[b];
-    longest = std::max(longest, scene.cells[axis] * scene.spacing[axis]);
-    edge = std::max(edge, scene.spacing[axis]);
-  }
-  const double mean = scatters / static_cast<double>(scene.VoxelCount() * static_cast<std::size_t>(scene.channels));
-  const double volume = static_cast<double>(scene.VoxelCount()) * scene.VoxelVolume();
-  const bool inside =
-    std::any_of(scene.lamps.begin(), scene.lamps.end(), [](const Lamp& lamp) { return lamp.kind != Lamp::Sun; });
-  const double across = std::max(mean * longest, 0.5 * thickest * edge);
-  const double way = inside ? across * std::max(1.0, across) : mean * 4.0 * volume / area;
-  return scatters > 0.0 ? std::min(way, removes / std::max(removes - scatters, 1e-30)) : 0.0;
-}
-}
-
-const char* NameOf(StressSolver solver)
-{
-  static const char* const names[] = { "maps", "maps, all", "maps, moments", "maps, orders", "maps, parallel",
-    "maps, sequential", "ordinates", "lattice", "lattice of 6", "photons", "photons, all orders", "photons, published",
-    "rebuilt", "rebuilt, published", "octree", "view", "view, bent" };
-  return names[static_cast<int>(solver)];
-}
-
-bool IsMaps(StressSolver solver)
-{
-  return solver <= StressSolver::MapsSequential;
-}
-
-bool EndsByTolerance(StressSolver solver)
-{
-  return solver == StressSolver::Maps || solver == StressSolver::MapsAll || solver == StressSolver::MapsMoments ||
-    IsLattice(solver);
-}
-
-bool IsLattice(StressSolver solver)
-{
-  return solver == StressSolver::Lattice || solver == StressSolver::LatticeOfSix;
-}
-
-bool IsGrid(StressSolver solver)
-{
-  return IsMaps(solver) || solver == StressSolver::Ordinates || IsLattice(solver);
-}
-
-bool CountsOrders(StressSolver solver)
-{
-  return solver == StressSolver::MapsByOrders || solver == StressSolver::Ordinates;
-}
-
-bool IsPhotons(StressSolver solver)
-{
-  return solver >= StressSolver::Photons && solver <= StressSolver::Octree;
-}
-
-bool IsView(StressSolver solver)
-{
-  return solver >= StressSolver::View;
-}
-
-bool Concerns(StressSolver solver, const StressCase& stressCase)
-{
-  const StressScene& scene = stressCase.scene;
-  if (solver == StressSolver::PhotonsScattered)
-  {
-    return (!scene.lamps.empty() || scene.sky != Vector{}) && ScatteringsOf(scene) <= MostScatterings;
-  }
-  if (stressCase.forward || solver == StressSolver::MapsMoments)
-  {
-    return stressCase.forward && (solver == StressSolver::MapsMoments || solver == StressSolver::Ordinates);
-  }
-  if (IsPhotons(solver))
-  {
-    return !scene.lamps.empty() || scene.sky != Vector{};
-  }
-  if (IsView(solver))
-  {
-    const bool thin = *std::min_element(scene.cells.begin(), scene.cells.end()) < 3; // no room for a ball of glass
-    return !(thin && solver == StressSolver::ViewBent) &&
-      (stressCase.furnace > 0.0 || !scene.index.empty() || scene.g != 0.0 || stressCase.row == "colours 1e6 apart" ||
-        stressCase.row == "hot voxel in vacuum" || (stressCase.row == "power" && !scene.emission.empty()));
-  }
-  return true;
 }
 
 std::vector<float> IndexToView(const StressScene& scene)
@@ -489,39 +285,36 @@ std::vector<float> IndexToView(const StressScene& scene)
   return index;
 }
 
-StressOutcome RunStress(StressSolver solver, const StressScene& scene, double tolerance)
+StressOutcome RunStress(const StressSolver& solver, const StressScene& scene, double tolerance)
 {
   StressOutcome outcome;
-  vtkNew<Listener> listener;
+  vtkNew<StressListener> listener;
   listener->Outcome = &outcome;
   const double start = WallSeconds();
-  if (IsMaps(solver))
+  if (solver.Is(Ranks))
   {
-    RunMaps(solver, scene, tolerance, listener, outcome);
+    RunOnRanks(solver, scene, tolerance, outcome);
+    outcome.seconds = WallSeconds() - start;
+    return outcome;
   }
-  else if (solver == StressSolver::Ordinates)
+  switch (solver.family)
   {
-    RunOrdinates(scene, listener, outcome);
-  }
-  else if (IsLattice(solver))
-  {
-    RunLattice(solver == StressSolver::Lattice ? 18 : 6, scene, tolerance, listener, outcome);
-  }
-  else if (IsView(solver))
-  {
-    RunView(solver == StressSolver::ViewBent, scene, listener, outcome);
-  }
-  else
-  {
-    PhotonChain chain(solver, scene, listener);
-    switch (solver)
+    case StressFamily::Maps: RunGrid<vtkLightPropagationMaps>(solver, scene, tolerance, listener, outcome); break;
+    case StressFamily::Ordinates: RunGrid<vtkDiscreteOrdinates>(solver, scene, tolerance, listener, outcome); break;
+    case StressFamily::Lattice:
+      RunGrid<vtkLatticeBoltzmannLighting>(solver, scene, tolerance, listener, outcome);
+      break;
+    case StressFamily::View: RunView(solver, scene, listener, outcome); break;
+    case StressFamily::Photons:
     {
-      case StressSolver::Rebuilt:
-      case StressSolver::RebuiltPublished: chain.Rebuild(solver == StressSolver::RebuiltPublished, outcome); break;
-      case StressSolver::PhotonsScattered: chain.Scatter(outcome); break;
-      case StressSolver::Octree: chain.MarchThroughOctree(outcome); break;
-      default: chain.March(solver == StressSolver::PhotonsPublished, outcome);
+      PhotonChain chain(solver, scene, listener);
+      chain.marcher->SetMaximumOrders(solver.Is(Scattered) ? 0 : 1);
+      chain.March(solver.Is(Published), outcome);
+      break;
     }
+    case StressFamily::Rebuilt: PhotonChain(solver, scene, listener).Rebuild(solver.Is(Published), outcome); break;
+    case StressFamily::Octree: PhotonChain(solver, scene, listener).MarchThroughOctree(outcome); break;
+    default: RunStage(solver, scene, listener, outcome);
   }
   outcome.seconds = WallSeconds() - start;
   return outcome;
