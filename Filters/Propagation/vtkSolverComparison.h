@@ -38,8 +38,8 @@ struct ComparisonSettings;
  * coarser of their two grids, by voxel means; light of a coarsened medium is taken as constant in each voxel.
  * Input 4, optional: the closed mesh (vtkPolyData) from which vtkMeshVoxelizer made the medium, which then needs its
  * cell array `occupancy`: the mesh is voxelised with all SupersamplingFactors and FilterSizes, and photons march
- * through each. Without input 3 the reference is then of photons in the mesh, voxelised with half the voxel edge and
- * supersampling 16.
+ * through each. Without input 3 the reference is then of photons in the mesh, voxelised with a quarter (above 2^18
+ * voxels: half) of the voxel edge and supersampling 16.
  *
  * Output 0: vtkTable `error_against_time`, one row per method and setting:
  *

@@ -377,7 +377,9 @@ std::size_t RunInTurns(
 ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const ComparedSettings& tried, double budget,
   std::vector<std::string>& warnings, const Monitor& monitor)
 {
-  constexpr int refinement = 2, samples = 16;
+  constexpr std::size_t few = std::size_t(1) << 18; // of so many voxels, those a quarter as large fit most devices
+  constexpr int samples = 16;
+  const int refinement = scene.medium.grid.VoxelCount() <= few ? 4 : 2;
   const Monitor watch = PartUntil(device, device.Now() + 0.5 * budget, monitor, 0.0, 1.0);
   try
   {
@@ -389,7 +391,8 @@ ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const
     voxelization.samples = samples;
     const VoxelizedScene fine(device, scene, refinement, voxelization, RefractiveMediumSettings().filterSize, watch);
     ReferenceLight reference = ConvergedLight(device, fine.Scene(), tried, 0.5 * budget, watch);
-    reference.text += "; the mesh in voxels of half the edge, supersampling " + std::to_string(samples);
+    reference.text += "; the mesh in voxels of 1/" + std::to_string(refinement) + " of the edge, supersampling " +
+      std::to_string(samples);
     return reference;
   }
   catch (const TimeIsUp&)
@@ -515,7 +518,7 @@ ComparisonRow* BestOf(std::vector<ComparisonRow>& rows, ComparedQuantity quantit
   return best;
 }
 
-/// Makes pictures show the light of the filters `light`, or of none if that is empty.
+/// Makes pictures show the light of the filters `light`.
 void ShowLight(const std::string& light, std::vector<ComparisonRow>& rows)
 {
   const auto last = std::count(light.begin(), light.end(), '|') + 1;
@@ -523,7 +526,7 @@ void ShowLight(const std::string& light, std::vector<ComparisonRow>& rows)
   {
     if (QuantityOf(row.method) == ComparedQuantity::Radiance)
     {
-      row.filters = light.empty() ? "" : light + " | " + row.filters + " Input=#" + std::to_string(last);
+      row.filters = light + " | " + row.filters + " Input=#" + std::to_string(last);
     }
   }
 }
@@ -538,9 +541,9 @@ void MarkRecommended(std::vector<ComparisonRow>& rows, double acceptedError)
     {
       best->recommended = true;
     }
-    if (quantity == ComparedQuantity::Fluence)
+    if (best && quantity == ComparedQuantity::Fluence)
     {
-      ShowLight(best ? best->filters : "", rows);
+      ShowLight(best->filters, rows);
     }
   }
 }

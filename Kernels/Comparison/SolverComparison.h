@@ -47,7 +47,7 @@ void MarkPareto(std::vector<ComparisonRow>& rows);
 
 /// Sets `recommended` of one row per quantity, among those with an error that filters can repeat: the fastest whose L2
 /// error is at most `acceptedError` or, if there is none, the most accurate. Pictures are made to show the recommended
-/// fluence: its filters are prepended to theirs.
+/// fluence, if there is one: its filters are prepended to theirs.
 void MarkRecommended(std::vector<ComparisonRow>& rows, double acceptedError);
 
 /// The recommended row that a user wants: of pictures, else of fluence, else of uncollided fluence; null if there is

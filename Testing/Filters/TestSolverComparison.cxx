@@ -359,7 +359,7 @@ void MeshesAreVoxelised(test::Claims& claims)
   if (claims.That(errors.None() && table->GetNumberOfRows() == 1, "a voxelisation"))
   {
     claims.That(Text(table, 0, "method") == "voxelizer and photons" && Number(table, 0, "recommended") == 1.0, "row");
-    claims.That(Number(table, 0, "error_l2") < 0.5, "near that of half the voxel edge");
+    claims.That(Number(table, 0, "error_l2") < 0.5, "near that of a quarter of the voxel edge");
     claims.That(std::string(comparison->GetRecommendedFilters()) == Text(table, 0, "filters") &&
         Text(table, 0, "filters").find("MeshVoxelizer Input=@Mesh SampleDimensions=16,16,16") == 0,
       "the filters that repeat it: " + Text(table, 0, "filters"));
