@@ -41,8 +41,8 @@ STYLES = {
     "voxelizer and photons": ((150, 75, 0), vtkPlotPoints.SQUARE),
     "picture": ((200, 0, 60), vtkPlotPoints.CIRCLE),
 }
-# What the legend adds to the method for what is compared.
-QUANTITIES = {"fluence": "", "fluence_direct": " (unscattered light)", "radiance": " (radiance)"}
+# What the legend adds to the method for what is compared, and the colour of the band along the best settings.
+QUANTITIES = {"fluence": ("", (200, 200, 200)), "fluence_direct": (" (unscattered light)", (200, 225, 210)), "radiance": (" (radiance)", (240, 210, 220))}
 
 
 def rows_of(comparison):
@@ -245,25 +245,26 @@ class Plot:
         writer.Write()
 
 
-def plot(rows, path, title, error="error_l2", error_title="Relative error of fluence (L2)"):
+def plot(rows, path, title, error="error_l2", error_title=None):
     """Writes a PNG, the recommended settings crossed. Rows that have no such error, or none at all (0), are not in it."""
     rows = [row for row in rows if error in row and row[error] > 0.0 and row["seconds"] > 0.0]
     if not rows:
         return
-    chart = Plot(title, error_title)
-    for quantity, suffix in QUANTITIES.items():
+    quantities = {row["quantity"] for row in rows}
+    chart = Plot(title, error_title or "Relative error%s (L2)" % (" of fluence" if quantities == {"fluence"} else ""))
+    for quantity, (suffix, band) in QUANTITIES.items():
         of = [row for row in rows if row["quantity"] == quantity]
         if len(methods_of(of)) > 1 and len(front(of, error)) > 1:
-            chart.line(front(of, error), "best of all" + suffix, error, (200, 200, 200), 12.0)
+            chart.line(front(of, error), "best of all" + suffix, error, band, 12.0)
     for name in methods_of(rows):
         of = [row for row in rows if row["method"] == name]
         color, marker = STYLES[name]
         if len(front(of, error)) > 1:
             chart.line(front(of, error), name, error, color, 2.5).LegendVisibilityOff()
-        chart.points(of, name + QUANTITIES[of[0]["quantity"]], error, color, marker, 13.0)
+        chart.points(of, name + QUANTITIES[of[0]["quantity"]][0], error, color, marker, 13.0)
     chosen = [row for row in rows if row.get("recommended")]
     if chosen and error == "error_l2":
-        chart.points(chosen, "recommended", error, (220, 0, 0), vtkPlotPoints.CROSS, 26.0)
+        chart.points(chosen, "recommended", error, (220, 0, 0), vtkPlotPoints.CROSS, 26.0).SetWidth(3.0)
     chart.limits(vtkAxis.BOTTOM, [row["seconds"] for row in rows])
     chart.limits(vtkAxis.LEFT, [row[error] for row in rows])
     chart.save(path)
@@ -271,10 +272,11 @@ def plot(rows, path, title, error="error_l2", error_title="Relative error of flu
 
 def print_table(rows, error="error_l2"):
     best = front([row for row in rows if not math.isnan(row[error])], error)
-    print("%-34s %-38s %-12s %9s %9s %9s %9s %6s" % ("method", "setting", "grid", "seconds", "MiB", "error", "estimate", "front"))
+    width = max([38] + [len(row["setting"]) for row in rows])
+    print("%-34s %-*s %-12s %9s %9s %9s %9s %6s" % ("method", width, "setting", "grid", "seconds", "MiB", "error", "estimate", "front"))
     for row in rows:
-        print("%-34s %-38s %-12s %9.3g %9.3g %9.2e %9.2e %6s" % (
-            row["method"], row["setting"], row["grid"], row["seconds"], row["peak_bytes"] / 2 ** 20, row[error],
+        print("%-34s %-*s %-12s %9.3g %9.3g %9.2e %9.2e %6s" % (
+            row["method"], width, row["setting"], row["grid"], row["seconds"], row["peak_bytes"] / 2 ** 20, row[error],
             row["estimated_error"], "recommended" if row["recommended"] else "*" if (row["pareto"] if error == "error_l2" else row in best) else ""))
 
 

@@ -86,7 +86,7 @@ class Bench:
             return self.compare(methods, 0.5 * seconds, Reference=XMLImageDataReader(FileName=[kept]), **settings)
         return self.compare(methods, seconds, save_reference=kept, **settings)
 
-    def report(self, case, title, rows, facts, error="error_l2", error_title="Relative error of fluence (L2)"):
+    def report(self, case, title, rows, facts, error="error_l2", error_title=None):
         """Print, plot and keep a scene's rows."""
         self.titles[case], self.errors[case] = title, error
         for row in rows:
@@ -311,7 +311,7 @@ def print_advice(bench):
     print("\n| scene | error 10% | 1% | 0.1% | best |\n|---|---|---|---|---|")
     for case, title in bench.titles.items():
         rows, error = bench.of(case), bench.errors[case]
-        for quantity, suffix in eat.QUANTITIES.items():
+        for quantity, (suffix, _) in eat.QUANTITIES.items():
             of = [row for row in rows if row["quantity"] == quantity]
             if not of:
                 continue
