@@ -36,6 +36,9 @@ tyndall::OrdinatesSettings GivenSettings(vtkDiscreteOrdinates* filter)
   settings.terms = filter->GetTerms();
   settings.maximumOrders = filter->GetMaximumOrders();
   settings.tolerance = filter->GetTolerance();
+  settings.acceleration = filter->GetAcceleration() == vtkDiscreteOrdinates::NONE
+    ? tyndall::PropagationAcceleration::None
+    : tyndall::PropagationAcceleration::Automatic;
   settings.periodic = { filter->GetPeriodicX(), filter->GetPeriodicY(), filter->GetPeriodicZ() };
   settings.netFlux = filter->GetNetFlux();
   settings.leaveOut = filter->GetLeaveOut();
@@ -138,6 +141,6 @@ void vtkDiscreteOrdinates::ShareResults(tyndall::Communicator& ranks)
 void vtkDiscreteOrdinates::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  tyndallPrintMacro(Scheme, Scattering, DirectionsPerFace, SpiralDirections, Terms, MaximumOrders, WarmStart, NetFlux,
-    Orders, SweepsSaved, HalfRangeFlux);
+  tyndallPrintMacro(Scheme, Scattering, DirectionsPerFace, SpiralDirections, Terms, MaximumOrders, Acceleration,
+    WarmStart, NetFlux, Orders, SweepsSaved, HalfRangeFlux);
 }

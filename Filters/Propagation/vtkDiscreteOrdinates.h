@@ -54,10 +54,11 @@ class LastLight;
  * `residual`, `change`, `absorbed`, `escaped`, `left_over`, and with WarmStart `sweeps_saved`: number of additional
  * rows after which the last cold solve (with zero initial guess) reached the same residual.
  *
- * Source iteration is not accelerated: in optically thick media that absorb little, vtkLightPropagationMaps is faster.
- * The radiance in all directions has to fit in device memory: if it does not, an error states the required memory
- * before any is allocated. EstimateError and TargetError need the conservative scheme, TargetError also
- * SpiralDirections 0. The error of replacing a mean cosine that varies by voxel by its mean is not included.
+ * Media that scatter light many times are solved by diffusion synthetic acceleration, DSA (Acceleration). The radiance
+ * in all directions has to fit in device memory, unless an accelerated solve scatters isotropically: if it does not, an
+ * error states the required memory. EstimateError and TargetError need the conservative scheme, TargetError also
+ * SpiralDirections 0. In solves that are not accelerated, the error of replacing a mean cosine that varies by voxel by
+ * its mean is not included.
  *
  * With Decomposition BLOCKS ranks exchange radiance at the boundaries of their pieces (numerics.md, section 10 b);
  * every scattering order is the same as in a serial solve. Quality limits the number of directions such that the
@@ -87,6 +88,12 @@ public:
     MATRIX = 0,             ///< phase function as full matrix of all pairs of directions
     SINGULAR_VALUES = 1,    ///< the largest Terms singular values of that matrix, as published
     SPHERICAL_HARMONICS = 2 ///< expansion in Terms spherical harmonics
+  };
+
+  enum Accelerations
+  {
+    NONE = 0,                  ///< plain source iteration
+    AUTOMATIC_ACCELERATION = 1 ///< DSA: a diffusion solve between sweeps, if many orders would be needed
   };
 
   ///@{
@@ -124,9 +131,16 @@ public:
   ///@}
 
   ///@{
+  /// Acceleration of source iteration (conservative scheme, if MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION
+  /// (default). Directions of a spiral are not accelerated, nor is anisotropic scattering by MATRIX or SINGULAR_VALUES.
+  tyndallRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
+  ///@}
+
+  ///@{
   /// Whether the solution of the last update is the initial guess of the next one: it saves sweeps if medium or lights
   /// changed a little; the result is the same within Tolerance. The solution stays in memory until an update with
-  /// WarmStart off: one float per voxel and channel. Used only if scattering is isotropic and Scheme is CONSERVATIVE.
+  /// WarmStart off: one float per voxel and channel. Used only if Scheme is CONSERVATIVE, and without acceleration only
+  /// if scattering is isotropic.
   /// With Decomposition BLOCKS each rank keeps the solution of its piece; if the pieces have changed, the initial guess
   /// is zero on all ranks. Default off.
   tyndallFlagMacro(WarmStart);
@@ -166,6 +180,7 @@ private:
   int SpiralDirections;
   int Terms;
   int MaximumOrders;
+  int Acceleration = AUTOMATIC_ACCELERATION;
   bool WarmStart = false;
   bool NetFlux;
 

@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/OrdinatesScene.h"
+#include "DiscreteOrdinates/OrdinatesTransport.h"
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Distribution/SharedLight.h"
@@ -14,6 +15,7 @@
 #include "LightPropagation/Published/PublishedModel.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -162,6 +164,11 @@ std::vector<std::string> Words(
     say(scene.shining.lights.empty() && far.peaks.empty(), left_out::NoLights);
     say(!Reflects(scene.shining), left_out::BlackFaces);
   }
+  const bool asked = settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0;
+  if (traits.scatters && asked && !IsPublished(settings) && settings.seriesAfter == 0)
+  {
+    words.emplace_back(MayAccelerate(settings, scattersEvenly) ? left_out::Acceleration : left_out::SpiralAcceleration);
+  }
   say(!settings.netFlux, left_out::NetFlux);
   return words;
 }
@@ -252,6 +259,12 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
 {
   CheckOrdinates(domain, medium, illumination, settings, kept != nullptr);
   const PropagationProblem problem(domain, medium, illumination, AsPropagation(settings));
+  std::optional<LightField> accelerated =
+    SolveAcceleratedOrdinates(device, domain, medium, illumination, settings, problem, monitor, kept);
+  if (accelerated)
+  {
+    return std::move(*accelerated);
+  }
   Illumination shining = problem.Shining();
   shining.uncollided = UncollidedKnown(domain, shining.uncollided);
   LightField light = SolveChannels(device,

@@ -210,17 +210,21 @@ void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles
 {
   const std::size_t bytes =
     IsPublished(settings) ? BytesOfPublishedOrders(grid, angles, settings) : BytesOfSweptOrders(grid, angles, settings);
-  const std::size_t radiance = sizeof(float) * AngularScattering::Floats(angles.groups, grid.VoxelCount());
+  CheckMemory(device, angles.phase.DirectionCount(), bytes,
+    sizeof(float) * AngularScattering::Floats(angles.groups, grid.VoxelCount()));
+}
+
+void CheckMemory(Device& device, int directions, std::size_t bytes, std::size_t radiance)
+{
   const std::size_t free = device.MemoryLimit() - device.BytesInUse();
   if (bytes <= free && radiance <= device.AllocationLimit())
   {
     return;
   }
   const auto mebibytes = [](std::size_t count) { return Text("%.0f", std::ceil(count / 1048576.0)) + " MiB"; };
-  throw DeviceError("Discrete ordinates with " + std::to_string(angles.phase.DirectionCount()) + " directions need " +
-    mebibytes(bytes) + " for this grid, " + mebibytes(radiance) +
-    " of them in one piece, the radiance along all directions; " + device.Name() + " has " + mebibytes(free) +
-    " left, " + mebibytes(device.AllocationLimit()) +
+  throw DeviceError("Discrete ordinates with " + std::to_string(directions) + " directions need " + mebibytes(bytes) +
+    " for this grid, " + mebibytes(radiance) + " of them in one piece, the radiance along all directions; " +
+    device.Name() + " has " + mebibytes(free) + " left, " + mebibytes(device.AllocationLimit()) +
     " in one piece. Choose fewer directions, a coarser grid, or Light Propagation Maps.");
 }
 

@@ -149,6 +149,8 @@ SeparablePhaseFunction SeparableOf(const PhaseFunction& function, const std::vec
 /// Checks that the solve fits the device.
 /// @throws DeviceError if it does not; the message states the memory needed
 void CheckMemory(Device& device, const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
+/// @param bytes, radiance  bytes of device memory of the whole solve, and of its largest array
+void CheckMemory(Device& device, int directions, std::size_t bytes, std::size_t radiance);
 
 /// Boundary source of a channel: environment, sky and faces; empty if there is none. `far` and `shining` must outlive
 /// the result.

@@ -46,7 +46,10 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings)
   as.periodic = settings.periodic;
   as.netFlux = settings.netFlux;
   as.leaveOut = settings.leaveOut;
-  as.angularDegree = 0; // no angular moments: scattering is between directions
+  as.acceleration = settings.acceleration;
+  as.angularDegree = 0;        // no angular moments: scattering is between directions
+  as.uncollidedDirections = 0; // boundary light goes along the directions of scattered light
+  as.storeMoments = false;
   return as;
 }
 

@@ -48,6 +48,8 @@ struct OrdinatesSettings
   /// Number of orders after which the sum of all later orders is extrapolated as a geometric series (conservative
   /// scheme); 0: no extrapolation.
   int seriesAfter = 0;
+  /// Conservative scheme, if neither maximumOrders nor seriesAfter is set.
+  PropagationAcceleration acceleration = PropagationAcceleration::Automatic;
   std::array<bool, 3> periodic = { false, false, false }; ///< light wraps around these axes
   bool netFlux = false;                                   ///< whether to compute net_flux
   bool leaveOut = true;                                   ///< whether to skip work that the scene does not need

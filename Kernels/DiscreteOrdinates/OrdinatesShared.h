@@ -31,6 +31,7 @@ typedef struct
   int begin, end; ///< range of layers of that part, counted in the order in which the directions of a group cross them
   /// number of voxels from the radiance of one group of directions to that of the next (OrdinateStride)
   ulong stride;
+  ulong firstT, firstSource; ///< index of the channel's first value in the extinction, and in an isotropic source
 } SweptLayers;
 
 /// Range of voxels that a launch of a scattering kernel processes.

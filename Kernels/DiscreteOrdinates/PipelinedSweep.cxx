@@ -46,7 +46,7 @@ CellsOfBlock::CellsOfBlock(Device& device, const Domain& domain, const Grid& own
     {
       const std::array<int, 3> at = own.VoxelAt(cell.voxel);
       const BoxFaceLayout layout = LayoutOfFace(domain.Whole(), cell.face);
-      std::size_t there = layout.first;
+      std::size_t there = ofWhole.first + layout.first;
       for (int axis = 0; axis < 3; ++axis)
       {
         there += static_cast<std::size_t>(block.first[axis] + at[axis]) * layout.step[axis];
@@ -250,8 +250,8 @@ void PipelinedSweep::GiveTo(const Octant& octant, int number)
   std::for_each(octant.aroundTo.begin(), octant.aroundTo.end(), give);
 }
 
-FacePowers PipelinedSweep::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-  const Buffer<float>& scale, const IncomingRadiance& incoming, bool, const Monitor& monitor)
+FacePowers PipelinedSweep::Apply(
+  const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool, const Monitor& monitor)
 {
   this->Failure = {};
   FacePowers powers;
@@ -261,16 +261,14 @@ FacePowers PipelinedSweep::Apply(const Buffer<float>& radiance, const Buffer<flo
       this->Cells->LetIn();
     }
   });
-  this->Failure.Attempt([&] { this->Sweep.LetIn(incoming, powers); });
+  this->Failure.Attempt([&] { this->Sweep.LetIn(incoming, powers, arrays.onlyWraps); });
   for (std::size_t i = 0; i < this->Order.size(); ++i)
   {
     const Octant& octant = this->Octants[this->Order[i]];
     const double all = static_cast<double>(this->Order.size());
     this->TakeFrom(octant, this->Order[i]);
-    this->Failure.Attempt([&] {
-      this->Sweep.SweepGroups(
-        octant.first, octant.groups, radiance, sigma_t, scale, OfPart(monitor, i / all, (i + 1) / all));
-    });
+    this->Failure.Attempt(
+      [&] { this->Sweep.SweepGroups(octant.first, octant.groups, arrays, OfPart(monitor, i / all, (i + 1) / all)); });
     this->GiveTo(octant, this->Order[i]);
   }
   this->TakeFromAround();

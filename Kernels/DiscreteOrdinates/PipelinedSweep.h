@@ -59,8 +59,8 @@ public:
   /// Sweeps the whole grid once. Collective.
   /// @return powers summed over ranks
   /// @throws on every rank if any rank throws
-  FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-    const IncomingRadiance& incoming, bool shines, const Monitor& monitor) override;
+  FacePowers Apply(
+    const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool shines, const Monitor& monitor) override;
 
 private:
   struct Octant

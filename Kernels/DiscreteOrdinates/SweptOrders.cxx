@@ -105,8 +105,7 @@ private:
       return;
     }
     auto& sweep = static_cast<UpwindSweep&>(*this->Sweep); // the domain is serial
-    const FacePowers powers =
-      sweep.ApplyBeyond(this->Scene.filled, this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, monitor);
+    const FacePowers powers = sweep.ApplyBeyond(this->Scene.filled, this->Swept(), monitor);
     this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
     for (int face = 0; face < 6; ++face)
     {
@@ -250,13 +249,15 @@ private:
     this->Result.rate = std::max(this->Record.Rate(), this->Scene.guess.rate);
   }
 
+  OrdinateArrays Swept() const { return { this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale }; }
+
   /// @param within  whether only the box of the medium is swept
   FacePowers SweepOrder(const IncomingRadiance& incoming, bool within, const Monitor& monitor)
   {
     if (within)
     {
       auto& sweep = static_cast<UpwindSweep&>(*this->Sweep); // the domain is serial
-      return sweep.ApplyWithin(this->Scene.filled, this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, monitor);
+      return sweep.ApplyWithin(this->Scene.filled, this->Swept(), monitor);
     }
     const bool shines = !this->Record.All().empty() || this->Arrays.Emits() || !this->Settings.leaveOut;
     if (!shines && this->Scene.domain.IsSerial())
@@ -267,7 +268,7 @@ private:
         this->Result.leftOut.push_back(left_out::DarkDirections(lit));
       }
     }
-    return this->Sweep->Apply(this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, incoming, shines, monitor);
+    return this->Sweep->Apply(this->Swept(), incoming, shines, monitor);
   }
 
   void SweepAndScatter(const IncomingRadiance& incoming, const Monitor& monitor)

@@ -4,6 +4,7 @@
 //
 //   REAL_WIDTH  8: a work-item processes all directions of a group; 1: one direction
 #include "DiscreteOrdinates/OrdinatesShared.h"
+#include "LightPropagation/Sweep/MomentPlacesShared.h"
 #include "Numerics/Numerics.cl"
 
 #define THIN 0.3f // optical length below which the power series in cross_voxel() are accurate to rounding
@@ -55,44 +56,149 @@ inline int4 swept_range(int up, int beyond, int first, int last, int size)
   return (int4)(up ? first : last, up ? 1 : -1, in_box, in_box + outside);
 }
 
+// Reciprocal weight of the outgoing radiance in weighted diamond differences: the weight is 1 / (1 - T) - 1 / x with
+// T = exp(-x), here 1 / (1 + x + ... + x^6 / 720) (numerics.md, Eq. (D15)). 2 in vacuum, 1 in opaque voxels.
+//   x  optical length of the voxel along the direction, between faces normal to an axis, >= 0
+inline real reciprocal_weight(real x)
+{
+  const real t = fmin(x, (real)1e5f);
+  real above = multiply_add(t, (real)1.38888889e-3f, (real)8.33333333e-3f);
+  above = multiply_add(above, t, (real)4.16666667e-2f);
+  above = multiply_add(above, t, (real)1.66666667e-1f);
+  above = multiply_add(above, t, (real)0.5f);
+  above = multiply_add(above, t, (real)1.0f);
+  real below = multiply_add(t, (real)1.38888889e-3f, (real)6.94444444e-3f);
+  below = multiply_add(below, t, (real)3.33333333e-2f);
+  below = multiply_add(below, t, (real)0.125f);
+  below = multiply_add(below, t, (real)3.33333333e-1f);
+  below = multiply_add(below, t, (real)0.5f);
+  return above / below;
+}
+
+// Radiance of a voxel and behind it, by weighted diamond differences (numerics.md, Eq. (D15)).
+//   tau    optical length of the mean chord, >= 0
+//   share  weight of the face normal to each axis in the power that enters; their sum is 1
+//   weight reciprocal_weight() along each axis
+//   gain   source times length of the mean chord
+//   in     radiance that enters through each face;  out: receives the radiance that leaves
+// Returns the mean radiance. Where light would be negative behind a face, nothing leaves through that face. At most two
+// faces of a voxel are like that, and power is conserved.
+inline real cross_by_diamonds(real tau, const real* share, const real* weight, real gain, const real* in, real* out)
+{
+  real flows[3], kept[3];
+  real enters = gain, leaves = tau;
+#pragma unroll
+  for (int a = 0; a < 3; ++a)
+  {
+    flows[a] = share[a] * weight[a];
+    enters = multiply_add(flows[a], in[a], enters);
+    leaves += flows[a];
+  }
+  real mean = enters / leaves;
+#pragma unroll
+  for (int a = 0; a < 3; ++a)
+  {
+    out[a] = multiply_add(weight[a], mean - in[a], in[a]);
+  }
+  const real least = fmin(out[0], fmin(out[1], out[2]));
+#if REAL_WIDTH == 1
+  const bool negative = least < 0.0f;
+#else
+  const bool negative = any(least < (real)0.0f);
+#endif
+  for (int round = 0; negative && round < 2; ++round)
+  {
+    enters = gain;
+    leaves = tau;
+#pragma unroll
+    for (int a = 0; a < 3; ++a)
+    {
+      kept[a] = round == 0 ? (real)1.0f : kept[a];
+      kept[a] = select(kept[a], (real)0.0f, out[a] < (real)0.0f);
+      enters = multiply_add(mix(share[a], flows[a], kept[a]), in[a], enters);
+      leaves = multiply_add(flows[a], kept[a], leaves);
+    }
+    mean = enters / leaves;
+#pragma unroll
+    for (int a = 0; a < 3; ++a)
+    {
+      out[a] = kept[a] * multiply_add(weight[a], mean - in[a], in[a]);
+    }
+  }
+  return mean;
+}
+
+// Where a sweep reads its source and writes its result.
+enum
+{
+  ByDirection, // source by direction, replaced by mean radiance; mean chords
+  EvenInSums,  // isotropic source; sums over the directions of each group only; weighted diamond differences
+  InSums       // as ByDirection, and sums; weighted diamond differences
+};
+
+typedef struct
+{
+  __global float* light; // source, see ByDirection ... InSums; W / (length^3 sr)
+  const __global float* sigma_t;
+  const __global float* scale;
+  const __global float* shares;
+  const __global float* across;
+  const __global int* up;
+  __global float *x, *y, *z;
+  __global float4* sums;
+} ordinate_arrays;
+
 // Sweeps a range of layers along z, of all voxels, of a box, or of the voxels downwind of the box. One work-item per
 // group of directions, or per direction. Downwind of a box: x, y, z hold the radiance that left the box, and its voxels
 // are set to 0.
-//   radiance  on entry the source, W / (length^3 sr), to be multiplied by scale; on return the mean radiance
+//   light     source, W / (length^3 sr), to be multiplied by scale; in the kernels by direction, replaced by the mean
+//             radiance
 //   scale     factor by voxel for all sources
 //   shares    [group][x, y, z, chord][8]: weight of the radiance from each upwind neighbour in the incident radiance;
 //             length of the mean chord
+//   across    [group][x, y, z, angle][8]: power that a radiance of 1 W / (length^2 sr) along the direction carries
+//             through a voxel face normal to each axis, W; solid angle of the direction, sr
 //   up        [group][3]: whether the directions of the group are positive along each axis
 //   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: incident before the
 //             sweep, outgoing after it
-__kernel void sweep_upwind(__global float* radiance, const __global float* sigma_t, const __global float* scale,
-  const __global float* shares, const __global int* up, __global float* x, __global float* y, __global float* z,
-  SweptLayers layers)
+//   sums      [group][voxel]: power that enters the voxel through its upwind faces normal to x, y, z, W; fluence
+//   mode      ByDirection ... InSums, a compile-time constant
+static inline __attribute__((always_inline)) void sweep_layers(
+  const ordinate_arrays* arrays, const SweptLayers* layers, const int mode)
 {
-  const int nx = layers.size[0], ny = layers.size[1], nz = layers.size[2];
+  const int nx = layers->size[0], ny = layers->size[1], nz = layers->size[2];
   const int item = get_global_id(0);
   const int group = item * REAL_WIDTH / 8;
   const int lane = item * REAL_WIDTH % 8;
-  const real share_x = load_real((group * 4 + 0) * 8 + lane, shares);
-  const real share_y = load_real((group * 4 + 1) * 8 + lane, shares);
-  const real share_z = load_real((group * 4 + 2) * 8 + lane, shares);
-  const real chord = load_real((group * 4 + 3) * 8 + lane, shares);
-  const int up_x = up[3 * group], up_y = up[3 * group + 1], up_z = up[3 * group + 2];
-  const int beyond = layers.part == SweepsBeyondBox;
-  const int4 x_range = swept_range(up_x, beyond, layers.first[0], layers.last[0], nx);
-  const int4 y_range = swept_range(up_y, beyond, layers.first[1], layers.last[1], ny);
-  const int4 z_range = swept_range(up_z, beyond, layers.first[2], layers.last[2], nz);
-  for (int layer = layers.begin; layer < min(layers.end, z_range.w); ++layer)
+  const real share_x = load_real((group * 4 + 0) * 8 + lane, arrays->shares);
+  const real share_y = load_real((group * 4 + 1) * 8 + lane, arrays->shares);
+  const real share_z = load_real((group * 4 + 2) * 8 + lane, arrays->shares);
+  const real chord = load_real((group * 4 + 3) * 8 + lane, arrays->shares);
+  const real across_x = load_real((group * 4 + 0) * 8 + lane, arrays->across);
+  const real across_y = load_real((group * 4 + 1) * 8 + lane, arrays->across);
+  const real across_z = load_real((group * 4 + 2) * 8 + lane, arrays->across);
+  const real angle = load_real((group * 4 + 3) * 8 + lane, arrays->across);
+  const real share[3] = { share_x, share_y, share_z };
+  const real chords[3] = { 1.0f / fmax(share_x, (real)1e-6f), 1.0f / fmax(share_y, (real)1e-6f),
+    1.0f / fmax(share_z, (real)1e-6f) }; // mean chords from face to face along each axis
+  const int up_x = arrays->up[3 * group], up_y = arrays->up[3 * group + 1], up_z = arrays->up[3 * group + 2];
+  const __global float* sigma_t = arrays->sigma_t + layers->firstT;
+  const int beyond = layers->part == SweepsBeyondBox;
+  const int4 x_range = swept_range(up_x, beyond, layers->first[0], layers->last[0], nx);
+  const int4 y_range = swept_range(up_y, beyond, layers->first[1], layers->last[1], ny);
+  const int4 z_range = swept_range(up_z, beyond, layers->first[2], layers->last[2], nz);
+  for (int layer = layers->begin; layer < min(layers->end, z_range.w); ++layer)
   {
     const int k = z_range.x + z_range.y * layer;
-    __global float* along_y = y + ((ulong)group * nz + k) * nx * 8 + lane;
+    __global float* along_y = arrays->y + ((ulong)group * nz + k) * nx * 8 + lane;
     for (int row = 0; row < y_range.w; ++row)
     {
       const int j = y_range.x + y_range.y * row;
-      __global float* along_x = x + (((ulong)group * nz + k) * ny + j) * 8 + lane;
-      __global float* along_z = z + ((ulong)group * ny + j) * nx * 8 + lane;
+      __global float* along_x = arrays->x + (((ulong)group * nz + k) * ny + j) * 8 + lane;
+      __global float* along_z = arrays->z + ((ulong)group * ny + j) * nx * 8 + lane;
       const ulong first = ((ulong)k * ny + j) * nx;
-      __global float* cells = radiance + (group * layers.stride + first) * 8 + lane;
+      __global float* cells = arrays->light + (group * layers->stride + first) * 8 + lane;
+      const __global float* even = arrays->light + layers->firstSource + first;
       real from_x = load_real(0, along_x);
       int column = 0;
       for (; beyond && layer < z_range.z && row < y_range.z && column < x_range.z; ++column) // within the box
@@ -104,15 +210,34 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
         const int i = x_range.x + x_range.y * column;
         const real from_y = load_real(i * 8, along_y);
         const real from_z = load_real(i * 8, along_z);
-        const real source = load_real(i * 8, cells) * (real)scale[first + i];
-        const real aside = multiply_add(share_y, from_y, share_z * from_z);
-        real mean;
-        const real out =
-          cross_voxel((real)sigma_t[first + i] * chord, multiply_add(share_x, from_x, aside), source * chord, &mean);
-        store_real(mean, i * 8, cells);
-        store_real(out, i * 8, along_y);
-        store_real(out, i * 8, along_z);
-        from_x = out;
+        real source = mode == EvenInSums ? (real)even[i] : load_real(i * 8, cells);
+        source = mode == ByDirection ? source * (real)arrays->scale[first + i] : source;
+        const real tau = (real)sigma_t[first + i] * chord;
+        const real in[3] = { from_x, from_y, from_z };
+        real mean, out[3];
+        if (mode == ByDirection)
+        {
+          const real aside = multiply_add(share_y, from_y, share_z * from_z);
+          out[0] = out[1] = out[2] = cross_voxel(tau, multiply_add(share_x, from_x, aside), source * chord, &mean);
+        }
+        else
+        {
+          const real weight[3] = { reciprocal_weight(tau * chords[0]), reciprocal_weight(tau * chords[1]),
+            reciprocal_weight(tau * chords[2]) };
+          mean = cross_by_diamonds(tau, share, weight, source * chord, in, out);
+        }
+        if (mode != EvenInSums)
+        {
+          store_real(mean, i * 8, cells);
+        }
+        if (mode != ByDirection)
+        {
+          arrays->sums[group * layers->stride + first + i] = (float4)(sum_of(across_x * from_x),
+            sum_of(across_y * from_y), sum_of(across_z * from_z), sum_of(angle * mean));
+        }
+        store_real(out[1], i * 8, along_y);
+        store_real(out[2], i * 8, along_z);
+        from_x = out[0];
       }
       store_real(from_x, 0, along_x);
     }
@@ -124,6 +249,99 @@ __kernel void add_face(__global float* sum, const __global float* face)
 {
   const ulong i = get_global_id(0);
   ((__global float8*)sum)[i] += ((const __global float8*)face)[i];
+}
+
+#define ORDINATES                                                                                        \
+  const __global float *shares, const __global float *across, const __global int *up, __global float *x, \
+    __global float *y, __global float *z, SweptLayers layers
+
+__kernel void sweep_upwind(
+  __global float* radiance, const __global float* sigma_t, const __global float* scale, ORDINATES)
+{
+  const ordinate_arrays arrays = { radiance, sigma_t, scale, shares, across, up, x, y, z, 0 };
+  sweep_layers(&arrays, &layers, ByDirection);
+}
+
+// Sweeps of accelerated solves, with a whole group per work-item.
+__kernel void sweep_even(__global float* source, const __global float* sigma_t, __global float4* sums, ORDINATES)
+{
+  const ordinate_arrays arrays = { source, sigma_t, 0, shares, across, up, x, y, z, sums };
+  sweep_layers(&arrays, &layers, EvenInSums);
+}
+
+__kernel void sweep_moments(__global float* radiance, const __global float* sigma_t, __global float4* sums, ORDINATES)
+{
+  const ordinate_arrays arrays = { radiance, sigma_t, 0, shares, across, up, x, y, z, sums };
+  sweep_layers(&arrays, &layers, InSums);
+}
+
+// Adds the sums over the directions of each group to path integrals and partial currents.
+//   sums      [group][voxel], as sweep_layers() writes them
+//   volume    of a voxel
+//   path      W length, [channel][voxel]
+//   currents  power that enters each voxel through each of its faces, W, [channel][-x, +x, -y, +y, -z, +z][voxel]
+//   stride    values of a channel;  first: index of the channel's first value in path
+__kernel void gather_sums(const __global float4* sums, const __global int* up, int groups, ulong groupStride,
+  float volume, __global float* path, __global float* currents, ulong stride, ulong first)
+{
+  const ulong i = get_global_id(0);
+  float4 low = (float4)0.0f, high = (float4)0.0f;
+  for (int group = 0; group < groups; ++group)
+  {
+    const float4 sum = sums[group * groupStride + i];
+    const int4 rises = (int4)(up[3 * group], up[3 * group + 1], up[3 * group + 2], 1) != 0;
+    low += select((float4)0.0f, sum, rises);
+    high += select(sum, (float4)0.0f, rises);
+  }
+  path[first + i] += volume * low.w;
+  __global float* in = currents + 6 * first + i;
+  in[0 * stride] += low.x;
+  in[1 * stride] += high.x;
+  in[2 * stride] += low.y;
+  in[3 * stride] += high.y;
+  in[4 * stride] += low.z;
+  in[5 * stride] += high.z;
+}
+
+// Computes the source along each direction from its angular moments and its beams.
+//   source  moments, W / (length^3 sr) (MomentPlacesShared.h)
+//   values  [group][function, then beam][8]: values of the angular functions and of the beams' distributions
+//   radiance  receives the source, [group][voxel][8]
+__kernel void spread_moments(MomentPlaces places, int channel, int beams, ulong stride, const __global float* source,
+  const __global float* values, __global float* radiance, ulong groupStride)
+{
+  const ulong i = get_global_id(0);
+  const ulong group = get_global_id(1), line = i / places.sizeX, x = i % places.sizeX;
+  const __global float8* of = (const __global float8*)values + group * (places.functions + beams);
+  float8 sum = of[0] * source[channel * stride + i];
+  for (int function = 1; function < places.functions; ++function)
+  {
+    sum += of[function] * source[MOMENT_PLACE(places, function, channel, line, x)];
+  }
+  for (int beam = 0; beam < beams; ++beam)
+  {
+    sum += of[places.functions + beam] * source[places.beams + (beam * places.channels + channel) * stride + i];
+  }
+  ((__global float8*)radiance)[group * groupStride + i] = sum;
+}
+
+// Adds the angular moments of the radiance, except the first (gather_sums), to those of path integrals.
+//   weights  [group][function][8]: values of the angular functions times solid angle, sr
+__kernel void gather_moments(MomentPlaces places, int channel, int groups, float volume, const __global float* radiance,
+  const __global float* weights, __global float* path, ulong groupStride)
+{
+  const ulong i = get_global_id(0), line = i / places.sizeX, x = i % places.sizeX;
+  for (int function = 1; function < places.functions; ++function)
+  {
+    float8 sum = (float8)0.0f;
+    for (int group = 0; group < groups; ++group)
+    {
+      sum += ((const __global float8*)weights)[group * places.functions + function] *
+        ((const __global float8*)radiance)[group * groupStride + i];
+    }
+    const float4 four = sum.lo + sum.hi;
+    path[MOMENT_PLACE(places, function, channel, line, x)] += volume * ((four.x + four.y) + (four.z + four.w));
+  }
 }
 
 // Sums the radiance of each row of a face.
@@ -165,7 +383,7 @@ __kernel void enter_by_cells(
 // Adds the outgoing power of each cell of the two faces perpendicular to an axis to `out`.
 //   face    outgoing radiance, W / (length^2 sr), [group][cell][8]
 //   out     W, by cell of the box faces; the cells of the two faces begin at `low` and `high`
-//   across  [group][3][8]: power that a radiance of 1 W / (length^2 sr) along the direction carries through a cell
+//   across  [group][4][8]: power that a radiance of 1 W / (length^2 sr) along the direction carries through a cell
 //           perpendicular to each axis, W
 __kernel void leave_by_cells(const __global float* face, __global float* out, const __global float* across,
   const __global int* up, int axis, int groups, ulong low, ulong high)
@@ -175,7 +393,7 @@ __kernel void leave_by_cells(const __global float* face, __global float* out, co
   for (int group = 0; group < groups; ++group)
   {
     const float8 power =
-      ((const __global float8*)face)[group * cells + cell] * ((const __global float8*)across)[3 * group + axis];
+      ((const __global float8*)face)[group * cells + cell] * ((const __global float8*)across)[4 * group + axis];
     through_low += up[3 * group + axis] ? (float8)0.0f : power;
     through_high += up[3 * group + axis] ? power : (float8)0.0f;
   }

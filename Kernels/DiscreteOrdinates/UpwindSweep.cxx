@@ -91,8 +91,7 @@ void UpwindSweep::LoadDirections()
   std::vector<cl_int> up;
   for (int g = 0; g < this->Groups.Count(); ++g)
   {
-    std::array<std::array<float, OrdinateLanes>, 4> of;
-    std::array<std::array<float, OrdinateLanes>, 3> powers;
+    std::array<std::array<float, OrdinateLanes>, 4> of, powers;
     for (int lane = 0; lane < OrdinateLanes; ++lane)
     {
       std::array<double, 3> crossed = {}; // number of voxel faces crossed along each axis, per unit length
@@ -108,6 +107,7 @@ void UpwindSweep::LoadDirections()
         of[a][lane] = static_cast<float>(crossed[a] / all);
       }
       of[3][lane] = static_cast<float>(1.0 / all);
+      powers[3][lane] = static_cast<float>(this->Groups.Weight(g, lane));
     }
     for (const auto& values : of)
     {
@@ -155,11 +155,11 @@ double UpwindSweep::LitPart(const IncomingRadiance& incoming) const
   return static_cast<double>(std::count(lit.begin(), lit.end(), true)) / static_cast<double>(lit.size());
 }
 
-FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-  const IncomingRadiance& incoming, bool shines, const Monitor& monitor)
+FacePowers UpwindSweep::Apply(
+  const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool shines, const Monitor& monitor)
 {
   FacePowers powers;
-  this->LetIn(incoming, powers);
+  this->LetIn(incoming, powers, arrays.onlyWraps);
   const int all = this->Groups.Count();
   const std::vector<bool> lit = shines ? std::vector<bool>(all, true) : this->LitGroups(incoming);
   for (int first = 0, end = 0; first < all; first = end)
@@ -172,7 +172,7 @@ FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>
     if (lit[first])
     {
       const Monitor ofRun = OfPart(monitor, static_cast<double>(first) / all, static_cast<double>(end) / all);
-      this->SweepGroups(first, end - first, radiance, sigma_t, scale, ofRun);
+      this->SweepGroups(first, end - first, arrays, ofRun);
     }
   }
   this->Count(powers);
@@ -180,12 +180,11 @@ FacePowers UpwindSweep::Apply(const Buffer<float>& radiance, const Buffer<float>
   return powers;
 }
 
-FacePowers UpwindSweep::ApplyWithin(const VoxelBox& box, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-  const Buffer<float>& scale, const Monitor& monitor)
+FacePowers UpwindSweep::ApplyWithin(const VoxelBox& box, const OrdinateArrays& arrays, const Monitor& monitor)
 {
   FacePowers powers;
-  this->LetIn({}, powers);
-  this->Sweep(0, this->Groups.Count(), PartOf(this->TheGrid, box, SweepsBox), radiance, sigma_t, scale, monitor);
+  this->LetIn({}, powers, arrays.onlyWraps);
+  this->Sweep(0, this->Groups.Count(), PartOf(this->TheGrid, box, SweepsBox), arrays, monitor);
   this->Count(powers);
   cl::Kernel add = this->Kernel("add_face");
   for (int axis = 0; axis < 3; ++axis)
@@ -201,37 +200,36 @@ FacePowers UpwindSweep::ApplyWithin(const VoxelBox& box, const Buffer<float>& ra
   return powers;
 }
 
-FacePowers UpwindSweep::ApplyBeyond(const VoxelBox& box, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-  const Buffer<float>& scale, const Monitor& monitor)
+FacePowers UpwindSweep::ApplyBeyond(const VoxelBox& box, const OrdinateArrays& arrays, const Monitor& monitor)
 {
   this->Faces.swap(this->Left);
-  this->Sweep(0, this->Groups.Count(), PartOf(this->TheGrid, box, SweepsBeyondBox), radiance, sigma_t, scale, monitor);
+  this->Sweep(0, this->Groups.Count(), PartOf(this->TheGrid, box, SweepsBeyondBox), arrays, monitor);
   FacePowers powers;
   this->Count(powers);
   return powers;
 }
 
-void UpwindSweep::SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-  const Buffer<float>& scale, const Monitor& monitor)
+void UpwindSweep::SweepGroups(int first, int count, const OrdinateArrays& arrays, const Monitor& monitor)
 {
   const SweptLayers all = PartOf(this->TheGrid, { { 0, 0, 0 }, this->TheGrid.size }, SweepsAll);
-  this->Sweep(first, count, all, radiance, sigma_t, scale, monitor);
+  this->Sweep(first, count, all, arrays, monitor);
 }
 
 /// Sweeps `count` groups of directions through a part of the grid.
-void UpwindSweep::Sweep(int first, int count, const SweptLayers& part, const Buffer<float>& radiance,
-  const Buffer<float>& sigma_t, const Buffer<float>& scale, const Monitor& monitor)
+void UpwindSweep::Sweep(int first, int count, SweptLayers part, const OrdinateArrays& arrays, const Monitor& monitor)
 {
-  const int width = this->TheDevice.IsCpu() ? OrdinateLanes : 1;
-  cl::Kernel sweep = this->Kernel("sweep_upwind", width);
+  const SweptSums* const sums = arrays.sums;
+  const int width = this->TheDevice.IsCpu() || sums ? OrdinateLanes : 1; // a work-item sums over a whole group
+  cl::Kernel sweep = this->Kernel(!sums ? "sweep_upwind" : sums->even ? "sweep_even" : "sweep_moments", width);
+  part.firstT = sums ? sums->firstExtinction : 0;
+  part.firstSource = sums ? sums->first : 0;
   Batches batches;
   batches.count = static_cast<std::size_t>(part.end);
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
-    SweptLayers layers = part;
-    layers.begin = static_cast<cl_int>(begin);
-    layers.end = static_cast<cl_int>(begin + size);
-    With(
-      sweep, radiance, sigma_t, scale, this->Shares, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], layers);
+    part.begin = static_cast<cl_int>(begin);
+    part.end = static_cast<cl_int>(begin + size);
+    With(sweep, sums && sums->even ? *sums->even : arrays.radiance, arrays.sigma_t, sums ? sums->values : arrays.scale,
+      this->Shares, this->Across, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], part);
     const std::size_t items = OrdinateLanes / static_cast<std::size_t>(width);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       sweep, cl::NDRange(first * items), cl::NDRange(count * items), GroupOfLargeItems(this->TheDevice));
@@ -258,8 +256,8 @@ void UpwindSweep::EnterByCells(int axis) const
 {
   cl::Kernel enter = this->Kernel("enter_by_cells");
   const std::size_t cells = FaceVoxels(this->TheGrid, axis);
-  With(enter, this->Faces[axis], this->At.reflecting->in, this->Up, axis,
-    cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis).first), cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis + 1).first));
+  With(enter, this->Faces[axis], this->At.reflecting->in, this->Up, axis, this->CellOf(2 * axis),
+    this->CellOf(2 * axis + 1));
   Launch(this->TheDevice, enter, cl::NDRange(cells, this->Groups.Count()));
 }
 
@@ -273,14 +271,14 @@ void UpwindSweep::LeaveByCells() const
       continue;
     }
     With(leave, this->Faces[axis], this->At.reflecting->out, this->Across, this->Up, axis, this->Groups.Count(),
-      cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis).first), cl_ulong(LayoutOfFace(this->TheGrid, 2 * axis + 1).first));
+      this->CellOf(2 * axis), this->CellOf(2 * axis + 1));
     Launch(this->TheDevice, leave, cl::NDRange(FaceVoxels(this->TheGrid, axis)));
   }
 }
 
 /// Sets the incident radiance of the boundary source. Periodic faces already hold the radiance that left at the other
 /// end of the axis.
-void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
+void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers, bool onlyWraps)
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -296,7 +294,7 @@ void UpwindSweep::LetIn(const IncomingRadiance& incoming, FacePowers& powers)
     {
       this->Faces[axis].Fill(0.0f);
     }
-    if (this->At.reflecting)
+    if (this->At.reflecting && !onlyWraps)
     {
       this->EnterByCells(axis);
     }

@@ -4,6 +4,7 @@
 #include "Device/Monitor.h"
 #include "DiscreteOrdinates/OrdinateGroups.h"
 #include "DiscreteOrdinates/OrdinatesShared.h"
+#include "Medium/BoxFaces.h"
 #include "Medium/Grid.h"
 #include "Medium/VoxelBox.h"
 
@@ -23,20 +24,40 @@ struct FacePowers
   double onTheWay = 0.0; ///< power that left through periodic faces and wraps around in the next sweep
 };
 
+/// Sums over directions that a sweep of an accelerated solve computes.
+struct SweptSums
+{
+  /// Sums over the directions of each group, [group][voxel][4], groups OrdinateStride() voxels apart: power that enters
+  /// the voxel through its upwind faces normal to x, y and z, W; fluence, W / length^2.
+  const Buffer<float>& values;
+  const Buffer<float>* even; ///< isotropic source, W / (length^3 sr); null: the source is OrdinateArrays::radiance
+  std::size_t firstExtinction, first; ///< index of the channel's first value in OrdinateArrays::sigma_t, and in `even`
+};
+
+/// Arrays over the voxels of a sweep.
+struct OrdinateArrays
+{
+  /// On entry the source, W / (length^3 sr), to be multiplied by `scale`; on return the mean radiance of each voxel,
+  /// W / (length^2 sr). Not used if sums.even is given.
+  const Buffer<float>& radiance;
+  const Buffer<float>& sigma_t;    ///< extinction, 1/length
+  const Buffer<float>& scale;      ///< factor of the source, by voxel; not used with sums
+  const SweptSums* sums = nullptr; ///< null: no sums
+  /// Whether only light that wraps around periodic axes is incident: faces do not reflect.
+  bool onlyWraps = false;
+};
+
 /// Sweep of discrete ordinates: transports light along all directions through the grid once.
 class OrdinateSweep
 {
 public:
   virtual ~OrdinateSweep() = default;
 
-  /// @param radiance  on entry the source, W / (length^3 sr), to be multiplied by `scale`; on return the mean radiance
-  ///   of each voxel, W / (length^2 sr)
-  /// @param scale  factor of the source, by voxel
   /// @param incoming  boundary source; empty: no light is incident except reflected light
   /// @param shines  whether any source may be non-zero; if not, a sweep may omit directions without incident light
   /// @return outgoing power before reflection, and incident power of the boundary source
-  virtual FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-    const IncomingRadiance& incoming, bool shines, const Monitor& monitor) = 0;
+  virtual FacePowers Apply(
+    const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool shines, const Monitor& monitor) = 0;
 };
 
 /// Light of one channel in each cell of the box's faces: the arrays FaceLight::Out() and In().
@@ -44,6 +65,7 @@ struct LightOfCells
 {
   const Buffer<float>& out; ///< outgoing power of each cell, W; sweeps add to it
   const Buffer<float>& in;  ///< reflected radiance of each cell, W / (length^2 sr), incident in the next sweep
+  std::size_t first = 0;    ///< index of the channel's first cell in both arrays
 };
 
 /// Boundary conditions of a sweep.
@@ -68,7 +90,8 @@ struct SweptFaces
 /// Light crosses each voxel along the mean chord of the direction, with exponential attenuation: stable and positive
 /// for every optical thickness, and exact along an axis. Light leaves a voxel into its downwind neighbours with equal
 /// radiance, so that power is conserved to rounding. For oblique directions light spreads across the direction: first
-/// order in the voxel edges.
+/// order in the voxel edges. With OrdinateArrays::sums the sweep is by weighted diamond differences, of second order
+/// (Eq. (D15)), equally positive and conservative, but not linear where it has to keep light from becoming negative.
 class UpwindSweep : public OrdinateSweep
 {
 public:
@@ -77,8 +100,8 @@ public:
   /// Bytes of device memory for the radiance through the faces.
   static std::size_t Bytes(const Grid& grid, const OrdinateGroups& groups);
 
-  FacePowers Apply(const Buffer<float>& radiance, const Buffer<float>& sigma_t, const Buffer<float>& scale,
-    const IncomingRadiance& incoming, bool shines, const Monitor& monitor) override;
+  FacePowers Apply(
+    const OrdinateArrays& arrays, const IncomingRadiance& incoming, bool shines, const Monitor& monitor) override;
   /// Fraction of the groups of directions that carry incident light.
   double LitPart(const IncomingRadiance& incoming) const;
 
@@ -86,18 +109,15 @@ public:
   /// that leaves the box is added to that of earlier such orders, for ApplyBeyond(). There must be no periodic axis and
   /// no reflecting face.
   /// @return power that leaves the box, through its own faces
-  FacePowers ApplyWithin(const VoxelBox& box, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-    const Buffer<float>& scale, const Monitor& monitor);
+  FacePowers ApplyWithin(const VoxelBox& box, const OrdinateArrays& arrays, const Monitor& monitor);
   /// Carries the radiance that left the box in all calls of ApplyWithin() on to the faces of the grid.
-  /// @param radiance  0 on entry outside of the box; on return the mean radiance of the voxels outside of it, 0 within
-  FacePowers ApplyBeyond(const VoxelBox& box, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-    const Buffer<float>& scale, const Monitor& monitor);
+  /// @param arrays  radiance: 0 on entry outside of the box; on return the mean radiance of the voxels outside of it, 0 within
+  FacePowers ApplyBeyond(const VoxelBox& box, const OrdinateArrays& arrays, const Monitor& monitor);
 
   // Steps of Apply(), for a pipeline over ranks: LetIn() sets the boundary source, SweepGroups() sweeps `count` groups
   // of directions, Count() and LeaveByCells() tally the outgoing power.
-  void LetIn(const IncomingRadiance& incoming, FacePowers& powers);
-  void SweepGroups(int first, int count, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-    const Buffer<float>& scale, const Monitor& monitor);
+  void LetIn(const IncomingRadiance& incoming, FacePowers& powers, bool onlyWraps);
+  void SweepGroups(int first, int count, const OrdinateArrays& arrays, const Monitor& monitor);
   void Count(FacePowers& powers) const;
   void LeaveByCells() const; ///< adds outgoing power by cell to SweptFaces::reflecting, if faces reflect
 
@@ -113,11 +133,12 @@ private:
   void LoadDirections();
   bool IsCounted(int face) const { return !(this->At.inner >> face & 1); }
   void FillFace(int axis, const IncomingRadiance& incoming, FacePowers& powers);
+  /// Index of the first cell of a face in SweptFaces::reflecting.
+  cl_ulong CellOf(int face) const { return this->At.reflecting->first + LayoutOfFace(this->TheGrid, face).first; }
   void EnterByCells(int axis) const;
   cl::Kernel Kernel(const char* name, int width = 8) const;
   std::vector<bool> LitGroups(const IncomingRadiance& incoming) const;
-  void Sweep(int first, int count, const SweptLayers& part, const Buffer<float>& radiance, const Buffer<float>& sigma_t,
-    const Buffer<float>& scale, const Monitor& monitor);
+  void Sweep(int first, int count, SweptLayers part, const OrdinateArrays& arrays, const Monitor& monitor);
 
   Device& TheDevice;
   Grid TheGrid;

@@ -21,6 +21,9 @@ extern const char* const NoAbsorption;
 extern const char* const NoEmission;
 extern const char* const
   OneOrder; ///< text if there is only one scattering order: no light is scattered, though the medium could scatter
+extern const char* const Acceleration; ///< text if source iteration is faster than an accelerated solve
+/// Text if the discrete ordinates chosen cannot be accelerated.
+extern const char* const SpiralAcceleration;
 extern const char* const NetFlux;
 extern const char* const MomentsForPictures; ///< text if angular moments of scattered light were not requested
 extern const char* const Isotropic;

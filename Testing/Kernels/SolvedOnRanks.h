@@ -336,6 +336,7 @@ struct OrdinatesSolver
     settings.terms = 16;
     settings.netFlux = true;
     settings.maximumOrders = orders;
+    settings.acceleration = tyndall::PropagationAcceleration::None;
     return settings;
   }
   static tyndall::LightField Solve(tyndall::Device& device, const tyndall::Domain& domain, const MediumToCut& part,

@@ -53,6 +53,7 @@ Fractions SolveCube(Device& device, int edge, double tau, double albedo, double 
   cube.medium.grid.spacing = { 1.0 / edge, 1.0 / edge, 1.0 / edge };
   cube.light.faces[4] = { 1.0, 1.0, 1.0 };
   cube.ScatterWith(g);
+  cube.how.acceleration = PropagationAcceleration::None;
   return FractionsOf(cube.SolveOrdinates(device));
 }
 }

@@ -80,7 +80,7 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   }
   if (parts.How == IterationScheme::SourceIteration)
   {
-    words.emplace_back("acceleration: few scattering orders do");
+    words.emplace_back(left_out::Acceleration);
   }
   if (parts.Problem.Traits().emits && parts.Problem.Settings().emissionError > 0.0 && !parts.TheDomain().IsSerial())
   {
@@ -256,14 +256,26 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
-  const IterationScheme how = ChooseIterationScheme(problem);
+  return SolveBySweeps(device, problem, illumination, ChooseIterationScheme(problem), monitor, kept);
+}
+}
+
+LightField SolveBySweeps(Device& device, const PropagationProblem& problem, const Illumination& illumination,
+  IterationScheme how, const Monitor& monitor, KeptLight* kept,
+  const std::function<void(TransportParts& parts)>& replace)
+{
+  const Domain& domain = problem.TheDomain();
   Device ofSolve(device, BudgetOfSolve(device, problem, how));
   const std::unique_ptr<TransportParts> parts = MakeParts(ofSolve, problem, how);
+  if (replace)
+  {
+    domain.Collective([&] { replace(*parts); });
+  }
   IterationResult found = MakeIteration(*parts, kept)->Run(monitor);
   const bool warm = found.warm;
   KeptLight left = std::move(found.kept);
   LightField light = LightOf(*parts, std::move(found));
-  JudgeBalance(light, problem.TheDomain(), problem.TheMedium());
+  JudgeBalance(light, domain, problem.TheMedium());
   if (kept)
   {
     Keep(std::move(left), warm, light, *kept);
@@ -274,11 +286,10 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
   {
     light.lampsApart = parts->Lights.LampsOf(illumination);
   }
-  JudgeConvergence(settings, light);
+  JudgeConvergence(problem.Settings(), light);
   WarnAboutInputLight(domain, illumination, light);
   ShareLeftOut(domain, light);
   return light;
-}
 }
 
 LightField SolveConservative(Device& device, const Domain& domain, const Medium& medium,

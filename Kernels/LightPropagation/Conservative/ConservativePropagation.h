@@ -9,10 +9,15 @@
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
 
+#include <functional>
 #include <string>
 
 namespace tyndall
 {
+class PropagationProblem;
+class TransportParts;
+enum class IterationScheme;
+
 /// Light propagation maps with energy conservation: the method of Fattal (2009) and Gruson et al. (2012), with
 ///  - conservative deposit: each voxel gains the power that a ray loses in it (numerics.md, Eqs. (23) to (27)), without
 ///    division by sigma_t;
@@ -46,6 +51,13 @@ namespace tyndall
 LightField SolveConservative(Device& device, const Domain& domain, const Medium& medium,
   const Illumination& illumination, const PropagationSettings& settings, const Monitor& monitor = {},
   KeptLight* kept = nullptr);
+/// Solves a problem by sweeps with the given iteration scheme; the last steps of SolveConservative(). Collective.
+/// @param illumination  the user's, from which `problem` was made
+/// @param replace  called with the parts of the solve before the iteration begins, to set another transport of
+///   scattered light (TransportParts::Scattered); empty: none
+LightField SolveBySweeps(Device& device, const PropagationProblem& problem, const Illumination& illumination,
+  IterationScheme how, const Monitor& monitor, KeptLight* kept,
+  const std::function<void(TransportParts& parts)>& replace = {});
 /// SolveConservative() on a serial domain, the grid of the medium.
 inline LightField SolveConservative(Device& device, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor = {}, KeptLight* kept = nullptr)

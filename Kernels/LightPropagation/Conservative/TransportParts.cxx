@@ -50,6 +50,8 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   , Usual(problem.Whole(), problem.Settings(), std::move(usual), StartsOf(problem, how))
   , Lights(problem, this->ByBalance(), this->Layout, this->Usual, finer)
   , Transport(device, problem.TheDomain(), this->Layout, this->OnDevice.SigmaT(), problem.Settings().periodic)
+  , Scattered{ [this](const SweepRequest& request) { return this->Transport.MakeSweep(request); },
+    [this] { return ModelOfRays(this->Problem.Whole(), this->Usual, this->Problem.Settings().periodic); } }
 {
   this->FindFaceLight();
   if (problem.Scattering().Degree() > 0 && !this->IsEmpty())

@@ -6,6 +6,7 @@
 #include "LightPropagation/Conservative/BlockTransport.h"
 #include "LightPropagation/Conservative/FaceLight.h"
 #include "LightPropagation/Conservative/LightSources.h"
+#include "LightPropagation/Diffusion/SweepModel.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
@@ -16,11 +17,20 @@
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/Uncollided/UncollidedSource.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace tyndall
 {
+/// Transport of scattered light in accelerated solves, and of the boundary light that goes with it: by the rays of
+/// light propagation maps unless another solver sets its own (DiscreteOrdinates/OrdinatesTransport.h).
+struct ScatteredTransport
+{
+  SweepMaker make;                   ///< makes sweeps; collective
+  std::function<SweepModel()> model; ///< what the diffusion system must know of these sweeps
+};
+
 /// Objects and arrays that all iterations share: this rank's block of the medium on its device, the quadrature of
 /// scattered light, the light sources, the sweeps, and arrays of source, path integrals and fluence. Directions and
 /// cells of the box faces are those of the whole domain; arrays over voxels are those of the block.
@@ -53,6 +63,7 @@ public:
   std::unique_ptr<FaceLight> Faces;
   LightSources Lights;
   BlockTransport Transport;
+  ScatteredTransport Scattered;
 
   /// Arrays over voxels, [channel][voxel]: source of the next sweep, W / (length^3 sr); path integrals, W length; net
   /// flux times the voxel's volume, [channel][x, y, z][voxel], empty if not requested; fluence, W / length^2. With

@@ -7,21 +7,20 @@
 #include "Numerics/Numerics.cl"
 
 // Partial current that a sweep carries for a fluence that decreases by one per mean free path, with a source that is
-// constant in each voxel (numerics.md, Eq. (51); 4 Gauss points): 1/6 for thin voxels, tau / 8 for optically thick
-// ones.
-inline real flat_source_current(real tau)
+// constant in each voxel (numerics.md, Eq. (51)): 1/6 for thin voxels, tau / 8 for optically thick ones.
+//   sigma   extinction, 1/length
+//   edge    length of the voxel along the axis
+//   nodes   directions of the sweep, in `count` groups
+inline real flat_source_current(real sigma, float edge, const __global FlatSourceNode* nodes, int count)
 {
-  const float mu[4] = { 0.0694318442f, 0.3300094782f, 0.6699905218f, 0.9305681558f };
-  const float half_weight[4] = { 0.0869637113f, 0.1630362887f, 0.1630362887f, 0.0869637113f };
   real sum = (real)0.0f;
-#pragma unroll
-  for (int k = 0; k < 4; ++k)
+  for (int k = 0; k < count; ++k)
   {
-    const real x = tau * (0.5f / mu[k]);
+    const real x = sigma * nodes[k].chord;
     real left;
-    const real gone = extinguished(2.0f * x, &left);
-    const real coth = (1.0f + left) / fmax(gone, (real)1e-20f);
-    sum += (half_weight[k] * mu[k] * mu[k]) * select(x * coth, 1.0f + x * x / 3.0f, x < (real)0.02f);
+    const real gone = extinguished(x, &left);
+    const real falls = select(x * left / fmax(gone, (real)1e-20f), 1.0f - x * (0.5f - x / 12.0f), x < (real)0.02f);
+    sum += nodes[k].weight * (0.5f * edge * sigma + nodes[k].cosine * falls);
   }
   return sum;
 }

@@ -68,8 +68,9 @@ inline void store_in_row(real values, int x, int size, __global float* row)
 // Computes flat_source_current() (Conductance.cl) of each voxel along each axis.
 //   flat_source  [axis][voxel], axes flatStride floats apart
 //   swept        extinction that sweeps use, 1/length
-__kernel void diffusion_flat_source(
-  DiffusionLayout layout, const __global float* sigma_t, const __global float* swept, __global float* flat_source)
+//   nodes        [axis][node], `count` for each axis
+__kernel void diffusion_flat_source(DiffusionLayout layout, const __global float* sigma_t, const __global float* swept,
+  const __global FlatSourceNode* nodes, int count, __global float* flat_source)
 {
   sigma_t += layout.firstT;
   swept += layout.firstT;
@@ -81,7 +82,7 @@ __kernel void diffusion_flat_source(
       const real sweeps = load_real(x, swept + here);
       for (int axis = 0; axis < (layout.flatStride > 0 ? 3 : 1); ++axis)
       {
-        real current = flat_source_current(sweeps * layout.spacing[axis]);
+        real current = flat_source_current(sweeps, layout.spacing[axis], nodes + axis * count, count);
         if (layout.moments)
         {
           // A fraction of the current is due to the source's first moment, and is exact. Only the rest of the current

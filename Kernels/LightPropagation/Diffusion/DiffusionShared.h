@@ -62,6 +62,16 @@ typedef struct
   MultigridLevel rows; ///< memory layout of the conductances
 } DiffusionLayout;
 
+/// Group of directions in the partial current of a sweep with a source that is constant in each voxel: s(tau) of
+/// numerics.md, Eq. (51), along one axis is the sum over nodes of
+///   weight (tau / 2 + cosine x / (exp(x) - 1)),   x = extinction times chord.
+typedef struct
+{
+  float cosine; ///< cosine of the directions to the axis, 0 to 1
+  float chord;  ///< length of path in a voxel over which the sweep attenuates their radiance
+  float weight; ///< solid angle of the directions over 4 pi, times `cosine`
+} FlatSourceNode;
+
 /// Values for each cell of the box's faces (Medium/BoxFaces.h), W, in the array `borders`.
 enum
 {

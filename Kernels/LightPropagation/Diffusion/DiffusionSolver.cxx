@@ -90,9 +90,9 @@ std::array<double, 6> OutflowBy(const DiffusionSystem::BorderSums& sums, double 
 }
 }
 
-DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, const DirectionSet& directions,
-  const CrossingPattern& pattern, const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming,
-  const std::array<bool, 3>& periodic, bool linear)
+DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, const SweepModel& model,
+  const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, const std::array<bool, 3>& periodic,
+  bool linear)
   : Block(block)
   , TheDomain(block.TheDomain())
   , Periodic(periodic)
@@ -103,7 +103,9 @@ DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, c
     if (block.Has())
     {
       this->System = std::make_unique<DiffusionSystem>(device, *this->Solver, block.WithGhosts().grid, block.Periodic(),
-        directions, PatternOf(pattern, block.Held(), this->TheDomain.Whole().size), arrays, incoming, linear);
+        SweepModel{
+          model.halfRange, PatternOf(model.pattern, block.Held(), this->TheDomain.Whole().size), model.flatSource },
+        arrays, incoming, linear);
     }
     else
     {

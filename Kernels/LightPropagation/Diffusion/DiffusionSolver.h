@@ -18,16 +18,15 @@ class DiffusionSolver
 {
 public:
   /// @param block  must outlive this object
-  /// @param pattern  crossing pattern (power of the rays that cross voxel faces, relative to the mean) of the whole
-  ///   grid
+  /// @param model  model of the sweeps through the whole grid
   /// @param arrays  arrays with ghost voxels. In ghost voxels sigma_t, sigma_a, partialCurrents and passed have the
   ///   values of the owners, sigma_s is below 0, and all other arrays are not read.
   /// @param incoming  incident power per area of each face of the whole grid, without lamps, W / length^2
   /// @param periodic  which axes of the domain are periodic
   /// @param linear  as in DiffusionLayout
-  DiffusionSolver(Device& device, const BlockWithGhosts& block, const DirectionSet& directions,
-    const CrossingPattern& pattern, const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming,
-    const std::array<bool, 3>& periodic, bool linear);
+  DiffusionSolver(Device& device, const BlockWithGhosts& block, const SweepModel& model,
+    const DiffusionSystem::Arrays& arrays, const std::array<double, 6>& incoming, const std::array<bool, 3>& periodic,
+    bool linear);
 
   /// After a sweep, solves for the fluence of all scattering orders, and mixes it with previous solutions
   /// (AndersonMixing.h).

@@ -3,7 +3,6 @@
 #include "Device/Device.h"
 #include "Device/Sizes.h"
 #include "Medium/BoxFaces.h"
-#include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -16,11 +15,18 @@ namespace
 {
 constexpr double Floor = 0.05;           ///< minimum optical length between voxel centres in conductances, Eq. (57)
 constexpr std::size_t BorderGroup = 256; ///< cells of the box's faces per work-group
+
+bool AreAlike(const std::vector<FlatSourceNode>& a, const std::vector<FlatSourceNode>& b)
+{
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const FlatSourceNode& one, const FlatSourceNode& other) {
+    return one.cosine == other.cosine && one.chord == other.chord && one.weight == other.weight;
+  });
+}
 }
 
 DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const Grid& grid,
-  const std::array<bool, 3>& periodic, const DirectionSet& directions, const CrossingPattern& pattern,
-  const Arrays& arrays, const std::array<double, 6>& incoming, bool linear)
+  const std::array<bool, 3>& periodic, const SweepModel& model, const Arrays& arrays,
+  const std::array<double, 6>& incoming, bool linear)
   : TheDevice(device)
   , Inputs(arrays)
   , Count(grid.VoxelCount())
@@ -28,15 +34,10 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
   , Solver(solver)
   , Mixing(device, grid.VoxelCount(), this->Values(), "the diffusion system")
 {
-  double halfRange = 0.0;
-  for (int marching = 0; marching < 3; ++marching)
-  {
-    halfRange += HalfRange(grid, directions, 0, marching) / (4.0 * Pi);
-  }
   this->Layout = LayoutOf(grid, periodic, arrays);
   this->Layout.linear = linear;
-  std::copy(pattern.first.begin(), pattern.first.end(), this->Layout.pattern);
-  this->Layout.halfRange = static_cast<float>(halfRange);
+  std::copy(model.pattern.first.begin(), model.pattern.first.end(), this->Layout.pattern);
+  this->Layout.halfRange = static_cast<float>(model.halfRange);
   this->Layout.passing = arrays.passed != nullptr;
   this->Layout.moments = this->HasMoments();
   this->Layout.faces = arrays.faces != nullptr;
@@ -48,21 +49,16 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
   this->Layout.rows = WithGhostsOwned(this->Solver.Rows());
 
   const char* what = "the diffusion system";
-  std::vector<float> tables = pattern.values;
+  std::vector<float> tables = model.pattern.values;
   tables.resize(tables.size() + RowVector);
   this->Pattern = Buffer<float>(device, tables, what);
-  const std::array<double, 3>& h = grid.spacing;
-  this->Layout.flatStride = h[0] == h[1] && h[1] == h[2] ? 0 : this->Layout.stride;
-  this->FlatSource = Buffer<float>(device, arrays.stride + 2 * this->Layout.flatStride + RowVector, what);
   this->Model = Buffer<float>(device, this->Count + RowVector, what);
   this->Next = ExactValues(device, this->Values(), what);
   this->Solution = ExactValues(device, this->Values(), what);
   this->Solution.Fill(0.0); // stays 0 for a dark channel, which is not solved
   this->Borders = ExactValues(device, BorderValues * this->BorderCells, what);
 
-  cl::Kernel flat_source = this->RowsKernel("diffusion_flat_source");
-  With(flat_source, this->Layout, *arrays.sigma_t, *arrays.swept, this->FlatSource);
-  this->RunRows(flat_source);
+  this->FindFlatSource(model);
   cl::Kernel conductance = this->RowsKernel("diffusion_conductance");
   With(conductance, this->Layout, *arrays.sigma_t, *arrays.sigma_a, this->FlatSource, this->Solver.Conductance(),
     this->Solver.Loss());
@@ -109,6 +105,27 @@ cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
     this->Solver.Conductance(), *inputs.partialCurrents, this->Passed(), this->Model, this->Pattern, *inputs.source,
     *inputs.path, this->GivenFlux(), this->Faces(), more...);
   return kernel;
+}
+
+/// Computes FlatSource and sets Layout.flatStride: one array serves all axes if the sweep is the same along each.
+void DiffusionSystem::FindFlatSource(const SweepModel& model)
+{
+  const auto [x, y, z] = model.flatSource;
+  this->Layout.flatStride = AreAlike(x, y) && AreAlike(y, z) ? 0 : this->Layout.stride;
+  const std::size_t count = std::max({ x.size(), y.size(), z.size() });
+  std::vector<FlatSourceNode> nodes;
+  for (std::vector<FlatSourceNode> ofAxis : { x, y, z })
+  {
+    ofAxis.resize(count, FlatSourceNode{});
+    nodes.insert(nodes.end(), ofAxis.begin(), ofAxis.end());
+  }
+  const Buffer<FlatSourceNode> onDevice(this->TheDevice, nodes, "the directions");
+  this->FlatSource = Buffer<float>(
+    this->TheDevice, this->Inputs.stride + 2 * this->Layout.flatStride + RowVector, "the diffusion system");
+  cl::Kernel kernel = this->RowsKernel("diffusion_flat_source");
+  With(kernel, this->Layout, *this->Inputs.sigma_t, *this->Inputs.swept, onDevice, cl_int(count), this->FlatSource);
+  this->RunRows(kernel);
+  this->TheDevice.Finish(); // the kernel reads `onDevice`, which is destroyed on return
 }
 
 /// Finds the rows of voxels that have thick voxels next to thinner ones, and sets Skins and Layout.skin.

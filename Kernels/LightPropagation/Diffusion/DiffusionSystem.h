@@ -1,11 +1,10 @@
 #pragma once
 
 #include "Device/Sizes.h"
-#include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Diffusion/AndersonMixing.h"
-#include "LightPropagation/Diffusion/CrossingPattern.h"
 #include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
+#include "LightPropagation/Diffusion/SweepModel.h"
 #include "LightPropagation/Sweep/MomentPlacesShared.h"
 #include "Medium/Grid.h"
 
@@ -106,8 +105,7 @@ public:
   ///   this object
   /// @param incoming  incident power through the box's faces without that of lamps, W / length^2
   DiffusionSystem(Device& device, MultigridSolver& solver, const Grid& grid, const std::array<bool, 3>& periodic,
-    const DirectionSet& directions, const CrossingPattern& pattern, const Arrays& arrays,
-    const std::array<double, 6>& incoming, bool linear);
+    const SweepModel& model, const Arrays& arrays, const std::array<double, 6>& incoming, bool linear);
 
   /// The last solution: fluence, W / length^2, [voxel]; with angular moments, followed by the moments of degree 1,
   /// [x, y, z][voxel].
@@ -177,6 +175,7 @@ private:
   }
   const Buffer<float>& Faces() const { return this->Inputs.faces ? *this->Inputs.faces : this->Model; }
   const Buffer<float>& Passed() const { return this->Inputs.passed ? *this->Inputs.passed : this->Model; }
+  void FindFlatSource(const SweepModel& model);
   void FindSkins();
   const Buffer<float>& ExtinctionInRows();
   cl::Kernel Kernel(const char* name) const;

@@ -164,7 +164,7 @@ void DiffusionAcceleration::MakeSweep()
   request.sameBoundary = true;
   request.angular = parts.UsualValues();
   request.faceIn = parts.LightByCells();
-  this->Swept = parts.Transport.MakeSweep(request);
+  this->Swept = parts.Scattered.make(request);
 }
 
 /// Arrays that a sweep adds to. Net flux is not among them, since the diffusion systems compute it.
@@ -267,8 +267,7 @@ std::vector<float> DiffusionAcceleration::SweptFluence() const
 void DiffusionAcceleration::MakeSystems()
 {
   TransportParts& parts = this->Parts;
-  const CrossingPattern pattern = FindCrossingPattern(this->TheDomain.Whole(), parts.Usual.Set(),
-    this->Settings.mapResolution, parts.Usual.Starts(), this->Settings.periodic);
+  const SweepModel model = parts.Scattered.model();
   const std::array<Rgb, 6> incoming =
     parts.Lights.SweepCarriesBoundarySource() ? parts.Lights.UsualBoundary->IncomingPower() : std::array<Rgb, 6>{};
   for (int c = 0; c < parts.Layout.channels; ++c)
@@ -279,8 +278,8 @@ void DiffusionAcceleration::MakeSystems()
       ofChannel[face] = incoming[face][c];
       this->PowerIn[c] += this->Tally.in[face][c];
     }
-    this->Systems.push_back(std::make_unique<DiffusionSolver>(parts.TheDevice, this->Arrays.Block(), parts.Usual.Set(),
-      pattern, this->Arrays.OfChannel(c, *this->Uncollided, this->Box ? &this->Box->Rows(c) : nullptr), ofChannel,
+    this->Systems.push_back(std::make_unique<DiffusionSolver>(parts.TheDevice, this->Arrays.Block(), model,
+      this->Arrays.OfChannel(c, *this->Uncollided, this->Box ? &this->Box->Rows(c) : nullptr), ofChannel,
       this->Settings.periodic, parts.Problem.HasLinearSource()));
   }
 }

@@ -1,0 +1,364 @@
+#include "DiscreteOrdinates/OrdinatesTransport.h"
+
+#include "DiscreteOrdinates/OrdinateGroups.h"
+#include "DiscreteOrdinates/OrdinatesScene.h"
+#include "DiscreteOrdinates/PipelinedSweep.h"
+#include "DiscreteOrdinates/UpwindSweep.h"
+#include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Conservative/SolveMemory.h"
+#include "LightPropagation/Conservative/TransportParts.h"
+#include "LightPropagation/Diffusion/SweepModel.h"
+#include "LightPropagation/Problem/AngularDegree.h"
+#include "LightPropagation/Problem/PropagationProblem.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
+#include "Medium/BoxFaces.h"
+#include "Numerics/Constants.h"
+#include "TyndallKernelSources.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace tyndall
+{
+namespace
+{
+/// Light that wraps around periodic axes is swept until this fraction of the power that the first sweep lets wrap is
+/// left, but at most MostLaps times.
+constexpr double WrappedLeft = 1e-6;
+constexpr int MostLaps = 500;
+/// Number of scattering orders up to which anisotropic scattering is not accelerated: scattering between directions and
+/// the first scattering of lamps are more accurate than angular moments.
+constexpr double FewOrders = 100.0;
+
+/// Directions of a quadrature that are swept: one of each class whose directions carry the same light
+/// (SweptDirections), with the solid angle of the class.
+struct SweptOrdinates
+{
+  explicit SweptOrdinates(const SweptDirections& of)
+  {
+    for (std::size_t d = 0; d < of.Set().directions.size(); ++d)
+    {
+      const std::vector<int> all = of.AllOf(static_cast<int>(d));
+      if (all.front() == static_cast<int>(d))
+      {
+        this->index.push_back(static_cast<int>(d));
+        this->directions.push_back(of.Set().directions[d]);
+        this->directions.back().weight *= static_cast<double>(all.size());
+      }
+    }
+  }
+
+  std::vector<int> index; ///< in the quadrature
+  std::vector<Direction> directions;
+};
+
+/// SweepOperator for the scattered light of TransportParts by discrete ordinates.
+class OrdinatesTransport : public SweepOperator
+{
+public:
+  OrdinatesTransport(TransportParts& parts, const SweepRequest& request)
+    : Parts(parts)
+    , Request(request)
+    , Ordinates(parts.Usual)
+    , Groups(this->Ordinates.directions)
+    , Voxels(parts.Layout.grid.VoxelCount())
+    , Sums(parts.TheDevice, 4 * this->Groups.Count() * OrdinateStride(this->Voxels), "sums over directions")
+    , Nothing(parts.TheDevice, parts.Layout.Floats(), "no source")
+  {
+    this->Nothing.Fill(0.0f);
+    std::vector<cl_int> up;
+    for (const OrdinateGroup& group : this->Groups.All())
+    {
+      up.insert(up.end(), group.up.begin(), group.up.end());
+    }
+    this->Up = Buffer<cl_int>(parts.TheDevice, up, "the directions");
+    if (request.angular)
+    {
+      this->LoadFunctions(*request.angular);
+    }
+    for (int c = 0; c < parts.Layout.channels; ++c)
+    {
+      this->MakeChannel(c);
+    }
+  }
+
+  SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
+  /// Does nothing: of the light that wraps around periodic axes, Apply() leaves at most WrappedLeft, except after
+  /// MostLaps.
+  void Forget() override {}
+
+private:
+  /// Sweep of one channel, and its light by cell of the box's faces.
+  struct Channel
+  {
+    std::optional<LightOfCells> cells;
+    std::unique_ptr<OrdinateSweep> sweep;
+  };
+  void MakeChannel(int channel);
+  void LoadFunctions(const AngularValues& angular);
+  FacePowers SweepChannel(
+    int channel, const Buffer<float>* source, const IncomingRadiance& incoming, bool onlyWraps, const Monitor& monitor);
+  void Spread(int channel, const Buffer<float>* source);
+  void Gather(int channel) const;
+  cl::Kernel Kernel(const char* name) const
+  {
+    return this->Parts.TheDevice.Kernel(name, kernel_source::UpwindSweep, Define("REAL_WIDTH", OrdinateLanes));
+  }
+  MomentPlaces Places() const { return this->Parts.Layout.Places(this->Parts.Functions()); }
+
+  TransportParts& Parts;
+  const SweepRequest Request;
+  const SweptOrdinates Ordinates;
+  const OrdinateGroups Groups;
+  const std::size_t Voxels;
+  Buffer<float> Sums;     ///< SweptSums::values
+  Buffer<float> Nothing;  ///< isotropic source of 0
+  Buffer<float> Radiance; ///< of all directions; empty if scattering is isotropic
+  /// Values of the angular functions and of the beams in the directions, and the former times solid angle, as
+  /// UpwindSweep.cl reads them.
+  Buffer<float> Values, Weights;
+  Buffer<cl_int> Up;
+  std::vector<std::unique_ptr<Channel>> Channels;
+};
+
+void OrdinatesTransport::MakeChannel(int c)
+{
+  TransportParts& parts = this->Parts;
+  const Domain& domain = parts.TheDomain();
+  this->Channels.push_back(std::make_unique<Channel>());
+  Channel& channel = *this->Channels.back();
+  if (this->Request.deposit.faceOut)
+  {
+    channel.cells.emplace(LightOfCells{ parts.Faces->Out(), parts.Faces->In(), c * parts.Faces->Cells() });
+  }
+  const SweptFaces faces =
+    SweptFaces::Of(domain.Whole(), parts.Problem.Settings().periodic, channel.cells ? &*channel.cells : nullptr);
+  const Grid& grid = parts.Layout.grid;
+  if (domain.IsSerial())
+  {
+    channel.sweep = std::make_unique<UpwindSweep>(parts.TheDevice, grid, this->Groups, faces);
+    return;
+  }
+  channel.sweep = std::make_unique<PipelinedSweep>(parts.TheDevice, domain, grid, this->Groups, faces);
+}
+
+void OrdinatesTransport::LoadFunctions(const AngularValues& angular)
+{
+  std::vector<float> values, weights;
+  for (int g = 0; g < this->Groups.Count(); ++g)
+  {
+    const auto add = [&](std::vector<float>& to, const auto& value) {
+      for (int lane = 0; lane < OrdinateLanes; ++lane)
+      {
+        to.push_back(static_cast<float>(value(this->Ordinates.index[this->Groups.All()[g].direction[lane]], lane)));
+      }
+    };
+    for (int k = 0; k < angular.Functions(); ++k)
+    {
+      add(values, [&](int d, int) { return angular.functions[d][k]; });
+      add(weights, [&](int d, int lane) { return this->Groups.Weight(g, lane) * angular.functions[d][k]; });
+    }
+    for (int b = 0; b < angular.Beams(); ++b)
+    {
+      add(values, [&](int d, int) { return angular.beams[d][b]; });
+    }
+  }
+  Device& device = this->Parts.TheDevice;
+  this->Values = Buffer<float>(device, values, "the angular functions");
+  this->Weights = Buffer<float>(device, weights, "the angular functions");
+  this->Radiance =
+    Buffer<float>(device, this->Groups.Lanes() * OrdinateStride(this->Voxels), "radiance of all directions");
+}
+
+/// Writes the source of a channel along all directions to Radiance, if scattering is not isotropic.
+/// @param source  null: no source
+void OrdinatesTransport::Spread(int c, const Buffer<float>* source)
+{
+  if (!source)
+  {
+    this->Radiance.Fill(0.0f);
+  }
+  else if (this->Request.angular && this->Voxels > 0)
+  {
+    cl::Kernel spread = this->Kernel("spread_moments");
+    With(spread, this->Places(), cl_int(c), cl_int(this->Request.angular->Beams()),
+      cl_ulong(this->Parts.Layout.Stride()), *source, this->Values, this->Radiance,
+      cl_ulong(OrdinateStride(this->Voxels)));
+    Launch(this->Parts.TheDevice, spread, cl::NDRange(this->Voxels, this->Groups.Count()));
+  }
+}
+
+/// Adds the light of the last sweep of a channel to the deposit.
+void OrdinatesTransport::Gather(int c) const
+{
+  if (this->Voxels == 0)
+  {
+    return;
+  }
+  const TransportParts& parts = this->Parts;
+  const Deposit& deposit = this->Request.deposit;
+  const cl_ulong stride = OrdinateStride(this->Voxels), ofChannel = parts.Layout.Stride();
+  const auto volume = static_cast<float>(parts.Layout.grid.VoxelVolume());
+  const cl_int groups = this->Groups.Count();
+  cl::Kernel sums = this->Kernel("gather_sums");
+  With(sums, this->Sums, this->Up, groups, stride, volume, *deposit.path, *deposit.partialCurrents, ofChannel,
+    cl_ulong(c * ofChannel));
+  Launch(parts.TheDevice, sums, cl::NDRange(this->Voxels));
+  if (this->Request.angular)
+  {
+    cl::Kernel moments = this->Kernel("gather_moments");
+    With(moments, this->Places(), cl_int(c), groups, volume, this->Radiance, this->Weights, *deposit.path, stride);
+    Launch(parts.TheDevice, moments, cl::NDRange(this->Voxels));
+  }
+}
+
+/// Sweeps a channel once, and adds its light to the deposit. Collective.
+/// @param source  as for Apply()
+/// @param onlyWraps  as in OrdinateArrays
+FacePowers OrdinatesTransport::SweepChannel(
+  int c, const Buffer<float>* source, const IncomingRadiance& incoming, bool onlyWraps, const Monitor& monitor)
+{
+  const TransportParts& parts = this->Parts;
+  parts.TheDomain().Collective([&] { this->Spread(c, source); });
+  const SweptSums sums = { this->Sums,
+    this->Request.angular ? nullptr
+      : source            ? source
+                          : &this->Nothing,
+    parts.Layout.ExtinctionFirst(c), c * parts.Layout.Stride() };
+  const FacePowers powers = this->Channels[c]->sweep->Apply(
+    { this->Radiance, parts.OnDevice.SigmaT(), this->Nothing, &sums, onlyWraps }, incoming, true, monitor);
+  parts.TheDomain().Collective([&] { this->Gather(c); });
+  return powers;
+}
+
+SweepTally OrdinatesTransport::Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor)
+{
+  SweepTally tally;
+  const int channels = this->Parts.Layout.channels;
+  for (int c = 0; c < channels; ++c)
+  {
+    const IncomingRadiance incoming = [&](int d, int face) { return boundary(this->Ordinates.index[d], face)[c]; };
+    const Monitor ofChannel = OfPart(monitor, static_cast<double>(c) / channels, (c + 1.0) / channels);
+    const Monitor ofLaps = ofChannel ? Monitor([&](double) { return ofChannel(1.0); }) : Monitor();
+    double wraps = 0.0;
+    for (int lap = 0; lap == 0 || (lap < MostLaps && tally.onTheWay[c] > WrappedLeft * wraps); ++lap)
+    {
+      const bool first = lap == 0;
+      const FacePowers powers = this->SweepChannel(c, first ? source : nullptr,
+        first && boundary ? incoming : IncomingRadiance(), !first, first ? ofChannel : ofLaps);
+      for (int face = 0; face < 6; ++face)
+      {
+        tally.in[face][c] += powers.in[face];
+        tally.out[face][c] += powers.out[face];
+      }
+      tally.onTheWay[c] = powers.onTheWay;
+      wraps = first ? powers.onTheWay : wraps;
+    }
+  }
+  return tally;
+}
+
+/// Model of the sweeps of discrete ordinates: every face of a voxel is crossed by the same power. Weighted diamond
+/// differences are exact for light that varies along one axis only, Eq. (D15).
+SweepModel ModelOfOrdinates(const TransportParts& parts)
+{
+  const Grid& grid = parts.Problem.Whole();
+  SweepModel model;
+  model.halfRange = HalfRange(parts.Usual.Set(), 0) / (4.0 * Pi);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const PlaneAxes across = AcrossAxis(axis);
+    for (const int along : { across.u, across.v })
+    {
+      model.pattern.first[2 * axis + (along == across.u ? 0 : 1)] = static_cast<int>(model.pattern.values.size());
+      model.pattern.values.insert(model.pattern.values.end(), grid.size[along], along == across.u ? 1.0f : 0.0f);
+    }
+    std::map<float, double> weights; // by cosine: directions that are alike are one node
+    for (const Direction& direction : parts.Usual.Set().directions)
+    {
+      const double cosine = direction.omega[axis];
+      weights[static_cast<float>(cosine)] += std::max(direction.weight * cosine / (4.0 * Pi), 0.0);
+    }
+    for (const auto& [cosine, weight] : weights)
+    {
+      if (cosine > 0.0f)
+      {
+        model.flatSource[axis].push_back(
+          { cosine, static_cast<float>(grid.spacing[axis] / cosine), static_cast<float>(weight) });
+      }
+    }
+  }
+  return model;
+}
+
+/// Checks that an accelerated solve fits the device. @throws DeviceError
+void CheckMemoryOf(Device& device, const PropagationProblem& problem)
+{
+  const int directions = 6 * problem.Settings().directionsPerFace;
+  const std::size_t voxels = OrdinateStride(problem.TheGrid().VoxelCount());
+  const std::size_t sums = sizeof(float) * voxels * directions / 2; // four floats for eight directions
+  const std::size_t radiance = problem.Scattering().Degree() > 0 ? 2 * sums : 0;
+  CheckMemory(device, directions, BytesOfSolve(device, problem, IterationScheme::Dsa) + sums + radiance,
+    std::max(sums, radiance));
+}
+
+/// Replaces the transport of scattered light by sweeps of discrete ordinates.
+void TransportByOrdinates(TransportParts& parts)
+{
+  parts.Scattered.make = [&parts](const SweepRequest& request) -> std::unique_ptr<SweepOperator> {
+    std::unique_ptr<SweepOperator> sweep;
+    parts.TheDomain().Collective([&] { sweep = std::make_unique<OrdinatesTransport>(parts, request); });
+    return sweep;
+  };
+  parts.Scattered.model = [&parts] { return ModelOfOrdinates(parts); };
+  if (parts.Faces)
+  {
+    const Grid& grid = parts.Problem.Whole();
+    std::vector<double> powerIn;
+    ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
+      const int axis = cell.face / 2;
+      powerIn.push_back(HalfRange(parts.Usual.Set(), axis) * grid.VoxelVolume() / grid.spacing[axis]);
+    });
+    parts.Faces->SetPowerIn(std::move(powerIn));
+  }
+}
+
+}
+
+bool MayAccelerate(const OrdinatesSettings& settings, bool isIsotropic)
+{
+  return !IsPublished(settings) && settings.acceleration == PropagationAcceleration::Automatic &&
+    settings.maximumOrders == 0 && settings.seriesAfter == 0 && settings.spiralDirections == 0 &&
+    (isIsotropic || settings.scattering == OrdinatesScattering::SphericalHarmonics);
+}
+
+std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const Domain& domain, const Medium& medium,
+  const Illumination& illumination, const OrdinatesSettings& settings, const PropagationProblem& even,
+  const Monitor& monitor, KeptLight* kept)
+{
+  if (!MayAccelerate(settings, even.IsIsotropic()) || settings.terms > 6 * even.Settings().directionsPerFace)
+  {
+    return {};
+  }
+  std::optional<PropagationProblem> inMoments;
+  if (!even.IsIsotropic())
+  {
+    PropagationSettings as = AsPropagation(settings);
+    as.angularDegree = static_cast<int>(std::sqrt(settings.terms + 0.5)) - 1;
+    inMoments.emplace(domain, medium, illumination, as, MemoryOf(device));
+  }
+  const PropagationProblem& problem = inMoments ? *inMoments : even;
+  if (ChooseIterationScheme(problem) == IterationScheme::SourceIteration ||
+    (inMoments && OrdersNeeded(problem) < FewOrders))
+  {
+    return {};
+  }
+  domain.Collective([&] { CheckMemoryOf(device, problem); });
+  return SolveBySweeps(device, problem, illumination, IterationScheme::Dsa, monitor, kept, TransportByOrdinates);
+}
+}
