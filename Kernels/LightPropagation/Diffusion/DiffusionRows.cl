@@ -241,10 +241,12 @@ static real load_rounded(const __global exact* row, int x, int size)
 // power (m of numerics.md, Eq. (56)): in thin voxels the fluence of the sweep, in optically thick ones the fluence from
 // which its source was computed.
 //   extinction  sigma_t, in rows as diffusion_extinction writes it; if DiffusionLayout::skin is 0, [voxel]
+//   swept       extinction that sweeps use, 1/length
 //   of_lamps    first-collision source of lamps, W / (length^3 sr); read only if DiffusionLayout::passing is 1
 //   model       W / length^2, [voxel]
 __kernel void diffusion_model(DiffusionLayout layout, const __global float* extinction, const __global float* path,
-  const __global exact* fluence, const __global float* source, const __global float* of_lamps, __global float* model)
+  const __global exact* fluence, const __global float* source, const __global float* of_lamps,
+  const __global float* swept, __global float* model)
 {
   path += layout.first;
   source += layout.first;
@@ -269,7 +271,8 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
           // The lamps' source is subtracted, because the solved fluence does not include it either.
           source_of_fluence -= load_real(here + x, of_lamps);
         }
-        const real shining = 4.0f * M_PI_F * source_of_fluence / fmax(sigma_t[0], (real)1e-37f);
+        const real shining =
+          4.0f * M_PI_F * source_of_fluence / fmax(load_real(layout.firstT + here + x, swept), (real)1e-37f);
         given = select(solved, mix(solved, shining, skin), skin > (real)0.0f);
         longest = sigma_t[0] * edge;
       }

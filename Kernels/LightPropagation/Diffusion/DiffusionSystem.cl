@@ -508,8 +508,8 @@ __kernel void diffusion_put_flux(
 // 1 (numerics.md, Eqs. (63), (64)).
 //   skins  [z][y], 1: the row of voxels has voxels in which openness() is above 0 (written by diffusion_skins)
 __kernel void diffusion_surface_source(DiffusionLayout layout, const __global exact* fluence,
-  const __global float* sigma_t, const __global float* sigma_a, const __global float* conductance,
-  const __global float* passed, const __global int* skins, __global float* source)
+  const __global float* sigma_t, const __global float* sigma_a, const __global float* swept,
+  const __global float* conductance, const __global float* passed, const __global int* skins, __global float* source)
 {
   VOXEL(layout.size)
   if (!skins[z * layout.size[1] + y])
@@ -521,6 +521,7 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
   const ulong begin = layout.first;
   sigma_t += layout.firstT;
   sigma_a += layout.first;
+  swept += layout.firstT;
   passed += layout.passing ? 6 * (ulong)layout.first : 0;
   const int at[3] = { x, y, z };
   int next[6];
@@ -543,7 +544,7 @@ __kernel void diffusion_surface_source(DiffusionLayout layout, const __global ex
       sum += weight;
     }
   }
-  const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * sigma_t[i] * (0.25f * M_1_PI_F) : 0.0f;
+  const float there = sum > 0.0f ? fmax(shining / sum, 0.0f) * swept[i] * (0.25f * M_1_PI_F) : 0.0f;
   // With skin 1 the previous source is not read: it may exceed the range of floats.
   source[begin + i] = skin < 1.0f ? mix(source[begin + i], there, skin) : there;
 }

@@ -159,7 +159,7 @@ void DiffusionSystem::ShapeSource()
     return;
   }
   cl::Kernel kernel = this->Kernel("diffusion_surface_source");
-  With(kernel, this->Layout, this->Next.Handle(), *this->Inputs.sigma_t, *this->Inputs.sigma_a,
+  With(kernel, this->Layout, this->Next.Handle(), *this->Inputs.sigma_t, *this->Inputs.sigma_a, *this->Inputs.swept,
     this->Solver.Conductance(), this->Passed(), this->Skins, *this->Inputs.source);
   this->Run(kernel);
 }
@@ -170,7 +170,7 @@ void DiffusionSystem::FindModel()
   const Buffer<float>& extinction = this->Layout.skin ? this->ExtinctionInRows() : *inputs.sigma_t;
   cl::Kernel model = this->RowsKernel("diffusion_model");
   With(model, this->Layout, extinction, *inputs.path, this->Next.Handle(), *inputs.source,
-    inputs.ofLamps ? *inputs.ofLamps : *inputs.source, this->Model);
+    inputs.ofLamps ? *inputs.ofLamps : *inputs.source, *inputs.swept, this->Model);
   this->RunRows(model);
 }
 
