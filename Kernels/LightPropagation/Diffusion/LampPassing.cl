@@ -84,6 +84,8 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
   passed += 6 * (ulong)layout.first;
   const float length = path[layout.first + i];
   const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
+  // part that scatters evenly: 1 - 3 g, with the mean cosine g of scattering in the sweeps, 1 - sigma_t / swept
+  const float even = swept[i] > 0.0f ? 1.0f - 3.0f * (1.0f - fmin(sigma_t[i] / swept[i], 1.0f)) : 1.0f;
   float part[6], sum = 0.0f;
   for (int d = 0; d < 6; ++d)
   {
@@ -94,20 +96,20 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
     part[d] = 0.0f;
     // Where sweeps use more extinction than the diffusion system, angular moments represent forward scattering, which
     // does not send light back through its entry face.
-    if (tau <= 0.0f || r <= 0.0f || swept[i] > sigma_t[i])
+    if (tau <= 0.0f || r <= 0.0f || even <= 0.0f)
     {
       continue;
     }
     if (is_border(&layout, at, d))
     {
-      part[d] = passes_border(tau, r, k) * beside_sweeps(tau);
+      part[d] = even * passes_border(tau, r, k) * beside_sweeps(tau);
     }
     else if (layout.size[axis] > 1)
     {
       const int j = next[d];
       const float way = way_to_boundary(&layout, tau, sigma_t[i], sigma_a[i]);
       const float beyond = way_to_boundary(&layout, sigma_t[j] * h, sigma_t[j], sigma_a[j]);
-      part[d] = passes_inside(tau, r, k) * way / (way + beyond) * beside_sweeps(tau);
+      part[d] = even * passes_inside(tau, r, k) * way / (way + beyond) * beside_sweeps(tau);
     }
     sum += part[d];
   }
