@@ -144,6 +144,32 @@ TEST_F(ThickVoxels, KeepEvenLightEven)
   EXPECT_NEAR(*most / (4.0 * Pi), 1.0, 1e-3);
 }
 
+// A lamp in the corner of voxels of 30 mean free paths: with sources by octant, orders of albedo 0.67 grow from voxel to
+// voxel like a checkerboard, and three times the power of the lamp was absorbed.
+TEST_F(ThickVoxels, AbsorbTheLightOfALampAmongThem)
+{
+  for (float perVoxel : { 8.0f, 30.0f, 300.0f })
+  {
+    for (float albedo : { 0.52f, 0.6f, 0.67f, 0.72f })
+    {
+      Scene scene({ 9, 9, 9 }, perVoxel * (1.0f - albedo), perVoxel * albedo);
+      Light lamp;
+      lamp.type = LightType::Spot;
+      lamp.angle = 40.0;
+      lamp.position = { 3.0, 4.0, 6.0 };
+      lamp.power = { 1.0, 1.0, 1.0 };
+      scene.light.lights = { lamp };
+      const LightField light = scene.Solve(this->GetDevice());
+      double absorbed = 0.0;
+      for (float fluence : light.fluence)
+      {
+        absorbed += scene.sigma_a[0] * fluence;
+      }
+      EXPECT_NEAR(absorbed, 1.0, 2e-3) << perVoxel << " mean free paths, albedo " << albedo;
+    }
+  }
+}
+
 TEST_F(ThickVoxels, AddUpTheLightOfBothLamps)
 {
   const auto solve = [&](bool first, bool second) {

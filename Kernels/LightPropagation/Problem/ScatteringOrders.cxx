@@ -26,6 +26,9 @@ const double UsualTolerance = PropagationSettings().tolerance;
 constexpr double Extrapolation = 1.42 / 2.0;
 /// Optical thickness along a voxel's longest edge above which sweeps with moments need more expensive corrections.
 constexpr double ThickVoxel = 10.0;
+/// Optical thickness along a voxel's longest edge, and albedo, above which orders with sources by octant may grow: they
+/// do above 8 mean free paths and an albedo of 0.55 (numerics.md, section 6.5).
+constexpr double GrowingThickness = 6.0, GrowingAlbedo = 0.5;
 
 /// Cost of an accelerated solve (`./run bench thick`). Times are relative to that of one scattering order of source
 /// iteration in the same scene: `setUp` is the time of set-up and finish, `rows` the number of iterations, and
@@ -351,6 +354,26 @@ bool ScatteredManyTimes(const ScatteringOfScene& scene)
   return PlainSetUp + OrdersNeeded(scene) > AcceleratedTimeOf(scene).InOrders();
 }
 
+/// Whether any voxel is so thick, and scatters so much, that source iteration with sources by octant may diverge.
+/// Collective.
+bool OctantOrdersMayGrow(const PropagationProblem& problem)
+{
+  const TruncatedScattering& scattering = problem.Scattering();
+  const Grid& grid = problem.TheGrid();
+  const double thick = GrowingThickness / *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  const bool allowed = problem.Settings().source != PropagationSource::Constant && scattering.Degree() == 0;
+  bool any = false;
+  for (int c = 0; c < problem.Channels() && allowed; ++c)
+  {
+    for (std::size_t i = 0; i < grid.VoxelCount() && !any; ++i)
+    {
+      const double sigma_t = scattering.SigmaT(i, c);
+      any = sigma_t > thick && scattering.SigmaS(i, c) > GrowingAlbedo * sigma_t;
+    }
+  }
+  return problem.TheDomain().Any(any);
+}
+
 /// Whether the settings request acceleration, or let it depend on the scene. Without scattering there is nothing to
 /// accelerate.
 bool MayBeAccelerated(const PropagationSettings& settings, bool scatters)
@@ -399,7 +422,7 @@ IterationScheme ChooseIterationScheme(const PropagationProblem& problem)
     return IterationScheme::SourceIteration;
   }
   const ScatteringOfScene scene = ScatteringOf(problem);
-  if (settings.source != PropagationSource::Linear && !ScatteredManyTimes(scene))
+  if (settings.source != PropagationSource::Linear && !ScatteredManyTimes(scene) && !OctantOrdersMayGrow(problem))
   {
     return IterationScheme::SourceIteration;
   }
