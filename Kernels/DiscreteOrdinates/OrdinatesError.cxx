@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "DiscreteOrdinates/OrdinatesTransport.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/Accuracy/TargetError.h"
 
@@ -20,8 +21,27 @@ constexpr int FewestSpiralDirections = 16;
 /// function, whose cost rises with the square of their number.
 constexpr int MostDirections = 400, MostWithMatrix = 144;
 
-/// Measured orders of convergence (numerics.md, section 10 b).
+/// Measured orders of convergence of solves that are not accelerated (numerics.md, section 10 b).
 constexpr double OrderInSpace = 1.0, OrderInDirections = 0.4;
+
+/// Settings with which a scene is solved on other grids with the same spatial scheme, and its orders of convergence: an
+/// accelerated solve has those of light propagation maps.
+struct SpatialScheme
+{
+  /// Collective.
+  SpatialScheme(Device& device, const SceneBlock& scene, const OrdinatesSettings& given)
+    : settings(given)
+  {
+    if (!AreAccelerated(device, scene, given))
+    {
+      this->settings.acceleration = PropagationAcceleration::None;
+      this->orders = { OrderInSpace, OrderInDirections, OrderInSpace, OrderInSpace };
+    }
+  }
+
+  OrdinatesSettings settings;
+  ErrorOrders orders;
+};
 
 /// Number of terms for another number of directions: in proportion to the directions, a square number, as spherical
 /// harmonics have it, and at most the number of directions.
@@ -73,8 +93,9 @@ LightField EstimateOrdinates(
   Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   RefuseAsPublished(IsPublished(settings), "EstimateError");
-  return SolveWithErrorEstimate(scene, AsPropagation(settings), monitor, SolverOf(device, scene, settings, false, kept),
-    { OrderInSpace, OrderInDirections });
+  const SpatialScheme scheme(device, scene, settings);
+  return SolveWithErrorEstimate(
+    scene, AsPropagation(settings), monitor, SolverOf(device, scene, scheme.settings, false, kept), scheme.orders);
 }
 
 LightField SolveOrdinatesToTarget(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,
@@ -87,11 +108,11 @@ LightField SolveOrdinatesToTarget(Device& device, const SceneBlock& scene, const
       std::to_string(settings.spiralDirections) + ". Set TargetError or SpiralDirections to 0.");
   }
   const int most = settings.scattering == OrdinatesScattering::SphericalHarmonics ? MostDirections : MostWithMatrix;
-  const ErrorOrders orders = { OrderInSpace, OrderInDirections, OrderInSpace, OrderInSpace,
-    DirectionsThatFit(scene.domain, most, MemoryOf(device)) };
+  SpatialScheme scheme(device, scene, settings);
+  scheme.orders.mostDirections = DirectionsThatFit(scene.domain, most, MemoryOf(device));
   const bool choosesTerms = settings.terms == OrdinatesSettings().terms;
-  TargetLight found = SolveToTargetError(
-    scene, AsPropagation(settings), target, monitor, SolverOf(device, scene, settings, choosesTerms, kept), orders);
+  TargetLight found = SolveToTargetError(scene, AsPropagation(settings), target, monitor,
+    SolverOf(device, scene, scheme.settings, choosesTerms, kept), scheme.orders);
   std::vector<std::string> used = Words(With(settings, found.settings, choosesTerms), found.light);
   return LightOf(std::move(found), std::move(used));
 }

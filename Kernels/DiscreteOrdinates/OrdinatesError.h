@@ -24,7 +24,7 @@ LightField EstimateOrdinates(Device& device, const SceneBlock& scene, const Ordi
 /// voxels; settings other than the default values are not changed. The radiance along all directions takes at most half
 /// of the device's memory on the scene's grid. Collective.
 /// @param target  relative error, in (0, 1)
-/// @return the light, with settingsUsed, solves and secondsOfAll; `doubts` has a warning if the target was missed
+/// @return the light, with settingsUsed and solves; `doubts` has a warning if the target was missed
 /// @throws InvalidInput  for the published scheme, for directions on a spiral, and if the target is out of range
 /// @throws the exceptions of SolveDiscreteOrdinates
 LightField SolveOrdinatesToTarget(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,

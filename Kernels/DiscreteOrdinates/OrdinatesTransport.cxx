@@ -337,28 +337,50 @@ bool MayAccelerate(const OrdinatesSettings& settings, bool isIsotropic)
     (isIsotropic || settings.scattering == OrdinatesScattering::SphericalHarmonics);
 }
 
-std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const Domain& domain, const Medium& medium,
-  const Illumination& illumination, const OrdinatesSettings& settings, const PropagationProblem& even,
-  const Monitor& monitor, KeptLight* kept)
+namespace
+{
+/// The problem that an accelerated solve has: `even` if scattering is isotropic, else one in angular moments; null if
+/// acceleration is not allowed, or not predicted to be faster than source iteration. Collective.
+/// @param inMoments  receives the problem in angular moments
+const PropagationProblem* AcceleratedProblem(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,
+  const PropagationProblem& even, std::optional<PropagationProblem>& inMoments)
 {
   if (!MayAccelerate(settings, even.IsIsotropic()) || settings.terms > 6 * even.Settings().directionsPerFace)
   {
-    return {};
+    return nullptr;
   }
-  std::optional<PropagationProblem> inMoments;
   if (!even.IsIsotropic())
   {
     PropagationSettings as = AsPropagation(settings);
     as.angularDegree = static_cast<int>(std::sqrt(settings.terms + 0.5)) - 1;
-    inMoments.emplace(domain, medium, illumination, as, MemoryOf(device));
+    inMoments.emplace(scene.domain, scene.medium, scene.illumination, as, MemoryOf(device));
   }
   const PropagationProblem& problem = inMoments ? *inMoments : even;
-  if (ChooseIterationScheme(problem) == IterationScheme::SourceIteration ||
-    (inMoments && OrdersNeeded(problem) < FewOrders))
+  const bool pays = ChooseIterationScheme(problem) != IterationScheme::SourceIteration &&
+    (!inMoments || OrdersNeeded(problem) >= FewOrders);
+  return pays ? &problem : nullptr;
+}
+}
+
+bool AreAccelerated(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings)
+{
+  const PropagationProblem even(scene.domain, scene.medium, scene.illumination, AsPropagation(settings));
+  std::optional<PropagationProblem> inMoments;
+  return AcceleratedProblem(device, scene, settings, even, inMoments) != nullptr;
+}
+
+std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const Domain& domain, const Medium& medium,
+  const Illumination& illumination, const OrdinatesSettings& settings, const PropagationProblem& even,
+  const Monitor& monitor, KeptLight* kept)
+{
+  std::optional<PropagationProblem> inMoments;
+  const PropagationProblem* const problem =
+    AcceleratedProblem(device, { domain, medium, illumination }, settings, even, inMoments);
+  if (!problem)
   {
     return {};
   }
-  domain.Collective([&] { CheckMemoryOf(device, problem); });
-  return SolveBySweeps(device, problem, illumination, IterationScheme::Dsa, monitor, kept, TransportByOrdinates);
+  domain.Collective([&] { CheckMemoryOf(device, *problem); });
+  return SolveBySweeps(device, *problem, illumination, IterationScheme::Dsa, monitor, kept, TransportByOrdinates);
 }
 }

@@ -4,6 +4,7 @@
 #include "Distribution/Domain.h"
 #include "Light/KeptLight.h"
 #include "Light/LightField.h"
+#include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
 #include "Lights/Lights.h"
 #include "Medium/Medium.h"
@@ -29,4 +30,7 @@ bool MayAccelerate(const OrdinatesSettings& settings, bool isIsotropic);
 std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const Domain& domain, const Medium& medium,
   const Illumination& illumination, const OrdinatesSettings& settings, const PropagationProblem& even,
   const Monitor& monitor, KeptLight* kept);
+
+/// Whether SolveDiscreteOrdinates() accelerates the solve of a scene. Collective.
+bool AreAccelerated(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings);
 }

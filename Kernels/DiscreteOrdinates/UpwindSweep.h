@@ -111,7 +111,8 @@ public:
   /// @return power that leaves the box, through its own faces
   FacePowers ApplyWithin(const VoxelBox& box, const OrdinateArrays& arrays, const Monitor& monitor);
   /// Carries the radiance that left the box in all calls of ApplyWithin() on to the faces of the grid.
-  /// @param arrays  radiance: 0 on entry outside of the box; on return the mean radiance of the voxels outside of it, 0 within
+  /// @param arrays  radiance: 0 on entry outside of the box; on return the mean radiance of the voxels outside of it, 0
+  ///   within
   FacePowers ApplyBeyond(const VoxelBox& box, const OrdinateArrays& arrays, const Monitor& monitor);
 
   // Steps of Apply(), for a pipeline over ranks: LetIn() sets the boundary source, SweepGroups() sweeps `count` groups

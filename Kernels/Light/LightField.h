@@ -78,8 +78,6 @@ struct SolveReport
   int uncollidedDirections = 0;
   std::vector<std::string> leftOut; ///< parts of the computation that the scene did not need (LeftOut.h)
   int solves = 1;                   ///< number of solves, including those on coarser grids (TargetError.h)
-  /// Run time of all solves, s; 0 if there was only one, whose time is in `convergence`.
-  double secondsOfAll = 0.0;
   /// Text "Name = value" for each setting that the quality determines (Quality.h).
   std::vector<std::string> settingsUsed;
   std::string device;

@@ -515,6 +515,10 @@ TEST_F(OrdinatesFaceAlbedo, EndsInABoxThatHardlyAbsorbsAndRefusesOneThatDoesNot)
   scene.light.faceAlbedo.fill(Grey(1.0));
   scene.emission.assign(scene.sigma_a.size(), 0.0f);
   scene.emission[13] = 1.0f;
+  const LightField accelerated = scene.SolveOrdinates(this->GetDevice());
+  EXPECT_TRUE(accelerated.converged);
+  EXPECT_LE(accelerated.balance.RelativeError(1), 1e-3);
+  scene.how.acceleration = PropagationAcceleration::None;
   const LightField light = scene.SolveOrdinates(this->GetDevice());
   EXPECT_FALSE(light.converged);
   EXPECT_FALSE(light.doubts.empty());

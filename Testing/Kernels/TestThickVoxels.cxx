@@ -144,8 +144,8 @@ TEST_F(ThickVoxels, KeepEvenLightEven)
   EXPECT_NEAR(*most / (4.0 * Pi), 1.0, 1e-3);
 }
 
-// A lamp in the corner of voxels of 30 mean free paths: with sources by octant, orders of albedo 0.67 grow from voxel to
-// voxel like a checkerboard, and three times the power of the lamp was absorbed.
+// A lamp in the corner of voxels of 30 mean free paths: with sources by octant, orders of albedo 0.67 grow like a
+// checkerboard of voxels, and three times the power of the lamp was absorbed.
 TEST_F(ThickVoxels, AbsorbTheLightOfALampAmongThem)
 {
   for (float perVoxel : { 8.0f, 30.0f, 300.0f })

@@ -344,7 +344,6 @@ LightField LightOf(TargetLight&& found, std::vector<std::string> settings)
   light.settingsUsed = std::move(settings);
   light.settingsUsed.push_back("VoxelsDividedBy = " + std::to_string(found.divided ? 2 : 1));
   light.solves = found.solves;
-  light.secondsOfAll = found.seconds;
   return light;
 }
 

@@ -20,7 +20,7 @@ struct TargetLight
   double seconds = 0.0;         ///< total time of all solves, s
 };
 
-/// The light of a target, with `solves`, `secondsOfAll` and `settingsUsed`.
+/// The light of a target, with `solves` and `settingsUsed`.
 /// @param settings  "Name = value" of the settings of the final solve, to which the division of voxels is added
 LightField LightOf(TargetLight&& found, std::vector<std::string> settings);
 
