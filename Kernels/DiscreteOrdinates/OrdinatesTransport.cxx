@@ -345,7 +345,8 @@ namespace
 const PropagationProblem* AcceleratedProblem(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,
   const PropagationProblem& even, std::optional<PropagationProblem>& inMoments)
 {
-  if (!MayAccelerate(settings, even.IsIsotropic()) || settings.terms > 6 * even.Settings().directionsPerFace)
+  if (!MayAccelerate(settings, even.IsIsotropic()) || even.HasGivenLight() ||
+    settings.terms > 6 * even.Settings().directionsPerFace)
   {
     return nullptr;
   }

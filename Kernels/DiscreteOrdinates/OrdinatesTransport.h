@@ -17,7 +17,8 @@
 namespace tyndall
 {
 /// Whether the settings allow acceleration if scattering is isotropic or not. Not accelerated: the published scheme, a
-/// given number of orders, directions of a spiral, and anisotropic scattering by other terms than spherical harmonics.
+/// given number of orders, directions of a spiral, and anisotropic scattering by other terms than spherical harmonics;
+/// nor, whatever the settings, the light of another solver, whose scattering DSA overestimates.
 bool MayAccelerate(const OrdinatesSettings& settings, bool isIsotropic);
 
 /// Solves a scene by discrete ordinates with diffusion synthetic acceleration, if that is predicted to be faster than

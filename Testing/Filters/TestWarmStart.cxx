@@ -37,12 +37,13 @@ bool Says(const char* leftOut, const char* words)
 
 /// A slider that is moved and let go, another grid, and off.
 template <class Solver>
-void KeepsItsLight(test::Claims& claims, const char* name)
+void KeepsItsLight(test::Claims& claims, const char* name, int acceleration)
 {
   const test::Box box = { { 9, 8, 7 } };
   const auto which = [name](const char* claim) { return std::string(name) + ": " + claim; };
   vtkNew<Solver> solver;
   test::Errors errors(solver);
+  solver->SetAcceleration(acceleration);
   solver->SetInputDataObject(test::MakeMedium(box, 0.02, 0.4));
   solver->SetSkyColor(1.0, 1.0, 1.0);
   solver->Update();
@@ -62,6 +63,7 @@ void KeepsItsLight(test::Claims& claims, const char* name)
   claims.That(Says(solver->GetLeftOut(), "begun from the last light"), which("and says why"));
   claims.That(solver->GetBalanceError() < 1e-5, which("its power is conserved"));
   vtkNew<Solver> fresh;
+  fresh->SetAcceleration(acceleration);
   fresh->SetInputDataObject(solver->GetInputDataObject(0, 0));
   fresh->SetSkyColor(1.0, 1.0, 1.0);
   fresh->SetTolerance(1e-7);
@@ -137,8 +139,8 @@ int TestWarmStart(int, char*[])
     return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
   }
   test::Claims claims;
-  KeepsItsLight<vtkLightPropagationMaps>(claims, "maps");
-  KeepsItsLight<vtkDiscreteOrdinates>(claims, "ordinates");
+  KeepsItsLight<vtkLightPropagationMaps>(claims, "maps", vtkLightPropagationMaps::AUTOMATIC_ACCELERATION);
+  KeepsItsLight<vtkDiscreteOrdinates>(claims, "ordinates", vtkDiscreteOrdinates::NONE);
   BeginsInTheDarkAsPublished<vtkLightPropagationMaps>(claims);
   BeginsInTheDarkAsPublished<vtkDiscreteOrdinates>(claims);
   EstimatesTheErrorOfAllOfIt(claims);

@@ -16,8 +16,12 @@ namespace
 /// Where rays start. Thick voxels need two rays, since light enters and leaves them at their edges. Collective.
 RayStarts StartsOf(const PropagationProblem& problem, IterationScheme how)
 {
-  const RayStarts single = problem.Settings().staggeredRays ? RayStarts::Staggered : RayStarts::Middle;
-  return how == IterationScheme::SourceIteration && OctantSources::Matter(problem) ? RayStarts::Pairs : single;
+  if (problem.Settings().staggeredRays)
+  {
+    return RayStarts::Staggered;
+  }
+  const bool byOctant = how == IterationScheme::SourceIteration && OctantSources::Matter(problem);
+  return byOctant ? RayStarts::Pairs : RayStarts::Middle;
 }
 
 VolumeLayout LayoutOf(const PropagationProblem& problem)

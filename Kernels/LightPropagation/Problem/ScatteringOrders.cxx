@@ -26,7 +26,7 @@ const double UsualTolerance = PropagationSettings().tolerance;
 constexpr double Extrapolation = 1.42 / 2.0;
 /// Optical thickness along a voxel's longest edge above which sweeps with moments need more expensive corrections.
 constexpr double ThickVoxel = 10.0;
-/// Optical thickness along a voxel's longest edge, and albedo, above which orders with sources by octant may grow: they
+/// Optical thickness along two edges of a voxel, and albedo, above which orders with sources by octant may grow: they
 /// do above 8 mean free paths and an albedo of 0.55 (numerics.md, section 6.5).
 constexpr double GrowingThickness = 6.0, GrowingAlbedo = 0.5;
 
@@ -360,7 +360,9 @@ bool OctantOrdersMayGrow(const PropagationProblem& problem)
 {
   const TruncatedScattering& scattering = problem.Scattering();
   const Grid& grid = problem.TheGrid();
-  const double thick = GrowingThickness / *std::max_element(grid.spacing.begin(), grid.spacing.end());
+  std::array<double, 3> edges = grid.spacing;
+  std::sort(edges.begin(), edges.end());
+  const double thick = GrowingThickness / edges[1];
   const bool allowed = problem.Settings().source != PropagationSource::Constant && scattering.Degree() == 0;
   bool any = false;
   for (int c = 0; c < problem.Channels() && allowed; ++c)
