@@ -145,6 +145,30 @@ inline void pass_empty(const __global float* radiance, __global float* source, c
   EACH_VOXEL(KEEP_LIGHT)
 }
 
+// Computes the angular moments of eight voxels, and adds their light to fluence and net flux, with the arguments of
+// scatter_terms. Returns whether they scatter: the source of voxels that do not is set to 0, and voxels beside the box
+// with light are left as they are.
+inline bool take_light(const __global float* radiance, __global float* source, __global float* moments,
+  const __global float* weights, const __global float* angles, const __global float* sigma_s, __global float* order,
+  __global float* fluence, __global float* flux, ScatteringVoxels at, ulong first)
+{
+  if (is_beside(at, first))
+  {
+    return false;
+  }
+  const bool scatters = !at.skips || any_scatters(sigma_s, at.voxels, first);
+  if (scatters)
+  {
+    find_moments(radiance, weights, at.stride, first, moments);
+  }
+  else
+  {
+    pass_empty(radiance, source, weights, angles, at, first, moments);
+  }
+  add_light(moments, at.voxels, first, order, fluence, flux);
+  return scatters;
+}
+
 // Scatters by the terms of the phase function. One work-item per BLOCK voxels.
 //   radiance  W / (length^2 sr), padded by BLOCK voxels
 //   source    scattering source, W / (length^3 sr); may be the array `radiance`. With POSITIVE it must still be
@@ -160,18 +184,10 @@ __kernel void scatter_terms(const __global float* radiance, __global float* sour
 {
   const ulong voxels = at.voxels, stride = at.stride;
   const ulong first = at.begin + get_global_id(0) * BLOCK;
-  if (is_beside(at, first))
+  if (!take_light(radiance, source, moments, weights, angles, sigma_s, order, fluence, flux, at, first))
   {
     return;
   }
-  if (at.skips && !any_scatters(sigma_s, voxels, first))
-  {
-    pass_empty(radiance, source, weights, angles, at, first, moments);
-    add_light(moments, voxels, first, order, fluence, flux);
-    return;
-  }
-  find_moments(radiance, weights, stride, first, moments);
-  add_light(moments, voxels, first, order, fluence, flux);
   const __global float* mine = moments + first * MOMENTS + 1;
   EACH_VOXEL(CLEAR_POWER)
   for (int group = 0; group < GROUPS; ++group)
@@ -199,18 +215,10 @@ __kernel void scatter_matrix(const __global float* radiance, __global float* sou
 {
   const ulong voxels = at.voxels, stride = at.stride;
   const ulong first = at.begin + get_global_id(0) * BLOCK;
-  if (is_beside(at, first))
+  if (!take_light(radiance, source, moments, weights, angles, sigma_s, order, fluence, flux, at, first))
   {
     return;
   }
-  if (at.skips && !any_scatters(sigma_s, voxels, first))
-  {
-    pass_empty(radiance, source, weights, angles, at, first, moments);
-    add_light(moments, voxels, first, order, fluence, flux);
-    return;
-  }
-  find_moments(radiance, weights, stride, first, moments);
-  add_light(moments, voxels, first, order, fluence, flux);
   EACH_VOXEL(CLEAR_POWER)
   for (int group = 0; group < GROUPS; ++group)
   {
