@@ -11,7 +11,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::size_t Block = 8;      ///< voxels per work-item
 constexpr std::size_t GroupSize = 64; ///< work-items per work-group
 /// work-items of the first launch; later launches are sized by the run time measured
 constexpr std::size_t FirstBatch = 512;
@@ -35,21 +34,21 @@ AngularScattering::AngularScattering(Device& device, const OrdinateGroups& group
   , Rows(RowsOf(this->TermCount, netFlux, this->Width))
   , Voxels(voxels)
 {
-  const std::size_t all = RoundUp(voxels, Block * GroupSize);
+  const std::size_t all = RoundUp(voxels, VoxelsAtATime * GroupSize);
   this->Moments = Buffer<float>(device, all * this->Rows * this->Width, "moments of the radiance");
   this->LoadTables(groups, phase);
 }
 
 std::size_t AngularScattering::Floats(const OrdinateGroups& groups, std::size_t voxels)
 {
-  return groups.Lanes() * OrdinateStride(voxels) + Block * GroupSize * OrdinateLanes;
+  return groups.Lanes() * OrdinateStride(voxels) + VoxelsAtATime * GroupSize * OrdinateLanes;
 }
 
 std::size_t AngularScattering::Bytes(const OrdinateGroups& groups, int terms, PairSums sums, std::size_t voxels)
 {
   const std::size_t moments = sums == PairSums::Terms ? RoundUp<std::size_t>(terms + 4, 16) : 16;
   const std::size_t tables = sums == PairSums::Terms ? groups.Lanes() * terms : groups.Lanes() * groups.Lanes();
-  return sizeof(float) * (RoundUp(voxels, Block * GroupSize) * moments + tables);
+  return sizeof(float) * (RoundUp(voxels, VoxelsAtATime * GroupSize) * moments + tables);
 }
 
 void AngularScattering::LoadTables(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
@@ -158,15 +157,15 @@ void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<floa
   }
   cl::Kernel scatter = this->Kernel(this->Sums == PairSums::Terms ? "scatter_terms" : "scatter_matrix");
   const std::size_t layer = lit ? static_cast<std::size_t>(grid->size[0]) * grid->size[1] : 0;
-  const std::size_t from = lit ? lit->first[2] * layer / (Block * GroupSize) * (Block * GroupSize) : 0;
+  const std::size_t from = lit ? lit->first[2] * layer / (VoxelsAtATime * GroupSize) * (VoxelsAtATime * GroupSize) : 0;
   const std::size_t end = lit ? (lit->first[2] + lit->size[2]) * layer : this->Voxels;
   Batches batches;
-  batches.count = RoundUp(PartsOf(end - from, Block), GroupSize);
+  batches.count = RoundUp(PartsOf(end - from, VoxelsAtATime), GroupSize);
   batches.first = FirstBatch;
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     With(scatter, radiance, source, this->Moments, this->Weights, this->Spread, this->Angles, sigma_s, light.order,
-      light.fluence, light.flux, scale, this->VoxelsFrom(from + begin * Block, grid, lit));
+      light.fluence, light.flux, scale, this->VoxelsFrom(from + begin * VoxelsAtATime, grid, lit));
     Launch(this->TheDevice, scatter, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }
@@ -191,12 +190,12 @@ void AngularScattering::Gather(const Buffer<float>& radiance, const OrdinatesLig
 {
   cl::Kernel gather = this->Kernel("gather_light");
   Batches batches;
-  batches.count = RoundUp(PartsOf(this->Voxels, Block), GroupSize);
+  batches.count = RoundUp(PartsOf(this->Voxels, VoxelsAtATime), GroupSize);
   batches.first = FirstBatch;
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     With(gather, radiance, this->Moments, this->Weights, light.order, light.fluence, light.flux,
-      this->VoxelsFrom(begin * Block));
+      this->VoxelsFrom(begin * VoxelsAtATime));
     Launch(this->TheDevice, gather, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }

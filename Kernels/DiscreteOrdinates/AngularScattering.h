@@ -34,9 +34,11 @@ struct OrdinatesLight
 class AngularScattering
 {
 public:
+  static constexpr std::size_t VoxelsAtATime = 8; ///< voxels per work-item
+
   /// @param positive  true: negative sources, which N terms can produce, are set to 0, and the positive ones of the
   ///   voxel are scaled to conserve power (Eq. (D8)); false: sources are not changed
-  /// @param skips  whether Scatter() skips voxels that do not scatter, eight at a time
+  /// @param skips  whether Scatter() skips voxels that do not scatter, VoxelsAtATime together
   AngularScattering(Device& device, const OrdinateGroups& groups, const SeparablePhaseFunction& phase, PairSums sums,
     bool positive, bool netFlux, std::size_t voxels, bool skips = false);
 

@@ -81,7 +81,7 @@ void ChannelArrays::TakeVacuumApart(PropagationSettings settings)
 
 double ChannelArrays::PartWithoutScattering() const
 {
-  constexpr std::size_t Block = 8;
+  constexpr std::size_t Block = AngularScattering::VoxelsAtATime;
   std::size_t empty = 0;
   for (std::size_t first = 0; first < this->Voxels; first += Block)
   {

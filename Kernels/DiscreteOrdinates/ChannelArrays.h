@@ -63,7 +63,7 @@ public:
   void ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const;
   bool Emits() const { return this->AnyEmission; }
   bool Scatters() const { return this->AnyScattering; }
-  /// Fraction of this rank's voxels in blocks of eight that do not scatter, which AngularScattering can skip.
+  /// Fraction of this rank's voxels in groups that do not scatter, which AngularScattering can skip.
   double PartWithoutScattering() const;
   void Read(OrdinatesResult& result) const;
 
