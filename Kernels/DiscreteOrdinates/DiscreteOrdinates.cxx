@@ -260,7 +260,7 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
   CheckOrdinates(domain, medium, illumination, settings, kept != nullptr);
   const PropagationProblem problem(domain, medium, illumination, AsPropagation(settings));
   std::optional<LightField> accelerated =
-    SolveAcceleratedOrdinates(device, domain, medium, illumination, settings, problem, monitor, kept);
+    SolveAcceleratedOrdinates(device, { domain, medium, illumination }, settings, problem, monitor, kept);
   if (accelerated)
   {
     return std::move(*accelerated);

@@ -370,18 +370,16 @@ bool AreAccelerated(Device& device, const SceneBlock& scene, const OrdinatesSett
   return AcceleratedProblem(device, scene, settings, even, inMoments) != nullptr;
 }
 
-std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const Domain& domain, const Medium& medium,
-  const Illumination& illumination, const OrdinatesSettings& settings, const PropagationProblem& even,
-  const Monitor& monitor, KeptLight* kept)
+std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const SceneBlock& scene,
+  const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor, KeptLight* kept)
 {
   std::optional<PropagationProblem> inMoments;
-  const PropagationProblem* const problem =
-    AcceleratedProblem(device, { domain, medium, illumination }, settings, even, inMoments);
+  const PropagationProblem* const problem = AcceleratedProblem(device, scene, settings, even, inMoments);
   if (!problem)
   {
     return {};
   }
-  domain.Collective([&] { CheckMemoryOf(device, *problem); });
-  return SolveBySweeps(device, *problem, illumination, IterationScheme::Dsa, monitor, kept, TransportByOrdinates);
+  scene.domain.Collective([&] { CheckMemoryOf(device, *problem); });
+  return SolveBySweeps(device, *problem, scene.illumination, IterationScheme::Dsa, monitor, kept, TransportByOrdinates);
 }
 }

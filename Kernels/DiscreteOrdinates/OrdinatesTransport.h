@@ -1,16 +1,12 @@
 #pragma once
 
+#include "Device/Device.h"
+#include "Device/Monitor.h"
 #include "DiscreteOrdinates/OrdinatesSettings.h"
-#include "Distribution/Domain.h"
 #include "Light/KeptLight.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Problem/PropagationProblem.h"
-#include "Lights/Lights.h"
-#include "Medium/Medium.h"
-
-#include "Device/Device.h"
-#include "Device/Monitor.h"
 
 #include <optional>
 
@@ -28,9 +24,8 @@ bool MayAccelerate(const OrdinatesSettings& settings, bool isIsotropic);
 /// Other parameters as for SolveDiscreteOrdinates().
 /// @param even  problem of the scene with isotropic scattering, by AsPropagation(settings)
 /// @return no value: source iteration is to be used
-std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const Domain& domain, const Medium& medium,
-  const Illumination& illumination, const OrdinatesSettings& settings, const PropagationProblem& even,
-  const Monitor& monitor, KeptLight* kept);
+std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const SceneBlock& scene,
+  const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor, KeptLight* kept);
 
 /// Whether SolveDiscreteOrdinates() accelerates the solve of a scene. Collective.
 bool AreAccelerated(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings);
