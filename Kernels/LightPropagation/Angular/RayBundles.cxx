@@ -252,10 +252,10 @@ std::vector<Bundle> RaysOf(const std::vector<Bundle>& bundles, const PlaneAxes& 
   const std::array<bool, 3>& periodic, int mapResolution, RayStarts starts)
 {
   const int planes = PlanesOfPattern(grid.size[axes.axis], periodic[axes.axis]);
+  const bool pairs = starts == RayStarts::Pairs && mapResolution == 1;
   std::vector<Bundle> all;
   for (const Bundle& bundle : bundles)
   {
-    const bool pairs = starts == RayStarts::Pairs && mapResolution == 1;
     std::vector<Bundle> inVoxel = pairs ? InPairs(bundle) : OnLattice(bundle, mapResolution);
     for (Bundle& rays : inVoxel)
     {

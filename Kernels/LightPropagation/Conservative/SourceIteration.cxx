@@ -30,14 +30,13 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
   , Warm(parts, kept, parts.How == IterationScheme::CoarseMeshDsa ? "diffusion on cells" : "source iteration")
   , Shining(parts.HasSource())
 {
-  const bool thick = parts.How == IterationScheme::SourceIteration && OctantSources::Matter(parts.Problem);
   this->TheDomain.Collective([&] {
     if (this->Warm.Keeps() && parts.Basis)
     {
       this->Moments = Buffer<float>(parts.TheDevice, parts.Layout.MomentFloats(parts.Functions()), "the light to keep");
       this->Moments.Fill(0.0f);
     }
-    if (thick)
+    if (parts.ByOctant)
     {
       this->AtFaces.emplace(OctantSources::Scene{ parts.TheDevice, this->Settings, parts.Layout, parts.OnDevice,
         this->TheDomain.Whole(), this->TheDomain.Own(), !parts.Lights.Lamps.empty() });

@@ -13,15 +13,11 @@ namespace tyndall
 {
 namespace
 {
-/// Where rays start. Thick voxels need two rays, since light enters and leaves them at their edges. Collective.
-RayStarts StartsOf(const PropagationProblem& problem, IterationScheme how)
+/// Where rays start. Thick voxels, with sources by octant, need two rays, since light enters and leaves them at their
+/// edges.
+RayStarts StartsOf(const PropagationSettings& settings, bool byOctant)
 {
-  if (problem.Settings().staggeredRays)
-  {
-    return RayStarts::Staggered;
-  }
-  const bool byOctant = how == IterationScheme::SourceIteration && OctantSources::Matter(problem);
-  return byOctant ? RayStarts::Pairs : RayStarts::Middle;
+  return settings.staggeredRays ? RayStarts::Staggered : byOctant ? RayStarts::Pairs : RayStarts::Middle;
 }
 
 VolumeLayout LayoutOf(const PropagationProblem& problem)
@@ -46,12 +42,13 @@ TransportParts::TransportParts(Device& device, const PropagationProblem& problem
   : TheDevice(device)
   , Problem(problem)
   , How(how)
+  , ByOctant(how == IterationScheme::SourceIteration && OctantSources::Matter(problem))
   , Layout(LayoutOf(problem))
   , OnDevice(device, problem.TheMedium(), problem.Scattering(), this->Layout,
       NeedsOf(problem, this->Layout, this->ByBalance()))
   , Scattering(
       MakeScattering(device, this->Layout, this->OnDevice, problem.Scattering().Degree(), problem.ComputesScattering()))
-  , Usual(problem.Whole(), problem.Settings(), std::move(usual), StartsOf(problem, how))
+  , Usual(problem.Whole(), problem.Settings(), std::move(usual), StartsOf(problem.Settings(), this->ByOctant))
   , Lights(problem, this->ByBalance(), this->Layout, this->Usual, finer)
   , Transport(device, problem.TheDomain(), this->Layout, this->OnDevice.SigmaT(), problem.Settings().periodic)
   , Scattered{ [this](const SweepRequest& request) { return this->Transport.MakeSweep(request); },

@@ -51,6 +51,7 @@ public:
   Device& TheDevice;
   const PropagationProblem& Problem;
   const IterationScheme How;
+  const bool ByOctant; ///< whether voxels have sources by octant (OctantSources)
   const VolumeLayout Layout;
   const MediumOnDevice OnDevice;
   const std::unique_ptr<const ScatteringOperator> Scattering;
