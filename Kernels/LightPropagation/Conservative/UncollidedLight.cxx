@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/UncollidedLight.h"
 
+#include "LightPropagation/Diffusion/DiffusionShared.h"
 #include "LightPropagation/Diffusion/LampPassing.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Scattering/MomentScattering.h"
@@ -219,8 +220,7 @@ double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
   const double tau = longest * this->TheMedium.TransportSigmaT(voxel, channel);
   const double absorbing = longest * this->TheMedium.sigma_a.At(voxel, channel);
   // The weight by which the diffusion system multiplies the transport correction, Eq. (55).
-  const double thick = tau * (0.25 + 0.075 * tau / (1.0 + tau * tau / 64.0));
-  return this->LinearSource ? 1.0 / (1.0 + tau * (thick + 3.0 * absorbing)) : 1.0;
+  return this->LinearSource ? 1.0 / (1.0 + tau * (TRANSPORT_FALL(tau) + 3.0 * absorbing)) : 1.0;
 }
 
 /// Adds the uncollided boundary light along the finer quadrature minus that along the usual one (numerics.md, Eq.

@@ -105,8 +105,7 @@ inline real contrast(real tau, real beyond)
 // where the sweep's deviation from diffusion is the discretisation error of its source.
 inline real weight_of_transport(const DiffusionLayout* layout, real tau, real absorbing)
 {
-  const real thick = tau * (0.25f + 0.075f * tau / (1.0f + 0.015625f * tau * tau));
-  const real weight = 1.0f / (1.0f + tau * (thick + layout->absorbingWeight * absorbing));
+  const real weight = 1.0f / (1.0f + tau * (TRANSPORT_FALL(tau) + layout->absorbingWeight * absorbing));
   return layout->linear ? weight : (real)1.0f;
 }
 

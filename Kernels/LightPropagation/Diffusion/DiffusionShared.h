@@ -3,6 +3,10 @@
 
 #include "Device/SharedTypes.h"
 
+/// Part of the reciprocal weight of the transport correction that grows with the optical length of a voxel, divided by
+/// that length (numerics.md, Eq. (55)).
+#define TRANSPORT_FALL(tau) ((tau) * (0.25f + 0.075f * (tau) / (1.0f + 0.015625f * (tau) * (tau))))
+
 SHARED_BEGIN
 enum
 {
