@@ -51,6 +51,16 @@ std::vector<double> CrossingsIn(
 }
 }
 
+double HalfRange(const DirectionSet& set, int axis)
+{
+  double sum = 0.0;
+  for (const Direction& direction : set.directions)
+  {
+    sum += direction.weight * std::max(direction.omega[axis], 0.0);
+  }
+  return sum;
+}
+
 double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marching)
 {
   double sum = 0.0;

@@ -23,7 +23,9 @@ struct CrossingPattern
 CrossingPattern FindCrossingPattern(const Grid& grid, const DirectionSet& directions, int mapResolution,
   RayStarts starts, const std::array<bool, 3>& periodic);
 
-/// Sum of w mu over the directions with cosine mu > 0 to `axis` whose rays march along the axis `marching`. A direction
-/// whose rays march along several axes contributes a fraction to each.
+/// Sum of w mu over the directions with cosine mu > 0 to `axis`.
+double HalfRange(const DirectionSet& set, int axis);
+/// The part of HalfRange() of the directions whose rays march along the axis `marching`. A direction whose rays march
+/// along several axes contributes a fraction to each.
 double HalfRange(const Grid& grid, const DirectionSet& set, int axis, int marching);
 }

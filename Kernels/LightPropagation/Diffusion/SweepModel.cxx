@@ -3,23 +3,11 @@
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"
 
-#include <algorithm>
-
 namespace tyndall
 {
 namespace
 {
 constexpr int Cosines = 4; ///< number of Gauss points for the integral over the cosine, numerics.md, Eq. (51)
-}
-
-double HalfRange(const DirectionSet& set, int axis)
-{
-  double sum = 0.0;
-  for (const Direction& direction : set.directions)
-  {
-    sum += direction.weight * std::max(direction.omega[axis], 0.0);
-  }
-  return sum;
 }
 
 SweepModel ModelOfRays(const Grid& grid, const SweptDirections& directions, const std::array<bool, 3>& periodic)

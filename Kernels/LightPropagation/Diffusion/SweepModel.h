@@ -21,9 +21,6 @@ struct SweepModel
   std::array<std::vector<FlatSourceNode>, 3> flatSource; ///< by axis
 };
 
-/// Sum of w mu over the directions with cosine mu > 0 to `axis`.
-double HalfRange(const DirectionSet& set, int axis);
-
 /// Model of sweeps along the rays of light propagation maps through the whole grid.
 SweepModel ModelOfRays(const Grid& grid, const SweptDirections& directions, const std::array<bool, 3>& periodic);
 }

@@ -115,13 +115,8 @@ const OctantSources::Crossings& OctantSources::CrossingsOf(const SweptDirections
   const Grid& grid = this->The.whole;
   const CrossingPattern pattern =
     FindCrossingPattern(grid, along.Set(), along.RaysPerEdge(), along.Starts(), settings.periodic);
-  double perRadiance = 0.0;
-  for (int marching = 0; marching < 3; ++marching)
-  {
-    perRadiance += HalfRange(grid, along.Set(), 0, marching);
-  }
   Crossings found = { Buffer<float>(this->The.device, pattern.values, "the pattern of rays"), pattern.first,
-    perRadiance };
+    HalfRange(along.Set(), 0) };
   return this->Patterns.emplace(&along, std::move(found)).first->second;
 }
 
