@@ -34,8 +34,8 @@ struct PropagationSettings
   /// scattering is anisotropic.
   int polarNodes = 0;
   /// Directions per cube face, a square number, for uncollided light of boundary sources, sky and environment
-  /// (BoundaryLight.h); 0: as many as for scattered light; -1: predicted to make the solve at most half as
-  /// long again, where this reduces the error (LightSources.h).
+  /// (BoundaryLight.h); 0: as many as for scattered light; -1: as many as are predicted to make the solve at most half
+  /// as long again, where they reduce the error (LightSources.h).
   int uncollidedDirections = -1;
   /// Whether rays of each direction start at a different position within a voxel (RayBundles.h). With more than 100
   /// uncollidedDirections uncollided light always does so, unless the solve is accelerated. With at least 144
