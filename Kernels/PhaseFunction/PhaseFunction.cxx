@@ -490,4 +490,16 @@ std::vector<DeltaM> Truncations(const PhaseFunction& function, int degree)
   }
   return truncations;
 }
+
+double LeastDamping(const std::function<double(double s)>& least)
+{
+  constexpr double MostDamping = 16.0; // at which all moments above degree 0 vanish
+  double low = 0.0, high = MostDamping;
+  for (int i = 0; i < 20; ++i)
+  {
+    const double s = 0.5 * (low + high);
+    (least(s) >= LeastPart ? high : low) = s;
+  }
+  return high;
+}
 }

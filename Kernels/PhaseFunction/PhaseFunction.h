@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -104,4 +105,11 @@ struct DeltaM
 
 /// Truncations of a phase function to each of the degrees 0 to `degree`, by degree.
 std::vector<DeltaM> Truncations(const PhaseFunction& function, int degree);
+
+/// Smallest accepted value of a phase function between directions, relative to its mean; allows for rounding.
+constexpr double LeastPart = 1e-3;
+/// Smallest damping s of numerics.md, Eq. (8d), for which a phase function is nowhere below LeastPart, by 20
+/// bisections.
+/// @param least  smallest value of the phase function with damping s, relative to its mean
+double LeastDamping(const std::function<double(double s)>& least);
 }

@@ -236,7 +236,6 @@ double PeakBeyond(const std::vector<double>& moments, int terms)
 /// smallest s for which their sum is nowhere negative, and sets the peak such that the mean cosine stays.
 void DampNegatives(const VectorXd& roots, double g, Basis& basis, double& peak)
 {
-  constexpr double LeastPart = 1e-3, MostDamping = 16.0; // as WithoutNegatives() in Problem/TruncatedScattering
   const VectorXd whole = basis.values;
   const double forward = g < 0.0 ? 0.0 : peak;
   const MatrixXd factors = std::sqrt(4.0 * Pi) * roots.cwiseInverse().asDiagonal() * basis.columns;
@@ -255,13 +254,7 @@ void DampNegatives(const VectorXd& roots, double g, Basis& basis, double& peak)
   {
     return;
   }
-  double low = 0.0, high = MostDamping;
-  for (int i = 0; i < 20; ++i)
-  {
-    const double s = 0.5 * (low + high);
-    (least(damped(s)) >= LeastPart ? high : low) = s;
-  }
-  const VectorXd values = damped(high);
+  const VectorXd values = damped(LeastDamping([&](double s) { return least(damped(s)); }));
   const auto first = std::find(basis.degrees.begin(), basis.degrees.end(), 1) - basis.degrees.begin();
   const double cosine = first < values.size() ? values[first] : 0.0;
   peak = (g - cosine) / (1.0 - cosine);

@@ -12,10 +12,6 @@ namespace
 {
 /// Number of directions per cube face that are tested as incident directions, in addition to those of the quadrature.
 constexpr int FromPerFace = 144;
-/// Smallest accepted value of the phase function, relative to its mean; allows for rounding.
-constexpr double LeastPart = 1e-3;
-/// Largest damping s of numerics.md, Eq. (8d), at which all moments above degree 0 vanish.
-constexpr double MostDamping = 16.0;
 
 /// Whether `omega` lies in one of the 48 parts of the sphere that are images of each other under rotations and
 /// reflections of the cube. A quadrature and its functions, degree by degree, have that symmetry.
@@ -116,14 +112,8 @@ DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel)
     }
     return moments;
   };
-  double low = 0.0, high = MostDamping;
-  for (int i = 0; i < 20; ++i)
-  {
-    const double s = 0.5 * (low + high);
-    (kernel.Least(damped(s)) >= LeastPart ? high : low) = s;
-  }
   DeltaM positive = truncated;
-  positive.moments = damped(high);
+  positive.moments = damped(LeastDamping([&](double s) { return kernel.Least(damped(s)); }));
   positive.forward = (g - positive.moments[1]) / (1.0 - positive.moments[1]);
   return positive;
 }
