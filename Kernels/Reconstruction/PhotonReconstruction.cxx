@@ -1,6 +1,5 @@
 #include "Reconstruction/PhotonReconstruction.h"
 
-#include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
@@ -492,7 +491,6 @@ void SayWhatIsLeftOut(const NoisyLight& light, bool directions, ReconstructedLig
 ReconstructedLight Reconstruct(Device& device, const Domain& domain, const NoisyLight& given,
   const ReconstructionSettings& settings, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
   const bool conservative = settings.estimator == Estimator::Conservative;
   domain.Collective([&] {
     Check(domain.Whole());
@@ -537,7 +535,6 @@ ReconstructedLight Reconstruct(Device& device, const Domain& domain, const Noisy
   }
   SayWhatIsLeftOut(light, directions, result);
   result.device = device.Name();
-  result.seconds = ClockSeconds() - start;
   return result;
 }
 }

@@ -68,7 +68,6 @@ struct ReconstructedLight
   double bias = 0.0;
   std::vector<std::string> leftOut;
   std::string device;
-  double seconds = 0.0;
 };
 
 /// Reduces the noise of photon light by pyramids. Lengths are in voxels (spacing does not matter); in grids of odd

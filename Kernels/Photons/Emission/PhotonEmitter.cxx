@@ -1,6 +1,5 @@
 #include "Photons/Emission/PhotonEmitter.h"
 
-#include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Device/HostMemory.h"
 #include "Medium/Medium.h"
@@ -258,7 +257,6 @@ void EmitFrom(const Grid& grid, const SpreadSource& light, const Tries& tries, s
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
   tyndall::Check(grid);
   tyndall::Check(illumination);
   Check(settings);
@@ -284,7 +282,6 @@ EmittedPhotons EmitPhotons(
     power += light.power;
   }
   CheckPowers(emitted, settings.parts, power / static_cast<double>(settings.photonCount));
-  emitted.seconds = ClockSeconds() - start;
   return emitted;
 }
 

@@ -41,8 +41,7 @@ struct EmittedPhotons
   /// Number of each photon's light: its index in `illumination.lights`, EnvironmentLight for the environment and the
   /// sky, -2 for the faces.
   std::vector<int> lights;
-  Rgb power = {};       ///< W, total power of the emitted photons
-  double seconds = 0.0; ///< duration of the emission, s
+  Rgb power = {}; ///< W, total power of the emitted photons
 };
 
 /// Samples the photons emitted by all lights (Pfeuti 2009, section 3.1.4; numerics.md, Eq. (94)), in double precision

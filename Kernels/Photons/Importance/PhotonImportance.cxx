@@ -1,6 +1,5 @@
 #include "Photons/Importance/PhotonImportance.h"
 
-#include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Numerics/NumberText.h"
 #include "Photons/Emission/PhotonEmitter.h"
@@ -326,7 +325,6 @@ void MakeMaps(const std::vector<PilotPhotons>& pilots, const std::vector<PilotLi
 Importance FindImportance(PhotonMarcher& marcher, const Grid& grid, const Illumination& illumination,
   const ImportanceSettings& settings, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
   Check(settings);
   Importance importance;
   importance.map.size =
@@ -350,7 +348,6 @@ Importance FindImportance(PhotonMarcher& marcher, const Grid& grid, const Illumi
   }
   const double part = ChooseCells(luminance, importance);
   MakeMaps(pilots, lights, part, settings, importance);
-  importance.seconds = ClockSeconds() - start;
   return importance;
 }
 }

@@ -39,7 +39,6 @@ struct Importance
   /// distributed uniformly.
   bool even = false;
   std::vector<std::string> leftOut;
-  double seconds = 0.0;
 };
 
 /// Computes the importance map of photon origins (Pfeuti 2009, section 3.2.2; numerics.md, section 12.2). The light

@@ -1,7 +1,6 @@
 #include "Refraction/Octree/RefractionOctree.h"
 
 #include "Device/Buffer.h"
-#include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
 #include "Device/Sizes.h"
@@ -304,7 +303,6 @@ private:
 Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& index, const OctreeSettings& settings,
   const std::string& device, const Monitor& monitor)
 {
-  const double start = ClockSeconds();
   domain.Collective([&] {
     Check(domain.Whole());
     domain.Partition().Check();
@@ -325,9 +323,9 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
   octree.topLevel = levels - 1;
   std::shared_ptr<Device> found; // the device; null until a quantity is found that is not constant
   std::optional<OctreePyramid> pyramid;
+  const bool skips = settings.leaveOut || domain.Whole().VoxelCount() == 1; // quantities that are constant
   /// Restricts the octree by one quantity.
-  /// @return whether the quantity restricts nodes; false if it is constant, or the domain is one voxel
-  const bool skips = settings.leaveOut || domain.Whole().VoxelCount() == 1;
+  /// @return whether the quantity restricts nodes; false if it is constant and skipped
   const auto restrict = [&](const float* values, const char* what, const std::vector<float>& tolerances) {
     if (skips && IsConstant(domain, values))
     {
@@ -360,7 +358,6 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
   octree.levels =
     pyramid ? pyramid->Result() : std::vector<std::uint8_t>(voxels, static_cast<std::uint8_t>(octree.topLevel));
   octree.device = found ? found->Name() : std::string();
-  octree.seconds = ClockSeconds() - start;
   domain.Collective([&] { Report(monitor, 1.0); });
   return octree;
 }

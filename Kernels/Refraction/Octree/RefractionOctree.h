@@ -38,7 +38,6 @@ struct Octree
   std::vector<std::uint8_t>
     levels; ///< level of each voxel of the block, x fastest; 0: a single voxel, k: a node of 2^k voxels per edge
   int topLevel = 0;                 ///< highest possible level, ceil(log2(longest edge in voxels))
-  double seconds = 0.0;             ///< duration of BuildOctree, s
   std::string device;               ///< name of the device that was used; empty if none was needed
   std::vector<std::string> leftOut; ///< which parts of the computation were skipped and why, for the user
 };
