@@ -115,7 +115,8 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
   std::shared_ptr<tyndall::Device> device;
   scene.domain.Collective([&] { device = tyndall::Device::Find(this->GetDevice()); });
   tyndall::Device within(*device, tyndall::BudgetOf(this->MemoryBudget, true));
-  const tyndall::Monitor monitor = tyndall::MonitorOf(this);
+  const tyndall::Monitor all = tyndall::MonitorOf(this);
+  const tyndall::Monitor monitor = estimates ? tyndall::OfPart(all, 0.0, 0.8) : all;
   const tyndall::PreviewSolver solve = [&](const tyndall::SceneBlock& solved) {
     return tyndall::SolveLatticeBoltzmann(
       within, solved.domain, solved.medium, solved.index, solved.illumination, settings, monitor);
@@ -132,7 +133,8 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
   }
   if (estimates)
   {
-    tyndall::EstimateDiffusionError(within, scene, settings, photons != nullptr, monitor, light);
+    const tyndall::Monitor rest = tyndall::OfPart(all, 0.8, 1.0);
+    tyndall::EstimateDiffusionError(within, scene, settings, photons != nullptr, rest, light);
     tyndall::JudgeTarget(this->TargetError, light);
   }
   light.settingsUsed = tyndall::Words(settings);
