@@ -18,7 +18,7 @@ class LastLight;
  * @brief multiply and anisotropically scattered light, by discrete ordinates: radiance along the directions of a
  * quadrature in every voxel
  *
- * Solves for the radiance along DirectionsPerFace directions per face of a cube, by source iteration. Radiance in a
+ * Solves for the radiance along DirectionsPerFace directions per face of a cube. Radiance in a
  * voxel is scattered by a separable phase function of Terms terms (vtkSeparablePhaseFunction), so that the cost per
  * direction is proportional to Terms, not to the number of directions. By default the scheme conserves energy and is
  * stable for voxels of any optical thickness; the published scheme takes explicit steps, and a warning reports where
@@ -132,7 +132,8 @@ public:
 
   ///@{
   /// Acceleration of source iteration (conservative scheme, if MaximumOrders is 0): NONE, or AUTOMATIC_ACCELERATION
-  /// (default). Directions of a spiral are not accelerated, nor is anisotropic scattering by MATRIX or SINGULAR_VALUES.
+  /// (default). Directions of a spiral are not accelerated, nor are the light of input 3 and anisotropic scattering by
+  /// MATRIX or SINGULAR_VALUES.
   tyndallRangeMacro(Acceleration, int, NONE, AUTOMATIC_ACCELERATION);
   ///@}
 

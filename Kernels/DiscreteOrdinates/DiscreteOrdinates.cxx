@@ -167,7 +167,8 @@ std::vector<std::string> Words(
   const bool asked = settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0;
   if (traits.scatters && asked && !IsPublished(settings) && settings.seriesAfter == 0)
   {
-    words.emplace_back(MayAccelerate(settings, scattersEvenly) ? left_out::Acceleration : left_out::SpiralAcceleration);
+    const bool may = MayAccelerate(settings, scattersEvenly) && !scene.shining.uncollided.IsThere();
+    words.emplace_back(may ? left_out::Acceleration : left_out::SpiralAcceleration);
   }
   say(!settings.netFlux, left_out::NetFlux);
   return words;

@@ -17,7 +17,8 @@ const char* const NoEmission = "emission: the medium does not shine";
 const char* const OneOrder = "scattering orders after the first: nothing is scattered";
 const char* const Acceleration = "acceleration: few scattering orders do";
 const char* const SpiralAcceleration =
-  "acceleration: not along directions of a spiral, nor by the whole matrix or singular values of a phase function";
+  "acceleration: not along directions of a spiral, by the whole matrix or singular values of a phase function, or of "
+  "light that another solver began";
 const char* const MomentsForPictures = "angular moments for pictures: not asked for";
 const char* const NetFlux = "net_flux: not asked for";
 const char* const Isotropic = "anisotropy: light is scattered evenly";
