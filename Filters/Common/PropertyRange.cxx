@@ -25,12 +25,14 @@ vtkInformationStringVectorKey* Refused()
   return key;
 }
 
+/// Key in a filter's information: wall-clock time of its last run, s.
 vtkInformationDoubleKey* SecondsKey()
 {
   static auto* const key = vtkInformationDoubleKey::MakeKey("SECONDS_OF_RUN", "Tyndall");
   return key;
 }
 
+/// Key in a filter's information: what its last run left out, one per line.
 vtkInformationStringKey* LeftOutKey()
 {
   static auto* const key = vtkInformationStringKey::MakeKey("LEFT_OUT_OF_RUN", "Tyndall");
@@ -122,7 +124,7 @@ PointDataKind PointDataOf(vtkAlgorithm* filter)
 
 double SecondsOfRun(vtkAlgorithm* filter)
 {
-  return filter->GetInformation()->Has(SecondsKey()) ? filter->GetInformation()->Get(SecondsKey()) : 0.0;
+  return filter->GetInformation()->Get(SecondsKey());
 }
 
 const char* LeftOutOfRun(vtkAlgorithm* filter)

@@ -143,8 +143,8 @@ public:
   ///@{
   /// Number of directions per face of a cube for the uncollided flux of boundary sources: faces, sky and environment
   /// (conservative scheme). Uncollided flux has sharp shadows but is swept only once, so that more directions than for
-  /// scattered light are affordable. Default -1: a number that adds a quarter to the run time, for boundary sources on
-  /// faces only (LightSources.h); 0: as DirectionsPerFace; else square numbers up to 4096.
+  /// scattered light are affordable. Default -1: a number that is predicted to add at most half to the run time, for
+  /// boundary sources on faces only (LightSources.h); 0: as DirectionsPerFace; else square numbers up to 4096.
   tyndallRangeMacro(UncollidedDirections, int, -1, VTK_INT_MAX);
   ///@}
 
