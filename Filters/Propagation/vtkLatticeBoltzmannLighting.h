@@ -69,9 +69,9 @@ struct SceneBlock;
  * the steady-state solve: PUBLISHED, BlockSize, Interleaved and MaximumOrders, which take steps, are errors.
  *
  * EstimateError and TargetError need the conservative scheme. The estimate is the error of the diffusion approximation,
- * from a solve by light propagation maps on a coarse grid (numerics.md, section 10 c), without the noise of photons. With
- * a refractive index it is that of the medium without refraction, and needs even numbers of voxels. No setting reduces
- * this error: if it is above TargetError, a warning names the solvers that can reach the target.
+ * from a solve by light propagation maps on a coarse grid (numerics.md, section 10 c), without the noise of photons.
+ * With a refractive index it is that of the medium without refraction, and needs even numbers of voxels. No setting
+ * reduces this error: if it is above TargetError, a warning names the solvers that can reach the target.
  *
  * @sa vtkLightPropagationMaps vtkDiscreteOrdinates vtkPhotonMarcher vtkParticipatingMedium vtkLightRig
  * @par Thanks
