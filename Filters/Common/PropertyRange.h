@@ -183,6 +183,21 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
     return this->PointData;                                 \
   }
 
+/// The properties of a picture and of its camera, stored in the members of their names. ImageSize: columns and rows,
+/// pixels, valid from 1 on. CameraPosition and CameraFocalPoint: as in vtkCamera. CameraViewUp: direction that is
+/// upwards in the picture, valid if not parallel to the view direction. CameraViewAngle: angle between the picture's
+/// lower and upper edge, degrees, valid (0, 180). CameraSetOn (Viewing/CasterProperties.h) reads the camera.
+#define tyndallCameraMacro()                                                          \
+  tyndallSetRange2Macro(ImageSize, int, 1, VTK_INT_MAX);                              \
+  vtkGetVector2Macro(ImageSize, int);                                                 \
+  tyndallSetRange3Macro(CameraPosition, double, tyndall::AnyLow, tyndall::AnyHigh);   \
+  vtkGetVector3Macro(CameraPosition, double);                                         \
+  tyndallSetRange3Macro(CameraFocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh); \
+  vtkGetVector3Macro(CameraFocalPoint, double);                                       \
+  tyndallSetRange3Macro(CameraViewUp, double, tyndall::AnyLow, tyndall::AnyHigh);     \
+  vtkGetVector3Macro(CameraViewUp, double);                                           \
+  tyndallRangeMacro(CameraViewAngle, double, tyndall::AboveZero, 180.0)
+
 /// Methods that set an optional input, by connection or as data, or remove it.
 #define tyndallInputMacro(name, port)                    \
   void Set##name##Connection(vtkAlgorithmOutput* output) \

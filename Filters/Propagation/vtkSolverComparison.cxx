@@ -392,11 +392,7 @@ void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationV
 /// Gives the scene the camera of its pictures, unless position and focal point are the same.
 void vtkSolverComparison::TakeCamera(tyndall::ComparedScene& scene)
 {
-  tyndall::Camera camera;
-  camera.position = tyndall::Triple(this->CameraPosition);
-  camera.focalPoint = tyndall::Triple(this->CameraFocalPoint);
-  camera.viewUp = tyndall::Triple(this->CameraViewUp);
-  camera.viewAngle = this->CameraViewAngle;
+  const tyndall::Camera camera = tyndall::CameraSetOn(this);
   if (camera.position != camera.focalPoint)
   {
     scene.camera = tyndall::InOwnAxes(camera, tyndall::OwnAxesOf(this));

@@ -155,18 +155,11 @@ public:
 
   ///@{
   /// Whether pictures of the reference light are compared, of all qualities of vtkMediumRayCaster, with one of half the
-  /// step of its quality Reference. Default off. They need the camera, whose position must differ from its focal point,
-  /// and are of ImageSize pixels, default 320 x 240.
+  /// step of its quality Reference. Default off. They need the camera (tyndallCameraMacro), whose position must differ
+  /// from its focal point (default (0, 0, 0) both); default of CameraViewUp (0, 0, 1), of CameraViewAngle 30, of
+  /// ImageSize 320 x 240.
   tyndallFlagMacro(Pictures);
-  tyndallSetRange3Macro(CameraPosition, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetVector3Macro(CameraPosition, double);
-  tyndallSetRange3Macro(CameraFocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetVector3Macro(CameraFocalPoint, double);
-  tyndallSetRange3Macro(CameraViewUp, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetVector3Macro(CameraViewUp, double);
-  tyndallRangeMacro(CameraViewAngle, double, tyndall::AboveZero, 180.0);
-  tyndallSetRange2Macro(ImageSize, int, 1, VTK_INT_MAX);
-  vtkGetVector2Macro(ImageSize, int);
+  tyndallCameraMacro();
   ///@}
 
   ///@{

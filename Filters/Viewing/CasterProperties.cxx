@@ -1,6 +1,5 @@
 #include "CasterProperties.h"
 
-#include "Common/LightTransportData.h"
 #include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/ToneMapping.h"
 #include "vtkMediumRayCaster.h"
@@ -73,11 +72,7 @@ Camera InScene(const Camera& camera, const OwnAxes& axes)
 Camera CameraOf(vtkMediumRayCaster* filter, const Grid& grid)
 {
   const OwnAxes axes = OwnAxesOf(filter);
-  Camera camera;
-  camera.position = Triple(filter->GetCameraPosition());
-  camera.focalPoint = Triple(filter->GetCameraFocalPoint());
-  camera.viewUp = Triple(filter->GetCameraViewUp());
-  camera.viewAngle = filter->GetCameraViewAngle();
+  Camera camera = CameraSetOn(filter);
   camera.parallelScale = filter->GetCameraParallelScale();
   if (camera.position == camera.focalPoint)
   {

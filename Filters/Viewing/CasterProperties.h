@@ -1,6 +1,7 @@
 #pragma once
 
 #include "Common/ImageInput.h"
+#include "Common/LightTransportData.h"
 #include "Lights/Lights.h"
 #include "Medium/Grid.h"
 #include "Viewing/Scene/BlockOfScene.h"
@@ -26,6 +27,18 @@ ViewSettings SettingsOf(vtkMediumRayCaster* filter, double exposure);
 /// InOwnAxes transforms a camera from the scene's coordinates to a medium's own axes; InScene is the inverse.
 Camera InOwnAxes(const Camera& inScene, const OwnAxes& axes);
 Camera InScene(const Camera& camera, const OwnAxes& axes);
+
+/// Camera of a filter that has the properties of tyndallCameraMacro, in the scene's coordinates.
+template <class Filter>
+Camera CameraSetOn(Filter* filter)
+{
+  Camera camera;
+  camera.position = Triple(filter->GetCameraPosition());
+  camera.focalPoint = Triple(filter->GetCameraFocalPoint());
+  camera.viewUp = Triple(filter->GetCameraViewUp());
+  camera.viewAngle = filter->GetCameraViewAngle();
+  return camera;
+}
 
 /// Camera of the filter, in the medium's own axes (OwnAxes).
 /// @param grid  grid of the whole medium, which the camera frames if CameraPosition equals CameraFocalPoint

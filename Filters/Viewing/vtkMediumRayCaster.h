@@ -147,29 +147,10 @@ public:
   ///@}
 
   ///@{
-  /// Columns and rows of the picture, pixels. Default 800 x 600, valid from 1 on.
-  tyndallSetRange2Macro(ImageSize, int, 1, VTK_INT_MAX);
-  vtkGetVector2Macro(ImageSize, int);
-  ///@}
-
-  ///@{
-  /// Position and focal point of the camera, as in vtkCamera. Default (0, 0, 0) both: if they are equal, the camera
-  /// frames the medium. Valid up to 1e15 voxels from the medium.
-  tyndallSetRange3Macro(CameraPosition, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetVector3Macro(CameraPosition, double);
-  tyndallSetRange3Macro(CameraFocalPoint, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetVector3Macro(CameraFocalPoint, double);
-  ///@}
-
-  ///@{
-  /// Direction that is upwards in the picture. Default (0, 0, 1), valid if not parallel to the view direction.
-  tyndallSetRange3Macro(CameraViewUp, double, tyndall::AnyLow, tyndall::AnyHigh);
-  vtkGetVector3Macro(CameraViewUp, double);
-  ///@}
-
-  ///@{
-  /// Angle between the picture's lower and upper edge, degrees. Default 30, valid (0, 180).
-  tyndallRangeMacro(CameraViewAngle, double, tyndall::AboveZero, 180.0);
+  /// Picture and camera (tyndallCameraMacro). Default of ImageSize: 800 x 600. CameraPosition and CameraFocalPoint:
+  /// default (0, 0, 0) both; if they are equal, the camera frames the medium. Valid up to 1e15 voxels from the medium.
+  /// Default of CameraViewUp (0, 0, 1), of CameraViewAngle 30.
+  tyndallCameraMacro();
   ///@}
 
   ///@{
