@@ -141,11 +141,10 @@ LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t p
   const Monitor& monitor);
 
 /// A chain: uncollided light by photons, then scattered light by a solver to which it is given.
+/// @param solver  setting, filters, grid and cost of the solver alone
 /// @param solve  solves with the given illumination, which has no other light than the photons'
-LightField SolveAfterPhotons(Device& device, const ComparedScene& scene, int photons,
-  const std::function<LightField(const Illumination&, const Monitor&)>& solve, const Monitor& monitor);
-/// ComparedRun::filters of a chain: the filters of the photons, and `solver` with their light as uncollided light.
-std::string FiltersAfterPhotons(int photons, const std::string& solver);
+ComparedRun AfterPhotons(int photons, ComparedRun solver, Device& device, const ComparedScene& scene,
+  const std::function<LightField(const Illumination&, const Monitor&)>& solve);
 
 /// Radiance, 3 per pixel, with which pictures are compared: of rays that take small steps and end nowhere in the
 /// medium.

@@ -71,17 +71,10 @@ void AddBent(std::vector<ComparedRun>& runs, int directions, Device& device, con
   const LatticeSettings of = SettingsOf(directions, scene, settings);
   for (int photons : settings.photonCounts)
   {
-    ComparedRun run = RunOf(directions, scene.medium.grid);
-    run.setting += ", uncollided light of " + std::to_string(photons) + " photons";
-    run.cost += photons;
-    run.filters = FiltersAfterPhotons(photons, run.filters);
-    run.solve = [=, &device, &scene](bool, const Monitor& monitor) {
-      const auto solve = [&](const Illumination& handed, const Monitor& part) {
-        return SolveLatticeBoltzmann(device, Domain(scene.medium.grid), scene.medium, scene.ior, handed, of, part);
-      };
-      return SolveAfterPhotons(device, scene, photons, solve, monitor);
+    const auto solve = [=, &device, &scene](const Illumination& handed, const Monitor& monitor) {
+      return SolveLatticeBoltzmann(device, Domain(scene.medium.grid), scene.medium, scene.ior, handed, of, monitor);
     };
-    runs.push_back(std::move(run));
+    runs.push_back(AfterPhotons(photons, RunOf(directions, scene.medium.grid), device, scene, solve));
   }
 }
 }

@@ -326,22 +326,24 @@ LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t p
   return March(device, scene, emission, marching, monitor).light;
 }
 
-LightField SolveAfterPhotons(Device& device, const ComparedScene& scene, int photons,
-  const std::function<LightField(const Illumination&, const Monitor&)>& solve, const Monitor& monitor)
+ComparedRun AfterPhotons(int photons, ComparedRun solver, Device& device, const ComparedScene& scene,
+  const std::function<LightField(const Illumination&, const Monitor&)>& solve)
 {
+  const std::string count = std::to_string(photons);
+  solver.setting += ", uncollided light of " + count + " photons";
+  solver.filters = "PhotonEmitter PhotonCount=" + count + " | PhotonMarcher Photons=#1 | " + solver.filters +
+    " UncollidedLight=#2 Lights= Environment= SkyColor=0,0,0 FaceRadiance=0,0,0,0,0,0 DefaultSky=0";
+  solver.cost += photons;
   EmissionSettings emission;
   emission.photonCount = static_cast<std::size_t>(photons);
-  const PhotonLight direct = March(device, scene, emission, {}, OfPart(monitor, 0.0, 0.5));
-  Illumination handed;
-  handed.uncollided.fluence = { direct.light.fluence.data(), direct.light.channels };
-  handed.uncollided.meanDirection = { direct.meanDirection.data(), 3 };
-  handed.uncollided.escaped = direct.light.facePowerOut;
-  return solve(handed, OfPart(monitor, 0.5, 1.0));
-}
-
-std::string FiltersAfterPhotons(int photons, const std::string& solver)
-{
-  return "PhotonEmitter PhotonCount=" + std::to_string(photons) + " | PhotonMarcher Photons=#1 | " + solver +
-    " UncollidedLight=#2 Lights= Environment= SkyColor=0,0,0 FaceRadiance=0,0,0,0,0,0 DefaultSky=0";
+  solver.solve = [=, &device, &scene](bool, const Monitor& monitor) {
+    const PhotonLight direct = March(device, scene, emission, {}, OfPart(monitor, 0.0, 0.5));
+    Illumination handed;
+    handed.uncollided.fluence = { direct.light.fluence.data(), direct.light.channels };
+    handed.uncollided.meanDirection = { direct.meanDirection.data(), 3 };
+    handed.uncollided.escaped = direct.light.facePowerOut;
+    return solve(handed, OfPart(monitor, 0.5, 1.0));
+  };
+  return solver;
 }
 }

@@ -185,21 +185,18 @@ std::vector<ComparedRun> RunsAfterPhotons(Device& device, const ComparedScene& s
   std::vector<ComparedRun> runs;
   const Setting setting = { UsualDirections(settings) };
   const PropagationSettings of = SettingsOf(ComparedMethod::PhotonsThenMaps, setting, settings);
+  ComparedRun maps;
+  maps.method = ComparedMethod::PhotonsThenMaps;
+  maps.setting = InWords(setting);
+  maps.filters = FiltersOf(maps.method, setting, 0);
+  maps.grid = scene.medium.grid;
+  maps.cost = static_cast<double>(maps.grid.VoxelCount()) * setting.directions;
   for (int photons : settings.photonCounts)
   {
-    ComparedRun run;
-    run.method = ComparedMethod::PhotonsThenMaps;
-    run.setting = InWords(setting) + ", uncollided light of " + std::to_string(photons) + " photons";
-    run.filters = FiltersAfterPhotons(photons, FiltersOf(run.method, setting, 0));
-    run.grid = scene.medium.grid;
-    run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions + photons;
-    run.solve = [=, &device, &scene](bool, const Monitor& monitor) {
-      const auto solve = [&](const Illumination& handed, const Monitor& part) {
-        return SolveConservative(device, scene.medium, handed, of, part);
-      };
-      return SolveAfterPhotons(device, scene, photons, solve, monitor);
+    const auto solve = [=, &device, &scene](const Illumination& handed, const Monitor& monitor) {
+      return SolveConservative(device, scene.medium, handed, of, monitor);
     };
-    runs.push_back(std::move(run));
+    runs.push_back(AfterPhotons(photons, maps, device, scene, solve));
   }
   return runs;
 }
