@@ -2,14 +2,11 @@
 
 #include "RegisteredProxies.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
 #include "vtkNew.h"
 #include "vtkPVSessionBase.h"
-#include "vtkPVXMLElement.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
-#include "vtkSMProxyManager.h"
 #include "vtkSMSession.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkWeakPointer.h"
@@ -19,8 +16,6 @@
 
 namespace
 {
-using Information = vtkSMProxyManager::RegisteredProxyInformation;
-
 /// Sessions whose server has ended, of which properties must not be requested. ParaView 5.11 does not check whether a
 /// reply to PullState arrived before it parses it: asking such a server for properties aborts the client.
 std::vector<vtkWeakPointer<vtkObject>>& LostSessions()
@@ -69,35 +64,18 @@ void ReadExposures(vtkObject* view, unsigned long, void*, void* isInteractive)
   }
 }
 
-vtkCallbackCommand* CommandOf(void (*function)(vtkObject*, unsigned long, void*, void*))
-{
-  auto* const command = vtkCallbackCommand::New();
-  command->SetCallback(function);
-  return command;
-}
-
-void Observe(vtkObject* object, unsigned long event, vtkCallbackCommand* command)
-{
-  if (!object->HasObserver(event, command))
-  {
-    object->AddObserver(event, command);
-  }
-}
-
 void Notice(vtkObject*, unsigned long, void*, void* data)
 {
   static vtkCallbackCommand* const read = CommandOf(ReadResults);
   static vtkCallbackCommand* const readExposures = CommandOf(ReadExposures);
   static vtkCallbackCommand* const noteLoss = CommandOf(NoteLoss);
-  const auto* registered = static_cast<Information*>(data);
-  vtkSMProxy* const proxy = registered->Type == Information::PROXY ? registered->Proxy : nullptr;
+  vtkSMProxy* const proxy = RegisteredProxy(data);
   if (!proxy)
   {
     return;
   }
   Observe(proxy->GetSession(), vtkPVSessionBase::ConnectionLost, noteLoss);
-  vtkPVXMLElement* const hints = proxy->GetHints();
-  if (hints && hints->FindNestedElementByName("FreshResults"))
+  if (HintOf(proxy, "FreshResults"))
   {
     Observe(proxy, vtkCommand::UpdateDataEvent, read);
   }

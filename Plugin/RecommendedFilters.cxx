@@ -3,18 +3,14 @@
 #include "ChangedProperty.h"
 #include "RegisteredProxies.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkNew.h"
-#include "vtkPVXMLElement.h"
 #include "vtkSmartPointer.h"
 #include "vtkSMInputProperty.h"
-#include "vtkSMIntVectorProperty.h"
 #include "vtkSMParaViewPipelineController.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMPropertyIterator.h"
 #include "vtkSMProxy.h"
-#include "vtkSMProxyManager.h"
 #include "vtkSMProxySelectionModel.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMStringVectorProperty.h"
@@ -29,7 +25,6 @@
 
 namespace
 {
-using Information = vtkSMProxyManager::RegisteredProxyInformation;
 using Proxies = std::vector<vtkSmartPointer<vtkSMProxy>>;
 
 /// A filter that is recommended, with the properties that are listed.
@@ -84,8 +79,7 @@ void Set(vtkSMProperty* property, const std::string& value, vtkSMProxy* source, 
     {
       double number = 0.0; // converted independently of the locale
       std::from_chars(text.data(), text.data() + text.size(), number);
-      const bool isWhole = vtkSMIntVectorProperty::SafeDownCast(property);
-      isWhole ? values.Set(i, static_cast<int>(number)) : values.Set(i, number);
+      values.Set(i, number);
     }
   }
 }
@@ -157,7 +151,7 @@ vtkSmartPointer<vtkSMProxy> Make(const Recommended& wanted, vtkSMProxy* source, 
 void Press(vtkObject* caller, unsigned long, void*, void* property)
 {
   auto* const source = vtkSMProxy::SafeDownCast(caller);
-  vtkPVXMLElement* const hint = source->GetHints()->FindNestedElementByName("MakesFilters");
+  vtkPVXMLElement* const hint = HintOf(source, "MakesFilters");
   if (!IsChangeOf(property, hint->GetAttributeOrEmpty("button")))
   {
     return;
@@ -184,18 +178,11 @@ void Press(vtkObject* caller, unsigned long, void*, void* property)
 
 void Notice(vtkObject*, unsigned long, void*, void* data)
 {
-  static vtkCallbackCommand* const press = [] {
-    auto* const command = vtkCallbackCommand::New();
-    command->SetCallback(Press);
-    return command;
-  }();
-  const auto* registered = static_cast<Information*>(data);
-  vtkSMProxy* const proxy = registered->Type == Information::PROXY ? registered->Proxy : nullptr;
-  vtkPVXMLElement* const hints = proxy ? proxy->GetHints() : nullptr;
-  if (hints && hints->FindNestedElementByName("MakesFilters") &&
-    !proxy->HasObserver(vtkCommand::UpdatePropertyEvent, press))
+  static vtkCallbackCommand* const press = CommandOf(Press);
+  vtkSMProxy* const proxy = RegisteredProxy(data);
+  if (proxy && HintOf(proxy, "MakesFilters"))
   {
-    proxy->AddObserver(vtkCommand::UpdatePropertyEvent, press);
+    Observe(proxy, vtkCommand::UpdatePropertyEvent, press);
   }
 }
 }

@@ -3,15 +3,11 @@
 #include "ChangedProperty.h"
 #include "RegisteredProxies.h"
 
-#include "vtkCallbackCommand.h"
 #include "vtkCollection.h"
 #include "vtkNew.h"
-#include "vtkPVXMLElement.h"
-#include "vtkSMIntVectorProperty.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
-#include "vtkSMProxyManager.h"
 #include "vtkSMProxySelectionModel.h"
 #include "vtkSMSessionProxyManager.h"
 // This file calls only inline and virtual functions of the class, so that RemotingViews, which needs GLEW, is not
@@ -25,12 +21,9 @@
 
 namespace
 {
-using Information = vtkSMProxyManager::RegisteredProxyInformation;
-
 vtkPVXMLElement* CameraHint(vtkSMProxy* source)
 {
-  vtkPVXMLElement* const hints = source->GetHints();
-  return hints ? hints->FindNestedElementByName("ViewCamera") : nullptr;
+  return HintOf(source, "ViewCamera");
 }
 
 /// Whether the view shows an output of the source.
@@ -95,10 +88,9 @@ std::vector<double> Numbers(vtkSMProxy* proxy, const std::string& property)
 void SetNumbers(vtkSMProxy* proxy, const std::string& property, const std::vector<double>& numbers)
 {
   vtkSMPropertyHelper helper(proxy, property.c_str());
-  const bool isWhole = vtkSMIntVectorProperty::SafeDownCast(proxy->GetProperty(property.c_str()));
   for (unsigned int i = 0; i < numbers.size(); ++i)
   {
-    isWhole ? helper.Set(i, static_cast<int>(numbers[i])) : helper.Set(i, numbers[i]);
+    helper.Set(i, numbers[i]);
   }
 }
 
@@ -194,34 +186,23 @@ void Follow(vtkObject* caller, unsigned long, void*, void* isInteractive)
   drawing = false;
 }
 
-vtkCallbackCommand* CommandOf(void (*function)(vtkObject*, unsigned long, void*, void*))
-{
-  auto* const command = vtkCallbackCommand::New();
-  command->SetCallback(function);
-  return command;
-}
-
 void Notice(vtkObject*, unsigned long, void*, void* data)
 {
   static vtkCallbackCommand* const press = CommandOf(Press);
   static vtkCallbackCommand* const follow = CommandOf(Follow);
-  const auto* registered = static_cast<Information*>(data);
-  vtkSMProxy* const proxy = registered->Proxy;
-  if (registered->Type != Information::PROXY || !proxy)
+  vtkSMProxy* const proxy = RegisteredProxy(data);
+  if (!proxy)
   {
     return;
   }
-  if (CameraHint(proxy) && !proxy->HasObserver(vtkCommand::UpdatePropertyEvent, press))
+  if (CameraHint(proxy))
   {
-    proxy->AddObserver(vtkCommand::UpdatePropertyEvent, press);
+    Observe(proxy, vtkCommand::UpdatePropertyEvent, press);
   }
   // Includes views that existed before the plugin was loaded.
   for (vtkSMViewProxy* const view : Views(proxy->GetSessionProxyManager()))
   {
-    if (!view->HasObserver(vtkCommand::EndEvent, follow))
-    {
-      view->AddObserver(vtkCommand::EndEvent, follow);
-    }
+    Observe(view, vtkCommand::EndEvent, follow);
   }
 }
 }
