@@ -41,11 +41,6 @@ const char* const Schlick = "schlick";
 const char* const Rayleigh = "rayleigh";
 const char* const Tabulated = "tabulated";
 
-bool IsGrey(const Rgb& rgb)
-{
-  return rgb[0] == rgb[1] && rgb[0] == rgb[2];
-}
-
 /// All numbers of the field data array `name`; empty if there is no such array.
 std::vector<double> ReadNumbers(vtkDataObject* data, const char* name)
 {

@@ -34,6 +34,7 @@
 namespace
 {
 using tyndall::InvalidInput;
+using tyndall::IsGrey;
 using tyndall::Require;
 using tyndall::Rgb;
 using tyndall::Text;
@@ -305,11 +306,6 @@ void EmptyHidden(vtkImageData* image, std::vector<float>& relative)
   {
     relative[i] = hidden[i] ? 0.0f : relative[i];
   }
-}
-
-bool IsGrey(const Rgb& rgb)
-{
-  return rgb[0] == rgb[1] && rgb[1] == rgb[2];
 }
 
 void AddProduct(vtkImageData* output, const char* name, const std::vector<float>& density, const Rgb& factor)

@@ -43,6 +43,11 @@ inline bool IsBlack(const Rgb& rgb)
   return rgb == Rgb{};
 }
 
+inline bool IsGrey(const Rgb& rgb)
+{
+  return rgb[0] == rgb[1] && rgb[1] == rgb[2];
+}
+
 /// Whether a value is valid as power or radiance: not negative, and within the range of floats, which kernels use.
 inline bool IsUsable(double value)
 {

@@ -8,11 +8,6 @@ namespace tyndall
 namespace
 {
 constexpr double SameColour = 3e-7; ///< relative tolerance for rounding of multiples of one colour
-
-bool Grey(const Rgb& rgb)
-{
-  return rgb[0] == rgb[1] && rgb[1] == rgb[2];
-}
 }
 
 void CommonColour::Add(const Rgb& rgb)
@@ -48,7 +43,7 @@ void CommonColour::Add(const float* rgb, std::size_t count)
 
 bool CommonColour::IsGrey() const
 {
-  return this->One && Grey(this->First);
+  return this->One && tyndall::IsGrey(this->First);
 }
 
 int CommonColour::Brightest() const
@@ -74,7 +69,8 @@ CommonColour ColourOf(const Illumination& illumination)
   {
     colour.Add(face);
   }
-  if (!std::all_of(illumination.faceAlbedo.begin(), illumination.faceAlbedo.end(), Grey))
+  const auto& albedo = illumination.faceAlbedo;
+  if (!std::all_of(albedo.begin(), albedo.end(), [](const Rgb& face) { return IsGrey(face); }))
   {
     colour.AddNone();
   }

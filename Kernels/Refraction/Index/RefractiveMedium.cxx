@@ -116,8 +116,7 @@ void CheckMemory(const Device& device, const RefractiveMediumSettings& settings,
 
 bool IsGrey(const Material& material)
 {
-  const auto grey = [](const Rgb& rgb) { return rgb[0] == rgb[1] && rgb[1] == rgb[2]; };
-  return grey(material.sigma_a) && grey(material.sigma_s);
+  return tyndall::IsGrey(material.sigma_a) && tyndall::IsGrey(material.sigma_s);
 }
 
 /// Whether scattering materials differ in their mean cosines.
