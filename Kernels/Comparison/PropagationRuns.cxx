@@ -18,8 +18,8 @@ namespace
 struct Setting
 {
   int directions = 25, map = 1, coarsening = 1, orders = 0;
-  int terms =
-    0; ///< of the phase function, for discrete ordinates; 0: OrdinatesSettings' or what the quadrature supports
+  /// Terms of the phase function, for discrete ordinates; 0: as many as the default has and the quadrature supports.
+  int terms = 0;
 };
 
 std::string InWords(const Setting& setting)
@@ -98,7 +98,8 @@ PropagationSolver SolverOf(ComparedMethod method, Device& device, int terms)
     };
 }
 
-PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, const ComparedSettings& settings)
+PropagationSettings SettingsOf(
+  ComparedMethod method, const Setting& setting, const ComparedScene& scene, const ComparedSettings& settings)
 {
   PropagationSettings of;
   of.directionsPerFace = setting.directions;
@@ -106,6 +107,7 @@ PropagationSettings SettingsOf(ComparedMethod method, const Setting& setting, co
   of.mapResolution = setting.map;
   of.maximumOrders = setting.orders;
   of.tolerance = settings.tolerance;
+  of.periodic = scene.periodic;
   if (method == ComparedMethod::ConstantSource)
   {
     of.source = PropagationSource::Constant;
@@ -142,7 +144,7 @@ ComparedRun RunOf(ComparedMethod method, const Setting& setting, const Factors& 
   const auto scaled =
     setting.coarsening > 1 ? std::make_shared<CoarseScene>(given, Coarsened(scene.medium.grid, factors)) : nullptr;
   const PropagationSolver solver = SolverOf(method, device, setting.terms);
-  const PropagationSettings of = SettingsOf(method, setting, settings);
+  const PropagationSettings of = SettingsOf(method, setting, scene, settings);
   ComparedRun run;
   run.method = method;
   run.setting = InWords(setting);
@@ -151,30 +153,28 @@ ComparedRun RunOf(ComparedMethod method, const Setting& setting, const Factors& 
   run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions * setting.map * setting.map;
   run.allOrders = setting.orders == 0;
   run.estimates = method != ComparedMethod::DiscreteOrdinates;
-  run.solve = [=, &scene](bool estimate, const Monitor& monitor) {
-    PropagationSettings now = of;
-    now.periodic = scene.periodic;
+  run.solve = [=](bool estimate, const Monitor& monitor) {
     const SceneBlock solved = scaled ? scaled->Scene() : given;
-    return estimate ? SolveWithErrorEstimate(solved, now, monitor, solver) : solver(solved, now, monitor);
+    return estimate ? SolveWithErrorEstimate(solved, of, monitor, solver) : solver(solved, of, monitor);
   };
   return run;
 }
 
 ComparedRun PreviewOf(Device& device, const ComparedScene& scene, const ComparedSettings& settings)
 {
+  const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination };
+  const PropagationSolver solver = SolverOf(ComparedMethod::LightPropagationMaps, device, 0);
+  PropagationSettings of = SettingsOfPreview({});
+  of.tolerance = std::max(of.tolerance, settings.tolerance);
+  of.periodic = scene.periodic;
   ComparedRun run;
   run.setting = "preview";
   run.filters = "LightPropagationMaps Preview=1";
   run.grid = scene.medium.grid;
   run.allOrders = false; // so that its short time is not taken for that of a solve
-  run.solve = [=, &device, &scene](bool, const Monitor& monitor) {
-    PropagationSettings of = SettingsOfPreview({});
-    of.tolerance = std::max(of.tolerance, settings.tolerance);
-    of.periodic = scene.periodic;
-    const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination };
-    return SolvePreview(given, of, PreviewGrid(scene.medium.grid), [&](const SceneBlock& block) {
-      return SolveConservative(device, block.domain, block.medium, block.illumination, of, monitor);
-    });
+  run.solve = [=](bool, const Monitor& monitor) {
+    return SolvePreview(
+      given, of, PreviewGrid(given.medium.grid), [&](const SceneBlock& block) { return solver(block, of, monitor); });
   };
   return run;
 }
@@ -184,7 +184,7 @@ std::vector<ComparedRun> RunsAfterPhotons(Device& device, const ComparedScene& s
 {
   std::vector<ComparedRun> runs;
   const Setting setting = { UsualDirections(settings) };
-  const PropagationSettings of = SettingsOf(ComparedMethod::PhotonsThenMaps, setting, settings);
+  const PropagationSettings of = SettingsOf(ComparedMethod::PhotonsThenMaps, setting, scene, settings);
   ComparedRun maps;
   maps.method = ComparedMethod::PhotonsThenMaps;
   maps.setting = InWords(setting);
