@@ -88,19 +88,20 @@ LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, cons
 }
 
 /// Light by a complete photon run of a method, from the emission of photons to the reconstruction.
-LightField Trace(Device& device, const ComparedScene& scene, ComparedMethod method, EmissionSettings emission,
-  MarchSettings marching, const Monitor& monitor)
+/// @param levels  as ComparedScene::levels, in place of it
+LightField Trace(Device& device, const ComparedScene& scene, const std::uint8_t* levels, ComparedMethod method,
+  EmissionSettings emission, MarchSettings marching, const Monitor& monitor)
 {
   const Grid& grid = scene.medium.grid;
   if (method == ComparedMethod::PublishedPhotons)
   {
     const EmittedPhotons emitted = EmitPhotons(grid, scene.illumination, emission, OfPart(monitor, 0.0, 0.3));
-    return MarchPublished(device, Domain(grid), scene.medium, scene.ior, scene.levels, emitted.photons, {}, nullptr,
-      OfPart(monitor, 0.3, 1.0))
+    return MarchPublished(
+      device, Domain(grid), scene.medium, scene.ior, levels, emitted.photons, {}, nullptr, OfPart(monitor, 0.3, 1.0))
       .light;
   }
   marching.batches = true;
-  PhotonMarcher marcher(device, Domain(scene.medium.grid), scene.medium, scene.ior, marching, scene.levels);
+  PhotonMarcher marcher(device, Domain(scene.medium.grid), scene.medium, scene.ior, marching, levels);
   Importance importance;
   if (method == ComparedMethod::AdaptivePhotons)
   {
@@ -219,7 +220,8 @@ LightField SolveWith(const PhotonSetting& setting, ComparedMethod method, Device
     VoxelizationSettings voxelization;
     voxelization.samples = setting.samples;
     const VoxelizedScene voxels(device, scene, 1, voxelization, setting.filterSize, OfPart(monitor, 0.0, 0.3));
-    return Trace(device, voxels.Scene(), method, setting.emission, setting.marching, OfPart(monitor, 0.3, 1.0));
+    return Trace(
+      device, voxels.Scene(), nullptr, method, setting.emission, setting.marching, OfPart(monitor, 0.3, 1.0));
   }
   if (setting.octree)
   {
@@ -227,11 +229,10 @@ LightField SolveWith(const PhotonSetting& setting, ComparedMethod method, Device
     tree.tolerance = *setting.octree;
     const Octree octree =
       BuildOctree(Domain(scene.medium.grid), scene.medium, scene.ior, tree, device.Name(), OfPart(monitor, 0.0, 0.1));
-    ComparedScene withTree = scene;
-    withTree.levels = octree.levels.data();
-    return Trace(device, withTree, method, setting.emission, setting.marching, OfPart(monitor, 0.1, 1.0));
+    return Trace(
+      device, scene, octree.levels.data(), method, setting.emission, setting.marching, OfPart(monitor, 0.1, 1.0));
   }
-  return Trace(device, scene, method, setting.emission, setting.marching, monitor);
+  return Trace(device, scene, scene.levels, method, setting.emission, setting.marching, monitor);
 }
 
 std::string Numbers(const Rgb& values)
