@@ -61,13 +61,13 @@ struct ComparisonSettings;
  * | `power_in` | W | incident and emitted power, channels summed |
  * | `pareto` | 1 | 1 if no other row of the same quantity is both faster and more accurate, else 0 |
  * | `recommended` | 1 | 1 for the recommended row of each quantity, of those with `filters`, see AcceptedError |
- * | `filters` |  | filters that repeat the row, "Filter Property=Value ... \| Filter ..."; of coarser voxels: empty |
+ * | `filters` |  | filters that repeat the row, "Filter Property=Value ... \| Filter ..."; empty if none can |
  * | `error of METHOD` | 1 | `error_l2` of METHOD, NaN in other methods' rows: for charts |
  *
  * and field data `reference` (a description), `recommended` (the recommended row in words), `left_out` (methods and
  * settings that were not compared, with reasons) and `device`. "#1" in `filters` is the output of the first filter,
  * "@Mesh" what is connected to the input Mesh, and all inputs and properties that are not listed are those of the
- * comparison.
+ * comparison. No filters repeat rows of coarser voxels, nor rows of photons lit by FaceRadiance or the default sky.
  *
  * Output 1: the reference, vtkImageData with the cell arrays `fluence` and `fluence_direct`, as far as they are known,
  * for viewing or as input 3 of another comparison of the same scene.

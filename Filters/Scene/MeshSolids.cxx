@@ -28,21 +28,7 @@ bool IsMaterialNumber(double value)
   return value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max() &&
     value == std::trunc(value);
 }
-}
 
-int MaterialNumber(double value, const std::string& what)
-{
-  if (!IsMaterialNumber(value))
-  {
-    throw InvalidInput(what + " is " + Text("%.15g", value) +
-      "; the number of a material must be a whole number from " + std::to_string(std::numeric_limits<int>::min()) +
-      " to " + std::to_string(std::numeric_limits<int>::max()) + ".");
-  }
-  return static_cast<int>(value);
-}
-
-namespace
-{
 bool HasOnlyTriangles(vtkPolyData* mesh)
 {
   return mesh->GetNumberOfCells() == mesh->GetNumberOfPolys() && mesh->GetPolys()->GetMaxCellSize() <= 3;
@@ -137,6 +123,17 @@ void CheckNumbers(vtkPolyData* mesh, const std::string& name, const std::string&
     }
   }
 }
+}
+
+int MaterialNumber(double value, const std::string& what)
+{
+  if (!IsMaterialNumber(value))
+  {
+    throw InvalidInput(what + " is " + Text("%.15g", value) +
+      "; the number of a material must be a whole number from " + std::to_string(std::numeric_limits<int>::min()) +
+      " to " + std::to_string(std::numeric_limits<int>::max()) + ".");
+  }
+  return static_cast<int>(value);
 }
 
 std::vector<Solid> SolidsOf(vtkPolyData* given, const std::string& name, const std::string& array, int otherwise,

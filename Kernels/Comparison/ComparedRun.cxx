@@ -69,7 +69,10 @@ std::vector<ComparedRun> RunsOf(
                                                       : PropagationRunsOf(method, device, scene, settings);
   for (ComparedRun& run : runs)
   {
-    run.filters = scene.suitsEmitter || run.filters.find("PhotonEmitter") == std::string::npos ? run.filters : "";
+    if (!scene.suitsEmitter && run.filters.find("PhotonEmitter") != std::string::npos)
+    {
+      run.filters.clear();
+    }
   }
   std::stable_sort(
     runs.begin(), runs.end(), [](const ComparedRun& a, const ComparedRun& b) { return a.cost < b.cost; });

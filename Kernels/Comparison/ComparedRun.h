@@ -105,8 +105,9 @@ struct ComparedRun
   ComparedMethod method = ComparedMethod::LightPropagationMaps;
   std::string setting; ///< description of the setting, for the user
   /// The filters that repeat the run, in the order of the data: "Filter Property=Value ... | Filter ...". A value is a
-  /// number, "#2" for the output of the second filter, or nothing: nothing is connected. All other inputs and
-  /// properties are those of the comparison. Empty: filters cannot repeat it (coarser voxels).
+  /// list of numbers with commas, "#2" for the output of the second filter, "@Mesh" for what is connected to the
+  /// comparison's input Mesh, or nothing: nothing is connected. All other inputs and properties are those of the
+  /// comparison. Empty: filters cannot repeat it (coarser voxels; photons unless ComparedScene::suitsEmitter).
   std::string filters;
   Grid grid;         ///< grid of the resulting light; a picture's pixels
   double cost = 1.0; ///< cost relative to other runs of the method: rays times voxels, or photons

@@ -12,15 +12,13 @@ constexpr std::pair<Quality, const char*> Qualities[] = { { Quality::Draft, "dra
   { Quality::Fine, "fine" }, { Quality::Reference, "reference" } };
 
 /// Radiance of the scene's picture, 3 per pixel, without background.
-std::vector<float> Rendered(
-  Device& device, const ComparedScene& scene, const ViewSettings& settings, const Monitor& monitor)
+std::vector<float> Rendered(Device& device, const ComparedScene& scene, ViewSettings settings, const Monitor& monitor)
 {
-  ViewSettings of = settings;
-  of.imageSize = scene.imageSize;
-  of.showBackground = false;
+  settings.imageSize = scene.imageSize;
+  settings.showBackground = false;
   SolvedLight light;
   light.fluence = scene.seen;
-  MediumRayCaster caster(device, scene.medium, light, scene.illumination, of, scene.ior);
+  MediumRayCaster caster(device, scene.medium, light, scene.illumination, settings, scene.ior);
   return caster.Render(*scene.camera, monitor).radiance;
 }
 }

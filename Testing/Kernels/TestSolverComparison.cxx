@@ -578,7 +578,8 @@ TEST_F(ComparedByTheClock, GiveTheirRowsWithoutAReferenceThatTakesTooLong)
 class ComparedStages : public DeviceTest
 {
 protected:
-  /// Error by setting of a method's rows against its most expensive row, without noise: photons are the same.
+  /// Error by setting of a method's rows, against the light of its setting Best (without noise: photons are the same)
+  /// or, if Best is empty, against the comparison's own reference.
   std::map<std::string, double> ErrorsOf(SunlitCube& cube, ComparedMethod method)
   {
     cube.settings.methods = { method };
@@ -629,7 +630,9 @@ protected:
       {
         square += std::pow((at + 0.5) / edge - 0.5, 2.0);
       }
-      const bool inside = std::sqrt(square)<0.3 - 1.0 / edge, outside = std::sqrt(square)> 0.3 + 1.0 / edge;
+      const double radius = std::sqrt(square);
+      const bool inside = radius < 0.3 - 1.0 / edge;
+      const bool outside = radius > 0.3 + 1.0 / edge;
       this->Occupancy[i] = inside ? 1.0f : outside ? 0.0f : 0.5f;
       cube.ior[i] = 1.0f + 0.4f * this->Occupancy[i];
       cube.sigma_s[i] = 0.5f - 0.5f * this->Occupancy[i];
