@@ -18,6 +18,7 @@ from screen import Screen
 
 PATIENCE = 300  # seconds after which something hangs, on the slowest machine
 WIDTH, HEIGHT = 1152, 728  # of the window where it is tested, without the status bar and its figures
+STATUS_BAR = 34
 IMAGES = os.path.join(os.environ["TYNDALL_SOURCE"], "Plugin/Documentation/images")
 
 page, picture = sys.argv[1:3]
@@ -54,6 +55,14 @@ def window():
     return rows.astype(int)
 
 
+def repaint():
+    """Resize the window and back. At times Qt leaves black lines at a view that grew while its kernels were compiled."""
+    for height in (HEIGHT, HEIGHT + STATUS_BAR):
+        size = ["windowsize", str(WIDTH), str(height)]
+        subprocess.run(["xdotool", "search", "--name", "^ParaView"] + size, check=True)
+        time.sleep(1)
+
+
 def open_menu():
     """Filters, Light Transport, by hand: the order of its entries and their icons are then part of the picture."""
     subprocess.run(["xdotool", "mousemove", "216", "11", "click", "1"], check=True)
@@ -67,6 +76,7 @@ with open(output + ".log", "w") as log:
 try:
     wait_for_the_end()
     screen = Screen()
+    repaint()
     if picture == "start-menu":
         open_menu()
     seen = window()
