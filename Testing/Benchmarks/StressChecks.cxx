@@ -130,10 +130,9 @@ private:
     }
     this->Add("bad_directions", static_cast<double>(bad), 0.0);
     bad = 0;
-    // What lattices and corrected iterations leave over, and what photons win or lose by chance, is a difference: in
-    // Energy().
-    const bool differs = this->Solver.EndsByTolerance() || this->Solver.IsOfLattice() ||
-      this->Solver.Is(Scattered | Warm | Reflecting | Preview);
+    // What lattices leave over, and iterations that begin warm or between faces that reflect, and what photons win or
+    // lose by chance, is a difference: in Energy().
+    const bool differs = this->Solver.IsOfLattice() || this->Solver.Is(Scattered | Warm | Reflecting | Preview);
     const auto signless =
       static_cast<std::ptrdiff_t>(differs ? static_cast<std::size_t>(LeftOver * o.channels) : o.balance.size());
     for (const auto& [begin, end] :
