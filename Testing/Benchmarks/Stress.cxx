@@ -91,19 +91,23 @@ void CompareRuns(
   const StressSolver& solver, const StressCase& asked, const StressOutcome& outcome, std::vector<StressCheck>& checks)
 {
   static const std::vector<CubeTurn> turns = AllCubeTurns();
-  const StressOutcome first = solver.EndsByTolerance() ? RunStress(solver, asked.scene, StressTightTolerance) : outcome;
-  if (solver.IsGrid() && !solver.Is(OfPhotons | Unturned | Preview))
+  const bool tight = solver.EndsByTolerance();
+  const bool turnsToo = solver.IsGrid() && !solver.Is(OfPhotons | Unturned | Preview);
+  const double tolerance = tight ? StressTightTolerance : StressTolerance; // residuals are told over it
+  const StressOutcome first =
+    tight && (turnsToo || !solver.like.empty()) ? RunStress(solver, asked.scene, tolerance) : outcome;
+  if (turnsToo)
   {
     // Each cell in one of the cube's 47 other ways to lie; all of them occur many times.
     const CubeTurn& turn = turns[1 + HashOf(asked) % 47];
-    const StressOutcome turned = RunStress(solver, Turned(asked.scene, turn), StressTightTolerance);
+    const StressOutcome turned = RunStress(solver, Turned(asked.scene, turn), tolerance);
     checks.push_back(CheckTurned(asked, first, turn, turned));
   }
   if (!solver.like.empty())
   {
     const auto like = std::find_if(StressSolvers().begin(), StressSolvers().end(),
       [&](const StressSolver& other) { return other.name == solver.like; });
-    const StressOutcome same = RunStress(*like, asked.scene, StressTightTolerance);
+    const StressOutcome same = RunStress(*like, asked.scene, tolerance);
     if (same.errors.empty()) // filters refuse more than kernels
     {
       checks.push_back(CheckTurned(asked, first, turns[0], same));
