@@ -5,7 +5,6 @@
 #include "DiscreteOrdinates/OrdinatesTransport.h"
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 #include "DiscreteOrdinates/SweptOrders.h"
-#include "Distribution/SharedLight.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Convergence.h"

@@ -4,15 +4,18 @@
 #include "Distribution/Communicator.h"
 #include "Distribution/Domain.h"
 #include "Light/ChannelReduction.h"
+#include "Light/KeptLight.h"
+#include "Light/LightField.h"
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 
+#include <string>
 #include <vector>
 
 namespace tyndall
 {
-// Functions that check properties of a distributed medium that must agree on all ranks, and compute properties of the
-// whole medium. All but IsFirstThatHas are collective.
+// Functions that check properties of a distributed medium that must agree on all ranks, compute properties of the whole
+// medium, and share results of a solve. All but IsFirstThatHas are collective.
 
 /// Checks that numbers are the same on all ranks. Collective.
 /// @param what  description of the numbers, for the message
@@ -46,4 +49,19 @@ SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here);
 
 /// Replaces each power by its sum over the ranks, in one reduction. Collective.
 void SumOverRanks(const Domain& domain, const std::vector<Rgb*>& powers);
+
+/// Broadcasts the scalar results of a solve on one rank to all ranks: channels, numbers of directions, energy balance,
+/// face powers, half-range flux, convergence, saved sweeps, device and leftOut. Arrays are not sent, nor are doubts,
+/// since previews are not checked for errors. Collective.
+/// @param found  true on the one rank that has the result
+/// @param light  the result on that rank; receives it on the others
+void ShareFigures(Communicator& communicator, bool found, LightField& light);
+
+/// Sets `light.leftOut` on all ranks to that of the first rank that has voxels. Collective.
+void ShareLeftOut(const Domain& domain, LightField& light);
+
+/// Reason why a distributed solve cannot start from kept light, the same text on all ranks; empty if it can. Each rank
+/// keeps the light of its block; if one rank cannot start from it, none does. Collective.
+/// @param whyNot  the reason on this rank, from WhyNotBegun
+std::string WhyNotBegunOnAny(Communicator& communicator, const KeptLight& kept, const std::string& whyNot);
 }

@@ -1,7 +1,6 @@
 #include "LightPropagation/Accuracy/PreviewLight.h"
 
 #include "Distribution/BoxExchange.h"
-#include "Distribution/SharedLight.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Problem/SceneChecks.h"
 

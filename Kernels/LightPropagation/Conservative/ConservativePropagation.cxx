@@ -3,7 +3,6 @@
 #include "Device/Device.h"
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
-#include "Distribution/SharedLight.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"

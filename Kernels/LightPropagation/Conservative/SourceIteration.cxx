@@ -5,7 +5,7 @@
 #include "LightPropagation/Conservative/NegativeFluence.h"
 #include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
-#include "LightPropagation/Scattering/MomentScattering.h"
+#include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "TyndallKernelSources.h"
 

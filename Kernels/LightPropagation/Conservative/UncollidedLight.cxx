@@ -1,12 +1,12 @@
 #include "LightPropagation/Conservative/UncollidedLight.h"
 
-#include "LightPropagation/Diffusion/DiffusionShared.h"
-#include "LightPropagation/Diffusion/LampPassing.h"
+#include "LightPropagation/Diffusion/DiffusionSystem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
-#include "LightPropagation/Scattering/MomentScattering.h"
+#include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
+#include "TyndallKernelSources.h"
 
 #include <algorithm>
 
@@ -14,6 +14,9 @@ namespace tyndall
 {
 namespace
 {
+/// Optical thickness of the thickest voxel above which the position of first scattering within voxels is taken into
+/// account.
+constexpr double ThickForFirstMoments = 0.1;
 constexpr float Elsewhere = -1.0f; ///< sigma_s of ghost cells, which are excluded from sums
 
 double Ratio(double of, double to)
@@ -165,17 +168,24 @@ SweepTally UncollidedLight::AddLampThroughFaces(const UncollidedSource& lamp, co
   return tally;
 }
 
-/// Adds the power of a lamp's first-scattered light that leaves its voxel through the faces without another collision.
+/// Adds the power of a lamp's first-scattered light that leaves its voxel through each face without another collision
+/// (numerics.md, Eqs. (66) to (69)). Called for each lamp, since the depth of first scattering in a voxel depends on
+/// the lamp.
 void UncollidedLight::PassFaces()
 {
   const VolumeLayout& held = this->Block.WithGhosts();
+  const GhostedMedium& medium = this->Coefficients;
+  Device& device = this->Parts.TheDevice;
+  cl::Kernel pass = device.Kernel("pass_lamp_light", kernel_source::LampPassing, ExactOption(device));
   for (int c = 0; c < held.channels; ++c)
   {
-    PassLampLight(this->Parts.TheDevice, held.grid, this->Block.Periodic(),
-      { held.Stride(), held.ExtinctionFirst(c), c * held.Stride(), &this->Coefficients.sigma_t.Values(),
-        &this->Coefficients.sigma_a.Values(), &this->Coefficients.sigma_s.Values(), &this->Coefficients.Swept(),
-        &this->PathWithGhosts.Values(), &this->MomentsWithGhosts.Values(), &this->PassedWithGhosts.Values(),
-        &this->AllPathWithGhosts.Values() });
+    DiffusionLayout layout =
+      LayoutOf(held.grid, this->Block.Periodic(), held.Stride(), held.ExtinctionFirst(c), c * held.Stride());
+    layout.linear = true;
+    With(pass, layout, medium.sigma_t.Values(), medium.sigma_a.Values(), medium.sigma_s.Values(), medium.Swept(),
+      this->PathWithGhosts.Values(), this->MomentsWithGhosts.Values(), this->PassedWithGhosts.Values(),
+      this->AllPathWithGhosts.Values());
+    RunVoxels(device, pass, layout);
   }
 }
 

@@ -1,7 +1,7 @@
 #include "LightPropagation/Conservative/WarmStart.h"
 
 #include "Device/Device.h"
-#include "Distribution/SharedLight.h"
+#include "Distribution/SharedMedium.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 

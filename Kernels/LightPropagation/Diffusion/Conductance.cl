@@ -112,7 +112,7 @@ inline real weight_of_transport(const DiffusionLayout* layout, real tau, real ab
 // Factor by which the power that diffusion predicts through a face between voxels of optical length tau is multiplied
 // before it is compared with the sweep's: rays cross some faces more often than others (`pattern` of numerics.md, Eq.
 // (65)).
-//   crossing  crossing pattern of the face (CrossingPattern.h), relative to the mean over the grid: the factor if the
+//   crossing  crossing pattern of the face (SweepModel.h), relative to the mean over the grid: the factor if the
 //             voxels are thick
 inline real pattern_of(real crossing, real tau)
 {
@@ -134,7 +134,7 @@ typedef struct
   real net;    // net power that crosses the face from voxel 0 to voxel 1 in the sweep, W
   // Part of `net` due to the net flux of the known source (emission and first collisions, Eq. (53a)).
   real driven;
-  // crossing pattern of the face (CrossingPattern.h): power of the rays that cross it, relative to the mean over the
+  // crossing pattern of the face (SweepModel.h): power of the rays that cross it, relative to the mean over the
   // grid
   real crossing;
 } inner_face;

@@ -330,7 +330,7 @@ static real power_of_faces(
 //   passed    power of lamps' first-scattered light that leaves through each face, W, in the layout of `currents`; read
 //             only if DiffusionLayout::passing is 1
 //   pattern   tables of the crossing pattern: power of the rays that cross a face, relative to the mean
-//             (CrossingPattern.h)
+//             (SweepModel.h)
 __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, const __global float* conductance,
   const __global float* currents, const __global float* passed, const __global float* model,

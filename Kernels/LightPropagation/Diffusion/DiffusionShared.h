@@ -39,7 +39,7 @@ typedef struct
 {
   int size[3];
   int periodic[3];
-  /// 1: the system includes lamps' first-scattered light that crosses faces without another collision (LampPassing.h).
+  /// 1: the system includes lamps' first-scattered light that crosses faces without another collision (LampPassing.cl).
   int passing;
   int moments; ///< 1: sweeps treat forward scattering as unscattered light, or have angular moments
   int faces;   ///< 1: sweeps tally outgoing and reflected power by cell of the box's faces
@@ -51,7 +51,7 @@ typedef struct
   /// Offset of the channel: firstT in sigma_t, first in all other arrays (times 6 in currents, times 3 in flux).
   int firstT, first;
   /// Index of the first entry of each table of the crossing pattern (power of the rays that cross a face, relative to
-  /// the mean; CrossingPattern.h), [axis perpendicular to the face][first, second of the other two axes].
+  /// the mean; SweepModel.h), [axis perpendicular to the face][first, second of the other two axes].
   int pattern[6];
   float spacing[3];
   /// Half-range flux of the quadrature: sum of w mu / (4 pi) over directions with mu > 0; 1/4 except for the error of

@@ -129,7 +129,7 @@ static float drive_out(const DiffusionLayout* layout, const diffusion_arrays* ar
 }
 
 // Crossing pattern of a voxel's faces perpendicular to an axis: power of the rays that cross them, relative to the mean
-// over the grid (CrossingPattern.h).
+// over the grid (SweepModel.h).
 static float crossing_at(const DiffusionLayout* layout, const diffusion_arrays* arrays, int axis, const int* at)
 {
   const int b = axis == 0 ? 1 : 0;

@@ -34,7 +34,7 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
   , Solver(solver)
   , Mixing(device, grid.VoxelCount(), this->Values(), "the diffusion system")
 {
-  this->Layout = LayoutOf(grid, periodic, arrays);
+  this->Layout = LayoutOf(grid, periodic, arrays.stride, arrays.firstT, arrays.first);
   this->Layout.linear = linear;
   std::copy(model.pattern.first.begin(), model.pattern.first.end(), this->Layout.pattern);
   this->Layout.halfRange = static_cast<float>(model.halfRange);

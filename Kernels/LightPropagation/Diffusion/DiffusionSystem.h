@@ -16,9 +16,9 @@
 namespace tyndall
 {
 /// Returns a DiffusionLayout in which the geometry and the offsets of the channel are set, and all other members are 0.
-/// @param arrays  has members stride, firstT and first (DiffusionSystem::Arrays, LampLight)
-template <class Arrays>
-DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, const Arrays& arrays)
+/// @param stride, firstT, first  as in DiffusionSystem::Arrays
+inline DiffusionLayout LayoutOf(
+  const Grid& grid, const std::array<bool, 3>& periodic, std::size_t stride, std::size_t firstT, std::size_t first)
 {
   DiffusionLayout layout = {};
   for (int axis = 0; axis < 3; ++axis)
@@ -27,9 +27,9 @@ DiffusionLayout LayoutOf(const Grid& grid, const std::array<bool, 3>& periodic, 
     layout.periodic[axis] = periodic[axis];
     layout.spacing[axis] = static_cast<float>(grid.spacing[axis]);
   }
-  layout.stride = static_cast<cl_int>(arrays.stride);
-  layout.firstT = static_cast<cl_int>(arrays.firstT);
-  layout.first = static_cast<cl_int>(arrays.first);
+  layout.stride = static_cast<cl_int>(stride);
+  layout.firstT = static_cast<cl_int>(firstT);
+  layout.first = static_cast<cl_int>(first);
   return layout;
 }
 
@@ -90,7 +90,7 @@ public:
     /// Partial currents of the sweep, W, [channel][-x, +x, -y, +y, -z, +z][voxel].
     const Buffer<float>* partialCurrents;
     /// Power of lamps' first-scattered light that leaves a voxel through each face without another collision
-    /// (LampPassing.h), W, [channel][-x, +x, -y, +y, -z, +z][voxel]; null: voxels are thin, or there are no lamps.
+    /// (LampPassing.cl), W, [channel][-x, +x, -y, +y, -z, +z][voxel]; null: voxels are thin, or there are no lamps.
     const Buffer<float>* passed;
     /// First-collision source of lamps without the light that `passed` counts, W / (length^3 sr), [channel][voxel];
     /// not used if `passed` is null.

@@ -1,4 +1,4 @@
-// First-scattered light of lamps in optically thick voxels (LampPassing.h): lamp light is first scattered near the
+// First-scattered light of lamps in optically thick voxels: lamp light is first scattered near the
 // faces through which it enters, and a fraction of the scattered light leaves through these faces without another
 // collision.
 

@@ -1,10 +1,14 @@
 #pragma once
 
+#include "Device/Device.h"
 #include "Device/ExactValues.h"
+#include "LightPropagation/Problem/TruncatedScattering.h"
 #include "LightPropagation/Sweep/SweepOperator.h"
+#include "LightPropagation/Sweep/VolumeLayout.h"
 #include "Lights/Lights.h"
 
 #include <array>
+#include <memory>
 
 namespace tyndall
 {
@@ -57,4 +61,26 @@ public:
   virtual void ScatterFluence(int channel, const Deposit& swept, const ExactValues& fluence, const Buffer<float>& given,
     const Buffer<float>& source) const = 0;
 };
+
+/// Makes the operator of isotropic scattering if `degree` is 0, else that of scattering in angular moments.
+/// @param medium  scattering coefficients of degrees 0 to `degree`; must outlive the operator
+/// @param scatters  false, for degree 0: sigma_s is zero everywhere, and no source is written
+std::unique_ptr<const ScatteringOperator> MakeScattering(
+  Device& device, const VolumeLayout& layout, const MediumOnDevice& medium, int degree, bool scatters);
+
+/// Adds the angular moments of `path` to those of `to`, W length, except the first moment, which is the path integral
+/// itself.
+/// @param functions  number of functions of the angular basis
+void AddMoments(
+  Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& to);
+
+/// Computes shown = source + part * shown, for all angular moments of a source; `shown` are the moments that are stored
+/// for pictures (IterationResult::shown).
+/// @param values  number of values in each array
+void AddToShown(
+  Device& device, std::size_t values, const Buffer<float>& source, const Buffer<float>& shown, float part);
+
+/// Adds to `flux` the net flux, W length, [channel][x, y, z][voxel], from the angular moments of degree 1 of `path`.
+void AddFluxOfMoments(
+  Device& device, const VolumeLayout& layout, int functions, const Buffer<float>& path, const Buffer<float>& flux);
 }

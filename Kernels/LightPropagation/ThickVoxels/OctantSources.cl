@@ -7,12 +7,12 @@
 
 typedef struct
 {
-  // Coefficients alpha (antisymmetric in the two faces) and beta (symmetric) of VoxelResponse.h
+  // Coefficients alpha (antisymmetric in the two faces) and beta (symmetric) of VoxelResponse
   float differs, alike;
   float lost;
 } layer_response;
 
-// Response of a layer as thick as a voxel to light that enters it, interpolated in a table of VoxelResponse.h. For
+// Response of a layer as thick as a voxel to light that enters it, interpolated in a table of VoxelResponse. For
 // layers thinner than those of the table the values are proportional to the thickness.
 static layer_response response_of(const __global float* values, float albedo, float tau)
 {
@@ -36,7 +36,7 @@ static layer_response response_of(const __global float* values, float albedo, fl
 // Converts the power that entered through voxels' faces to mean incident radiance. One work-item per row of voxels and
 // face.
 //   currents  entered power, W, [face][voxel] from index 6 `first` on; set to 0
-//   pattern   power of the rays that cross each face at uniform radiance, relative to its mean (CrossingPattern.h)
+//   pattern   power of the rays that cross each face at uniform radiance, relative to its mean (SweepModel.h)
 //   incoming  radiance, W / (length^2 sr), laid out as currents; replaced if `fresh` is 1, else added to
 __kernel void take_incoming(OctantSourceInfo info, __global float* restrict currents,
   const __global float* restrict pattern, __global float* restrict incoming, int fresh)

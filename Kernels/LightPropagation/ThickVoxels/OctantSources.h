@@ -71,7 +71,7 @@ public:
 
 private:
   /// Power of the rays of a set of directions that cross each voxel face at uniform radiance, relative to its mean
-  /// (CrossingPattern.h).
+  /// (SweepModel.h).
   struct Crossings
   {
     Buffer<float> values;

@@ -28,7 +28,7 @@ typedef struct
   /// 1 for axes along which light does not vary, because the domain has one voxel and is periodic
   int leftOut[3];
   /// Indices of the crossing pattern (power of the rays across each voxel face relative to its mean,
-  /// CrossingPattern.h) of the faces normal to axis a: pattern[2 a] is that of the term that depends on the position
+  /// SweepModel.h) of the faces normal to axis a: pattern[2 a] is that of the term that depends on the position
   /// along the first of the other two axes, pattern[2 a + 1] that of the term that depends on the second
   int pattern[6];
   /// Index of this channel's first value in sigma_t, and in other arrays over voxels; number of values per channel.

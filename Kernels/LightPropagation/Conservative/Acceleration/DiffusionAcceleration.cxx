@@ -4,7 +4,7 @@
 #include "LightPropagation/Conservative/NegativeFluence.h"
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "LightPropagation/Convergence.h"
-#include "LightPropagation/Scattering/MomentScattering.h"
+#include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "Medium/BoxFaces.h"
 #include "Medium/VoxelSums.h"
 

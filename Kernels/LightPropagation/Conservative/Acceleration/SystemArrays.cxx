@@ -1,6 +1,6 @@
 #include "LightPropagation/Conservative/Acceleration/SystemArrays.h"
 
-#include "LightPropagation/Scattering/MomentScattering.h"
+#include "LightPropagation/Scattering/ScatteringOperator.h"
 
 namespace tyndall
 {
