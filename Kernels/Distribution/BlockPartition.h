@@ -32,6 +32,21 @@ inline int EndOf(const VoxelBox& box, int axis)
   return box.first[axis] + box.size[axis];
 }
 
+/// Calls act(place, voxel) for each row along x of the box `part` within the box `box`; `voxel` is the row's first
+/// voxel, `place` its index in an array over `box`.
+template <class Act>
+void ForRows(const VoxelBox& part, const VoxelBox& box, const Act& act)
+{
+  for (int z = part.first[2]; z < EndOf(part, 2); ++z)
+  {
+    for (int y = part.first[1]; y < EndOf(part, 1); ++y)
+    {
+      const std::size_t row = static_cast<std::size_t>(z - box.first[2]) * box.size[1] + (y - box.first[1]);
+      act(row * box.size[0] + (part.first[0] - box.first[0]), std::array<int, 3>{ part.first[0], y, z });
+    }
+  }
+}
+
 /// Whether a box contains a voxel of the grid.
 /// @param voxel  three indices
 bool Holds(const VoxelBox& box, const int* voxel);

@@ -7,21 +7,6 @@ namespace tyndall
 {
 namespace
 {
-/// Calls act(place) for each row along x of the box `part` within the box `box`; `place` is the index of the row's
-/// first value in an array over `box`.
-template <class Act>
-void ForRows(const VoxelBox& box, const VoxelBox& part, int components, const Act& act)
-{
-  for (int z = part.first[2]; z < EndOf(part, 2); ++z)
-  {
-    for (int y = part.first[1]; y < EndOf(part, 1); ++y)
-    {
-      const std::size_t row = static_cast<std::size_t>(z - box.first[2]) * box.size[1] + (y - box.first[1]);
-      act((row * box.size[0] + (part.first[0] - box.first[0])) * components);
-    }
-  }
-}
-
 /// Extracts the values in the box `part` from an array over the box `box`, `components` per voxel.
 template <class T>
 std::vector<T> TakeFrom(const std::vector<T>& values, const VoxelBox& box, const VoxelBox& part, int components)
@@ -29,8 +14,8 @@ std::vector<T> TakeFrom(const std::vector<T>& values, const VoxelBox& box, const
   std::vector<T> taken;
   taken.reserve(part.VoxelCount() * components);
   const auto width = static_cast<std::ptrdiff_t>(part.size[0]) * components;
-  ForRows(box, part, components, [&](std::size_t place) {
-    const auto from = values.begin() + static_cast<std::ptrdiff_t>(place);
+  ForRows(part, box, [&](std::size_t place, const auto&) {
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(place * components);
     taken.insert(taken.end(), from, from + width);
   });
   return taken;
@@ -43,8 +28,8 @@ void PutPart(const std::vector<float>& taken, std::vector<float>& values, const 
 {
   const std::ptrdiff_t width = static_cast<std::ptrdiff_t>(part.size[0]) * components;
   auto from = taken.begin();
-  ForRows(box, part, components, [&](std::size_t place) {
-    std::copy_n(from, width, values.begin() + static_cast<std::ptrdiff_t>(place));
+  ForRows(part, box, [&](std::size_t place, const auto&) {
+    std::copy_n(from, width, values.begin() + static_cast<std::ptrdiff_t>(place * components));
     from += width;
   });
 }

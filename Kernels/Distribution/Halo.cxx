@@ -13,17 +13,12 @@ namespace
 /// Appends the indices, in an array over the box `box`, of the cells in the box `part`.
 void AddPlaces(const VoxelBox& box, const VoxelBox& part, std::vector<std::size_t>& places)
 {
-  for (int z = part.first[2]; z < EndOf(part, 2); ++z)
-  {
-    for (int y = part.first[1]; y < EndOf(part, 1); ++y)
+  ForRows(part, box, [&](std::size_t place, const auto&) {
+    for (int x = 0; x < part.size[0]; ++x)
     {
-      const std::size_t row = static_cast<std::size_t>(z - box.first[2]) * box.size[1] + (y - box.first[1]);
-      for (int x = part.first[0]; x < EndOf(part, 0); ++x)
-      {
-        places.push_back(row * box.size[0] + (x - box.first[0]));
-      }
+      places.push_back(place + x);
     }
-  }
+  });
 }
 
 VoxelBox Moved(VoxelBox box, const std::array<int, 3>& by, int factor = 1)

@@ -62,7 +62,7 @@ void CheckOwnBlock(const Domain& domain, const Medium& medium, const Field& ior,
   }
   CheckCubes(medium.grid);
   CheckThickness(medium);
-  CheckIndex(ior, medium.grid);
+  CheckIndex(ior, Domain(medium.grid));
 }
 }
 

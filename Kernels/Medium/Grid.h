@@ -41,6 +41,23 @@ struct Grid
   double Length(int axis) const { return this->size[axis] * this->spacing[axis]; }
 };
 
+/// Calls act(array index, x, y, z) for each voxel of a grid of `size` voxels, x fastest.
+template <class Act>
+void ForGridVoxels(const std::array<int, 3>& size, const Act& act)
+{
+  std::size_t i = 0;
+  for (int z = 0; z < size[2]; ++z)
+  {
+    for (int y = 0; y < size[1]; ++y)
+    {
+      for (int x = 0; x < size[0]; ++x, ++i)
+      {
+        act(i, x, y, z);
+      }
+    }
+  }
+}
+
 /// The two axes of a plane normal to `axis`: u is the lower one, and varies faster in memory.
 struct PlaneAxes
 {

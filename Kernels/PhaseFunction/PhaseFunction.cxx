@@ -171,11 +171,16 @@ void CheckRows(const std::vector<double>& cosines, const std::vector<double>& va
   CheckEnds(cosines, values);
 }
 
+/// The last row whose ascending value is not above `value`, but neither above the last interval nor below the first.
+std::size_t RowBefore(const std::vector<double>& values, double value)
+{
+  const auto after = std::upper_bound(values.begin(), values.end(), value);
+  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - values.begin() - 1, 0, values.size() - 2));
+}
+
 double ValueOfTable(const PhaseFunction::Table& table, double cosine)
 {
-  const auto after = std::upper_bound(table.cosines.begin(), table.cosines.end(), cosine);
-  const auto row = static_cast<std::size_t>(
-    std::clamp<std::ptrdiff_t>(after - table.cosines.begin() - 1, 0, table.cosines.size() - 2));
+  const std::size_t row = RowBefore(table.cosines, cosine);
   const double low = table.cosines[row];
   const double part = (cosine - low) / (table.cosines[row + 1] - low);
   return table.values[row] + std::clamp(part, 0.0, 1.0) * (table.values[row + 1] - table.values[row]);
@@ -184,18 +189,14 @@ double ValueOfTable(const PhaseFunction::Table& table, double cosine)
 /// Cumulative distribution of a tabulated phase function: a parabola between two rows.
 double BelowOfTable(const PhaseFunction::Table& table, double cosine)
 {
-  const auto after = std::upper_bound(table.cosines.begin(), table.cosines.end(), cosine);
-  const auto row = static_cast<std::size_t>(
-    std::clamp<std::ptrdiff_t>(after - table.cosines.begin() - 1, 0, table.cosines.size() - 2));
+  const std::size_t row = RowBefore(table.cosines, cosine);
   const double way = cosine - table.cosines[row];
   return table.below[row] + Pi * way * (table.values[row] + ValueOfTable(table, cosine));
 }
 
 double CosineOfTable(const PhaseFunction::Table& table, double u)
 {
-  const auto after = std::upper_bound(table.below.begin(), table.below.end(), u);
-  const auto row =
-    static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - table.below.begin() - 1, 0, table.below.size() - 2));
+  const std::size_t row = RowBefore(table.below, u);
   const double width = table.cosines[row + 1] - table.cosines[row];
   const double first = 2.0 * Pi * table.values[row], last = 2.0 * Pi * table.values[row + 1];
   const double rest = u - table.below[row];

@@ -86,7 +86,7 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
 {
   Require(!ior.values || ior.components == 1,
     "ior has " + std::to_string(ior.components) + " components a voxel; a refractive index has 1.");
-  CheckIndex(ior, grid);
+  CheckIndex(ior, Domain(grid));
   for (std::size_t i = 0; ior.values && i < grid.VoxelCount(); ++i)
   {
     if (ior.values[i] < LeastViewedIndex || ior.values[i] > LargestViewedIndex)

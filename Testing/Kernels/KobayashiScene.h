@@ -1,6 +1,6 @@
 #pragma once
 
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 #include "MediumScene.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline Scene KobayashiScene(int voxels, double scattering)
   scene.medium.grid.spacing = { h, h, h };
   scene.medium.grid.origin = { -100.0, -100.0, -100.0 };
   scene.emission.assign(scene.sigma_a.size(), 0.0f);
-  ForGridVoxels({ voxels, voxels, voxels }, [&](std::size_t i, int x, int y, int z) {
+  tyndall::ForGridVoxels({ voxels, voxels, voxels }, [&](std::size_t i, int x, int y, int z) {
     double from = 0.0; // the middle, largest distance along an axis
     for (int at : { x, y, z })
     {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 
 #include "Photons/Marching/PhotonMarcher.h"
 #include "Refraction/Index/RefractiveMedium.h"
@@ -37,7 +37,7 @@ struct PhotonScene
     this->ior.clear();
     const tyndall::Grid& grid = this->medium.grid;
     const auto middle = [&](int a, int i) { return grid.origin[a] + (i + 0.5) * grid.spacing[a]; };
-    ForGridVoxels(grid.size, [&](std::size_t, int i, int j, int k) {
+    tyndall::ForGridVoxels(grid.size, [&](std::size_t, int i, int j, int k) {
       this->ior.push_back(static_cast<float>(n(middle(0, i), middle(1, j), middle(2, k))));
     });
   }

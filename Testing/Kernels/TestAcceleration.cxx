@@ -1,6 +1,6 @@
 #include "DeviceTest.h"
 #include "Difference.h"
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 #include "MediumScene.h"
 
 #include "Device/Errors.h"

@@ -1,7 +1,7 @@
 #include "DeviceTest.h"
 #include "Difference.h"
-#include "GridVoxels.h"
 #include "KobayashiScene.h"
+#include "Medium/Grid.h"
 #include "OrdinatesScene.h"
 #include "RandomMedium.h"
 #include "TransparentBox.h"

@@ -1,5 +1,5 @@
 #include "DeviceTest.h"
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 #include "MediumScene.h"
 
 #include "Device/Errors.h"

@@ -1,5 +1,5 @@
 #include "DeviceTest.h"
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 #include "PhotonScene.h"
 #include "PhotonWays.h"
 

@@ -1,6 +1,6 @@
 #include "DeviceTest.h"
 #include "ErrorWords.h"
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 #include "OnRanks.h"
 
 #include "Numerics/NumberText.h"

@@ -1,7 +1,7 @@
 #include "DeviceTest.h"
 #include "Difference.h"
 #include "ErrorWords.h"
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 #include "MediumScene.h"
 
 #include "LightPropagation/Accuracy/ErrorEstimate.h"

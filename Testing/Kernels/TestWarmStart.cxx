@@ -2,7 +2,7 @@
 
 #include "DeviceTest.h"
 #include "Difference.h"
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 #include "OrdinatesScene.h"
 
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 
 #include "DeviceTest.h"
 #include "Difference.h"
-#include "GridVoxels.h"
+#include "Medium/Grid.h"
 
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"

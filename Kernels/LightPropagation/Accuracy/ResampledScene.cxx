@@ -171,18 +171,10 @@ std::vector<float> Repeated(const float* values, int components, const Grid& coa
   const Grid fine = Refined(coarse, factors);
   std::vector<float> repeated;
   repeated.reserve(fine.VoxelCount() * components);
-  for (int z = 0; z < fine.size[2]; ++z)
-  {
-    for (int y = 0; y < fine.size[1]; ++y)
-    {
-      for (int x = 0; x < fine.size[0]; ++x)
-      {
-        const float* const from =
-          values + coarse.IndexOf({ x / factors[0], y / factors[1], z / factors[2] }) * components;
-        repeated.insert(repeated.end(), from, from + components);
-      }
-    }
-  }
+  ForGridVoxels(fine.size, [&](std::size_t, int x, int y, int z) {
+    const float* const from = values + coarse.IndexOf({ x / factors[0], y / factors[1], z / factors[2] }) * components;
+    repeated.insert(repeated.end(), from, from + components);
+  });
   return repeated;
 }
 

@@ -30,21 +30,6 @@ struct Level
   }
 };
 
-template <class Call>
-void ForCells(const std::array<int, 3>& size, const Call& call)
-{
-  for (int z = 0; z < size[2]; ++z)
-  {
-    for (int y = 0; y < size[1]; ++y)
-    {
-      for (int x = 0; x < size[0]; ++x)
-      {
-        call(x, y, z);
-      }
-    }
-  }
-}
-
 Level Finest(const Grid& grid, const CoarseCells& box, const std::vector<float>& sigmaT)
 {
   Level level;
@@ -59,7 +44,8 @@ Level Finest(const Grid& grid, const CoarseCells& box, const std::vector<float>&
   }
   level.sigmaT.assign(sigmaT.begin(), sigmaT.end());
   const double voxel = grid.VoxelVolume();
-  ForCells(level.size, [&](int x, int y, int z) { level.sigmaT[level.At(x, y, z)] *= voxel / level.Volume(x, y, z); });
+  ForGridVoxels(level.size,
+    [&](std::size_t, int x, int y, int z) { level.sigmaT[level.At(x, y, z)] *= voxel / level.Volume(x, y, z); });
   return level;
 }
 
@@ -76,10 +62,11 @@ Level Coarser(const Level& fine)
     }
   }
   level.sigmaT.assign(std::size_t(level.size[0]) * level.size[1] * level.size[2], 0.0);
-  ForCells(fine.size, [&](int x, int y, int z) {
+  ForGridVoxels(fine.size, [&](std::size_t, int x, int y, int z) {
     level.sigmaT[level.At(x / 2, y / 2, z / 2)] += fine.sigmaT[fine.At(x, y, z)] * fine.Volume(x, y, z);
   });
-  ForCells(level.size, [&](int x, int y, int z) { level.sigmaT[level.At(x, y, z)] /= level.Volume(x, y, z); });
+  ForGridVoxels(
+    level.size, [&](std::size_t, int x, int y, int z) { level.sigmaT[level.At(x, y, z)] /= level.Volume(x, y, z); });
   return level;
 }
 
@@ -106,7 +93,7 @@ std::vector<double> Diffusing(const Level& level)
   std::vector<double> sigma = level.sigmaT;
   std::vector<double> around; // result of this function for the next coarser grid; computed when first needed
   Level coarser;
-  ForCells(level.size, [&](int x, int y, int z) {
+  ForGridVoxels(level.size, [&](std::size_t, int x, int y, int z) {
     double& here = sigma[level.At(x, y, z)];
     const double edge = level.Longest(x, y, z);
     if (here * edge >= 1.0)
@@ -134,7 +121,7 @@ CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const Gr
   const std::vector<double> sigma = Diffusing(level);
   const std::size_t count = sigma.size();
   std::vector<double> conductance(3 * count, 0.0), loss(count, 0.0);
-  ForCells(level.size, [&](int x, int y, int z) {
+  ForGridVoxels(level.size, [&](std::size_t, int x, int y, int z) {
     const std::array<int, 3> at = { x, y, z };
     const std::size_t here = level.At(x, y, z);
     loss[here] = std::max(0.0, double(sigmaT[here]) - sigmaS[here]) * grid.VoxelVolume();

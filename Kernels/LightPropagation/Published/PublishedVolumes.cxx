@@ -77,20 +77,13 @@ std::size_t PublishedVolumes::LayoutSize(int layout) const
 template <class Visit>
 void PublishedVolumes::ForEach(int layout, int channels, Visit visit) const
 {
+  const auto& size = this->Layouts.size;
   for (int c = 0; c < channels; ++c)
   {
-    std::size_t voxel = 0;
-    for (int z = 0; z < this->Layouts.size[2]; ++z)
-    {
-      for (int y = 0; y < this->Layouts.size[1]; ++y)
-      {
-        for (int x = 0; x < this->Layouts.size[0]; ++x, ++voxel)
-        {
-          visit(static_cast<std::size_t>(c) * this->Layouts.volume[layout] + this->Layouts.Index(layout, x, y, z),
-            voxel, c);
-        }
-      }
-    }
+    ForGridVoxels({ size[0], size[1], size[2] }, [&](std::size_t voxel, int x, int y, int z) {
+      visit(
+        static_cast<std::size_t>(c) * this->Layouts.volume[layout] + this->Layouts.Index(layout, x, y, z), voxel, c);
+    });
   }
 }
 

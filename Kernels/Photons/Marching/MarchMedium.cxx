@@ -70,7 +70,7 @@ FilledBricks CheckMarchedMedium(
   const FilledBricks filled = CheckedBricks(medium);
   Require(
     medium.grid.size == domain.Own().size, "The medium of rank " + rank + " does not have the size of its block.");
-  CheckIndex(ior, medium.grid);
+  CheckIndex(ior, domain);
   CheckLevels(levels, medium.grid, domain.Whole());
   Require((levels != nullptr) == octree,
     "The block of rank " + rank +

@@ -70,19 +70,11 @@ std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
   const std::array<int, 3>& size = medium.grid.size;
   std::vector<float> values(2 * through.PaddedCount(), 0.0f);
   const double diagonal = through.Diagonal();
-  std::size_t voxel = 0;
-  for (int z = 0; z < size[2]; ++z)
-  {
-    for (int y = 0; y < size[1]; ++y)
-    {
-      for (int x = 0; x < size[0]; ++x, ++voxel)
-      {
-        const std::size_t at = (static_cast<std::size_t>(z + 1) * (size[1] + 2) + y + 1) * (size[0] + 2) + x + 1;
-        values[2 * at] = static_cast<float>(std::min(diagonal * medium.sigma_s.At(voxel, 0), 1e30));
-        values[2 * at + 1] = static_cast<float>(std::min(diagonal * medium.sigma_a.At(voxel, 0), 1e30));
-      }
-    }
-  }
+  ForGridVoxels(size, [&](std::size_t voxel, int x, int y, int z) {
+    const std::size_t at = (static_cast<std::size_t>(z + 1) * (size[1] + 2) + y + 1) * (size[0] + 2) + x + 1;
+    values[2 * at] = static_cast<float>(std::min(diagonal * medium.sigma_s.At(voxel, 0), 1e30));
+    values[2 * at + 1] = static_cast<float>(std::min(diagonal * medium.sigma_a.At(voxel, 0), 1e30));
+  });
   return values;
 }
 }

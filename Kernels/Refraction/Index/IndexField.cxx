@@ -2,6 +2,7 @@
 
 #include "Device/Device.h"
 #include "Device/Errors.h"
+#include "Device/HostThreads.h"
 #include "Device/Sizes.h"
 #include "Numerics/NumberText.h"
 #include "Numerics/PyramidLayout.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <string>
 
@@ -50,17 +52,34 @@ cl::NDRange Rounded(std::size_t x, std::size_t y, std::size_t z, std::size_t gro
 }
 }
 
-void CheckIndex(const Field& ior, const Grid& grid)
+void CheckIndex(const Field& ior, const Domain& domain)
 {
-  const std::size_t count = ior.values ? grid.VoxelCount() : 0;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    if (!(ior.values[i] >= Least && ior.values[i] <= Largest))
+  const auto fits = [](float index) { return (index >= Least) & (index <= Largest); };
+  const Grid grid = domain.OwnGrid();
+  std::atomic<bool> good(true);
+  InThreads(ior.values ? grid.VoxelCount() : 0, 65536, [&](std::size_t begin, std::size_t end) {
+    bool all = true; // combined without branches, so that the loop is vectorised
+    for (std::size_t i = begin; i < end; ++i)
     {
-      throw InvalidInput("ior is " + Text("%g", ior.values[i]) + " in voxel " + VoxelName(grid, i) +
-        " (the first such voxel); a refractive index must be finite and positive, from " + Text("%g", Least) + " to " +
-        Text("%g", Largest) + ".");
+      all &= fits(ior.values[i]);
     }
+    if (!all)
+    {
+      good = false;
+    }
+  });
+  if (!good)
+  {
+    const float* const bad = std::find_if_not(ior.values, ior.values + grid.VoxelCount(), fits);
+    std::array<int, 3> voxel = grid.VoxelAt(static_cast<std::size_t>(bad - ior.values));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      voxel[axis] += domain.Own().first[axis];
+    }
+    throw InvalidInput("ior is " + Text("%g", *bad) + " in voxel " +
+      VoxelName(domain.Whole(), domain.Whole().IndexOf(voxel)) +
+      " (the first such voxel); a refractive index must be finite and positive, from " + Text("%g", Least) + " to " +
+      Text("%g", Largest) + ".");
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "Device/Buffer.h"
 #include "Device/Monitor.h"
+#include "Distribution/Domain.h"
 #include "Medium/Medium.h"
 
 #include <cstdint>
@@ -13,9 +14,10 @@ namespace tyndall
 constexpr double LeastIndex = 1e-6;
 constexpr double LargestIndex = 1e6;
 
-/// Checks a refractive index.
-/// @throws InvalidInput if a value is not finite or not from LeastIndex to LargestIndex; names the first such voxel
-void CheckIndex(const Field& ior, const Grid& grid);
+/// Checks the refractive index of this rank's block.
+/// @throws InvalidInput if a value is not finite or not from LeastIndex to LargestIndex; names the first such voxel, in
+///   the whole grid
+void CheckIndex(const Field& ior, const Domain& domain);
 
 /// Smallest and largest refractive index of a grid; 1 for null values.
 struct IndexRange

@@ -2,17 +2,16 @@
 
 #include "Device/Buffer.h"
 #include "Device/Errors.h"
-#include "Device/HostThreads.h"
 #include "Device/Sizes.h"
 #include "Distribution/PyramidBlocks.h"
 #include "Distribution/SharedMedium.h"
 #include "Numerics/NumberText.h"
 #include "Numerics/PyramidLayout.h"
 #include "Numerics/Vectors.h"
+#include "Refraction/Index/IndexField.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -26,11 +25,6 @@ namespace
 /// Number of octree levels that a rank builds in its block, which is extended to entire nodes of the last of these
 /// levels, 8 voxels per edge.
 constexpr int LevelsOfBlock = 3;
-
-std::array<int, 3> Plus(const std::array<int, 3>& a, const std::array<int, 3>& b)
-{
-  return { a[0] + b[0], a[1] + b[1], a[2] + b[2] };
-}
 
 /// Largest float that is at most the bound: for any float x, x <= AsBound(bound) is equivalent to x <= bound.
 float AsBound(double bound)
@@ -47,38 +41,6 @@ void Check(const OctreeSettings& settings)
     "Tolerance is " + Text("%g", settings.tolerance) + "; it must lie in [0, 1].");
   Require(settings.extinctionTolerance >= 0.0 && !std::isinf(settings.extinctionTolerance),
     "ExtinctionTolerance is " + Text("%g", settings.extinctionTolerance) + "; it must be finite and not negative.");
-}
-
-/// Checks the refractive index.
-/// @throws InvalidInput if the index is missing, or not finite and above 0 in a voxel; names the first such voxel
-void CheckIndex(const Field& index, const Domain& domain)
-{
-  Require(index.values && index.components == 1, "The refractive index must be given, with one component a voxel.");
-  const Grid grid = domain.OwnGrid();
-  const std::size_t count = grid.VoxelCount();
-  std::atomic<bool> good(true);
-  InThreads(count, 65536, [&](std::size_t begin, std::size_t end) {
-    int unfit = 0; // summed without branches, so that the loop is vectorised
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      unfit |= !(index.values[i] > 0.0f) | !(index.values[i] <= std::numeric_limits<float>::max());
-    }
-    if (unfit != 0)
-    {
-      good = false;
-    }
-  });
-  for (std::size_t i = 0; !good && i < count; ++i)
-  {
-    if (!(index.values[i] > 0.0f) || std::isinf(index.values[i]))
-    {
-      const std::size_t voxel = domain.Whole().IndexOf(Plus(grid.VoxelAt(i), domain.Own().first));
-      throw InvalidInput("The refractive index is " + Text("%g", index.values[i]) + " in voxel " +
-        VoxelName(domain.Whole(), voxel) +
-        " (the first such voxel); it must be finite and above 0. Clean the input, for example with a "
-        "Calculator.");
-    }
-  }
 }
 
 /// Maximum differences of the index in the nodes of each level, as floats by AsBound.
@@ -310,6 +272,7 @@ Octree BuildOctree(const Domain& domain, const Medium& medium, const Field& inde
     if (!domain.IsEmpty())
     {
       Check(medium);
+      Require(index.values && index.components == 1, "The refractive index must be given, with one component a voxel.");
       CheckIndex(index, domain);
     }
     Report(monitor, 0.0);

@@ -53,21 +53,14 @@ SampleBricks SampleBricksOf(const FilledBricks& filled, const Grid& grid, bool p
   }
   const auto each = static_cast<cl_int>(bricks.SamplesEach());
   bricks.bricks.push_back(-1);
-  for (int k = 0; k < bricks.count[2]; ++k)
-  {
-    for (int j = 0; j < bricks.count[1]; ++j)
+  ForGridVoxels(bricks.count, [&](std::size_t number, int i, int j, int k) {
+    const bool isFilled = IsFilled(filled, { i, j, k });
+    bricks.first.push_back(isFilled ? static_cast<cl_int>(bricks.bricks.size()) * each : 0);
+    if (isFilled)
     {
-      for (int i = 0; i < bricks.count[0]; ++i)
-      {
-        const bool isFilled = IsFilled(filled, { i, j, k });
-        bricks.first.push_back(isFilled ? static_cast<cl_int>(bricks.bricks.size()) * each : 0);
-        if (isFilled)
-        {
-          bricks.bricks.push_back(static_cast<cl_int>(bricks.first.size() - 1));
-        }
-      }
+      bricks.bricks.push_back(static_cast<cl_int>(number));
     }
-  }
+  });
   return bricks;
 }
 
