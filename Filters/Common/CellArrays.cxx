@@ -95,11 +95,9 @@ void CheckShape(vtkDataArray* array, const std::string& name, vtkIdType tuples, 
     throw InvalidInput("Array " + Quoted(name) + " has " + std::to_string(given) + " components; it must have " +
       Listed(components) + ".");
   }
-  if (array->GetNumberOfTuples() != tuples)
-  {
-    throw InvalidInput("Array " + Quoted(name) + " has " + std::to_string(array->GetNumberOfTuples()) +
-      " values where the dataset has " + std::to_string(tuples) + ".");
-  }
+  Require(array->GetNumberOfTuples() == tuples,
+    "Array " + Quoted(name) + " has " + std::to_string(array->GetNumberOfTuples()) + " values where the dataset has " +
+      std::to_string(tuples) + ".");
 }
 
 namespace
@@ -292,10 +290,7 @@ std::string NamesOf(vtkDataSetAttributes* attributes)
 
 Grid GridOf(vtkImageData* image)
 {
-  if (!image)
-  {
-    throw InvalidInput("There is no input image.");
-  }
+  Require(image, "There is no input image.");
   const char* const axes[3] = { "x", "y", "z" };
   Grid grid;
   int extent[6];
@@ -320,18 +315,13 @@ Grid GridOf(vtkImageData* image)
         "; it must be a positive number.");
     }
     grid.origin[axis] = image->GetOrigin()[axis] + extent[2 * axis] * grid.spacing[axis];
-    if (!std::isfinite(grid.origin[axis]))
-    {
-      throw InvalidInput("The input image has an origin that is not finite along " + std::string(axes[axis]) + ".");
-    }
+    Require(std::isfinite(grid.origin[axis]),
+      "The input image has an origin that is not finite along " + std::string(axes[axis]) + ".");
   }
-  if (!image->GetDirectionMatrix()->IsIdentity())
-  {
-    throw InvalidInput(
-      "The input image is sheared by its direction matrix, or turned otherwise than the medium that it belongs to, "
-      "which is not supported. Resample it: with Resample of VDBReader, where it was read by that, or with "
-      "ResampleToImage (Resample To Image).");
-  }
+  Require(image->GetDirectionMatrix()->IsIdentity(),
+    "The input image is sheared by its direction matrix, or turned otherwise than the medium that it belongs to, "
+    "which is not supported. Resample it: with Resample of VDBReader, where it was read by that, or with "
+    "ResampleToImage (Resample To Image).");
   Check(grid);
   return grid;
 }
@@ -441,10 +431,7 @@ double ReadFact(vtkDataObject* data, const char* name, double missing)
     return missing;
   }
   auto* numbers = vtkArrayDownCast<vtkDataArray>(found);
-  if (!numbers || numbers->GetNumberOfValues() != 1)
-  {
-    throw InvalidInput("The field data " + Quoted(name) + " must be one number.");
-  }
+  Require(numbers && numbers->GetNumberOfValues() == 1, "The field data " + Quoted(name) + " must be one number.");
   return numbers->GetTuple1(0);
 }
 
@@ -478,9 +465,7 @@ bool AreSameVoxels(const Grid& a, const Grid& b)
 
 void CheckSameVoxels(const Grid& grid, const Grid& medium, const std::string& whose, const std::string& remedy)
 {
-  if (!AreSameVoxels(grid, medium))
-  {
-    throw InvalidInput(whose + " has " + Described(grid) + ", the medium " + Described(medium) + ". " + remedy);
-  }
+  Require(AreSameVoxels(grid, medium),
+    whose + " has " + Described(grid) + ", the medium " + Described(medium) + ". " + remedy);
 }
 }

@@ -596,13 +596,11 @@ void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs)
     for (int i = 0; i < filter->GetNumberOfInputConnections(port); ++i)
     {
       auto* const image = vtkImageData::SafeDownCast(filter->GetInputDataObject(port, i));
-      if (image && Any(Flags(image->GetCellData(), image->GetNumberOfCells()), vtkDataSetAttributes::DUPLICATECELL))
-      {
-        throw InvalidInput(
-          "Cells of the input image are marked as duplicates of another rank's (vtkGhostType). Light "
-          "crosses the borders of pieces, so every rank works on the whole image, and would count them twice. "
-          "Give it the whole image on every rank, without ghost cells.");
-      }
+      Require(
+        !image || !Any(Flags(image->GetCellData(), image->GetNumberOfCells()), vtkDataSetAttributes::DUPLICATECELL),
+        "Cells of the input image are marked as duplicates of another rank's (vtkGhostType). Light "
+        "crosses the borders of pieces, so every rank works on the whole image, and would count them twice. "
+        "Give it the whole image on every rank, without ghost cells.");
     }
   }
 }

@@ -146,12 +146,9 @@ UncollidedInput ReadUncollided(vtkImageData* image, const Grid& medium)
 {
   CheckSameVoxels(GridOf(image), medium, "UncollidedLight",
     "March the photons through the same medium, or resample their light to its voxels.");
-  if (ReadFact(image, ScatteringsFact, 0.0) > 0.0)
-  {
-    throw InvalidInput(
-      "UncollidedLight holds scattered light of photons, too: its mean_direction and face_power_out are of "
-      "all of it. Take PhotonMarcher with MaximumOrders 1.");
-  }
+  Require(!(ReadFact(image, ScatteringsFact, 0.0) > 0.0),
+    "UncollidedLight holds scattered light of photons, too: its mean_direction and face_power_out are of "
+    "all of it. Take PhotonMarcher with MaximumOrders 1.");
   UncollidedInput input;
   input.fluence = ReadCells(image, "fluence_direct", Need::Required, { 1, 3 });
   input.meanDirection = ReadCells(image, "mean_direction", Need::Optional, { 3 });
@@ -303,11 +300,8 @@ Environment ReadEnvironment(vtkImageData* image)
       " points; it must be a flat latitude-longitude picture, as EnvironmentReader makes it.");
   }
   vtkDataArray* found = image->GetPointData()->GetArray("radiance");
-  if (!found)
-  {
-    throw InvalidInput(
-      "The environment has no point array 'radiance'. Its point arrays: " + NamesOf(image->GetPointData()) + ".");
-  }
+  Require(
+    found, "The environment has no point array 'radiance'. Its point arrays: " + NamesOf(image->GetPointData()) + ".");
   CheckShape(found, "radiance", image->GetNumberOfPoints(), { 1, 3 });
   const vtkSmartPointer<vtkFloatArray> radiance = AsFloats(found);
   const int components = radiance->GetNumberOfComponents();

@@ -82,10 +82,8 @@ std::string ReadName(vtkDataObject* data)
     return HenyeyGreenstein;
   }
   auto* const text = vtkArrayDownCast<vtkStringArray>(found);
-  if (!text || text->GetNumberOfValues() != 1)
-  {
-    throw InvalidInput("The field data '" + std::string(NameFact) + "' must be one text, the phase function's name.");
-  }
+  Require(text && text->GetNumberOfValues() == 1,
+    "The field data '" + std::string(NameFact) + "' must be one text, the phase function's name.");
   return text->GetValue(0);
 }
 
@@ -126,12 +124,10 @@ void CheckNotContradicted(const PhaseDescription& description, const PhaseFuncti
 {
   for (const double g : description.g)
   {
-    if (!(std::abs(g - function.MeanCosine()) <= Contradicts))
-    {
-      throw InvalidInput("The field data 'g' is " + Text("%.6g", g) + ", but the phase function '" + description.name +
+    Require(std::abs(g - function.MeanCosine()) <= Contradicts,
+      "The field data 'g' is " + Text("%.6g", g) + ", but the phase function '" + description.name +
         "' has the mean cosine " + Text("%.6g", function.MeanCosine()) +
         ". Take g away, or choose another phase function.");
-    }
   }
 }
 }
@@ -160,11 +156,9 @@ std::array<PhaseFunction, 3> PhaseDescription::Functions() const
 PhaseFunction PhaseDescription::KindOfVaryingG() const
 {
   CheckName(this->name);
-  if (this->name != HenyeyGreenstein && this->name != Schlick)
-  {
-    throw InvalidInput("There are cells 'g', but the phase function '" + this->name +
+  Require(this->name == HenyeyGreenstein || this->name == Schlick,
+    "There are cells 'g', but the phase function '" + this->name +
       "' has no mean cosine that could vary by voxel: choose henyey_greenstein or schlick, or take the array g away.");
-  }
   return this->name == Schlick ? PhaseFunction::Schlick(0.0) : PhaseFunction::HenyeyGreenstein(0.0);
 }
 

@@ -150,9 +150,6 @@ void CheckProperties(vtkAlgorithm* filter)
   {
     all += (all.empty() ? "" : " ") + text;
   }
-  if (!all.empty())
-  {
-    throw InvalidInput(all);
-  }
+  Require(all.empty(), all);
 }
 }

@@ -23,19 +23,15 @@ bool HasAnEnd(const std::string& path)
 
 std::uint64_t ReadableSize(const std::string& path)
 {
-  if (!HasAnEnd(path))
-  {
-    throw InvalidInput("\"" + path +
+  Require(HasAnEnd(path),
+    "\"" + path +
       "\" is not a file but a pipe, a socket or a device, which has no end that is known. Write it to a file first.");
-  }
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
   stream.seekg(0);
   // Detects folders: a folder can be opened and has a size, but cannot be read.
-  if (size < 0 || (size > 0 && stream.peek() == std::ifstream::traits_type::eof()))
-  {
-    throw InvalidInput("\"" + path + "\" cannot be read. Check that it is a file, is there and may be read.");
-  }
+  Require(size >= 0 && (size == 0 || stream.peek() != std::ifstream::traits_type::eof()),
+    "\"" + path + "\" cannot be read. Check that it is a file, is there and may be read.");
   return static_cast<std::uint64_t>(size);
 }
 

@@ -37,17 +37,11 @@ constexpr std::int64_t LongestEdge = 1 << 17;
 std::vector<unsigned char> ReadBytes(const std::string& path, std::uint64_t most)
 {
   const std::uint64_t size = ReadableSize(path);
-  if (size == 0)
-  {
-    throw InvalidInput("\"" + path + "\" is empty. Copy or write the file again.");
-  }
+  Require(size != 0, "\"" + path + "\" is empty. Copy or write the file again.");
   std::ifstream stream(path, std::ios::binary);
   std::vector<unsigned char> bytes(std::min(size, most));
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!stream)
-  {
-    throw InvalidInput("\"" + path + "\" cannot be read to its end. Check the disk and the file's permissions.");
-  }
+  Require(!stream.fail(), "\"" + path + "\" cannot be read to its end. Check the disk and the file's permissions.");
   return bytes;
 }
 
@@ -159,10 +153,8 @@ void ParseHdrSize(const std::string& path, const std::string& size, HdrHeader& h
 
 HdrHeader ParseHdrHeader(const std::string& path, const std::vector<unsigned char>& bytes)
 {
-  if (bytes.size() < 2 || bytes[0] != '#' || bytes[1] != '?')
-  {
-    throw InvalidInput("\"" + path + "\" is not a Radiance picture: it does not begin with #?.");
-  }
+  Require(bytes.size() >= 2 && bytes[0] == '#' && bytes[1] == '?',
+    "\"" + path + "\" is not a Radiance picture: it does not begin with #?.");
   HdrHeader header;
   HdrLines lines(path, bytes);
   lines.Next();
@@ -324,10 +316,8 @@ ExrWindows WindowsOfExr(const std::string& path)
 {
   const std::vector<unsigned char> start = ReadBytes(path, 4);
   const unsigned char magic[4] = { 0x76, 0x2f, 0x31, 0x01 };
-  if (start.size() < 4 || std::memcmp(start.data(), magic, 4) != 0)
-  {
-    throw InvalidInput("\"" + path + "\" is not an OpenEXR file: it does not begin as one.");
-  }
+  Require(start.size() >= 4 && std::memcmp(start.data(), magic, 4) == 0,
+    "\"" + path + "\" is not an OpenEXR file: it does not begin as one.");
   exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
   settings.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};
   settings.max_image_width = LongestEdge;
@@ -361,10 +351,8 @@ ExrWindows WindowsOfExr(const std::string& path)
   {
     Corrupt(path, "it has no data window or display window");
   }
-  if (storage == EXR_STORAGE_DEEP_SCANLINE || storage == EXR_STORAGE_DEEP_TILED)
-  {
-    throw InvalidInput("\"" + path + "\" is a deep picture. Flatten it first.");
-  }
+  Require(storage != EXR_STORAGE_DEEP_SCANLINE && storage != EXR_STORAGE_DEEP_TILED,
+    "\"" + path + "\" is a deep picture. Flatten it first.");
   const std::uint64_t size = ReadableSize(path);
   for (const exr_attr_box2i_t& window : { windows.Data, windows.Display })
   {
@@ -439,10 +427,8 @@ std::vector<float> ReadExrPixels(const std::string& path, const ExrWindows& wind
   {
     Corrupt(path, "parts of the picture are missing");
   }
-  if (Imf::hasEnvmap(header) && Imf::envmap(header) == Imf::ENVMAP_CUBE)
-  {
-    throw InvalidInput("\"" + path + "\" is a cube map. Convert it to latitude-longitude, for example with exrenvmap.");
-  }
+  Require(!Imf::hasEnvmap(header) || Imf::envmap(header) != Imf::ENVMAP_CUBE,
+    "\"" + path + "\" is a cube map. Convert it to latitude-longitude, for example with exrenvmap.");
   const ExrChannels channels = FindChannels(path, header.channels());
   if (channels.Chroma)
   {

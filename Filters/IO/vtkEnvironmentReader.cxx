@@ -51,10 +51,7 @@ Kind KindOf(const std::string& path)
 /// error.
 Kind KindToRead(const char* path)
 {
-  if (path == nullptr || path[0] == '\0')
-  {
-    throw InvalidInput("No file: set FileName.");
-  }
+  tyndall::Require(path != nullptr && path[0] != '\0', "No file: set FileName.");
   const Kind kind = KindOf(path);
   const std::string text = path;
   const bool exr = text.size() > 4 && text.compare(text.size() - 4, 4, ".exr") == 0;

@@ -199,10 +199,8 @@ void vtkVDBReader::Internals::List(int file)
   this->File.reset();
   this->Summary.clear();
   this->ListedFile = file;
-  if (this->Files.empty() || this->Files[static_cast<std::size_t>(file)].empty())
-  {
-    throw InvalidInput("No file: set FileName.");
-  }
+  tyndall::Require(
+    !this->Files.empty() && !this->Files[static_cast<std::size_t>(file)].empty(), "No file: set FileName.");
   const std::string& path = this->Files[static_cast<std::size_t>(file)];
   this->File.reset(new VDBFile(path));
   this->Path = path;
@@ -341,10 +339,8 @@ void vtkVDBReader::Internals::CheckMemory(vtkIdType maximum) const
   const auto& extent = this->Image.Extent;
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (extent[2 * axis] < VTK_INT_MIN || extent[2 * axis + 1] > VTK_INT_MAX)
-    {
-      throw InvalidInput("The active voxels of \"" + this->Path + "\" reach further than VTK counts.");
-    }
+    tyndall::Require(extent[2 * axis] >= VTK_INT_MIN && extent[2 * axis + 1] <= VTK_INT_MAX,
+      "The active voxels of \"" + this->Path + "\" reach further than VTK counts.");
   }
   double image = 0.0, tree = 0.0;
   for (const VDBGrid* grid : this->Chosen)

@@ -218,10 +218,7 @@ void vtkVDBWriter::WriteData()
     this->SetErrorCode(vtkErrorCode::NoFileNameError);
     tyndall::OnAllRanks(this->Controller, [this] {
       tyndall::CheckProperties(this);
-      if (this->FileName == nullptr || this->FileName[0] == '\0')
-      {
-        throw InvalidInput("No file: set FileName.");
-      }
+      tyndall::Require(this->FileName != nullptr && this->FileName[0] != '\0', "No file: set FileName.");
     });
     this->SetErrorCode(vtkErrorCode::FileFormatError); // error code that remains if the file is not written
     vtkSmartPointer<vtkImageData> voxels;
@@ -240,11 +237,9 @@ void vtkVDBWriter::WriteData()
     tyndall::GatheredImage image(
       this->Controller, voxels, arrays, {}, tyndall::GatheredImage::On::FirstRank, "The image is not written");
     tyndall::OnAllRanks(this->Controller, [&] {
-      if (image.IsFirstRank() && (image.Frame() == nullptr || image.NumberOfCellArrays() == 0))
-      {
-        throw InvalidInput("\"" + std::string(this->FileName) + "\" is not written: the image has no " +
+      tyndall::Require(!image.IsFirstRank() || (image.Frame() != nullptr && image.NumberOfCellArrays() != 0),
+        "\"" + std::string(this->FileName) + "\" is not written: the image has no " +
           (image.Frame() ? "arrays." : "cells."));
-      }
     });
     const tyndall::VoxelOptions options{ this->Background, this->Tolerance, this->SaveAsHalf, image.HiddenCells() };
     const openvdb::GridPtrVec grids =

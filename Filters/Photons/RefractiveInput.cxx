@@ -31,10 +31,7 @@ std::vector<std::uint8_t> LevelsOf(vtkImageData* octree, vtkImageData* medium)
   }
   CheckSameVoxels(GridOf(octree), GridOf(medium), "The octree", "Make the octree of the same medium.");
   std::vector<std::uint8_t> levels = ReadLevels(octree);
-  if (levels.empty())
-  {
-    throw InvalidInput("The octree's image has no cell array 'octree_level'. Make it with RefractionOctree.");
-  }
+  Require(!levels.empty(), "The octree's image has no cell array 'octree_level'. Make it with RefractionOctree.");
   return levels;
 }
 

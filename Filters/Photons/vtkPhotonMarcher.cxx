@@ -66,17 +66,12 @@ bool IsOfLaterBatch(const tyndall::Photon& photon)
 tyndall::MarchSettings SettingsOf(vtkPhotonMarcher* filter, vtkImageData* medium, bool batches)
 {
   const bool published = filter->GetScheme() == vtkPhotonMarcher::PUBLISHED;
-  if (published && filter->GetMaximumOrders() != 1)
-  {
-    throw tyndall::InvalidInput("The published scheme follows photons to where they are first scattered. Choose the "
-                                "conservative scheme (Scheme 1), or MaximumOrders 1.");
-  }
-  if (published && filter->GetPhotonCounts())
-  {
-    throw tyndall::InvalidInput(
-      "The published scheme packs all that it keeps of a voxel into 64 bits, and does not count "
-      "photons. Choose the conservative scheme (Scheme 1), or switch PhotonCounts off.");
-  }
+  tyndall::Require(!published || filter->GetMaximumOrders() == 1,
+    "The published scheme follows photons to where they are first scattered. Choose the "
+    "conservative scheme (Scheme 1), or MaximumOrders 1.");
+  tyndall::Require(!published || !filter->GetPhotonCounts(),
+    "The published scheme packs all that it keeps of a voxel into 64 bits, and does not count "
+    "photons. Choose the conservative scheme (Scheme 1), or switch PhotonCounts off.");
   tyndall::MarchSettings settings;
   settings.order = published ? 1 : filter->GetIntegratorOrder();
   settings.stepSize = published ? 1.0 : filter->GetStepSize();

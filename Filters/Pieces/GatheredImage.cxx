@@ -287,11 +287,9 @@ GatheredImage::Piece GatheredImage::Describe(vtkImageData* piece) const
     {
       const std::string name = array->GetName() ? array->GetName() : "";
       own.Arrays[kind].push_back({ name, array->GetDataType(), array->GetNumberOfComponents() });
-      if (array->GetNumberOfTuples() != values)
-      {
-        throw InvalidInput("Array \"" + name + "\" has " + std::to_string(array->GetNumberOfTuples()) + " values for " +
+      Require(array->GetNumberOfTuples() == values,
+        "Array \"" + name + "\" has " + std::to_string(array->GetNumberOfTuples()) + " values for " +
           std::to_string(values) + " " + KindNames[kind] + "s. Leave it out.");
-      }
     }
   }
   return own;

@@ -264,13 +264,11 @@ vtkSmartPointer<vtkDataObject> FromOneRank(
   const auto first = std::find_if(summaries.begin(), summaries.end(), hasAny);
   const auto other = std::find_if(first + 1, summaries.end(),
     [&](const InputSummary& summary) { return summary.isThere && summary.key != first->key; });
-  if (other != summaries.end())
-  {
-    throw InvalidInput(named + " is different on ranks " + std::to_string(first - summaries.begin()) + " and " +
+  Require(other == summaries.end(),
+    named + " is different on ranks " + std::to_string(first - summaries.begin()) + " and " +
       std::to_string(other - summaries.begin()) +
       ". Light crosses the borders of pieces, so that every rank needs all of it: give all ranks the same, or one rank "
       "all and the others nothing.");
-  }
   const int from = static_cast<int>(first - summaries.begin());
   const bool mine = ranks->GetLocalProcessId() == from;
   const auto all = vtkSmartPointer<vtkDataObject>::Take(own->NewInstance());

@@ -137,12 +137,9 @@ void vtkLPMPropagate::Propagate(vtkInformationVector** inputs, vtkImageData* out
   tyndall::ParallelPropagation propagation(*device, input.medium, illumination, settings, 0, channels);
   if (unscattered.IsThere())
   {
-    if (propagation.Model().Channels() != channels)
-    {
-      throw tyndall::InvalidInput(
-        "Array 'unscattered' is grey, but the lights are coloured. Give LPMPropagate the same "
-        "lights in every order.");
-    }
+    tyndall::Require(propagation.Model().Channels() == channels,
+      "Array 'unscattered' is grey, but the lights are coloured. Give LPMPropagate the same "
+      "lights in every order.");
     const std::size_t values = input.medium.grid.VoxelCount() * static_cast<std::size_t>(unscattered.Components());
     propagation.SetSource({ unscattered.Values(), unscattered.Values() + values });
   }

@@ -213,16 +213,11 @@ std::optional<tyndall::ReferenceLight> ReadReference(vtkImageData* image)
   tyndall::StopIfUpstreamFailed(image);
   const tyndall::FloatField fluence = tyndall::ReadCells(image, "fluence", tyndall::Need::Optional);
   const tyndall::FloatField direct = tyndall::ReadCells(image, "fluence_direct", tyndall::Need::Optional);
-  if (!fluence.IsThere() && !direct.IsThere())
-  {
-    throw tyndall::InvalidInput("The reference has neither an array 'fluence' nor 'fluence_direct'. Its cell arrays: " +
+  tyndall::Require(fluence.IsThere() || direct.IsThere(),
+    "The reference has neither an array 'fluence' nor 'fluence_direct'. Its cell arrays: " +
       tyndall::NamesOf(image->GetAttributes(vtkDataObject::CELL)) + ". Connect light of a solver, or no reference.");
-  }
-  if (fluence.IsThere() && direct.IsThere() && fluence.Components() != direct.Components())
-  {
-    throw tyndall::InvalidInput(
-      "The reference's 'fluence' and 'fluence_direct' must have as many components as each other.");
-  }
+  tyndall::Require(!fluence.IsThere() || !direct.IsThere() || fluence.Components() == direct.Components(),
+    "The reference's 'fluence' and 'fluence_direct' must have as many components as each other.");
   tyndall::ReferenceLight reference;
   reference.grid = tyndall::GridOf(image);
   reference.channels = (fluence.IsThere() ? fluence : direct).Components();

@@ -109,11 +109,9 @@ void CheckNumbers(vtkPolyData* mesh, const std::string& name, const std::string&
     throw InvalidInput(which + " has " + std::to_string(numbers->GetNumberOfComponents()) +
       " components; the numbers of materials must have 1.");
   }
-  if (numbers->GetNumberOfTuples() != mesh->GetNumberOfCells())
-  {
-    throw InvalidInput(which + " has " + std::to_string(numbers->GetNumberOfTuples()) + " values where the mesh has " +
+  Require(numbers->GetNumberOfTuples() == mesh->GetNumberOfCells(),
+    which + " has " + std::to_string(numbers->GetNumberOfTuples()) + " values where the mesh has " +
       std::to_string(mesh->GetNumberOfCells()) + " cells.");
-  }
   for (vtkIdType cell = mesh->GetNumberOfVerts() + mesh->GetNumberOfLines(); cell < mesh->GetNumberOfCells(); ++cell)
   {
     const double number = numbers->GetComponent(cell, 0);

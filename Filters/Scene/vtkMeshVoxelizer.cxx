@@ -60,12 +60,9 @@ std::string NumbersArray(vtkMeshVoxelizer* filter, const std::vector<vtkPolyData
       "The numbers of materials are to be '" + name + "' of points; they must be an array of cells.");
   }
   const auto hasIt = [&](vtkPolyData* mesh) { return mesh->GetCellData()->HasArray(name.c_str()) != 0; };
-  if (name != DefaultNumbers && !meshes.empty() && std::none_of(meshes.begin(), meshes.end(), hasIt))
-  {
-    throw tyndall::InvalidInput((meshes.size() == 1 ? "The mesh has" : "The meshes have") +
-      std::string(" no cell array '") + name +
+  tyndall::Require(name == DefaultNumbers || meshes.empty() || !std::none_of(meshes.begin(), meshes.end(), hasIt),
+    (meshes.size() == 1 ? "The mesh has" : "The meshes have") + std::string(" no cell array '") + name +
       "' with numbers of materials. Cell arrays: " + tyndall::NamesOf(meshes.front()->GetCellData()) + ".");
-  }
   return name;
 }
 

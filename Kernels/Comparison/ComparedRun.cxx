@@ -98,10 +98,7 @@ void CheckRange(const std::vector<Number>& values, const char* name, double leas
 
 void CheckList(const std::vector<int>& values, const char* name, int most = 1 << 30)
 {
-  if (values.empty())
-  {
-    throw InvalidInput(std::string(name) + " is empty: there is nothing to try. Give at least one number.");
-  }
+  Require(!values.empty(), std::string(name) + " is empty: there is nothing to try. Give at least one number.");
   CheckRange(values, name, 1, most);
 }
 
@@ -140,10 +137,7 @@ void Check(const ComparedSettings& settings)
       throw InvalidInput("FilterSizes has " + std::to_string(size) + "; the width of a filter must be an odd number.");
     }
   }
-  if (settings.samplers.empty())
-  {
-    throw InvalidInput("There is no sampler to try photons by.");
-  }
+  Require(!settings.samplers.empty(), "There is no sampler to try photons by.");
   const int reference = static_cast<int>(settings.monteCarloReference);
   if (reference < 0 || reference > 2)
   {

@@ -131,11 +131,9 @@ VoxelizedMaterials MaterialsOf(const Medium& medium, const Field& ior, const Fie
 {
   const std::vector<std::size_t> inside = VoxelsWith(1.0f, medium.grid, occupancy),
                                  outside = VoxelsWith(0.0f, medium.grid, occupancy);
-  if (inside.empty() || outside.empty())
-  {
-    throw InvalidInput("No voxel of the medium is entirely inside, or none is entirely outside the Mesh, so that its "
-                       "material is not known. Use smaller voxels.");
-  }
+  Require(!inside.empty() && !outside.empty(),
+    "No voxel of the medium is entirely inside, or none is entirely outside the Mesh, so that its "
+    "material is not known. Use smaller voxels.");
   VoxelizedMaterials materials = { { "The mesh", std::move(mesh), MaterialIn(medium, inside) },
     MaterialIn(medium, outside) };
   CheckClosed(materials.inside.mesh, materials.inside.name, medium.grid, VoxelizationSettings().samples);

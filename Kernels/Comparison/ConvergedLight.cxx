@@ -130,10 +130,7 @@ ReferenceLight ByPhotonsAlways(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
   const std::string whyNot = scene.WhyNotByPhotons(true);
-  if (!whyNot.empty())
-  {
-    throw InvalidInput("MonteCarloReference cannot be made: " + whyNot + ". Switch it off, or connect a reference.");
-  }
+  Require(whyNot.empty(), "MonteCarloReference cannot be made: " + whyNot + ". Switch it off, or connect a reference.");
   return ReferenceOfPhotons(device, scene, settings, LargestOf(settings.photonCounts), seconds, nullptr, monitor);
 }
 

@@ -54,12 +54,10 @@ public:
     , IsThere(!reference.fluence.empty() || !reference.fluenceDirect.empty())
   {
     const std::optional<Factors> fromReference = FactorsBetween(reference.grid, scene);
-    if (!this->ToReference && !fromReference)
-    {
-      throw InvalidInput("The reference has " + SizeOf(reference.grid) + " voxels, the medium " + SizeOf(scene) +
+    Require(this->ToReference || fromReference,
+      "The reference has " + SizeOf(reference.grid) + " voxels, the medium " + SizeOf(scene) +
         ". They must fill the same box, with a whole number of voxels of one in each of the other. Resample the "
         "reference.");
-    }
     this->Fluence = this->AsCompared(reference.fluence, fromReference);
     this->FluenceDirect = this->AsCompared(reference.fluenceDirect, fromReference);
   }
@@ -414,28 +412,14 @@ bool Compares(const ComparisonSettings& settings, ComparedMethod method)
 void Check(const ComparisonSettings& settings, const ComparedScene& scene)
 {
   Check(settings.tried);
-  if (settings.methods.empty())
-  {
-    throw InvalidInput("No method is chosen. Switch on at least one.");
-  }
-  if (settings.repeats < 1 || !(settings.timeBudget > 0.0))
-  {
-    throw InvalidInput("Repeats must be at least 1, TimeBudget above 0 s.");
-  }
-  if (!(settings.acceptedError > 0.0))
-  {
-    throw InvalidInput("AcceptedError must be above 0.");
-  }
-  if (Compares(settings, ComparedMethod::Pictures) && !scene.camera)
-  {
-    throw InvalidInput(
-      "Pictures are compared, but there is no camera: CameraPosition and CameraFocalPoint are the same "
-      "point. Set them (the button Take Camera does), or switch Pictures off.");
-  }
-  if (Compares(settings, ComparedMethod::Voxelizer) && !scene.mesh)
-  {
-    throw InvalidInput("Voxelisations are compared, but there is no mesh.");
-  }
+  Require(!settings.methods.empty(), "No method is chosen. Switch on at least one.");
+  Require(settings.repeats >= 1 && settings.timeBudget > 0.0, "Repeats must be at least 1, TimeBudget above 0 s.");
+  Require(settings.acceptedError > 0.0, "AcceptedError must be above 0.");
+  Require(!Compares(settings, ComparedMethod::Pictures) || scene.camera,
+    "Pictures are compared, but there is no camera: CameraPosition and CameraFocalPoint are the same "
+    "point. Set them (the button Take Camera does), or switch Pictures off.");
+  Require(
+    !Compares(settings, ComparedMethod::Voxelizer) || scene.mesh, "Voxelisations are compared, but there is no mesh.");
 }
 
 /// Settings of the runs, with the reference that the compared methods need.

@@ -102,11 +102,9 @@ LightField SolveOrdinatesToTarget(Device& device, const SceneBlock& scene, const
   double target, const Monitor& monitor, KeptLight* kept)
 {
   RefuseAsPublished(IsPublished(settings), "TargetError");
-  if (settings.spiralDirections > 0)
-  {
-    throw InvalidInput("TargetError chooses the number of directions per face of a cube, and SpiralDirections is " +
+  Require(settings.spiralDirections <= 0,
+    "TargetError chooses the number of directions per face of a cube, and SpiralDirections is " +
       std::to_string(settings.spiralDirections) + ". Set TargetError or SpiralDirections to 0.");
-  }
   const int most = settings.scattering == OrdinatesScattering::SphericalHarmonics ? MostDirections : MostWithMatrix;
   SpatialScheme scheme(device, scene, settings);
   scheme.orders.mostDirections = DirectionsThatFit(scene.domain, most, MemoryOf(device));

@@ -70,11 +70,9 @@ Outcome Try(const std::function<void()>& work)
 
 void RequireAsMany(std::size_t found, std::size_t expected)
 {
-  if (found != expected)
-  {
-    throw InvalidInput("Ranks do not have as many values to add up as each other: something that they were given "
-                       "differs. Give all ranks the same properties.");
-  }
+  Require(found == expected,
+    "Ranks do not have as many values to add up as each other: something that they were given "
+    "differs. Give all ranks the same properties.");
 }
 
 [[noreturn]] void Throw(Trouble trouble, const std::string& words)

@@ -67,11 +67,9 @@ void EstimateDiffusionError(Device& device, const SceneBlock& scene, const Latti
   const bool refracts = domain.Any(!domain.IsEmpty() && scene.index.values != nullptr);
   const bool areCubes = HasCubicVoxels(blocks.Coarse().whole);
   domain.Collective([&] {
-    if (refracts && !areCubes)
-    {
-      throw InvalidInput("The error of a lattice with a refractive index is estimated on a grid of half the voxels, "
-                         "which have to be cubes. Give the medium an even number of voxels along each axis.");
-    }
+    Require(!refracts || areCubes,
+      "The error of a lattice with a refractive index is estimated on a grid of half the voxels, "
+      "which have to be cubes. Give the medium an even number of voxels along each axis.");
   });
   const SceneBlock solved = coarse.Scene();
   const std::vector<float> maps = SolveConservative(

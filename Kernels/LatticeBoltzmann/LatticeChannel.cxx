@@ -98,12 +98,9 @@ double Settling::Change()
     all += std::abs(now[i]);
   }
   this->Last = now;
-  if (!std::isfinite(all))
-  {
-    throw InvalidInput(
-      "Steps as published have grown beyond all floats: sigma_t times a voxel's edge is above 1. Choose "
-      "the conservative scheme, or smaller voxels.");
-  }
+  Require(std::isfinite(all),
+    "Steps as published have grown beyond all floats: sigma_t times a voxel's edge is above 1. Choose "
+    "the conservative scheme, or smaller voxels.");
   return all > 0.0 ? changed / all : 0.0;
 }
 

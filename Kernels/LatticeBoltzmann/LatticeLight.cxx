@@ -86,11 +86,9 @@ bool NeedsFirstMoments(const Medium& medium, const LatticeSettings& settings)
 
 void RequireOpenAxes(const LatticeSettings& settings)
 {
-  if (settings.periodic[0] || settings.periodic[1] || settings.periodic[2])
-  {
-    throw InvalidInput("Photons do not come back across periodic axes. Switch PeriodicX, PeriodicY and PeriodicZ off, "
-                       "or light the lattice by lights.");
-  }
+  Require(!settings.periodic[0] && !settings.periodic[1] && !settings.periodic[2],
+    "Photons do not come back across periodic axes. Switch PeriodicX, PeriodicY and PeriodicZ off, "
+    "or light the lattice by lights.");
 }
 
 std::array<Rgb, 6> EscapedByChannel(const LightField& light)

@@ -232,11 +232,9 @@ Environment Turned(const Environment& environment, const Rotation& rotation)
     for (int b = 0; b < 3; ++b)
     {
       const double product = Product(rotation, rotation[a])[b];
-      if (!(std::abs(product - (a == b ? 1.0 : 0.0)) < 1e-6))
-      {
-        throw InvalidInput("An environment is turned by an orthogonal matrix: rows of length 1 that stand at right "
-                           "angles to each other.");
-      }
+      Require(std::abs(product - (a == b ? 1.0 : 0.0)) < 1e-6,
+        "An environment is turned by an orthogonal matrix: rows of length 1 that stand at right "
+        "angles to each other.");
     }
   }
   Environment turned = environment;
@@ -249,10 +247,8 @@ Environment Turned(const Environment& environment, const Rotation& rotation)
 
 Environment Turned(const Environment& environment, int up, double degrees)
 {
-  if (up < 0 || up > 2 || !std::isfinite(degrees))
-  {
-    throw InvalidInput("An environment stands up along axis 0, 1 or 2 (x, y, z) and is turned by a finite angle.");
-  }
+  Require(up >= 0 && up <= 2 && std::isfinite(degrees),
+    "An environment stands up along axis 0, 1 or 2 (x, y, z) and is turned by a finite angle.");
   Rotation stands = {}; // rotation that maps the picture's +z to axis `up` of the scene
   stands[up][2] = stands[(up + 1) % 3][0] = stands[(up + 2) % 3][1] = 1.0;
   return Turned(Turned(environment, AboutZ(degrees)), stands);
@@ -271,14 +267,9 @@ void CheckLight(const Light& light, std::size_t number)
   const std::string name = "Light " + std::to_string(number);
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (!std::isfinite(light.position[axis]) || !std::isfinite(light.direction[axis]))
-    {
-      throw InvalidInput(name + " has a position or direction that is not finite.");
-    }
-    if (!IsUsable(light.power[axis]))
-    {
-      throw InvalidInput(name + " has power " + Refusal(light.power[axis]));
-    }
+    Require(std::isfinite(light.position[axis]) && std::isfinite(light.direction[axis]),
+      name + " has a position or direction that is not finite.");
+    Require(IsUsable(light.power[axis]), name + " has power " + Refusal(light.power[axis]));
   }
   if (light.type != LightType::Point && Unit(light.direction) == glm::dvec3(0.0))
   {
@@ -343,13 +334,11 @@ void CheckFaceAlbedo(const Illumination& illumination, const std::array<bool, 3>
   for (std::size_t face = 0; face < 6; ++face)
   {
     const Rgb& albedo = illumination.faceAlbedo[face];
-    if (periodic[face / 2] && !IsBlack(albedo))
-    {
-      throw InvalidInput("FaceAlbedo of face " + FaceName(face) + " is (" + Text("%g", albedo[0]) + ", " +
-        Text("%g", albedo[1]) + ", " + Text("%g", albedo[2]) +
+    Require(!periodic[face / 2] || IsBlack(albedo),
+      "FaceAlbedo of face " + FaceName(face) + " is (" + Text("%g", albedo[0]) + ", " + Text("%g", albedo[1]) + ", " +
+        Text("%g", albedo[2]) +
         "), but its axis is periodic: what leaves there comes in on the other side. Give that face albedo 0, or switch "
         "off Periodic of the axis.");
-    }
   }
 }
 
@@ -363,10 +352,8 @@ void Check(const Illumination& illumination)
   {
     for (std::size_t face = 0; face < 6; ++face)
     {
-      if (!IsUsable(illumination.faces[face][c]))
-      {
-        throw InvalidInput("FaceRadiance of face " + FaceName(face) + " is " + Refusal(illumination.faces[face][c]));
-      }
+      Require(IsUsable(illumination.faces[face][c]),
+        "FaceRadiance of face " + FaceName(face) + " is " + Refusal(illumination.faces[face][c]));
       if (!(illumination.faceAlbedo[face][c] >= 0.0 && illumination.faceAlbedo[face][c] <= 1.0))
       {
         throw InvalidInput("FaceAlbedo of face " + FaceName(face) + " is " +
@@ -374,10 +361,7 @@ void Check(const Illumination& illumination)
           "; it must be from 0 to 1: the part of what leaves through the face that comes back.");
       }
     }
-    if (!IsUsable(illumination.sky[c]))
-    {
-      throw InvalidInput("The sky's radiance (SkyColor) is " + Refusal(illumination.sky[c]));
-    }
+    Require(IsUsable(illumination.sky[c]), "The sky's radiance (SkyColor) is " + Refusal(illumination.sky[c]));
   }
   const Environment& environment = illumination.environment;
   for (std::size_t i = 0; i < environment.radiance.size(); ++i)

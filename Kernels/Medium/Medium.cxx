@@ -138,12 +138,10 @@ void Check(const Grid& grid)
     }
   }
   const auto [shortest, longest] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
-  if (*longest > MostUnequal * *shortest)
-  {
-    throw InvalidInput("The grid's spacing is " + Text("%.3g", grid.spacing[0]) + ", " + Text("%.3g", grid.spacing[1]) +
-      ", " + Text("%.3g", grid.spacing[2]) + ": one is more than " + Text("%.3g", MostUnequal) +
+  Require(!(*longest > MostUnequal * *shortest),
+    "The grid's spacing is " + Text("%.3g", grid.spacing[0]) + ", " + Text("%.3g", grid.spacing[1]) + ", " +
+      Text("%.3g", grid.spacing[2]) + ": one is more than " + Text("%.3g", MostUnequal) +
       " times another, which floats cannot follow rays through. Resample to voxels of more equal edges.");
-  }
 }
 
 namespace

@@ -314,11 +314,9 @@ PhaseFunction PhaseFunction::Tabulated(std::vector<double> cosines, std::vector<
       row == 0 ? 0.0 : Pi * (table.values[row] + table.values[row - 1]) * (table.cosines[row] - table.cosines[row - 1]);
     table.below.push_back(sum);
   }
-  if (!(sum > 0.0))
-  {
-    throw InvalidInput("The table of a phase function does not integrate: all of its " +
-      std::to_string(table.values.size()) + " values are zero.");
-  }
+  Require(sum > 0.0,
+    "The table of a phase function does not integrate: all of its " + std::to_string(table.values.size()) +
+      " values are zero.");
   for (std::size_t row = 0; row < table.cosines.size(); ++row)
   {
     table.values[row] /= sum;

@@ -326,11 +326,8 @@ const char* NameOf(Estimator estimator)
 
 void RequireArray(const float* values, Estimator estimator, const char* what, const char* advice)
 {
-  if (!values)
-  {
-    throw InvalidInput(
-      "There is no " + std::string(what) + ", which the " + NameOf(estimator) + " estimator needs. " + advice);
-  }
+  Require(
+    values, "There is no " + std::string(what) + ", which the " + NameOf(estimator) + " estimator needs. " + advice);
 }
 
 /// Checks the settings.

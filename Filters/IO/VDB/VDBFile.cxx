@@ -64,15 +64,10 @@ const VDBGrid* VDBFile::Find(const std::string& name) const
 
 void VDBFile::ReadHeader()
 {
-  if (this->FileSize == 0)
-  {
-    throw InvalidInput("\"" + this->FilePath + "\" is empty. Copy or write the file again.");
-  }
+  Require(this->FileSize != 0, "\"" + this->FilePath + "\" is empty. Copy or write the file again.");
   VDBBytes bytes(this->FilePath, this->FileSize);
-  if (this->FileSize < sizeof(std::int64_t) || bytes.Value<std::int64_t>("the header") != openvdb::OPENVDB_MAGIC)
-  {
-    throw InvalidInput("\"" + this->FilePath + "\" is not an OpenVDB file: it does not begin as one.");
-  }
+  Require(this->FileSize >= sizeof(std::int64_t) && bytes.Value<std::int64_t>("the header") == openvdb::OPENVDB_MAGIC,
+    "\"" + this->FilePath + "\" is not an OpenVDB file: it does not begin as one.");
   this->FormatVersion = bytes.Value<std::uint32_t>("the header");
   if (this->FormatVersion < OldestFormat || this->FormatVersion > NewestFormat)
   {
@@ -82,11 +77,9 @@ void VDBFile::ReadHeader()
   }
   this->LibraryVersion.first = bytes.Value<std::uint32_t>("the header");
   this->LibraryVersion.second = bytes.Value<std::uint32_t>("the header");
-  if (bytes.Value<std::uint8_t>("the header") != 1)
-  {
-    throw InvalidInput("\"" + this->FilePath +
+  Require(bytes.Value<std::uint8_t>("the header") == 1,
+    "\"" + this->FilePath +
       "\" was written as a stream, without the places of its grids. Write it again with OpenVDB's io::File.");
-  }
   bytes.Skip(36, "the header"); // skips the UUID of the file
   this->FileMetadata = ReadMetadata(bytes);
   this->FirstDescriptor = bytes.Position();
@@ -259,10 +252,7 @@ openvdb::GridBase::Ptr VDBFile::Read(const VDBGrid& grid, const openvdb::CoordBB
     throw InvalidInput("\"" + this->FilePath + "\" is corrupt: the values of grid \"" + grid.Name +
       "\" cannot be read (" + error.what() + "). Copy or write the file again.");
   }
-  if (!stream)
-  {
-    throw InvalidInput("\"" + this->FilePath + "\" changed or could not be read while it was loaded. Try again.");
-  }
+  Require(!stream.fail(), "\"" + this->FilePath + "\" changed or could not be read while it was loaded. Try again.");
   return loaded;
 }
 

@@ -252,10 +252,8 @@ VDBPlacement PlacementOf(vtkImageData* image)
   {
     centre[row] = CentreOfFirstVoxel(origin[row], steps, row);
     matrix(3, row) = centre[row];
-    if (!std::isfinite(centre[row]) || !(spacing[row] > 0.0) || !std::isfinite(spacing[row]))
-    {
-      throw InvalidInput("The image's spacing must not be 0, and its spacing and origin must be finite.");
-    }
+    Require(std::isfinite(centre[row]) && spacing[row] > 0.0 && std::isfinite(spacing[row]),
+      "The image's spacing must not be 0, and its spacing and origin must be finite.");
   }
   openvdb::math::MapBase::Ptr map;
   if (aligned)

@@ -185,12 +185,10 @@ void WriteErrorOfCosines(LightField& light, const LightField& few)
 
 void RefuseAsPublished(bool published, const std::string& property)
 {
-  if (published)
-  {
-    throw InvalidInput(property +
+  Require(!published,
+    property +
       " is for the conservative scheme: as published the error need not fall with voxels and directions. Set " +
       property + " to 0, or Scheme to conservative.");
-  }
 }
 
 ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, const std::vector<float>& same,

@@ -117,16 +117,12 @@ void RequireSink(
     {
       closed = closed && (periodic[face / 2] || illumination.faceAlbedo[face][c] >= 1.0);
     }
-    if (closed && anyFace && any[c] == 0.0)
-    {
-      throw InvalidInput("Every face gives back all light (FaceAlbedo 1) and the medium absorbs none: light would grow "
-                         "without end. Give a face an albedo below 1, or the medium some sigma_a.");
-    }
-    if (!anyFace && any[c] == 0.0 && any[3 + c] > 0.0 && settings.maximumOrders == 0)
-    {
-      throw InvalidInput("All three axes are periodic and the medium absorbs no light: what begins in it would grow "
-                         "without end. Leave an axis open, give the medium some sigma_a, or set MaximumOrders.");
-    }
+    Require(!closed || !anyFace || any[c] != 0.0,
+      "Every face gives back all light (FaceAlbedo 1) and the medium absorbs none: light would grow "
+      "without end. Give a face an albedo below 1, or the medium some sigma_a.");
+    Require(anyFace || any[c] != 0.0 || any[3 + c] <= 0.0 || settings.maximumOrders != 0,
+      "All three axes are periodic and the medium absorbs no light: what begins in it would grow "
+      "without end. Leave an axis open, give the medium some sigma_a, or set MaximumOrders.");
   }
 }
 

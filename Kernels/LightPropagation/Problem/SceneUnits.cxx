@@ -140,12 +140,10 @@ void CheckBrightness(const Grid& grid, const AllThatShines& all)
 {
   const double shortest = *std::min_element(grid.spacing.begin(), grid.spacing.end());
   const double fluence = all.power / shortest / shortest; // all power through a voxel's smallest face
-  if (all.power > 0.0 && fluence < std::numeric_limits<float>::min())
-  {
-    throw InvalidInput("No voxel's fluence is above " + Text("%.5g", fluence) +
+  Require(!(all.power > 0.0) || !(fluence < std::numeric_limits<float>::min()),
+    "No voxel's fluence is above " + Text("%.5g", fluence) +
       " W/length^2, which is less than a float holds. Give lights, sky and emission more power, or put lamps nearer: "
       "light is in proportion to it.");
-  }
 }
 
 SceneInUnits::SceneInUnits(const Medium& inWatts, const Illumination& shining, double unit)

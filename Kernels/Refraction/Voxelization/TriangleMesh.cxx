@@ -252,11 +252,9 @@ MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, cons
   {
     throw InvalidInput(name + " cannot be used. " + error.what());
   }
-  if (topology.degenerateTriangles == mesh.triangles.size())
-  {
-    throw InvalidInput(name + " has no volume: " + Counted(mesh.triangles.size(), "triangle") +
-      ", all without area (degenerate), and " + Counted(topology.boundaryEdges, "boundary edge") + ".");
-  }
+  Require(topology.degenerateTriangles != mesh.triangles.size(),
+    name + " has no volume: " + Counted(mesh.triangles.size(), "triangle") + ", all without area (degenerate), and " +
+      Counted(topology.boundaryEdges, "boundary edge") + ".");
   if (topology.boundaryEdges > 0 && !SampleLattice(grid, samples, { &mesh }).Closes(mesh))
   {
     throw InvalidInput(name + " is open: it has " + Counted(topology.boundaryEdges, "boundary edge") +
