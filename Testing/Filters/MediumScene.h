@@ -108,4 +108,18 @@ inline bool HasDevice()
   maps->Update();
   return errors.None();
 }
+
+/// Runs a test that needs an OpenCL device.
+/// @return what the test returns: skipped (SkippedWithoutDevice) if the solver does not run
+template <class Test>
+int WithDevice(const Test& test)
+{
+  if (!HasDevice())
+  {
+    return SkippedWithoutDevice("LightPropagationMaps gave an error");
+  }
+  Claims claims;
+  test(claims);
+  return claims.Result();
+}
 }

@@ -213,16 +213,12 @@ void LightThatMeansNothingIsRefused(test::Claims& claims)
 
 int TestAdaptiveBadInput(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing was solved");
-  }
-  test::Claims claims;
-  AMapThatMeansNothingIsRefused(claims);
-  SettingsThatMeanNothingAreRefused(claims);
-  PhotonsThatMeanNothingAreRefused(claims);
-  AllPhotonsInOneLineOfVoxelsGiveLight(claims);
-  NoPhotonsGiveNoLight(claims);
-  LightThatMeansNothingIsRefused(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    AMapThatMeansNothingIsRefused(claims);
+    SettingsThatMeanNothingAreRefused(claims);
+    PhotonsThatMeanNothingAreRefused(claims);
+    AllPhotonsInOneLineOfVoxelsGiveLight(claims);
+    NoPhotonsGiveNoLight(claims);
+    LightThatMeansNothingIsRefused(claims);
+  });
 }

@@ -423,67 +423,63 @@ void ChoicesGoWithTheLight(test::Claims& claims)
 
 int TestArraysArePassedOn(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing was solved");
-  }
-  test::Claims claims;
-  ShallowCopiesOutliveTheirFilter(claims);
-  PointsAreVoxelsOfAllFilters(claims);
-  AxesAreTakenAsTheyGo(claims);
-  TellsWhatItIgnores<vtkLightPropagationMaps>(claims, false, vtkLightPropagationMaps::CONSERVATIVE);
-  TellsWhatItIgnores<vtkDiscreteOrdinates>(claims, false, vtkDiscreteOrdinates::CONSERVATIVE);
-  TellsWhatItIgnores<vtkLatticeBoltzmannLighting>(claims, true, vtkLatticeBoltzmannLighting::CONSERVATIVE);
-  TellsWhatItIgnores<vtkLatticeBoltzmannLighting>(
-    claims, false, vtkLatticeBoltzmannLighting::PUBLISHED, { vtkLatticeBoltzmannLighting::WHOLE });
-  PhotonsTellOfEmission(claims);
-  ChoicesGoWithTheLight(claims);
-  for (const char* active : CellNames)
-  {
-    vtkNew<vtkRefractionOctree> octree;
-    Check(claims, octree, active);
-    claims.That(std::string(octree->GetOutput()->GetCellData()->GetScalars()->GetName()) == "octree_level",
-      "octree_level is the active array");
-
-    vtkNew<vtkParticipatingMedium> density;
-    density->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "occupancy");
-    Check(claims, density, active);
-
-    vtkNew<vtkPhotonEmitter> emitter;
-    emitter->SetInputDataObject(Medium(active));
-    emitter->SetSkyColor(1.0, 1.0, 1.0);
-    emitter->SetPhotonCount(10);
-    vtkNew<vtkPhotonMarcher> marcher;
-    marcher->SetPhotonsConnection(emitter->GetOutputPort());
-    Check(claims, marcher, active);
-
-    vtkNew<vtkPhotonReconstruction> reconstruction;
-    reconstruction->SetScheme(vtkPhotonReconstruction::CONSTANT_RADIUS);
-    reconstruction->SetInputConnection(marcher->GetOutputPort());
-    reconstruction->Update();
-    for (const char* name : CellNames)
+  return test::WithDevice([&](test::Claims& claims) {
+    ShallowCopiesOutliveTheirFilter(claims);
+    PointsAreVoxelsOfAllFilters(claims);
+    AxesAreTakenAsTheyGo(claims);
+    TellsWhatItIgnores<vtkLightPropagationMaps>(claims, false, vtkLightPropagationMaps::CONSERVATIVE);
+    TellsWhatItIgnores<vtkDiscreteOrdinates>(claims, false, vtkDiscreteOrdinates::CONSERVATIVE);
+    TellsWhatItIgnores<vtkLatticeBoltzmannLighting>(claims, true, vtkLatticeBoltzmannLighting::CONSERVATIVE);
+    TellsWhatItIgnores<vtkLatticeBoltzmannLighting>(
+      claims, false, vtkLatticeBoltzmannLighting::PUBLISHED, { vtkLatticeBoltzmannLighting::WHOLE });
+    PhotonsTellOfEmission(claims);
+    ChoicesGoWithTheLight(claims);
+    for (const char* active : CellNames)
     {
-      claims.That(reconstruction->GetOutput()->GetCellData()->HasArray(name),
-        std::string(name) + " goes through vtkPhotonReconstruction where " + active + " is active");
+      vtkNew<vtkRefractionOctree> octree;
+      Check(claims, octree, active);
+      claims.That(std::string(octree->GetOutput()->GetCellData()->GetScalars()->GetName()) == "octree_level",
+        "octree_level is the active array");
+
+      vtkNew<vtkParticipatingMedium> density;
+      density->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "occupancy");
+      Check(claims, density, active);
+
+      vtkNew<vtkPhotonEmitter> emitter;
+      emitter->SetInputDataObject(Medium(active));
+      emitter->SetSkyColor(1.0, 1.0, 1.0);
+      emitter->SetPhotonCount(10);
+      vtkNew<vtkPhotonMarcher> marcher;
+      marcher->SetPhotonsConnection(emitter->GetOutputPort());
+      Check(claims, marcher, active);
+
+      vtkNew<vtkPhotonReconstruction> reconstruction;
+      reconstruction->SetScheme(vtkPhotonReconstruction::CONSTANT_RADIUS);
+      reconstruction->SetInputConnection(marcher->GetOutputPort());
+      reconstruction->Update();
+      for (const char* name : CellNames)
+      {
+        claims.That(reconstruction->GetOutput()->GetCellData()->HasArray(name),
+          std::string(name) + " goes through vtkPhotonReconstruction where " + active + " is active");
+      }
+
+      vtkNew<vtkLightPropagationMaps> maps;
+      maps->SetSkyColor(1.0, 1.0, 1.0);
+      Check(claims, maps, active, IndexIgnored);
+
+      vtkNew<vtkLPMPropagate> propagate;
+      propagate->SetSkyColor(1.0, 1.0, 1.0);
+      Check(claims, propagate, active, IndexIgnored);
+
+      vtkNew<vtkLPMCollect> collect;
+      propagate->Update();
+      collect->SetInputConnection(propagate->GetOutputPort());
+      collect->Update();
+      for (const char* name : CellNames)
+      {
+        auto* collected = vtkImageData::SafeDownCast(collect->GetOutputDataObject(0));
+        claims.That(collected->GetCellData()->HasArray(name), std::string(name) + " goes through vtkLPMCollect");
+      }
     }
-
-    vtkNew<vtkLightPropagationMaps> maps;
-    maps->SetSkyColor(1.0, 1.0, 1.0);
-    Check(claims, maps, active, IndexIgnored);
-
-    vtkNew<vtkLPMPropagate> propagate;
-    propagate->SetSkyColor(1.0, 1.0, 1.0);
-    Check(claims, propagate, active, IndexIgnored);
-
-    vtkNew<vtkLPMCollect> collect;
-    propagate->Update();
-    collect->SetInputConnection(propagate->GetOutputPort());
-    collect->Update();
-    for (const char* name : CellNames)
-    {
-      auto* collected = vtkImageData::SafeDownCast(collect->GetOutputDataObject(0));
-      claims.That(collected->GetCellData()->HasArray(name), std::string(name) + " goes through vtkLPMCollect");
-    }
-  }
-  return claims.Result();
+  });
 }

@@ -73,42 +73,38 @@ Outcome RunChain(int number, int stopAt = 0)
 /// Threads with filters of their own get the light that one gets, each time, though some are stopped halfway.
 int TestChainsInThreads(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  std::vector<Outcome> expected;
-  for (int t = 0; t < Threads; ++t)
-  {
-    expected.push_back(RunChain(t));
-    claims.That(expected[t].quiet && expected[t].fluence.size() == 30u * (4 + t), "one thread gets light");
-  }
-  std::atomic<int> here{ 0 }, different{ 0 }, loud{ 0 };
-  std::vector<std::thread> threads;
-  for (int t = 0; t < Threads; ++t)
-  {
-    threads.emplace_back([&, t] {
-      for (++here; here < Threads;)
-      {
-        std::this_thread::yield(); // until all are there
-      }
-      for (int i = 0; i < Chains; ++i)
-      {
-        loud += RunChain(t, 1 + i % 7).quiet ? 0 : 1;
-        different += RunChain(t) == expected[t] ? 0 : 1;
-      }
-    });
-  }
-  for (std::thread& thread : threads)
-  {
-    thread.join();
-  }
-  claims.That(different == 0, std::to_string(different) + " of 200 chains gave other light");
-  claims.That(loud == 0, std::to_string(loud) + " of 200 chains that were stopped gave an error");
-  for (int t = 0; t < Threads; ++t)
-  {
-    claims.That(RunChain(t) == expected[t], "one thread gets the same light afterwards");
-  }
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    std::vector<Outcome> expected;
+    for (int t = 0; t < Threads; ++t)
+    {
+      expected.push_back(RunChain(t));
+      claims.That(expected[t].quiet && expected[t].fluence.size() == 30u * (4 + t), "one thread gets light");
+    }
+    std::atomic<int> here{ 0 }, different{ 0 }, loud{ 0 };
+    std::vector<std::thread> threads;
+    for (int t = 0; t < Threads; ++t)
+    {
+      threads.emplace_back([&, t] {
+        for (++here; here < Threads;)
+        {
+          std::this_thread::yield(); // until all are there
+        }
+        for (int i = 0; i < Chains; ++i)
+        {
+          loud += RunChain(t, 1 + i % 7).quiet ? 0 : 1;
+          different += RunChain(t) == expected[t] ? 0 : 1;
+        }
+      });
+    }
+    for (std::thread& thread : threads)
+    {
+      thread.join();
+    }
+    claims.That(different == 0, std::to_string(different) + " of 200 chains gave other light");
+    claims.That(loud == 0, std::to_string(loud) + " of 200 chains that were stopped gave an error");
+    for (int t = 0; t < Threads; ++t)
+    {
+      claims.That(RunChain(t) == expected[t], "one thread gets the same light afterwards");
+    }
+  });
 }

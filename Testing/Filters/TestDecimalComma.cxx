@@ -79,16 +79,12 @@ int TestDecimalComma(int argc, char* argv[])
   char* output = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "TYNDALL_TEST_OUTPUT", ".");
   const std::string folder = output;
   delete[] output;
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("no light");
-  }
-  test::Claims claims;
-  const reference::CommaLocale locale;
-  claims.That(locale.Works, "there is a locale with a decimal comma");
-  LampsShine(claims);
-  MessagesHavePoints(claims);
-  ExposuresAreRead(claims, folder);
-  claims.That(TestVDBWriter(argc, argv) == EXIT_SUCCESS, "VDBWriter and VDBReader pass their test");
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    const reference::CommaLocale locale;
+    claims.That(locale.Works, "there is a locale with a decimal comma");
+    LampsShine(claims);
+    MessagesHavePoints(claims);
+    ExposuresAreRead(claims, folder);
+    claims.That(TestVDBWriter(argc, argv) == EXIT_SUCCESS, "VDBWriter and VDBReader pass their test");
+  });
 }

@@ -85,14 +85,10 @@ void IsNotUsedBesideOtherLight(test::Claims& claims)
 
 int TestDefaultSky(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  ShinesWhereNothingIsGiven<vtkLightPropagationMaps>(claims);
-  ShinesWhereNothingIsGiven<vtkDiscreteOrdinates>(claims);
-  ShinesWhereNothingIsGiven<vtkLatticeBoltzmannLighting>(claims);
-  IsNotUsedBesideOtherLight(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    ShinesWhereNothingIsGiven<vtkLightPropagationMaps>(claims);
+    ShinesWhereNothingIsGiven<vtkDiscreteOrdinates>(claims);
+    ShinesWhereNothingIsGiven<vtkLatticeBoltzmannLighting>(claims);
+    IsNotUsedBesideOtherLight(claims);
+  });
 }

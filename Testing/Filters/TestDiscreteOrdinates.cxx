@@ -81,14 +81,10 @@ void SaysWhatIsWrong(test::Claims& claims)
 
 int TestDiscreteOrdinates(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  FillsAFurnace(claims, 0.0);
-  FillsAFurnace(claims, 0.8);
-  WarnsBeforeItIsNotStable(claims);
-  SaysWhatIsWrong(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    FillsAFurnace(claims, 0.0);
+    FillsAFurnace(claims, 0.8);
+    WarnsBeforeItIsNotStable(claims);
+    SaysWhatIsWrong(claims);
+  });
 }

@@ -191,17 +191,13 @@ void SaysWhatIsWrong(test::Claims& claims)
 
 int TestLatticeBoltzmannLighting(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  FillsAFurnace(claims, 1.0);
-  FillsAFurnace(claims, 1.5);
-  StepsByBlocksToTheSameLight(claims);
-  SolvesOneChannelUnlessAllIsComputed(claims);
-  DiffusesWhatPhotonsLeave(claims);
-  WarnsBeforeItIsNotPositive(claims);
-  SaysWhatIsWrong(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    FillsAFurnace(claims, 1.0);
+    FillsAFurnace(claims, 1.5);
+    StepsByBlocksToTheSameLight(claims);
+    SolvesOneChannelUnlessAllIsComputed(claims);
+    DiffusesWhatPhotonsLeave(claims);
+    WarnsBeforeItIsNotPositive(claims);
+    SaysWhatIsWrong(claims);
+  });
 }

@@ -366,27 +366,23 @@ void LightsOfBlocks(test::Claims& claims)
 
 int TestLightPropagationMapsBadInput(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  Refusals refusals(claims);
-  BadMedium(refusals);
-  BadGrid(refusals);
-  BadMeanCosine(refusals);
-  BadLights(refusals);
-  BadEnvironment(refusals);
-  BadSettings(refusals);
-  FailedBefore(claims);
-  MediumOfBlocks(claims);
-  LightsOfBlocks(claims);
-  refusals.None("good input after all the bad is solved");
+  return test::WithDevice([&](test::Claims& claims) {
+    Refusals refusals(claims);
+    BadMedium(refusals);
+    BadGrid(refusals);
+    BadMeanCosine(refusals);
+    BadLights(refusals);
+    BadEnvironment(refusals);
+    BadSettings(refusals);
+    FailedBefore(claims);
+    MediumOfBlocks(claims);
+    LightsOfBlocks(claims);
+    refusals.None("good input after all the bad is solved");
 
-  refusals->SetSkyColor(0.0, 0.0, 0.0);
-  refusals->DefaultSkyOff();
-  refusals->Update();
-  claims.That(refusals.WasOneWith("Nothing shines"), "the dark is warned of");
-  claims.That(test::Deviation(refusals->GetOutput(), "fluence", 0.0) == 0.0, "and dark");
-  return claims.Result();
+    refusals->SetSkyColor(0.0, 0.0, 0.0);
+    refusals->DefaultSkyOff();
+    refusals->Update();
+    claims.That(refusals.WasOneWith("Nothing shines"), "the dark is warned of");
+    claims.That(test::Deviation(refusals->GetOutput(), "fluence", 0.0) == 0.0, "and dark");
+  });
 }

@@ -73,22 +73,18 @@ vtkSmartPointer<vtkImageData> OfDoubles()
 
 int TestLightPropagationMapsFurnace(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  Holds(claims, Furnace({ { 1, 1, 1 } }, 0.5, 1.0), "one voxel");
-  Holds(claims, Furnace({ { 1, 5, 9 } }, 0.5, 1.0), "one layer");
-  Holds(claims, Furnace({ { 1, 1, 17 } }, 0.5, 1.0), "one row");
-  Holds(claims, Furnace({ { 7, 13, 5 } }, 0.5, 1.0), "odd sizes");
-  Holds(claims, Furnace({ { 6, 4, 5 }, { 0.1, 1.0, 3.0 } }, 0.5, 1.0), "unequal spacing");
-  Holds(claims, Furnace({ { 4, 4, 4 }, { 1.0, 1.0, 1.0 }, { 1e7, -1e7, 3e6 } }, 0.5, 1.0), "far away");
-  Holds(claims, Furnace({ { 4, 5, 6 }, { 1.0, 1.0, 1.0 }, { 0.0, 0.0, 0.0 }, { -7, 3, 100 } }, 0.5, 1.0),
-    "an extent not from 0");
-  Holds(claims, Furnace({ { 4, 4, 4 } }, 1e5, 0.0), "black and opaque");
-  Holds(claims, Furnace({ { 4, 4, 4 } }, 1e-6, 0.0), "nearly vacuum");
-  Holds(claims, OfPoints(), "arrays of points");
-  Holds(claims, OfDoubles(), "arrays of doubles, one with three components");
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    Holds(claims, Furnace({ { 1, 1, 1 } }, 0.5, 1.0), "one voxel");
+    Holds(claims, Furnace({ { 1, 5, 9 } }, 0.5, 1.0), "one layer");
+    Holds(claims, Furnace({ { 1, 1, 17 } }, 0.5, 1.0), "one row");
+    Holds(claims, Furnace({ { 7, 13, 5 } }, 0.5, 1.0), "odd sizes");
+    Holds(claims, Furnace({ { 6, 4, 5 }, { 0.1, 1.0, 3.0 } }, 0.5, 1.0), "unequal spacing");
+    Holds(claims, Furnace({ { 4, 4, 4 }, { 1.0, 1.0, 1.0 }, { 1e7, -1e7, 3e6 } }, 0.5, 1.0), "far away");
+    Holds(claims, Furnace({ { 4, 5, 6 }, { 1.0, 1.0, 1.0 }, { 0.0, 0.0, 0.0 }, { -7, 3, 100 } }, 0.5, 1.0),
+      "an extent not from 0");
+    Holds(claims, Furnace({ { 4, 4, 4 } }, 1e5, 0.0), "black and opaque");
+    Holds(claims, Furnace({ { 4, 4, 4 } }, 1e-6, 0.0), "nearly vacuum");
+    Holds(claims, OfPoints(), "arrays of points");
+    Holds(claims, OfDoubles(), "arrays of doubles, one with three components");
+  });
 }

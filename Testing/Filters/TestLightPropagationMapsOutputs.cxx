@@ -360,20 +360,16 @@ void ReportsAndStops(test::Claims& claims)
 
 int TestLightPropagationMapsOutputs(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  WritesWhatItSays(claims);
-  ColourAndFluxComeOnRequest(claims);
-  TellsItsErrorOnRequest(claims);
-  SourceAndAccelerationReachTheSolver(claims);
-  RaysAreAsTheyAreSet(claims);
-  LightOfAnEarlierSolveGoes(claims);
-  ABoxWithoutFacesIsSaidToBeDark(claims);
-  EnvironmentStandsAsTold(claims);
-  HandsOnThePieceAskedFor(claims);
-  ReportsAndStops(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    WritesWhatItSays(claims);
+    ColourAndFluxComeOnRequest(claims);
+    TellsItsErrorOnRequest(claims);
+    SourceAndAccelerationReachTheSolver(claims);
+    RaysAreAsTheyAreSet(claims);
+    LightOfAnEarlierSolveGoes(claims);
+    ABoxWithoutFacesIsSaidToBeDark(claims);
+    EnvironmentStandsAsTold(claims);
+    HandsOnThePieceAskedFor(claims);
+    ReportsAndStops(claims);
+  });
 }

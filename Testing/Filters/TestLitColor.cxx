@@ -82,13 +82,9 @@ void MakesColors(test::Claims& claims, const char* name)
 
 int TestLitColor(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  MakesColors<vtkLightPropagationMaps>(claims, "LightPropagationMaps");
-  MakesColors<vtkDiscreteOrdinates>(claims, "DiscreteOrdinates");
-  MakesColors<vtkLatticeBoltzmannLighting>(claims, "LatticeBoltzmannLighting");
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    MakesColors<vtkLightPropagationMaps>(claims, "LightPropagationMaps");
+    MakesColors<vtkDiscreteOrdinates>(claims, "DiscreteOrdinates");
+    MakesColors<vtkLatticeBoltzmannLighting>(claims, "LatticeBoltzmannLighting");
+  });
 }

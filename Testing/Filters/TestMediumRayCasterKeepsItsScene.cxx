@@ -326,16 +326,12 @@ void MemoryIsGivenBack(test::Claims& claims)
 
 int TestMediumRayCasterKeepsItsScene(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing was solved");
-  }
-  test::Claims claims;
-  WhatTheSceneDoesNotNeedKeepsIt(Follows(claims));
-  WhatIsChangedIsSeen(Follows(claims));
-  HowTheMediumScattersIsSeen(Follows(claims));
-  SettingsThatNeedAnotherSceneGetOne(Follows(claims));
-  SettingsOfRefractionAreFollowed(Follows(claims));
-  MemoryIsGivenBack(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    WhatTheSceneDoesNotNeedKeepsIt(Follows(claims));
+    WhatIsChangedIsSeen(Follows(claims));
+    HowTheMediumScattersIsSeen(Follows(claims));
+    SettingsThatNeedAnotherSceneGetOne(Follows(claims));
+    SettingsOfRefractionAreFollowed(Follows(claims));
+    MemoryIsGivenBack(claims);
+  });
 }

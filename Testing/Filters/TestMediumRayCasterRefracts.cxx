@@ -202,15 +202,11 @@ void BadSettingsAreOneError(test::Claims& claims)
 
 int TestMediumRayCasterRefracts(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing was solved");
-  }
-  test::Claims claims;
-  LightOfKnownDirectionScattersByThePhaseFunction(claims);
-  ArraysCanBeChosen(claims);
-  SurfacesMirror(claims);
-  ATableShowsTheLightOnIt(claims);
-  BadSettingsAreOneError(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    LightOfKnownDirectionScattersByThePhaseFunction(claims);
+    ArraysCanBeChosen(claims);
+    SurfacesMirror(claims);
+    ATableShowsTheLightOnIt(claims);
+    BadSettingsAreOneError(claims);
+  });
 }

@@ -71,40 +71,36 @@ void SaysWhatIsMissing(test::Claims& claims, Filter* filter, const std::string& 
 
 int TestMemoryBudget(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("no device");
-  }
-  test::Claims claims;
-  FindsTheSameLight<vtkLightPropagationMaps>(claims, "light propagation maps");
-  FindsTheSameLight<vtkLatticeBoltzmannLighting>(claims, "lattice");
+  return test::WithDevice([&](test::Claims& claims) {
+    FindsTheSameLight<vtkLightPropagationMaps>(claims, "light propagation maps");
+    FindsTheSameLight<vtkLatticeBoltzmannLighting>(claims, "lattice");
 
-  vtkNew<vtkDiscreteOrdinates> ordinates;
-  ordinates->SetInputDataObject(Medium(16));
-  ordinates->SetMaximumOrders(1);
-  SaysWhatIsMissing(claims, ordinates.GetPointer(), "discrete ordinates", "has 1 MiB left");
+    vtkNew<vtkDiscreteOrdinates> ordinates;
+    ordinates->SetInputDataObject(Medium(16));
+    ordinates->SetMaximumOrders(1);
+    SaysWhatIsMissing(claims, ordinates.GetPointer(), "discrete ordinates", "has 1 MiB left");
 
-  const auto medium = Medium(64);
-  vtkNew<vtkLightRig> rig;
-  vtkNew<vtkPhotonEmitter> emitter;
-  emitter->SetInputDataObject(medium);
-  emitter->SetLightsConnection(rig->GetOutputPort());
-  emitter->SetPhotonCount(500);
-  vtkNew<vtkPhotonMarcher> marcher;
-  marcher->SetInputDataObject(medium);
-  marcher->SetPhotonsConnection(emitter->GetOutputPort());
-  SaysWhatIsMissing(claims, marcher.GetPointer(), "photons", "of the memory budget");
+    const auto medium = Medium(64);
+    vtkNew<vtkLightRig> rig;
+    vtkNew<vtkPhotonEmitter> emitter;
+    emitter->SetInputDataObject(medium);
+    emitter->SetLightsConnection(rig->GetOutputPort());
+    emitter->SetPhotonCount(500);
+    vtkNew<vtkPhotonMarcher> marcher;
+    marcher->SetInputDataObject(medium);
+    marcher->SetPhotonsConnection(emitter->GetOutputPort());
+    SaysWhatIsMissing(claims, marcher.GetPointer(), "photons", "of the memory budget");
 
-  vtkNew<vtkPhotonImportance> importance;
-  importance->SetInputDataObject(medium);
-  importance->SetLightsConnection(rig->GetOutputPort());
-  importance->SetPilotCount(256);
-  SaysWhatIsMissing(claims, importance.GetPointer(), "importance", "of the memory budget");
+    vtkNew<vtkPhotonImportance> importance;
+    importance->SetInputDataObject(medium);
+    importance->SetLightsConnection(rig->GetOutputPort());
+    importance->SetPilotCount(256);
+    SaysWhatIsMissing(claims, importance.GetPointer(), "importance", "of the memory budget");
 
-  test::AddCells(medium, "fluence", 1.0);
-  vtkNew<vtkMediumRayCaster> caster;
-  caster->SetInputDataObject(medium);
-  caster->SetImageSize(16, 12);
-  SaysWhatIsMissing(claims, caster.GetPointer(), "ray caster", "of the memory budget");
-  return claims.Result();
+    test::AddCells(medium, "fluence", 1.0);
+    vtkNew<vtkMediumRayCaster> caster;
+    caster->SetInputDataObject(medium);
+    caster->SetImageSize(16, 12);
+    SaysWhatIsMissing(claims, caster.GetPointer(), "ray caster", "of the memory budget");
+  });
 }

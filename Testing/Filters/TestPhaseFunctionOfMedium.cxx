@@ -312,17 +312,13 @@ void BadTablesNameTheRow(test::Claims& claims, Solver& solver)
 
 int TestPhaseFunctionOfMedium(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps does not run");
-  }
-  test::Claims claims;
-  Solver solver;
-  CellsCountBeforeFieldData(claims, solver);
-  HiddenCellsDoNotMatter(claims, solver);
-  NothingIsReadWhereNothingScatters(claims);
-  NamesChooseTheFunction(claims, solver);
-  BadFunctionsAreOneError(claims, solver);
-  BadTablesNameTheRow(claims, solver);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    Solver solver;
+    CellsCountBeforeFieldData(claims, solver);
+    HiddenCellsDoNotMatter(claims, solver);
+    NothingIsReadWhereNothingScatters(claims);
+    NamesChooseTheFunction(claims, solver);
+    BadFunctionsAreOneError(claims, solver);
+    BadTablesNameTheRow(claims, solver);
+  });
 }

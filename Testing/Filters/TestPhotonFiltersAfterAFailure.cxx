@@ -193,17 +193,13 @@ void AnAbortEmptiesWhatFollows(test::Claims& claims)
 
 int TestPhotonFiltersAfterAFailure(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing was solved");
-  }
-  test::Claims claims;
-  AnOpenMeshIsOneErrorInAll(claims);
-  BadBoundsAreOneErrorInAll(claims);
-  PhotonsThatFailedAreNoErrorOfTheMarcher(claims);
-  LightsThatFailedAreNoErrorOfTheEmitter(claims);
-  AMapThatFailedIsNoErrorOfTheEmitter(claims);
-  AMeshThatFailedIsNoErrorOfTheVoxelizer(claims);
-  AnAbortEmptiesWhatFollows(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    AnOpenMeshIsOneErrorInAll(claims);
+    BadBoundsAreOneErrorInAll(claims);
+    PhotonsThatFailedAreNoErrorOfTheMarcher(claims);
+    LightsThatFailedAreNoErrorOfTheEmitter(claims);
+    AMapThatFailedIsNoErrorOfTheEmitter(claims);
+    AMeshThatFailedIsNoErrorOfTheVoxelizer(claims);
+    AnAbortEmptiesWhatFollows(claims);
+  });
 }

@@ -260,20 +260,16 @@ void NothingShinesIsAWarning(test::Claims& claims)
 
 int TestPhotonImportance(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing was solved");
-  }
-  test::Claims claims;
-  AMapHasALayerALight(claims);
-  ThePilotLightIsThere(claims);
-  TheLightsPowerChangesNothing(claims);
-  OwnThresholdsAreUsed(claims);
-  EvenLightIsSaid(claims);
-  AnotherNumberOfLightsIsFollowed(claims);
-  FewPilotPhotonsAreEnough(claims);
-  NoPilotPhotonsAreAnError(claims);
-  ALightThatMissesIsNoLight(claims);
-  NothingShinesIsAWarning(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    AMapHasALayerALight(claims);
+    ThePilotLightIsThere(claims);
+    TheLightsPowerChangesNothing(claims);
+    OwnThresholdsAreUsed(claims);
+    EvenLightIsSaid(claims);
+    AnotherNumberOfLightsIsFollowed(claims);
+    FewPilotPhotonsAreEnough(claims);
+    NoPilotPhotonsAreAnError(claims);
+    ALightThatMissesIsNoLight(claims);
+    NothingShinesIsAWarning(claims);
+  });
 }

@@ -404,20 +404,16 @@ void ShortArraysAreRefused(test::Claims& claims)
 
 int TestPhotonMarcher(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing was solved");
-  }
-  test::Claims claims;
-  ABeamFallsOffAndItsPowerIsKept(claims);
-  ScatteredPhotonsGoOn(claims);
-  WhatIsNotNeededCanBeComputedAllTheSame(claims);
-  GlassBendsTheLight(claims);
-  PackingLossIsToldApart(claims);
-  CountsAndBatchesAddUp(claims);
-  TrappedLightIsAWarning(claims);
-  EmptySpaceIsKeptAsAskedFor(claims);
-  BadInputIsOneError(claims);
-  ShortArraysAreRefused(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    ABeamFallsOffAndItsPowerIsKept(claims);
+    ScatteredPhotonsGoOn(claims);
+    WhatIsNotNeededCanBeComputedAllTheSame(claims);
+    GlassBendsTheLight(claims);
+    PackingLossIsToldApart(claims);
+    CountsAndBatchesAddUp(claims);
+    TrappedLightIsAWarning(claims);
+    EmptySpaceIsKeptAsAskedFor(claims);
+    BadInputIsOneError(claims);
+    ShortArraysAreRefused(claims);
+  });
 }

@@ -212,16 +212,12 @@ void AfterAnErrorItStartsAgain(test::Claims& claims)
 
 int TestPhotonMarcherKeepsItsMedium(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing was solved");
-  }
-  test::Claims claims;
-  OtherLightKeepsTheMedium(Follows(claims));
-  AChangedMediumIsSeen(Follows(claims));
-  AnotherOctreeIsSeen(Follows(claims));
-  OtherSettingsAreSeen(Follows(claims));
-  TheSameArraysInAnotherImageAreTheSame(claims);
-  AfterAnErrorItStartsAgain(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    OtherLightKeepsTheMedium(Follows(claims));
+    AChangedMediumIsSeen(Follows(claims));
+    AnotherOctreeIsSeen(Follows(claims));
+    OtherSettingsAreSeen(Follows(claims));
+    TheSameArraysInAnotherImageAreTheSame(claims);
+    AfterAnErrorItStartsAgain(claims);
+  });
 }

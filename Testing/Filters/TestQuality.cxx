@@ -356,23 +356,19 @@ void LatticeNamesWhoReachesATarget(test::Claims& claims)
 
 int TestQuality(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  SetsWhatNobodySet(claims);
-  TellsWhatASlabTook<vtkLightPropagationMaps>(claims, "maps");
-  TellsWhatASlabTook<vtkDiscreteOrdinates>(claims, "ordinates");
-  TellsCosinesOfLayers(claims);
-  TellsWhatWasUsed(claims);
-  TellsDirectionsOfASpiral(claims);
-  SetsTolerance<vtkDiscreteOrdinates>(claims, "ordinates");
-  SetsTolerance<vtkLatticeBoltzmannLighting>(claims, "lattice");
-  DividesRectangles(claims);
-  SetsSteps(claims);
-  SolvesToATarget(claims);
-  OrdinatesSolveToATarget(claims);
-  LatticeNamesWhoReachesATarget(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    SetsWhatNobodySet(claims);
+    TellsWhatASlabTook<vtkLightPropagationMaps>(claims, "maps");
+    TellsWhatASlabTook<vtkDiscreteOrdinates>(claims, "ordinates");
+    TellsCosinesOfLayers(claims);
+    TellsWhatWasUsed(claims);
+    TellsDirectionsOfASpiral(claims);
+    SetsTolerance<vtkDiscreteOrdinates>(claims, "ordinates");
+    SetsTolerance<vtkLatticeBoltzmannLighting>(claims, "lattice");
+    DividesRectangles(claims);
+    SetsSteps(claims);
+    SolvesToATarget(claims);
+    OrdinatesSolveToATarget(claims);
+    LatticeNamesWhoReachesATarget(claims);
+  });
 }

@@ -472,21 +472,17 @@ void ReportsAndStops(test::Claims& claims)
 
 int TestSolverComparison(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  LightIsNoErrorOfItself(claims);
-  CoarserIsWorse(claims);
-  GridsAreMatched(claims);
-  PhotonsAreComparedWithDirectLight(claims);
-  MonteCarloIsComparedWithAllLight(claims);
-  LatticesAreComparedWithPhotons(claims);
-  BadInput(claims);
-  MeshesAreVoxelised(claims);
-  UnknownIsSaid(claims);
-  ThePublishedSchemeIsLeftOutWhereGVaries(claims);
-  ReportsAndStops(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    LightIsNoErrorOfItself(claims);
+    CoarserIsWorse(claims);
+    GridsAreMatched(claims);
+    PhotonsAreComparedWithDirectLight(claims);
+    MonteCarloIsComparedWithAllLight(claims);
+    LatticesAreComparedWithPhotons(claims);
+    BadInput(claims);
+    MeshesAreVoxelised(claims);
+    UnknownIsSaid(claims);
+    ThePublishedSchemeIsLeftOutWhereGVaries(claims);
+    ReportsAndStops(claims);
+  });
 }

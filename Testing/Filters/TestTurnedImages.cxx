@@ -565,21 +565,17 @@ void OthersAreRefused(test::Claims& claims)
 
 int TestTurnedImages(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("maps gave no light");
-  }
-  test::Claims claims;
-  SolvesInOwnAxes<vtkLightPropagationMaps>(claims, "maps");
-  SolvesInOwnAxes<vtkDiscreteOrdinates>(claims, "ordinates");
-  SolvesInOwnAxes<vtkLatticeBoltzmannLighting>(claims, "lattice", Cube);
-  EnvironmentStaysInTheScene(claims);
-  RectanglesLieInTheScene(claims);
-  PhotonsFlyInTheScene(claims);
-  PicturesFollow(claims);
-  AnotherMatrixIsSeen(claims);
-  OtherImagesAreTurned(claims);
-  ExtentsAreToldBehindOtherFilters(claims);
-  OthersAreRefused(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    SolvesInOwnAxes<vtkLightPropagationMaps>(claims, "maps");
+    SolvesInOwnAxes<vtkDiscreteOrdinates>(claims, "ordinates");
+    SolvesInOwnAxes<vtkLatticeBoltzmannLighting>(claims, "lattice", Cube);
+    EnvironmentStaysInTheScene(claims);
+    RectanglesLieInTheScene(claims);
+    PhotonsFlyInTheScene(claims);
+    PicturesFollow(claims);
+    AnotherMatrixIsSeen(claims);
+    OtherImagesAreTurned(claims);
+    ExtentsAreToldBehindOtherFilters(claims);
+    OthersAreRefused(claims);
+  });
 }

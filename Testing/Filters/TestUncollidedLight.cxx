@@ -208,15 +208,11 @@ void SecondImagesAreAroundPoints(test::Claims& claims)
 
 int TestUncollidedLight(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  ScattersACaustic<vtkLightPropagationMaps>(claims, "maps");
-  ScattersACaustic<vtkDiscreteOrdinates>(claims, "ordinates");
-  RefusesOtherVoxels<vtkLightPropagationMaps>(claims, "maps");
-  RefusesOtherVoxels<vtkDiscreteOrdinates>(claims, "ordinates");
-  SecondImagesAreAroundPoints(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    ScattersACaustic<vtkLightPropagationMaps>(claims, "maps");
+    ScattersACaustic<vtkDiscreteOrdinates>(claims, "ordinates");
+    RefusesOtherVoxels<vtkLightPropagationMaps>(claims, "maps");
+    RefusesOtherVoxels<vtkDiscreteOrdinates>(claims, "ordinates");
+    SecondImagesAreAroundPoints(claims);
+  });
 }

@@ -134,15 +134,11 @@ void EstimatesTheErrorOfAllOfIt(test::Claims& claims)
 
 int TestWarmStart(int, char*[])
 {
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("LightPropagationMaps gave an error");
-  }
-  test::Claims claims;
-  KeepsItsLight<vtkLightPropagationMaps>(claims, "maps", vtkLightPropagationMaps::AUTOMATIC_ACCELERATION);
-  KeepsItsLight<vtkDiscreteOrdinates>(claims, "ordinates", vtkDiscreteOrdinates::NONE);
-  BeginsInTheDarkAsPublished<vtkLightPropagationMaps>(claims);
-  BeginsInTheDarkAsPublished<vtkDiscreteOrdinates>(claims);
-  EstimatesTheErrorOfAllOfIt(claims);
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    KeepsItsLight<vtkLightPropagationMaps>(claims, "maps", vtkLightPropagationMaps::AUTOMATIC_ACCELERATION);
+    KeepsItsLight<vtkDiscreteOrdinates>(claims, "ordinates", vtkDiscreteOrdinates::NONE);
+    BeginsInTheDarkAsPublished<vtkLightPropagationMaps>(claims);
+    BeginsInTheDarkAsPublished<vtkDiscreteOrdinates>(claims);
+    EstimatesTheErrorOfAllOfIt(claims);
+  });
 }
