@@ -2,16 +2,11 @@
 // whatever its length. Run by mpiexec; a program by itself. With the word `alone` the last rank stays away from an
 // exchange, and the others must not wait for it.
 
+#include "OverRanks.h"
+
 #include "Pieces/ControllerCommunicator.h"
 
-#include "Device/Errors.h"
-
-#include "vtkMPIController.h"
-#include "vtkNew.h"
-
 #include <chrono>
-#include <cstdlib>
-#include <exception>
 #include <iostream>
 #include <string>
 #include <thread>
@@ -21,6 +16,8 @@ using namespace tyndall;
 
 namespace
 {
+using test::Expect;
+
 /// Of a round, from one rank to another: nothing, a few numbers, or more than MPI sends before somebody receives.
 std::vector<int> ParcelOf(int round, int from, int to)
 {
@@ -47,15 +44,6 @@ std::vector<int> PartnersOf(int round, int rank, int ranks)
     }
   }
   return partners;
-}
-
-bool Expect(bool holds, const std::string& what, int rank)
-{
-  if (!holds)
-  {
-    std::cerr << "rank " << rank << ": " << what << "\n";
-  }
-  return holds;
 }
 
 bool ParcelsArrive(Communicator& communicator)
@@ -127,24 +115,14 @@ void WaitForOneThatIsGone(vtkMPIController* controller)
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  bool right = false;
+  return test::RunOverRanks(argc, argv, [&](vtkMPIController* controller) {
 #ifdef TYNDALL_HAS_DIY
-  if (argc > 1 && std::string(argv[1]) == "alone")
-  {
-    WaitForOneThatIsGone(controller);
-  }
+    if (argc > 1 && std::string(argv[1]) == "alone")
+    {
+      WaitForOneThatIsGone(controller);
+    }
 #endif
-  try
-  {
     ControllerCommunicator first(controller, 60.0), second(controller, 60.0, {}, 1);
-    right = ParcelsArrive(first) && FailuresAreOfAll(second) && ParcelsArrive(first);
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << error.what() << "\n";
-  }
-  controller->Finalize();
-  return right ? EXIT_SUCCESS : EXIT_FAILURE;
+    return ParcelsArrive(first) && FailuresAreOfAll(second) && ParcelsArrive(first);
+  });
 }

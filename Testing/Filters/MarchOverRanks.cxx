@@ -3,6 +3,8 @@
 // bit, or of the published scheme to what its packing loses. So it is where the medium is turned by a direction matrix,
 // which vtkLightPropagationMaps then solves by pieces, too. Run by mpiexec; a program by itself.
 
+#include "OverRanks.h"
+
 #include "vtkLightPropagationMaps.h"
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
@@ -10,11 +12,9 @@
 #include "vtkSun.h"
 
 #include "Device/Device.h"
-#include "Device/Errors.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
-#include "vtkCommand.h"
 #include "vtkCommunicator.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkFieldData.h"
@@ -24,8 +24,6 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMatrix3x3.h"
-#include "vtkMPIController.h"
-#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -35,8 +33,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <exception>
 #include <iostream>
 #include <map>
 #include <string>
@@ -44,6 +40,8 @@
 
 namespace
 {
+using test::Expect;
+
 constexpr int Size[3] = { 17, 12, 9 };
 constexpr double Turned[9] = { 0.48, -0.8, 0.36, 0.64, 0.6, 0.48, 0.6, 0.0, -0.8 }; ///< and mirrored
 
@@ -267,15 +265,6 @@ Piece March(vtkMPIController* controller, const Asked& asked, int decomposition)
   return piece;
 }
 
-bool Expect(bool holds, const std::string& what, int rank)
-{
-  if (!holds)
-  {
-    std::cerr << "rank " << rank << ": " << what << "\n";
-  }
-  return holds;
-}
-
 /// Bit for bit, or so precise.
 bool Same(const std::vector<double>& found, const std::vector<double>& wanted, double precision)
 {
@@ -334,13 +323,7 @@ bool HasTheSameLight(vtkMPIController* controller, const Asked& asked)
 /// What blocks cannot do is one error that names it; on one rank the octree is simply another one.
 bool NamesWhatItCannot(vtkMPIController* controller)
 {
-  struct Note : vtkCommand
-  {
-    static Note* New() { return new Note; }
-    void Execute(vtkObject*, unsigned long, void* data) override { this->said += static_cast<const char*>(data); }
-    std::string said;
-  };
-  vtkNew<Note> errors;
+  vtkNew<test::Note> errors;
   Asked asked = { "errors" };
   asked.octree = Octree::Elsewhere;
   Scene scene(controller, asked, vtkPhotonMarcher::BLOCKS);
@@ -419,12 +402,7 @@ bool EndsTogether(vtkMPIController* controller)
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  vtkMultiProcessController::SetGlobalController(controller);
-  int end = EXIT_FAILURE;
-  try
-  {
+  return test::RunOverRanks(argc, argv, [](vtkMPIController* controller) {
     tyndall::Device::Find();
     bool right = true;
     const int automatic = vtkPhotonMarcher::AUTOMATIC_DECOMPOSITION;
@@ -446,14 +424,6 @@ int main(int argc, char* argv[])
     right = SolvesTurnedPieces(controller) && right;
     right = NamesWhatItCannot(controller) && right;
     right = EndsTogether(controller) && right;
-    end = right ? EXIT_SUCCESS : EXIT_FAILURE;
-  }
-  catch (const tyndall::DeviceError& error)
-  {
-    std::cerr << error.what() << "\n";
-    end = std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
-  }
-  vtkMultiProcessController::SetGlobalController(nullptr);
-  controller->Finalize();
-  return end;
+    return right;
+  });
 }

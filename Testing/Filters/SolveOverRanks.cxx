@@ -1,19 +1,17 @@
 // A medium that ParaView's extent translator spreads over MPI ranks, solved block by block, and marched through by
 // photons, against the whole on one. Run by mpiexec; a program by itself.
 
+#include "OverRanks.h"
+
 #include "Pieces/ControllerCommunicator.h"
 
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include "vtkExtentTranslator.h"
-#include "vtkMPIController.h"
-#include "vtkNew.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <exception>
 #include <iostream>
 #include <vector>
 
@@ -178,24 +176,8 @@ bool March(Communicator& communicator)
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  bool right = false;
-  try
-  {
+  return test::RunOverRanks(argc, argv, [](vtkMPIController* controller) {
     ControllerCommunicator communicator(controller, 60.0);
-    right = Solve(communicator) && March(communicator);
-  }
-  catch (const DeviceError& error)
-  {
-    std::cerr << error.what() << "\n";
-    controller->Finalize();
-    return std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << error.what() << "\n";
-  }
-  controller->Finalize();
-  return right ? EXIT_SUCCESS : EXIT_FAILURE;
+    return Solve(communicator) && March(communicator);
+  });
 }

@@ -2,6 +2,7 @@
 // rank makes its piece of what one process makes of the whole. Run by mpiexec; a program by itself.
 
 #include "MeshData.h"
+#include "OverRanks.h"
 
 #include "vtkMeshVoxelizer.h"
 #include "vtkParticipatingMedium.h"
@@ -9,24 +10,19 @@
 #include "vtkRefractionOctree.h"
 
 #include "Device/Device.h"
-#include "Device/Errors.h"
 
 #include "vtkCellData.h"
-#include "vtkCommand.h"
 #include "vtkCommunicator.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
 #include "vtkHyperTreeGrid.h"
 #include "vtkImageData.h"
-#include "vtkMPIController.h"
-#include "vtkNew.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkStringArray.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <string>
 
@@ -258,16 +254,10 @@ void LightIsSmoothedAsTheWhole(Ranks& ranks)
 /// What goes wrong on one rank is one error on all.
 void FailTogether(Ranks& ranks)
 {
-  struct Note : vtkCommand
-  {
-    static Note* New() { return new Note; }
-    void Execute(vtkObject*, unsigned long, void* data) override { this->said += static_cast<const char*>(data); }
-    std::string said;
-  };
   const bool last = ranks.Rank == ranks.Count - 1;
   vtkNew<vtkMeshVoxelizer> voxelizer;
   SetUp(voxelizer, { 12, 12, 12 });
-  vtkNew<Note> ofVoxels, ofOctree;
+  vtkNew<test::Note> ofVoxels, ofOctree;
   voxelizer->AddObserver(vtkCommand::ErrorEvent, ofVoxels);
   voxelizer->AddMaterial(0.5, 1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0); // no whole number
   if (!last)
@@ -289,12 +279,7 @@ void FailTogether(Ranks& ranks)
 
 int main(int argc, char* argv[])
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
-  vtkMultiProcessController::SetGlobalController(controller);
-  int end = EXIT_FAILURE;
-  try
-  {
+  return test::RunOverRanks(argc, argv, [](vtkMPIController* controller) {
     tyndall::Device::Find();
     Ranks ranks(controller);
     VoxelsAreThoseOfTheWhole(ranks);
@@ -302,14 +287,6 @@ int main(int argc, char* argv[])
     LightIsSmoothedAsTheWhole(ranks);
     VoxelsAroundPointsAreThoseOfTheWhole(ranks);
     FailTogether(ranks);
-    end = ranks.Right() ? EXIT_SUCCESS : EXIT_FAILURE;
-  }
-  catch (const tyndall::DeviceError& error)
-  {
-    std::cerr << error.what() << "\n";
-    end = std::getenv("TYNDALL_REQUIRE_DEVICE") ? EXIT_FAILURE : 125;
-  }
-  vtkMultiProcessController::SetGlobalController(nullptr);
-  controller->Finalize();
-  return end;
+    return ranks.Right();
+  });
 }
