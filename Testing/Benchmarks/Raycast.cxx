@@ -81,22 +81,14 @@ Scene MakeScene(const char* name, int n, bool cloud)
   scene.name = name;
   scene.grid.size = { n, n, n };
   scene.grid.spacing = { 1.0 / n, 1.0 / n, 1.0 / n };
-  for (int k = 0; k < n; ++k)
-  {
-    for (int j = 0; j < n; ++j)
-    {
-      for (int i = 0; i < n; ++i)
-      {
-        const double x = (i + 0.5) / n - 0.5;
-        const double y = (j + 0.5) / n - 0.5;
-        const double z = (k + 0.5) / n - 0.5;
-        const double noise = Noise(9.0 * x, 9.0 * y, 9.0 * z);
-        const double ball = 0.36 - std::sqrt(x * x + y * y + 1.6 * z * z);
-        scene.sigma.push_back(
-          static_cast<float>(cloud ? 300.0 * std::max(0.0, ball + 0.3 * noise) : 1.0 + 0.5 * noise));
-      }
-    }
-  }
+  ForGridVoxels({ n, n, n }, [&](std::size_t, int i, int j, int k) {
+    const double x = (i + 0.5) / n - 0.5;
+    const double y = (j + 0.5) / n - 0.5;
+    const double z = (k + 0.5) / n - 0.5;
+    const double noise = Noise(9.0 * x, 9.0 * y, 9.0 * z);
+    const double ball = 0.36 - std::sqrt(x * x + y * y + 1.6 * z * z);
+    scene.sigma.push_back(static_cast<float>(cloud ? 300.0 * std::max(0.0, ball + 0.3 * noise) : 1.0 + 0.5 * noise));
+  });
   return scene;
 }
 

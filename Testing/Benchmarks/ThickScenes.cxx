@@ -30,16 +30,9 @@ const char* NameOf(ThickMedium kind)
 std::vector<double> Blocks(int edge)
 {
   std::vector<double> values;
-  for (int z = 0; z < edge; ++z)
-  {
-    for (int y = 0; y < edge; ++y)
-    {
-      for (int x = 0; x < edge; ++x)
-      {
-        values.push_back((x / BlockEdge + y / BlockEdge + z / BlockEdge) % 2 == 0 ? 1.0 : 1.0 / BlockContrast);
-      }
-    }
-  }
+  ForGridVoxels({ edge, edge, edge }, [&](std::size_t, int x, int y, int z) {
+    values.push_back((x / BlockEdge + y / BlockEdge + z / BlockEdge) % 2 == 0 ? 1.0 : 1.0 / BlockContrast);
+  });
   return values;
 }
 

@@ -34,22 +34,15 @@ TraitScene::TraitScene(std::array<int, 3> size)
   const double longest = *std::max_element(size.begin(), size.end());
   this->medium.grid.size = size;
   this->medium.grid.spacing = { 1.0 / longest, 1.0 / longest, 1.0 / longest };
-  for (int k = 0; k < size[2]; ++k)
-  {
-    for (int j = 0; j < size[1]; ++j)
+  ForGridVoxels(size, [&](std::size_t, int i, int j, int k) {
+    const double density = 0.05 + Density((i + 0.5) / size[0], (j + 0.5) / size[1], (k + 0.5) / size[2]);
+    for (const double colour : { 0.8, 1.0, 1.25 })
     {
-      for (int i = 0; i < size[0]; ++i)
-      {
-        const double density = 0.05 + Density((i + 0.5) / size[0], (j + 0.5) / size[1], (k + 0.5) / size[2]);
-        for (const double colour : { 0.8, 1.0, 1.25 })
-        {
-          this->sigma_s.push_back(static_cast<float>(Thickness * 0.9 * density * colour));
-          this->sigma_a.push_back(static_cast<float>(Thickness * 0.1 * density / colour));
-          this->emission.push_back(static_cast<float>(0.1 * density * colour));
-        }
-      }
+      this->sigma_s.push_back(static_cast<float>(Thickness * 0.9 * density * colour));
+      this->sigma_a.push_back(static_cast<float>(Thickness * 0.1 * density / colour));
+      this->emission.push_back(static_cast<float>(0.1 * density * colour));
     }
-  }
+  });
   this->medium.sigma_a = { this->sigma_a.data(), 3 };
   this->medium.sigma_s = { this->sigma_s.data(), 3 };
   this->medium.emission = { this->emission.data(), 3 };
@@ -271,18 +264,11 @@ std::vector<TraitCase> VoxelCases(Device& device, int edge)
 std::vector<float> Ball(const Grid& grid)
 {
   std::vector<float> ior;
-  for (int k = 0; k < grid.size[2]; ++k)
-  {
-    for (int j = 0; j < grid.size[1]; ++j)
-    {
-      for (int i = 0; i < grid.size[0]; ++i)
-      {
-        const double r =
-          std::hypot((i + 0.5) / grid.size[0] - 0.5, (j + 0.5) / grid.size[1] - 0.5, (k + 0.5) / grid.size[2] - 0.5);
-        ior.push_back(static_cast<float>(1.0 + 0.3 / (1.0 + std::exp(80.0 * (r - 0.3)))));
-      }
-    }
-  }
+  ForGridVoxels(grid.size, [&](std::size_t, int i, int j, int k) {
+    const double r =
+      std::hypot((i + 0.5) / grid.size[0] - 0.5, (j + 0.5) / grid.size[1] - 0.5, (k + 0.5) / grid.size[2] - 0.5);
+    ior.push_back(static_cast<float>(1.0 + 0.3 / (1.0 + std::exp(80.0 * (r - 0.3)))));
+  });
   return ior;
 }
 
