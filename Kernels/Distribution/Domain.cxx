@@ -43,19 +43,9 @@ Rgb Domain::Sum(const Rgb& own) const
   return { sums[0], sums[1], sums[2] };
 }
 
-std::vector<double> Domain::Sum(const std::vector<double>& own) const
-{
-  return this->Ranks->Sum(own);
-}
-
 double Domain::Max(double own) const
 {
   return this->Ranks->Largest({ own })[0];
-}
-
-std::vector<double> Domain::Max(const std::vector<double>& own) const
-{
-  return this->Ranks->Largest(own);
 }
 
 bool Domain::Any(bool own) const
@@ -63,8 +53,4 @@ bool Domain::Any(bool own) const
   return OnAnyRank(*this->Ranks, own);
 }
 
-void Domain::Collective(const std::function<void()>& step) const
-{
-  this->Ranks->Collective(step);
-}
 }

@@ -40,12 +40,12 @@ public:
   // The following functions are collective: all ranks call them with the same number of values.
   double Sum(double own) const;
   Rgb Sum(const Rgb& own) const;
-  std::vector<double> Sum(const std::vector<double>& own) const;
+  std::vector<double> Sum(const std::vector<double>& own) const { return this->Ranks->Sum(own); }
   double Max(double own) const;
-  std::vector<double> Max(const std::vector<double>& own) const;
+  std::vector<double> Max(const std::vector<double>& own) const { return this->Ranks->Largest(own); }
   bool Any(bool own) const;
   /// Runs `step`; if it throws on one rank, all ranks throw the same error (Communicator::Collective).
-  void Collective(const std::function<void()>& step) const;
+  void Collective(const std::function<void()>& step) const { this->Ranks->Collective(step); }
 
 private:
   std::shared_ptr<Communicator> Ranks;

@@ -20,11 +20,6 @@ PhaseOfMedium::PhaseOfMedium(const PhaseFunction& kind, const Field& g)
   this->ByVoxel = g;
 }
 
-bool PhaseOfMedium::IsIsotropic() const
-{
-  return !this->Varies() && this->Functions[0].IsIsotropic() && !this->HasColour();
-}
-
 bool PhaseOfMedium::HasColour() const
 {
   return this->ByVoxel.HasColour() || this->Functions[0] != this->Functions[1] ||

@@ -32,7 +32,8 @@ public:
   const Field& G() const { return this->ByVoxel; } ///< mean cosine by voxel; has no values if g does not vary
   bool Varies() const { return this->ByVoxel.values != nullptr; }
 
-  bool IsIsotropic() const; ///< whether scattering is isotropic; false if g varies by voxel, even if it is 0
+  /// Whether scattering is isotropic; false if g varies by voxel, even if it is 0.
+  bool IsIsotropic() const { return !this->Varies() && this->Functions[0].IsIsotropic() && !this->HasColour(); }
   bool HasColour() const;
   double MeanCosine(std::size_t voxel, int channel) const
   {

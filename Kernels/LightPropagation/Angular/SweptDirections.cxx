@@ -54,11 +54,6 @@ DirectionSymmetry::DirectionSymmetry(const Grid& grid, const std::array<bool, 3>
   }
 }
 
-int DirectionSymmetry::Count() const
-{
-  return static_cast<int>(this->Classes.size());
-}
-
 std::vector<Bundle> DirectionSymmetry::Standing(const std::vector<Bundle>& bundles) const
 {
   std::vector<Bundle> standing;

@@ -23,7 +23,8 @@ public:
 
   /// Whether any two directions carry the same light, i.e. share a class.
   bool Any() const { return this->Count() < static_cast<int>(this->ClassOf.size()); }
-  int Count() const; ///< number of classes of directions that carry the same light
+  /// Number of classes of directions that carry the same light.
+  int Count() const { return static_cast<int>(this->Classes.size()); }
 
   /// Copies of `bundles` restricted to one direction of each class, with the power of all directions of its class.
   std::vector<Bundle> Standing(const std::vector<Bundle>& bundles) const;

@@ -91,11 +91,6 @@ void DiffusionSystem::RunBorder(cl::Kernel& kernel)
     kernel, cl::NullRange, cl::NDRange(RoundUp(this->BorderCells, BorderGroup)), cl::NDRange(BorderGroup));
 }
 
-void DiffusionSystem::RunRows(cl::Kernel& kernel) const
-{
-  RunRowsOf(this->TheDevice, kernel, this->Layout.rows);
-}
-
 template <class... More>
 cl::Kernel DiffusionSystem::OnArrays(const char* name, const More&... more)
 {
@@ -206,11 +201,6 @@ AndersonMixing::Sums DiffusionSystem::SumsOfChange() const
   const auto& h = this->Layout.spacing;
   const float edge = std::cbrt(h[0] * h[1] * h[2]); // mean edge of a voxel, invariant under permutation of the axes
   return this->Mixing.SumsOf(this->Next, this->Solution, { this->Inputs.sigma_s, this->Inputs.first, edge });
-}
-
-void DiffusionSystem::MixBy(const AndersonMixing::Sums& sums)
-{
-  this->Mixing.Mix(this->Next, this->Solution, sums);
 }
 
 double DiffusionSystem::Absorbed() const

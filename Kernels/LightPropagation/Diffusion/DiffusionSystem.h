@@ -136,7 +136,7 @@ public:
   ExactValues& Solved() { return this->Solution; }
   void FindFlux(); ///< with angular moments: computes the moments of degree 1 of the solution, Eq. (70a)
   AndersonMixing::Sums SumsOfChange() const; ///< this rank's sums for Anderson mixing of the solution
-  void MixBy(const AndersonMixing::Sums& sums);
+  void MixBy(const AndersonMixing::Sums& sums) { this->Mixing.Mix(this->Next, this->Solution, sums); }
 
   /// Sums over cells of the box's faces, W, from which DiffusionSolver::Outflow() computes the escaped power.
   struct BorderSums
@@ -182,7 +182,7 @@ private:
   cl::Kernel RowsKernel(const char* name) const; ///< kernel of DiffusionRows.cl
   void Run(cl::Kernel& kernel);                  ///< runs a kernel with one work-item per voxel
   void RunBorder(cl::Kernel& kernel);            ///< runs a kernel with one work-item per cell of the box's faces
-  void RunRows(cl::Kernel& kernel) const;
+  void RunRows(cl::Kernel& kernel) const { RunRowsOf(this->TheDevice, kernel, this->Layout.rows); }
   /// Creates a kernel whose arguments are the layout, the arrays of the channel, and then `more`.
   template <class... More>
   cl::Kernel OnArrays(const char* kernel, const More&... more);

@@ -122,11 +122,6 @@ double SlabScene::Across() const
   return this->TheMedium.grid.Length((this->Axis + 1) % 3) * this->TheMedium.grid.Length((this->Axis + 2) % 3);
 }
 
-std::size_t SlabScene::VoxelOf(std::size_t layer) const
-{
-  return layer * this->TheMedium.grid.Strides()[this->Axis];
-}
-
 std::size_t SlabScene::LayerOf(std::size_t voxel) const
 {
   return voxel / this->TheMedium.grid.Strides()[this->Axis] % this->Count();

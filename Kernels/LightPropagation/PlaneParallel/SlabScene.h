@@ -22,7 +22,7 @@ public:
   /// Area of the slab, normal to the axis of the layers, length^2.
   double Across() const;
   /// Index of a layer's voxel in the first column of voxels.
-  std::size_t VoxelOf(std::size_t layer) const;
+  std::size_t VoxelOf(std::size_t layer) const { return layer * this->TheMedium.grid.Strides()[this->Axis]; }
   std::size_t LayerOf(std::size_t voxel) const;
   bool IsIsotropic() const { return this->Isotropic; }
   bool HasSlantingBeams() const;

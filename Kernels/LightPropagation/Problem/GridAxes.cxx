@@ -46,12 +46,6 @@ std::array<Value, 3> AxisPermutation::TurnedBack(const std::array<Value, 3>& tur
   return { turned[(3 - this->Along) % 3], turned[(4 - this->Along) % 3], turned[(5 - this->Along) % 3] };
 }
 
-/// Index in the permuted scene of a face of the original scene.
-int AxisPermutation::FaceWhenTurned(int face) const
-{
-  return (face / 2 + 3 - this->Along) % 3 * 2 + face % 2;
-}
-
 Medium AxisPermutation::Of(const Medium& medium) const
 {
   Medium turned = medium;

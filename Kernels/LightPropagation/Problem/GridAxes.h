@@ -34,7 +34,8 @@ private:
   std::array<Value, 3> Turned(const std::array<Value, 3>& given) const;
   template <class Value>
   std::array<Value, 3> TurnedBack(const std::array<Value, 3>& turned) const;
-  int FaceWhenTurned(int face) const;
+  /// Index in the permuted scene of a face of the original scene.
+  int FaceWhenTurned(int face) const { return (face / 2 + 3 - this->Along) % 3 * 2 + face % 2; }
   void TurnBackCells(std::vector<float>& values, const Grid& grid) const;
   void TurnBackMoments(LightField& light, const Grid& grid) const;
 

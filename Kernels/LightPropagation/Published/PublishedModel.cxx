@@ -462,11 +462,6 @@ MapGeometry::MapGeometry(
   this->Continues = settings.periodic[this->axis];
 }
 
-int MapGeometry::EntryFace(int entryAxis) const
-{
-  return 2 * entryAxis + (this->Upward[entryAxis] ? 0 : 1);
-}
-
 double MapGeometry::StartOfOrder(double start, double slope, int order) const
 {
   if (order == 0 || !this->Continues)

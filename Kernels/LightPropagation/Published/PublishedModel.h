@@ -131,7 +131,7 @@ struct MapGeometry
   int PlaneAt(int crossed) const { return this->forward ? crossed : this->planes - 1 - crossed; }
   /// Face across `entryAxis` through which this direction enters: index 2 * entryAxis, or 2 * entryAxis + 1 for the
   /// upper side.
-  int EntryFace(int entryAxis) const;
+  int EntryFace(int entryAxis) const { return 2 * entryAxis + (this->Upward[entryAxis] ? 0 : 1); }
   int ExitFace(int exitAxis) const { return this->EntryFace(exitAxis) ^ 1; }
   /// Transverse position within its voxel, 0 to 1, at which a ray begins order `order` if it began order 0 at `start`.
   /// Differs from `start` if the ray has wrapped around a periodic axis.

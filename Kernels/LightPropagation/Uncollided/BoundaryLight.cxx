@@ -90,11 +90,6 @@ void BoundaryLight::FindRange()
   }
 }
 
-Rgb BoundaryLight::Incoming(int direction, int face) const
-{
-  return this->Faces[face] + this->FromFarAway[direction];
-}
-
 bool BoundaryLight::IsLit(int direction) const
 {
   bool lit = false;

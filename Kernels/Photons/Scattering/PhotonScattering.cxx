@@ -132,11 +132,6 @@ ScatteringRun::ScatteringRun(const PhotonScattering& in, PackedPhotons photons)
   this->Found.entered = this->Packed.entered[0];
 }
 
-int ScatteringRun::Workers() const
-{
-  return this->Shares.atomics ? 0 : std::max(this->Shares.workers, 1);
-}
-
 cl::Kernel ScatteringRun::MakeKernel() const
 {
   const MarchMedium& through = this->In.through;

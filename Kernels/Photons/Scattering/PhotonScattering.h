@@ -105,7 +105,7 @@ private:
   std::vector<ScatteredOnItsWay> Launch(
     const cl::Buffer& photons, std::size_t count, bool resumes, const Monitor& monitor);
   cl::Kernel MakeKernel() const;
-  int Workers() const;
+  int Workers() const { return this->Shares.atomics ? 0 : std::max(this->Shares.workers, 1); }
   void TakeLight();
   void TakeEnds(const std::vector<ScatterEnd>& ends);
 

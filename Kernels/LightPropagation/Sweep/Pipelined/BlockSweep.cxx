@@ -366,9 +366,4 @@ std::size_t BlockSweep::Values(const std::vector<BlockContact>& contacts) const
   }
   return values;
 }
-
-std::size_t BlockSweep::Bytes() const
-{
-  return 2 * (this->Carrier->MapFloats() + this->Rays.Sides()) * sizeof(float);
-}
 }

@@ -64,7 +64,8 @@ public:
   /// the messages from these blocks.
   std::size_t Values(const std::vector<BlockContact>& contacts) const;
   int Axis() const { return this->Bundles.axis; }
-  std::size_t Bytes() const; ///< host memory of the incoming and outgoing rays at the block's faces
+  /// Host memory of the incoming and outgoing rays at the block's faces.
+  std::size_t Bytes() const { return 2 * (this->Carrier->MapFloats() + this->Rays.Sides()) * sizeof(float); }
 
 private:
   struct Light

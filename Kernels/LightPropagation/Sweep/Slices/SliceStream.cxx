@@ -224,13 +224,6 @@ VolumeArrays SliceStream::Arrays() const
     this->Slots(SlotArray::PartialCurrents) };
 }
 
-/// Number of neighbouring planes whose angular moments are interleaved in memory and so are copied together:
-/// MomentGroup if the marching axis is x, else 1.
-int SliceStream::Aligned() const
-{
-  return this->HasMoments() && this->Plan.axes.axis == 0 ? MomentGroup : 1;
-}
-
 SliceStream::SlotPlace SliceStream::PlaceOf(const SlicePiece& piece, std::size_t launch, std::size_t unit) const
 {
   return { SlotsPerUnit * unit + launch % SlotsPerUnit, piece.begin / this->Aligned() * this->Aligned() };

@@ -98,7 +98,9 @@ private:
   const Buffer<float>& Slots(SlotArray array) const;
   void LaySlots();
   bool HasMoments() const { return this->Plan.angular != nullptr; }
-  int Aligned() const;
+  /// Number of neighbouring planes whose angular moments are interleaved in memory and so are copied together:
+  /// MomentGroup if the marching axis is x, else 1.
+  int Aligned() const { return this->HasMoments() && this->Plan.axes.axis == 0 ? MomentGroup : 1; }
   std::size_t SlotFloats(SlotArray array) const;
   Rows PlanarRows(const SlicePiece& piece) const;
   Rows MomentRows(const SlicePiece& piece) const;
