@@ -1,9 +1,7 @@
 #include "Common/AvailableMemory.h"
 
-#include <algorithm>
 #include <fstream>
 #include <limits>
-#include <string>
 #include <sys/resource.h>
 #include <unistd.h>
 

@@ -1,7 +1,6 @@
 #include "Common/CellArrays.h"
 
 #include "Common/Failure.h"
-#include "Common/ImageInput.h"
 #include "Common/LightTransportWriting.h"
 #include "Device/Errors.h"
 #include "Device/HostThreads.h"
@@ -25,7 +24,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace tyndall
 {

@@ -39,9 +39,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
-#include <string>
 #include <utility>
 
 namespace tyndall

@@ -10,7 +10,6 @@
 
 class vtkPolyData;
 class vtkAlgorithm;
-class vtkDataObject;
 class vtkImageData;
 class vtkInformation;
 class vtkInformationVector;

@@ -1,21 +1,13 @@
 #include "Common/InputsKey.h"
 
-#include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
-#include "vtkDataArray.h"
-#include "vtkDataObject.h"
-#include "vtkFieldData.h"
-#include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
-#include "vtkPoints.h"
-#include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkVariant.h"
 
 #include <algorithm>
 #include <cstring>
 #include <string>
-#include <vector>
 
 namespace tyndall
 {

@@ -3,7 +3,6 @@
 #include "Common/Failure.h"
 #include "Common/ImageInput.h"
 #include "Common/PhaseFunctionData.h"
-#include "Device/Errors.h"
 #include "Distribution/Domain.h"
 #include "Distribution/SharedMedium.h"
 #include "Numerics/Constants.h"
@@ -19,8 +18,6 @@
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -1,6 +1,5 @@
 #include "Common/LightTransportWriting.h"
 
-#include "Common/ArrayRanges.h"
 #include "Common/PropertyRange.h"
 #include "Device/Errors.h"
 #include "Medium/BoxFaces.h"

@@ -4,7 +4,6 @@
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Numerics/NumberText.h"
-#include "PhaseFunction/PhaseOfMedium.h"
 
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
@@ -14,8 +13,6 @@
 #include "vtkPointData.h"
 #include "vtkStringArray.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -10,7 +10,6 @@
 #include "vtkInformationStringKey.h"
 #include "vtkInformationStringVectorKey.h"
 
-#include <string>
 #include <vector>
 
 namespace tyndall

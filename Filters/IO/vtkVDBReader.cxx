@@ -24,7 +24,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <set>
 

@@ -32,8 +32,6 @@
 #include <new>
 #include <vector>
 
-using tyndall::InvalidInput;
-
 namespace
 {
 /// Makes the grids of one array, with the metadata of the array and the transform of the image.

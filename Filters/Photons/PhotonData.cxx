@@ -1,7 +1,6 @@
 #include "Photons/PhotonData.h"
 
 #include "Common/Failure.h"
-#include "Common/ImageInput.h"
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Common/LightTransportWriting.h"

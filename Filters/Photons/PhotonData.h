@@ -4,9 +4,6 @@
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Importance/PhotonImportance.h"
 
-#include <array>
-#include <optional>
-
 class vtkImageData;
 class vtkPolyData;
 

@@ -1,6 +1,5 @@
 #include "Photons/RefractiveInput.h"
 
-#include "Common/LightTransportData.h"
 #include "Common/PhaseFunctionData.h"
 #include "Photons/PhotonData.h"
 
@@ -8,11 +7,6 @@
 #include "vtkImageData.h"
 #include "vtkPointData.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <string>
 #include <utility>
 
 namespace tyndall

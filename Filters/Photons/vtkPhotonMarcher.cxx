@@ -25,10 +25,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace
 {

@@ -19,13 +19,10 @@ class KeptMarcher;
 class PhotonMarcher;
 class PieceBlocks;
 struct Grid;
-struct MarchSettings;
 struct Photon;
 struct PhotonLight;
 struct RefractiveInput;
 }
-
-class vtkImageData;
 
 /**
  * @class vtkPhotonMarcher

@@ -27,7 +27,6 @@
 #include <iterator>
 #include <memory>
 #include <numeric>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -34,7 +34,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <utility>
 #include <vector>
 

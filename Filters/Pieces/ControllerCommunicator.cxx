@@ -1,7 +1,6 @@
 #include "Pieces/ControllerCommunicator.h"
 
 #include "Device/Errors.h"
-#include "Distribution/Communicator.h"
 #include "Numerics/NumberText.h"
 
 #ifdef TYNDALL_HAS_DIY

@@ -3,13 +3,11 @@
 #include "vtkSmartPointer.h"
 
 #include <array>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 class vtkDataArray;
-class vtkDataSetAttributes;
 class vtkImageData;
 class vtkMultiProcessController;
 

@@ -36,7 +36,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace tyndall
 {

@@ -11,7 +11,6 @@
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationObjectBaseKey.h"
 #include "vtkInformationVector.h"
-#include "vtkMultiProcessController.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #ifdef TYNDALL_HAS_MPI
@@ -19,14 +18,11 @@
 #endif
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <thread>
-#include <vector>
 
 namespace tyndall
 {

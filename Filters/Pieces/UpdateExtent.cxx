@@ -8,22 +8,18 @@
 #include "vtkExecutive.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
-#include "vtkInformation.h"
 #include "vtkInformationDoubleVectorKey.h"
 #include "vtkInformationExecutivePortKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <functional>
 #include <memory>
-#include <vector>
 
 namespace tyndall
 {

@@ -10,7 +10,6 @@
 
 class vtkAlgorithm;
 class vtkDataObject;
-class vtkInformation;
 class vtkInformationVector;
 class vtkMultiProcessController;
 

@@ -10,7 +10,6 @@
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <array>
 #include <cstring>
 #include <string>
 #include <utility>

@@ -21,7 +21,6 @@
 #include "vtkObjectFactory.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace
 {

@@ -14,7 +14,6 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>

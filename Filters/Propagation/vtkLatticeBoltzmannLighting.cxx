@@ -23,9 +23,7 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <functional>
 #include <memory>
-#include <vector>
 
 namespace
 {

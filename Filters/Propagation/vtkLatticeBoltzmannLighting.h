@@ -10,11 +10,8 @@
 
 namespace tyndall
 {
-class Domain;
-class FloatField;
 struct LatticeSettings;
 struct LightField;
-struct MediumInput;
 struct Photon;
 struct SceneBlock;
 }

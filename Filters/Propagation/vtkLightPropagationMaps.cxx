@@ -4,8 +4,6 @@
 #include "Common/LightTransportData.h"
 #include "Common/PrintMembers.h"
 #include "Device/Device.h"
-#include "Device/Errors.h"
-#include "Distribution/SharedMedium.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "LightPropagation/Accuracy/TargetError.h"
@@ -25,9 +23,6 @@
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 
-#include <algorithm>
-#include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 

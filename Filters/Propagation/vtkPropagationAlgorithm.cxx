@@ -12,9 +12,6 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace
 {

@@ -25,9 +25,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace tyndall
 {

@@ -28,10 +28,8 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <set>
-#include <string>
 #include <utility>
 
 namespace

@@ -16,7 +16,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <vector>
 
 namespace
 {

@@ -24,13 +24,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
-#include <array>
-#include <functional>
-#include <memory>
-#include <numeric>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace
 {

@@ -27,9 +27,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <string>
-#include <vector>
 
 namespace
 {

@@ -1,6 +1,5 @@
 #include "CasterProperties.h"
 
-#include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/ToneMapping.h"
 #include "vtkMediumRayCaster.h"
 

@@ -16,10 +16,8 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <utility>
 
 namespace tyndall

@@ -30,7 +30,6 @@
 #include <exception>
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace
 {

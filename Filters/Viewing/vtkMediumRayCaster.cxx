@@ -39,11 +39,7 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <memory>
-#include <optional>
-#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>

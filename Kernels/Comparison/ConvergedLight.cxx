@@ -6,9 +6,6 @@
 #include "Device/Errors.h"
 #include "Numerics/NumberText.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace tyndall
 {
 namespace

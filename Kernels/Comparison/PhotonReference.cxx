@@ -1,12 +1,10 @@
 #include "Comparison/PhotonReference.h"
 
-#include "Comparison/ConvergedLight.h"
 #include "Device/Errors.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace tyndall
 {

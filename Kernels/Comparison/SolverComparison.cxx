@@ -1,6 +1,5 @@
 #include "Comparison/SolverComparison.h"
 
-#include "Comparison/ConvergedLight.h"
 #include "Device/Clock.h"
 #include "Device/Errors.h"
 #include "LatticeBoltzmann/LatticeSettings.h"

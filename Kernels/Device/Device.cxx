@@ -3,7 +3,6 @@
 #include "Device/HostMemory.h"
 #include "Device/PoclCache.h"
 
-#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <optional>

@@ -5,8 +5,6 @@
 #include "Device/Sizes.h"
 #include "TyndallKernelSources.h"
 
-#include <array>
-
 namespace tyndall
 {
 namespace

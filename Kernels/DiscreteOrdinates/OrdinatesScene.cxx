@@ -5,7 +5,6 @@
 #include "DiscreteOrdinates/SweptOrders.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Uncollided/EnvironmentPeaks.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -13,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace tyndall
 {

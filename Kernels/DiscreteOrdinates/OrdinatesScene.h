@@ -17,7 +17,6 @@
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
 #include <array>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>

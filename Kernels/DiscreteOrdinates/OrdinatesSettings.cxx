@@ -4,7 +4,6 @@
 #include "Numerics/NumberText.h"
 
 #include <cmath>
-#include <string>
 
 namespace tyndall
 {

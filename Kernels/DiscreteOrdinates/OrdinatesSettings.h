@@ -8,7 +8,6 @@
 #include "Medium/Medium.h"
 
 #include <array>
-#include <cstddef>
 #include <string>
 #include <vector>
 

@@ -9,14 +9,12 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Diffusion/SweepModel.h"
 #include "LightPropagation/Problem/AngularDegree.h"
-#include "LightPropagation/Problem/PropagationProblem.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <memory>

@@ -2,7 +2,6 @@
 
 #include "Device/Batches.h"
 #include "Device/Device.h"
-#include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "Distribution/BlockPartition.h"
 
 #include "Device/Errors.h"
-#include "Medium/VoxelBox.h"
 
 #include <algorithm>
 #include <string>

@@ -1,7 +1,6 @@
 #include "Distribution/BoxExchange.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace tyndall
 {

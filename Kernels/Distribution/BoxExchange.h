@@ -4,7 +4,6 @@
 #include "Distribution/Communicator.h"
 #include "Medium/VoxelBox.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #include "Distribution/BrickedBytes.h"
 
 #include <algorithm>
-#include <cstddef>
 
 namespace tyndall
 {

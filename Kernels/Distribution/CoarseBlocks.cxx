@@ -2,8 +2,6 @@
 
 #include "Distribution/BoxExchange.h"
 
-#include <algorithm>
-
 namespace tyndall
 {
 CoarseBlocks::CoarseBlocks(Communicator& communicator, const BlockPartition& fine, const Grid& coarse)

@@ -4,7 +4,6 @@
 #include "Distribution/Communicator.h"
 #include "Medium/Coarsening.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace tyndall

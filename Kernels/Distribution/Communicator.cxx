@@ -3,11 +3,8 @@
 #include "Device/Errors.h"
 
 #include <algorithm>
-#include <exception>
 #include <iterator>
 #include <new>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 namespace tyndall

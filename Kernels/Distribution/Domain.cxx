@@ -1,6 +1,5 @@
 #include "Distribution/Domain.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace tyndall

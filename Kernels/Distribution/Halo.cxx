@@ -3,7 +3,6 @@
 #include "Distribution/BoxExchange.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace tyndall

@@ -8,9 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <sstream>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace tyndall
 {

@@ -5,9 +5,6 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <utility>
 
 namespace tyndall
 {

@@ -9,7 +9,6 @@
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace tyndall
 {

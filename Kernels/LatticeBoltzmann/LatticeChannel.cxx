@@ -3,22 +3,15 @@
 #include "Device/Batches.h"
 #include "Device/Clock.h"
 #include "Device/Errors.h"
-#include "Device/Monitor.h"
 #include "LatticeBoltzmann/FindUncollided.h"
-#include "LatticeBoltzmann/Lattice.h"
 #include "LatticeBoltzmann/LatticeBox.h"
-#include "LatticeBoltzmann/LatticeProblem.h"
-#include "LatticeBoltzmann/LatticeSettings.h"
-#include "LatticeBoltzmann/LatticeVoxels.h"
 #include "LatticeBoltzmann/Steady/SteadyLattice.h"
-#include "Light/LightField.h"
 #include "Numerics/ChooseEvenly.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 namespace tyndall
 {

@@ -1,6 +1,5 @@
 #include "LatticeBoltzmann/LatticeLight.h"
 
-#include "Device/Device.h"
 #include "Device/Errors.h"
 #include "Distribution/SharedMedium.h"
 #include "Light/LeftOut.h"

@@ -4,7 +4,6 @@
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
-#include <string>
 
 namespace tyndall
 {

@@ -1,7 +1,6 @@
 #include "LatticeBoltzmann/LatticeVoxels.h"
 
 #include "Device/Errors.h"
-#include "LatticeBoltzmann/FindUncollided.h"
 #include "LatticeBoltzmann/LatticeShared.h"
 #include "Numerics/Constants.h"
 

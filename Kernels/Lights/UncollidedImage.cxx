@@ -5,8 +5,6 @@
 #include "Numerics/NumberText.h"
 
 #include <cmath>
-#include <limits>
-#include <string>
 
 namespace tyndall
 {

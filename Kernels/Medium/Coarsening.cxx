@@ -1,7 +1,6 @@
 #include "Medium/Coarsening.h"
 
 #include "Device/HostThreads.h"
-#include "Medium/VoxelBox.h"
 
 #include <algorithm>
 

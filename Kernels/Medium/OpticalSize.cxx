@@ -4,7 +4,6 @@
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace tyndall
 {

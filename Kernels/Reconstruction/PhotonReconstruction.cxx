@@ -14,10 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numeric>
-#include <string>
-#include <utility>
 
 namespace tyndall
 {

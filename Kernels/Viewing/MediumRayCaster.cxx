@@ -4,11 +4,9 @@
 #include "Light/LeftOut.h"
 #include "Numerics/NumberText.h"
 #include "Numerics/Vectors.h"
-#include "Viewing/Rays/RayCasting.h"
 
 #include <algorithm>
 #include <functional>
-#include <string>
 #include <utility>
 
 #include <glm/vec3.hpp>

@@ -17,7 +17,6 @@
 #include "Viewing/Scene/ViewTraits.h"
 #include "Viewing/Sources/SeenSources.h"
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>

@@ -5,7 +5,6 @@
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>

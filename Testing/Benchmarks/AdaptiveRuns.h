@@ -6,7 +6,6 @@
 #include "Reconstruction/PhotonReconstruction.h"
 
 #include <memory>
-#include <string>
 #include <vector>
 
 /// Ways from a lamp to light, pass by pass, that the adaptive benchmark compares.

@@ -5,7 +5,6 @@
 #include "Report.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 namespace bench

@@ -2,7 +2,6 @@
 
 #include "Report.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace bench

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 /// Clocks and memory of this process, for benchmarks on a machine that others may use too.

@@ -13,9 +13,7 @@
 #include "Report.h"
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
-#include "LightPropagation/Angular/DirectionSet.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
-#include "Numerics/Constants.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
 
 #include <cmath>

@@ -1,6 +1,5 @@
 // A ball of glass that scatters, in fog, under a sun: photons that bend all the way, and solvers that scatter straight.
 
-#include "Measure.h"
 #include "PhotonRuns.h"
 #include "PhotonTables.h"
 

@@ -1,4 +1,3 @@
-#include "Measure.h"
 #include "PhotonRuns.h"
 #include "PhotonTables.h"
 

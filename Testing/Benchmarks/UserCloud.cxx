@@ -5,8 +5,6 @@
 
 #include "../Kernels/CloudPictures.h"
 
-#include "Numerics/Constants.h"
-
 #include <cmath>
 #include <cstdio>
 #include <string>

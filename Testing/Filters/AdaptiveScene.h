@@ -12,7 +12,6 @@
 
 #include <cmath>
 #include <initializer_list>
-#include <limits>
 #include <string>
 
 /// Adaptive photons for the tests of filters.

@@ -7,7 +7,6 @@
 #include "Pieces/ControllerCommunicator.h"
 
 #include <chrono>
-#include <iostream>
 #include <string>
 #include <thread>
 #include <vector>

@@ -12,7 +12,6 @@
 
 #include <array>
 #include <functional>
-#include <string>
 
 /// Small media for the tests of filters.
 namespace test

@@ -20,7 +20,6 @@
 #include "vtkRefractionOctree.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <cmath>
 #include <limits>
 #include <random>
 

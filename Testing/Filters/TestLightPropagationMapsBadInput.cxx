@@ -14,7 +14,6 @@
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
-#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>

@@ -4,8 +4,6 @@
 
 #include "Numerics/Constants.h"
 
-#include <cmath>
-
 namespace
 {
 using tyndall::Pi;

@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 /// Where the OpenCL loader finds no driver, the filter says so, and whatever needs no device goes on.
 int TestLightPropagationMapsNoDevice(int, char*[])

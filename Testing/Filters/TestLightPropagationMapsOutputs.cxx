@@ -13,7 +13,6 @@
 #include <cmath>
 #include <functional>
 #include <string>
-#include <vector>
 
 namespace
 {

@@ -9,7 +9,6 @@
 #include "Numerics/Constants.h"
 
 #include <cmath>
-#include <string>
 
 namespace
 {

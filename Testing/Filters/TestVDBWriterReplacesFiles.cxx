@@ -8,7 +8,6 @@
 #include "vtkVDBReader.h"
 #include "vtkVDBWriter.h"
 
-#include <cerrno>
 #include <csignal>
 #include <fcntl.h>
 #include <sys/resource.h>

@@ -17,7 +17,6 @@
 #include "vtkSphereSource.h"
 #include "vtkTestUtilities.h"
 
-#include <cmath>
 #include <fstream>
 #include <limits>
 

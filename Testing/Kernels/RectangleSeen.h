@@ -9,7 +9,6 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>

@@ -6,7 +6,6 @@
 #include "Numerics/Constants.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 /// Boxes whose faces give back light, and what is known of them.

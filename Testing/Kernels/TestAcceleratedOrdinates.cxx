@@ -13,10 +13,8 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
-#include <vector>
 
 using namespace tyndall;
 using testing::Contains;

@@ -12,7 +12,6 @@
 #include "Numerics/Constants.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <memory>

@@ -7,7 +7,6 @@
 #include "Light/LeftOut.h"
 #include "LightPropagation/Emission/EmissionPeaks.h"
 #include "LightPropagation/Problem/PropagationQuality.h"
-#include "LightPropagation/Problem/SceneChecks.h"
 
 #include <gmock/gmock.h>
 

@@ -4,7 +4,6 @@
 #include "MediumScene.h"
 
 #include "LightPropagation/Angular/DirectionSet.h"
-#include "LightPropagation/Angular/RayBundles.h"
 
 #include <algorithm>
 #include <cmath>

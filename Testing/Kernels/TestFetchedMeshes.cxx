@@ -9,7 +9,6 @@
 
 #include <fstream>
 #include <numeric>
-#include <ostream>
 
 using namespace tyndall;
 

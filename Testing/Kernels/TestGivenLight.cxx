@@ -8,12 +8,10 @@
 #include "LightPropagation/Published/SequentialPropagation.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "MediumScene.h"
-#include "Numerics/Constants.h"
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Marching/PhotonMarcher.h"
 
 #include <functional>
-#include <numeric>
 #include <string>
 
 using namespace tyndall;

@@ -5,7 +5,6 @@
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "Numerics/Constants.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>

@@ -5,7 +5,6 @@
 #include "Numerics/NumberText.h"
 #include "Reference/CommaLocale.h"
 
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <string>

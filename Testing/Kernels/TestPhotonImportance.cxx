@@ -3,7 +3,6 @@
 #include "ErrorWords.h"
 #include "PhotonScene.h"
 
-#include "Device/Errors.h"
 #include "Photons/Emission/PhotonEmitter.h"
 #include "Photons/Importance/PhotonImportance.h"
 

@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <mutex>
 #include <random>
 #include <string>

@@ -1,7 +1,6 @@
 // What is asked of the folder that PoCL writes to; TestCompilerCache of the filters has what users see of it.
 #include "DeviceTest.h"
 
-#include "Device/Errors.h"
 #include "Device/PoclCache.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +9,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <elf.h>
 #include <filesystem>

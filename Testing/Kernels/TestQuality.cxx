@@ -8,7 +8,6 @@
 #include "LightPropagation/Problem/PropagationQuality.h"
 #include "Viewing/Scene/ViewSettings.h"
 
-#include <cmath>
 #include <string>
 
 using namespace tyndall;

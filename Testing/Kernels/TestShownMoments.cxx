@@ -6,7 +6,6 @@
 #include "MediumScene.h"
 
 #include "Numerics/Constants.h"
-#include "Numerics/Legendre.h"
 #include "Reference/ReferenceTable.h"
 #include "Viewing/Sources/SeenSources.h"
 
@@ -14,8 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <string>
 
 using namespace tyndall;
 

@@ -4,7 +4,6 @@
 #include "ErrorWords.h"
 #include "MediumScene.h"
 
-#include "Device/Errors.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Legendre.h"

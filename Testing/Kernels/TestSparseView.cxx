@@ -3,7 +3,6 @@
 #include "Viewing/Samples/PackedSamples.h"
 #include "Viewing/Scene/ViewTraits.h"
 
-#include <cstdlib>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif

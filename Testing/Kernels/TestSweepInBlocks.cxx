@@ -10,9 +10,7 @@
 #include "LightPropagation/Sweep/Pipelined/SweepInBlocks.h"
 #include "LightPropagation/Sweep/SweepInMemory.h"
 
-#include <algorithm>
 #include <mutex>
-#include <string>
 #include <vector>
 
 using namespace tyndall;

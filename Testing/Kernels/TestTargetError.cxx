@@ -6,7 +6,6 @@
 #include "LightPropagation/Accuracy/DirectionForecast.h"
 #include "LightPropagation/Accuracy/ResampledScene.h"
 #include "LightPropagation/Accuracy/TargetError.h"
-#include "LightPropagation/Problem/PropagationQuality.h"
 
 #include <cmath>
 

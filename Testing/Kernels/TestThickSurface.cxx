@@ -6,8 +6,6 @@
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
 #include "Medium/BoxFaces.h"
 
-#include <tuple>
-
 using namespace tyndall;
 using namespace viewing;
 

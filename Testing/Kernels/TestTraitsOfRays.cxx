@@ -4,8 +4,6 @@
 #include "ViewScene.h"
 
 #include "Light/LeftOut.h"
-#include "Medium/Traits.h"
-#include "Photons/Emission/PhotonEmitter.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,6 @@
 #include "ErrorWords.h"
 #include "MeshShapes.h"
 
-#include "Device/Errors.h"
 #include "Refraction/Voxelization/TriangleMesh.h"
 
 #include <gmock/gmock.h>

@@ -8,8 +8,6 @@
 
 #include <gmock/gmock.h>
 
-#include <optional>
-
 using namespace tyndall;
 
 namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 /// Mean fluence of a transparent box that emits 1 W / (length^3 sr) everywhere: the integral over all directions of the
 /// mean distance from its points to its surface. Of a direction that is the mean of the least of three numbers that are

@@ -13,7 +13,6 @@
 #include <cstdio>
 #include <optional>
 #include <random>
-#include <string>
 #include <vector>
 
 /// Scenes that tests look at, and what they measure in pictures.

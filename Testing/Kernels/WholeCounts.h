@@ -2,7 +2,6 @@
 
 #include "Refraction/Voxelization/Voxelization.h"
 
-#include <utility>
 #include <vector>
 
 /// What CountSamplesInside hands out slab by slab, as a whole.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 
 /// Mean free paths on the straight way between two points of a grid, voxel by voxel.
 /// @param size        voxels per axis; @param spacing  their edges, length

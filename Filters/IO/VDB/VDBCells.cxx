@@ -2,7 +2,6 @@
 
 #include "Common/LightTransportData.h"
 #include "Device/Errors.h"
-#include "IO/VDB/VDBBytes.h"
 #include "IO/VDB/VDBFile.h"
 #include "IO/VDB/VDBMetadata.h"
 #include "IO/VDB/VDBTreeWalk.h"
@@ -22,9 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 namespace tyndall
 {

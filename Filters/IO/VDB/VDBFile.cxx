@@ -2,7 +2,6 @@
 
 #include "Device/Errors.h"
 #include "IO/Files.h"
-#include "IO/VDB/VDBBytes.h"
 
 #include <algorithm>
 #include <cmath>

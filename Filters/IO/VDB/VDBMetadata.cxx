@@ -16,10 +16,8 @@
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <iterator>
 #include <sstream>
-#include <string>
 #include <tuple>
 #include <vector>
 

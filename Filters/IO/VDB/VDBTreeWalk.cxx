@@ -3,7 +3,6 @@
 #include "IO/VDB/VDBBytes.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <sstream>
 #include <utility>

@@ -1,6 +1,5 @@
 #include "DiscreteOrdinates/Published/PublishedOrders.h"
 
-#include "Device/Device.h"
 #include "DiscreteOrdinates/ChannelArrays.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "Medium/BoxFaces.h"

@@ -6,7 +6,6 @@
 #include "Light/LeftOut.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tyndall
 {

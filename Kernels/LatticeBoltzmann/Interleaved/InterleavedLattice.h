@@ -15,7 +15,6 @@
 #include "Photons/Marching/PhotonPacking.h"
 
 #include <array>
-#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>

@@ -5,7 +5,6 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <string>
 #include <utility>

@@ -3,8 +3,6 @@
 #include "LatticeBoltzmann/LatticeShared.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <functional>
 #include <limits>
 #include <numeric>
 

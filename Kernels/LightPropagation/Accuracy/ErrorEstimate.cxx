@@ -3,12 +3,8 @@
 #include "Device/Errors.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <utility>
-#include <vector>
 
 namespace tyndall
 {

@@ -1,7 +1,5 @@
 #include "LightPropagation/Conservative/BlockTransport.h"
 
-#include "LightPropagation/Sweep/SweepInMemory.h"
-
 namespace tyndall
 {
 BlockTransport::BlockTransport(Device& device, const Domain& domain, const VolumeLayout& layout,

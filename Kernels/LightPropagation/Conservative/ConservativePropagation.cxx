@@ -1,6 +1,5 @@
 #include "LightPropagation/Conservative/ConservativePropagation.h"
 
-#include "Device/Device.h"
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
 #include "Distribution/SharedMedium.h"
@@ -18,7 +17,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace tyndall

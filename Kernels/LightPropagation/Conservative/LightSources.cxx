@@ -6,7 +6,6 @@
 #include "Numerics/Constants.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace tyndall

@@ -3,13 +3,11 @@
 #include "Device/Sizes.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/NegativeFluence.h"
-#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Problem/ScatteringOrders.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "TyndallKernelSources.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>

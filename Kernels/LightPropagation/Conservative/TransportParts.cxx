@@ -1,6 +1,5 @@
 #include "LightPropagation/Conservative/TransportParts.h"
 
-#include "LightPropagation/Scattering/ScatteringOperator.h"
 #include "LightPropagation/ThickVoxels/OctantSources.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/UncollidedLamp.h"

@@ -3,7 +3,6 @@
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
 #include "Device/Device.h"
-#include "Device/Sizes.h"
 #include "Medium/BoxFaces.h"
 #include "TyndallKernelSources.h"
 

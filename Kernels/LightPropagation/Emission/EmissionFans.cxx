@@ -4,7 +4,6 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 

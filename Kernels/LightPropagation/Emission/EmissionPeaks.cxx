@@ -2,10 +2,8 @@
 
 #include "Medium/VoxelSums.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace tyndall
 {

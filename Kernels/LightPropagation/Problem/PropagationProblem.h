@@ -13,9 +13,7 @@
 #include "Medium/Medium.h"
 #include "Medium/Traits.h"
 
-#include <array>
 #include <optional>
-#include <string>
 
 namespace tyndall
 {

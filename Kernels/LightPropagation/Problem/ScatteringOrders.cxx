@@ -1,12 +1,10 @@
 #include "LightPropagation/Problem/ScatteringOrders.h"
 
 #include "Device/HostThreads.h"
-#include "LightPropagation/Angular/RayBundles.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 

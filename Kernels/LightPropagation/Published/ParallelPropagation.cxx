@@ -3,7 +3,6 @@
 #include "Device/Device.h"
 #include "Light/ChannelReduction.h"
 #include "Light/LeftOut.h"
-#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Uncollided/GivenLight.h"
 #include "TyndallKernelSources.h"
 

@@ -3,7 +3,6 @@
 #include "Device/Sizes.h"
 
 #include <algorithm>
-#include <string>
 
 namespace tyndall
 {

@@ -6,7 +6,6 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <string>
 
 namespace tyndall
 {

@@ -1,9 +1,5 @@
 #include "LightPropagation/Sweep/VolumeLayout.h"
 
-#include "Device/HostThreads.h"
-
-#include <algorithm>
-
 namespace tyndall
 {
 namespace

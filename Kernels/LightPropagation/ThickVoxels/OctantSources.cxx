@@ -2,7 +2,6 @@
 
 #include "LightPropagation/Diffusion/SweepModel.h"
 #include "LightPropagation/PlaneParallel/LayerResponse.h"
-#include "LightPropagation/ThickVoxels/OctantSourcesShared.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"

@@ -5,8 +5,6 @@
 #include "LightPropagation/Uncollided/Lamps/LampBeams.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"
-#include "LightPropagation/Uncollided/UncollidedSource.h"
-#include "Lights/Lights.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

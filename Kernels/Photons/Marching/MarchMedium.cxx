@@ -7,7 +7,6 @@
 #include "Device/Sizes.h"
 #include "Distribution/SharedMedium.h"
 #include "Photons/Marching/MarchRun.h"
-#include "Refraction/Index/IndexField.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>

@@ -13,7 +13,6 @@
 #include <cstring>
 #include <iterator>
 #include <random>
-#include <string>
 #include <utility>
 
 namespace tyndall

@@ -1,7 +1,6 @@
 #include "Photons/Published/PublishedPhotons.h"
 
 #include "Device/Clock.h"
-#include "Device/Device.h"
 #include "Device/Errors.h"
 #include "Device/Sizes.h"
 #include "Distribution/BoxExchange.h"
@@ -15,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <numeric>
 #include <utility>

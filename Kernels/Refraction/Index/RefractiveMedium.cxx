@@ -1,6 +1,5 @@
 #include "Refraction/Index/RefractiveMedium.h"
 
-#include "Device/Device.h"
 #include "Device/HostMemory.h"
 #include "Device/Sizes.h"
 #include "Distribution/BlockPartition.h"

@@ -2,17 +2,13 @@
 
 #include "Device/Device.h"
 #include "Device/Sizes.h"
-#include "Medium/VoxelBox.h"
 #include "Refraction/Voxelization/SampleLattice.h"
 #include "Refraction/Voxelization/VoxelizationShared.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace tyndall
 {

@@ -2,7 +2,6 @@
 
 #include "Viewing/Scene/BlockOfScene.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace tyndall

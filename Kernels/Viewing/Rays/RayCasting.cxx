@@ -6,14 +6,12 @@
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
-#include "Viewing/Backdrop/Backdrop.h"
 #include "Viewing/Samples/Marching.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <string>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>

@@ -1,17 +1,12 @@
 #include "Viewing/Samples/PackedSamples.h"
 
 #include "Device/Device.h"
-#include "Device/OpenCL.h"
 #include "Device/Sizes.h"
 #include "Numerics/Vectors.h"
 #include "Refraction/Index/IndexField.h"
 #include "TyndallKernelSources.h"
-#include "Viewing/Scene/ViewShared.h"
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
-#include <vector>
 
 #include <glm/vec3.hpp>
 

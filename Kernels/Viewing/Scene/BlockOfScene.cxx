@@ -1,6 +1,5 @@
 #include "Viewing/Scene/BlockOfScene.h"
 
-#include "Distribution/BlockPartition.h"
 #include "Distribution/BoxExchange.h"
 #include "Distribution/Halo.h"
 #include "Medium/BoxFaces.h"
@@ -8,7 +7,6 @@
 #include "Numerics/Vectors.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace tyndall

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>

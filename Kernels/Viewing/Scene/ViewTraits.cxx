@@ -6,8 +6,6 @@
 #include "Numerics/Vectors.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/vec3.hpp>
 
 namespace tyndall

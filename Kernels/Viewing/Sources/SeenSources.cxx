@@ -6,11 +6,8 @@
 #include "Numerics/Legendre.h"
 #include "Numerics/Vectors.h"
 #include "TyndallKernelSources.h"
-#include "Viewing/Samples/Marching.h"
-#include "Viewing/Scene/ViewShared.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <glm/common.hpp>

@@ -3,9 +3,7 @@
 #include "Device/HostThreads.h"
 #include "LightPropagation/Conservative/NegativeFluence.h"
 #include "LightPropagation/Conservative/SurfaceRadiance.h"
-#include "LightPropagation/Convergence.h"
 #include "LightPropagation/Scattering/ScatteringOperator.h"
-#include "Medium/BoxFaces.h"
 #include "Medium/VoxelSums.h"
 
 #include <algorithm>

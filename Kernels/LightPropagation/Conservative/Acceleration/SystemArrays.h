@@ -6,7 +6,6 @@
 #include "LightPropagation/Diffusion/BlockWithGhosts.h"
 #include "LightPropagation/Diffusion/DiffusionSystem.h"
 
-#include <cstddef>
 #include <vector>
 
 namespace tyndall

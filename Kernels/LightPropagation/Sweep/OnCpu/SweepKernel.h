@@ -3,8 +3,6 @@
 #include "Device/Monitor.h"
 #include "LightPropagation/Sweep/SweepPlan.h"
 
-#include <functional>
-
 namespace tyndall
 {
 /// Kernel `sweep` (OnCpu/Sweep.cl) for a sweep plan, with its arguments and the device arrays that describe the plan's

@@ -4,7 +4,6 @@
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
-#include <exception>
 #include <functional>
 #include <initializer_list>
 #include <utility>

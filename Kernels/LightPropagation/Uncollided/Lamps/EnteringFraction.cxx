@@ -1,7 +1,6 @@
 #include "LightPropagation/Uncollided/Lamps/EnteringFraction.h"
 
 #include "LightPropagation/Uncollided/Lamps/LampPoints.h"
-#include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/Vectors.h"
 

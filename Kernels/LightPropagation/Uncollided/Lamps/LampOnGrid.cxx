@@ -1,6 +1,5 @@
 #include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"
 
-#include "Device/Device.h"
 #include "LightPropagation/Uncollided/Lamps/EnteringFraction.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
@@ -9,7 +8,6 @@
 
 #include <glm/geometric.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace tyndall
