@@ -44,14 +44,8 @@ CellsOfBlock::CellsOfBlock(Device& device, const Domain& domain, const Grid& own
   ForBoxFaceCells(own, [&](const BoxFaceCell& cell) {
     if (!(inner >> cell.face & 1) && !periodic[cell.face / 2])
     {
-      const std::array<int, 3> at = own.VoxelAt(cell.voxel);
-      const BoxFaceLayout layout = LayoutOfFace(domain.Whole(), cell.face);
-      std::size_t there = ofWhole.first + layout.first;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        there += static_cast<std::size_t>(block.first[axis] + at[axis]) * layout.step[axis];
-      }
-      this->Places.push_back({ cell.number, there });
+      const std::size_t there = LayoutOfFace(domain.Whole(), cell.face).CellAt(block.VoxelAt(cell.voxel));
+      this->Places.push_back({ cell.number, ofWhole.first + there });
     }
   });
   this->Out.Fill(0.0f);

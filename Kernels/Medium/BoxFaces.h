@@ -32,6 +32,12 @@ struct BoxFaceLayout
   std::size_t first;
   /// Index difference between neighbouring cells along each axis; 0 along the face's normal.
   std::array<std::size_t, 3> step;
+
+  /// Index of the cell at a boundary voxel.
+  std::size_t CellAt(const std::array<int, 3>& voxel) const
+  {
+    return this->first + voxel[0] * this->step[0] + voxel[1] * this->step[1] + voxel[2] * this->step[2];
+  }
 };
 
 inline BoxFaceLayout LayoutOfFace(const Grid& grid, int face)

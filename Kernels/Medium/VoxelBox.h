@@ -18,6 +18,17 @@ struct VoxelBox
     return static_cast<std::size_t>(this->size[0]) * static_cast<std::size_t>(this->size[1]) *
       static_cast<std::size_t>(this->size[2]);
   }
+  /// Voxel of the grid at an index of an array over the box.
+  std::array<int, 3> VoxelAt(std::size_t index) const
+  {
+    const std::array<int, 3> at = Grid{ this->size }.VoxelAt(index);
+    return { this->first[0] + at[0], this->first[1] + at[1], this->first[2] + at[2] };
+  }
+  /// A voxel of the grid, counted from the first voxel of the box.
+  std::array<int, 3> Within(const std::array<int, 3>& voxel) const
+  {
+    return { voxel[0] - this->first[0], voxel[1] - this->first[1], voxel[2] - this->first[2] };
+  }
 };
 
 /// The voxels of a box of the grid `whole` as a grid, at the position of these voxels in space.

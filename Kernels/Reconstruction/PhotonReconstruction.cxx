@@ -154,12 +154,8 @@ ArrayRange CheckedRange(const Domain& domain, const float* values, int width, in
   {
     const float* const unfit =
       std::find_if_not(values, values + count, [&](float value) { return value >= low && value <= high; });
-    std::array<int, 3> voxel =
-      domain.OwnGrid().VoxelAt(static_cast<std::size_t>(unfit - values) / static_cast<std::size_t>(width));
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      voxel[axis] += domain.Own().first[axis];
-    }
+    const std::array<int, 3> voxel =
+      domain.Own().VoxelAt(static_cast<std::size_t>(unfit - values) / static_cast<std::size_t>(width));
     throw InvalidInput(std::string(name) + " is " + Text("%g", *unfit) + " in voxel " +
       VoxelName(domain.Whole(), domain.Whole().IndexOf(voxel)) + " (the first such voxel); it must be finite and " +
       (low < 0.0f ? "no longer than 1." : "not negative.") + " Clean the light, or march the photons anew.");

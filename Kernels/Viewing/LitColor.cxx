@@ -285,16 +285,10 @@ void FillEmptyVoxels(const Domain& domain, SourceFunction& source)
   const VoxelBox box = Grown(own, 1, domain.Whole());
   Grid grid = domain.Whole();
   grid.size = box.size;
-  const Grid ofBlock = domain.OwnGrid();
   ForVoxels(source.extinction.size(), [&](std::size_t voxel) {
     if (source.extinction[voxel] == 0.0f)
     {
-      std::array<int, 3> place = ofBlock.VoxelAt(voxel);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        place[axis] += own.first[axis] - box.first[axis];
-      }
-      FillFromNeighbours(grid, place, around, &source.radiance[3 * voxel]);
+      FillFromNeighbours(grid, box.Within(own.VoxelAt(voxel)), around, &source.radiance[3 * voxel]);
     }
   });
 }

@@ -81,11 +81,7 @@ private:
     const VoxelBox &own = this->Around.Own(), &known = this->Around.Known();
     for (std::size_t i = 0; i < this->Owed.size(); ++i)
     {
-      std::array<int, 3> at = Grid{ own.size }.VoxelAt(i);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        at[axis] += own.first[axis] - known.first[axis];
-      }
+      const std::array<int, 3> at = known.Within(own.VoxelAt(i));
       act(i, this->Known.IndexOf(at), at);
     }
   }

@@ -266,13 +266,7 @@ void PutCells(const std::vector<float>& ofBlock, const VoxelBox& block, const st
     {
       return;
     }
-    const BoxFaceLayout layout = LayoutOfFace(whole, cell.face);
-    const std::array<int, 3> voxel = grid.VoxelAt(cell.voxel);
-    std::size_t place = layout.first;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      place += (block.first[axis] + voxel[axis]) * layout.step[axis];
-    }
+    const std::size_t place = LayoutOfFace(whole, cell.face).CellAt(block.VoxelAt(cell.voxel));
     std::copy_n(ofBlock.begin() + static_cast<std::ptrdiff_t>(cell.number * width), width,
       all.begin() + static_cast<std::ptrdiff_t>(place * width));
   });

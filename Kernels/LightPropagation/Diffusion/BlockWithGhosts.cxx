@@ -36,12 +36,7 @@ BlockWithGhosts::BlockWithGhosts(
 
 std::size_t BlockWithGhosts::PlaceOf(std::size_t ownVoxel) const
 {
-  std::array<int, 3> voxel = this->OfBlock.grid.VoxelAt(ownVoxel);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    voxel[axis] += this->Of.Own().first[axis] - this->Box.first[axis];
-  }
-  return this->OfBox.grid.IndexOf(voxel);
+  return this->OfBox.grid.IndexOf(this->Box.Within(this->Of.Own().VoxelAt(ownVoxel)));
 }
 
 bool BlockWithGhosts::IsOwn(const std::array<int, 3>& voxel) const

@@ -235,12 +235,8 @@ std::vector<std::uint8_t> MarchMedium::OwnNodes(const std::uint8_t* levels) cons
   const Size row = Padded(this->block.known.size, 2);
   for (std::size_t i = 0; i < this->grid.VoxelCount(); ++i)
   {
-    std::array<int, 3> at = this->grid.VoxelAt(i);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      at[axis] += this->block.own.first[axis] - this->block.known.first[axis] + 1;
-    }
-    const bool varies = known[(at[2] * row[1] + at[1]) * row[0] + at[0]] > 0;
+    const std::array<int, 3> at = this->block.known.Within(this->block.own.VoxelAt(i));
+    const bool varies = known[((at[2] + 1) * row[1] + at[1] + 1) * row[0] + at[0] + 1] > 0;
     own.push_back(static_cast<std::uint8_t>(varies ? 1 + levels[i] : 0));
   }
   return own;

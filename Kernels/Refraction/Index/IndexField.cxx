@@ -55,9 +55,9 @@ cl::NDRange Rounded(std::size_t x, std::size_t y, std::size_t z, std::size_t gro
 void CheckIndex(const Field& ior, const Domain& domain)
 {
   const auto fits = [](float index) { return (index >= Least) & (index <= Largest); };
-  const Grid grid = domain.OwnGrid();
+  const std::size_t count = ior.values ? domain.Own().VoxelCount() : 0;
   std::atomic<bool> good(true);
-  InThreads(ior.values ? grid.VoxelCount() : 0, 65536, [&](std::size_t begin, std::size_t end) {
+  InThreads(count, 65536, [&](std::size_t begin, std::size_t end) {
     bool all = true; // combined without branches, so that the loop is vectorised
     for (std::size_t i = begin; i < end; ++i)
     {
@@ -70,12 +70,8 @@ void CheckIndex(const Field& ior, const Domain& domain)
   });
   if (!good)
   {
-    const float* const bad = std::find_if_not(ior.values, ior.values + grid.VoxelCount(), fits);
-    std::array<int, 3> voxel = grid.VoxelAt(static_cast<std::size_t>(bad - ior.values));
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      voxel[axis] += domain.Own().first[axis];
-    }
+    const float* const bad = std::find_if_not(ior.values, ior.values + count, fits);
+    const std::array<int, 3> voxel = domain.Own().VoxelAt(static_cast<std::size_t>(bad - ior.values));
     throw InvalidInput("ior is " + Text("%g", *bad) + " in voxel " +
       VoxelName(domain.Whole(), domain.Whole().IndexOf(voxel)) +
       " (the first such voxel); a refractive index must be finite and positive, from " + Text("%g", Least) + " to " +

@@ -53,12 +53,7 @@ void FaceBalance::FindOwnCells(const BlockWithGhosts& block)
     const std::array<int, 3> voxel = held.VoxelAt(cell.voxel);
     if (block.IsOwn(voxel)) // a face of the block with its ghost cells is a face of the box only at an own voxel
     {
-      const BoxFaceLayout layout = LayoutOfFace(this->Faces.Box(), cell.face);
-      std::size_t place = layout.first;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        place += (block.Held().first[axis] + voxel[axis]) * layout.step[axis];
-      }
+      const std::size_t place = LayoutOfFace(this->Faces.Box(), cell.face).CellAt(block.Held().VoxelAt(cell.voxel));
       this->OwnCells.push_back({ cell.number, place, block.OwnAt(voxel) });
     }
   });

@@ -94,13 +94,7 @@ int BlockSweep::ByCells::EntryFaceOf(int axis) const
 
 std::size_t BlockSweep::ByCells::CellOf(int face, const Voxel& voxel, int channel) const
 {
-  const BoxFaceLayout& layout = this->Faces[face];
-  std::size_t cell = channel * this->CellCount + layout.first;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    cell += voxel[axis] * layout.step[axis];
-  }
-  return cell;
+  return channel * this->CellCount + this->Faces[face].CellAt(voxel);
 }
 
 double BlockSweep::ByCells::LightOf(int face, const Voxel& voxel, int channel) const
