@@ -1,5 +1,6 @@
 #include "Comparison/ComparedRun.h"
 
+#include "LatticeBoltzmann/DiffusionError.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
 #include "LatticeBoltzmann/LatticeSettings.h"
 
@@ -52,10 +53,18 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     ComparedRun run = RunOf(directions, grid);
     run.setting += coarse ? ", voxels x " + std::to_string(coarsening) : "";
     run.filters = coarse ? "" : run.filters;
-    run.solve = [=, &device](bool, const Monitor& monitor) {
+    run.estimates = !coarse; // the estimate does not include the error of voxels
+    run.solve = [=, &device](bool estimate, const Monitor& monitor) {
       const SceneBlock solved = scaled ? scaled->Scene() : given;
-      return SolveLatticeBoltzmann(
-        device, solved.domain, solved.medium, solved.index, solved.illumination, of, monitor);
+      LightField light =
+        SolveLatticeBoltzmann(device, solved.domain, solved.medium, solved.index, solved.illumination, of, monitor);
+      if (estimate)
+      {
+        // without the index, which is constant: the estimate then needs no cubes on its coarse grid
+        const SceneBlock straight = { solved.domain, solved.medium, solved.illumination };
+        EstimateDiffusionError(device, straight, of, false, monitor, light);
+      }
+      return light;
     };
     runs.push_back(std::move(run));
   }

@@ -1,6 +1,7 @@
 #include "Comparison/ComparedRun.h"
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
+#include "DiscreteOrdinates/OrdinatesError.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "LightPropagation/Accuracy/PreviewLight.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
@@ -152,10 +153,16 @@ ComparedRun RunOf(ComparedMethod method, const Setting& setting, const Factors& 
   run.grid = scaled ? scaled->Scene().medium.grid : scene.medium.grid;
   run.cost = static_cast<double>(run.grid.VoxelCount()) * setting.directions * setting.map * setting.map;
   run.allOrders = setting.orders == 0;
-  run.estimates = method != ComparedMethod::DiscreteOrdinates;
-  run.solve = [=](bool estimate, const Monitor& monitor) {
+  run.estimates = true;
+  run.solve = [=, &device, terms = setting.terms](bool estimate, const Monitor& monitor) {
     const SceneBlock solved = scaled ? scaled->Scene() : given;
-    return estimate ? SolveWithErrorEstimate(solved, of, monitor, solver) : solver(solved, of, monitor);
+    if (!estimate)
+    {
+      return solver(solved, of, monitor);
+    }
+    return method == ComparedMethod::DiscreteOrdinates
+      ? EstimateOrdinates(device, solved, AsOrdinates(of, terms), monitor)
+      : SolveWithErrorEstimate(solved, of, monitor, solver);
   };
   return run;
 }

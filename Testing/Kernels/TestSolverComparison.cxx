@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -224,6 +225,30 @@ struct SunlitCube
 class ComparedMonteCarlo : public DeviceTest
 {
 };
+
+using ComparedEstimates = ComparedMonteCarlo;
+
+TEST_F(ComparedEstimates, AreMadeByEverySolverOfAllOrders)
+{
+  SunlitCube cube(16);
+  cube.settings.methods = { ComparedMethod::LightPropagationMaps, ComparedMethod::ConstantSource,
+    ComparedMethod::DiscreteOrdinates, ComparedMethod::LatticeBoltzmann };
+  cube.settings.tried.directionsPerFace = { 9, 25 };
+  cube.settings.tried.mapResolutions = { 1 };
+  const Comparison found = CompareSolvers(this->GetDevice(), cube.scene, cube.settings);
+  std::set<ComparedMethod> seen;
+  for (const ComparisonRow& row : found.rows)
+  {
+    // not known of few orders; of coarser voxels estimated from coarser voxels still
+    if (std::isnan(row.estimatedError) || row.grid.VoxelCount() != 4096)
+    {
+      continue;
+    }
+    seen.insert(row.method);
+    EXPECT_LT(row.errorL2, 2.0 * row.estimatedError + 0.01) << NameOf(row.method) << ", " << row.setting;
+  }
+  EXPECT_EQ(seen.size(), cube.settings.methods.size());
+}
 
 // All light, by the errors that it estimates itself: the reference is of propagation.
 TEST_F(ComparedMonteCarlo, ComesNearConvergedPropagation)
