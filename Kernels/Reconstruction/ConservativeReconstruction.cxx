@@ -127,13 +127,6 @@ bool AreWoven(const NoisyLight& light, int width)
   return light.batches == 2 && WholeVectors(light.grid.size[0], width) == light.grid.size[0];
 }
 
-std::string Options(const Reconstruction& task, int width)
-{
-  const NoisyLight& light = task.light;
-  return Define("BATCHES", light.batches) + Define("WOVEN", AreWoven(light, width)) +
-    Define("CHANNELS", light.channels) + Define("DIRECTIONS", task.directions);
-}
-
 /// Power of two that scales the light to about 1, so that squares neither overflow nor underflow.
 float ScaleOf(float largest)
 {
@@ -163,8 +156,7 @@ ConservativePasses::ConservativePasses(
   const Reconstruction& task, const NoisyLight& light, ReconstructedLight& result, int first, int top)
   : Task(task)
   , Size(light.grid.size)
-  , Kernels(task.device, RowWidth(task.device, task.domain.Whole()),
-      Options(task, RowWidth(task.device, task.domain.Whole())))
+  , Kernels(task.device, RowWidth(task.device, task.domain.Whole()))
   , Scale(ScaleOf(task.largest))
   , Voxels(VoxelLayout(this->Size, this->Kernels.Width()))
   , Light(Kernels, light)
@@ -187,7 +179,11 @@ ConservativePasses::ConservativePasses(
 
 cl::Kernel ConservativePasses::Kernel(const char* name, bool finest) const
 {
-  return this->Kernels.Kernel(name, kernel_source::ConservativeReconstruction, Define("FINEST", finest));
+  const NoisyLight& light = this->Task.light;
+  return this->Kernels.Kernel(name, kernel_source::ConservativeReconstruction,
+    Define("BATCHES", light.batches) + Define("CHANNELS", light.channels) +
+      Define("DIRECTIONS", this->Task.directions) + Define("FINEST", finest) +
+      Define("WOVEN", finest && AreWoven(light, this->Kernels.Width())));
 }
 
 /// Enqueues a kernel that reads level `below`, with one work-item per row (or cell) of the level above it.

@@ -1,10 +1,7 @@
 // Chooses a pyramid level for each voxel and interpolates the light there; one work-item per row (or voxel). The host
 // defines
-//   PUBLISHED        1: the published estimator
-//   CONSTANT_RADIUS  1: the same level everywhere; with both 0, the nearest-photons estimator
 //   CHANNELS, DIRECTIONS  number of channels of the light, and whether it has mean directions; the fields of its
 //                         pyramid are the channels, then the mean direction
-//   TOP         highest level
 //
 // Levels are processed one by one for a vector of voxels, and each voxel keeps the value of its chosen level.
 // Adjacent voxels of a row lie between the same cells of a level, so that no gather is needed.
@@ -19,7 +16,8 @@ typedef struct
   size_t at[4];
   size_t field;
   float y, z;
-  int first; // position along x of the row's first voxel among the voxels that the level covers, a multiple of 8
+  float cell; // 1 / (voxels per cell along an axis)
+  int first;  // position along x of the row's first voxel among the voxels that the level covers, a multiple of 8
 } rows_between;
 
 inline rows_between rows_beside(const __global PyramidLevels* where, int level, int y, int z)
@@ -37,6 +35,7 @@ inline rows_between rows_beside(const __global PyramidLevels* where, int level, 
   r.field = field_of(size);
   r.y = at_y - low_y;
   r.z = at_z - low_z;
+  r.cell = cell;
   r.first = first.x;
   return r;
 }
@@ -54,8 +53,7 @@ inline real cells_across(const __global float* values, const rows_between* rows,
   return between(low, high, (real)rows->z);
 }
 
-// Trilinear interpolation of a level at REAL_WIDTH voxels, from x on (getInterpolatedValue of listing B.3). `level`
-// is a compile-time constant.
+// Trilinear interpolation of a level at REAL_WIDTH voxels, from x on (getInterpolatedValue of listing B.3).
 inline real sample(const __global float* values, const rows_between* rows, int level, int x)
 {
   if (level == 0)
@@ -83,7 +81,7 @@ inline real sample(const __global float* values, const rows_between* rows, int l
   }
   const float8 voxels = (float8)(0.5f, 1.5f, 2.5f, 3.5f, 4.5f, 5.5f, 6.5f, 7.5f);
   const float begin = (float)(x - (1 << level) / 2 - (first << level));
-  return between(cells.s00000000, cells.s11111111, (begin + voxels) * (1.0f / (float)(1 << level)));
+  return between(cells.s00000000, cells.s11111111, (begin + voxels) * rows->cell);
 #else
   const float part = ((float)(x - (1 << level) / 2 - (first << level)) + 0.5f) * (1.0f / (float)(1 << level));
   return between(cells_across(values, rows, first), cells_across(values, rows, first + 1), part);
@@ -117,82 +115,70 @@ inline void take(real* taken, const real* channels, integer where)
   }
 }
 
-// Finds the lowest level with at least `least` photons (the top level if none has), and interpolates `wanted` there:
-// the light (its channels) or, for the published estimator, the photons' weight.
+// Finds the lowest level with at least `least` photons (level `top` if none has), and interpolates the first `fields`
+// fields of `wanted` there: the channels of the light or, for the published estimator, the photons' weight.
 inline real populated(const __global float* counts, const rows_between* rows_of_counts, float least,
-  const __global float* wanted, const rows_between* rows, int x, real* found)
+  const __global float* wanted, const rows_between* rows, const int fields, int top, int x, real* found)
 {
   real level = 0.0f;
   integer open = -1; // mask of the voxels whose level is not yet found
-#pragma unroll
-  for (int l = 0; l <= TOP; ++l)
+  for (int l = 0; l <= top && any_of(open); ++l)
   {
-    if (any_of(open))
+    const integer more = l < top ? open & (sample(counts, rows_of_counts + l, l, x) < least) : (integer)0;
+    const integer here = open & (more == 0);
+    level = select(level, (real)l, here);
+    if (any_of(here))
     {
-      const integer more = l < TOP ? open & (sample(counts, rows_of_counts + l, l, x) < least) : (integer)0;
-      const integer here = open & (more == 0);
-      level = select(level, (real)l, here);
-      if (any_of(here))
+      for (int f = 0; f < fields; ++f)
       {
-        if (PUBLISHED)
-        {
-          found[0] = select(found[0], sample(wanted, rows + l, l, x), here);
-        }
-        else
-        {
-          real channels[CHANNELS];
-          sample_light(wanted, rows + l, l, x, channels);
-          take(found, channels, here);
-        }
+        found[f] = select(found[f], sample(wanted + f * rows[l].field, rows + l, l, x), here);
       }
-      open = more;
     }
+    open = more;
   }
   return level;
 }
 
 // Returns the level up to which the difference of successive levels does not grow (listing B.3), at most `highest`;
 // `taken` receives the light of that level.
-inline real by_surround(const __global float* light, const rows_between* rows, real highest, int x, real* taken)
+inline real by_surround(
+  const __global float* light, const rows_between* rows, int top, real highest, int x, real* taken)
 {
   real level = 0.0f;
   sample_light(light, rows, 0, x, taken);
   integer climbing = highest >= 1.0f;
-  if (TOP <= 2 || !any_of(climbing))
+  if (top <= 2 || !any_of(climbing))
   {
     return level;
   }
   real surround[CHANNELS];
   sample_light(light, rows + 1, 1, x, surround);
   real difference = fabs(sum_of_channels(taken) - sum_of_channels(surround));
-#pragma unroll
-  for (int l = 2; l < TOP; ++l)
+  for (int l = 2; l < top && any_of(climbing); ++l)
   {
-    if (any_of(climbing))
-    {
-      real next[CHANNELS];
-      sample_light(light, rows + l, l, x, next);
-      const real next_difference = fabs(sum_of_channels(surround) - sum_of_channels(next));
-      climbing = climbing & (next_difference <= difference) & (highest >= (real)(l - 1));
-      level = select(level, (real)(l - 1), climbing);
-      take(taken, surround, climbing);
+    real next[CHANNELS];
+    sample_light(light, rows + l, l, x, next);
+    const real next_difference = fabs(sum_of_channels(surround) - sum_of_channels(next));
+    climbing = climbing & (next_difference <= difference) & (highest >= (real)(l - 1));
+    level = select(level, (real)(l - 1), climbing);
+    take(taken, surround, climbing);
 #pragma unroll
-      for (int c = 0; c < CHANNELS; ++c)
-      {
-        surround[c] = next[c];
-      }
-      difference = next_difference;
+    for (int c = 0; c < CHANNELS; ++c)
+    {
+      surround[c] = next[c];
     }
+    difference = next_difference;
   }
   return level;
 }
 
-inline void store_direction(
-  const __global float* light, const rows_between* rows, real level, int x, size_t voxel, __global float* direction)
+#if DIRECTIONS
+// Stores the mean direction that each voxel has at its level, one of `lowest` to `top`.
+inline void store_direction(const __global float* light, const rows_between* rows, int lowest, int top, real level,
+  int x, size_t voxel, __global float* direction)
 {
   real way[3] = { 0.0f, 0.0f, 0.0f };
-#pragma unroll
-  for (int l = CONSTANT_RADIUS ? TOP : 0; l <= TOP; ++l)
+  for (int l = lowest; l <= top; ++l)
   {
     const integer here = level == (real)l;
     if (any_of(here))
@@ -212,43 +198,45 @@ inline void store_direction(
   }
   store_reals_of_three(way[0] * cut, way[1] * cut, way[2] * cut, voxel, direction);
 }
+#endif
 
 // Kernel of all estimators that use one level per voxel.
 //   light, counts, weights     pyramids of light, photon counts and photon weights
 //   where, where_counts        layouts of these pyramids
-//   parameter                  published: increment of photon weight per level; else minimum number of photons
+//   estimator, top             how levels are chosen (LevelEstimator), and the highest level
+//   parameter                  ByPublished: increment of photon weight per level; else minimum number of photons
 //   fluence, direction, chosen output: light, mean direction and level of each voxel
 //   voxels                     voxels of the grid along x, y, z, and the pitch of its rows
 __kernel void choose_level(const __global float* light, const __global PyramidLevels* where,
   const __global float* counts, const __global float* weights, const __global PyramidLevels* where_counts,
-  float parameter, __global float* fluence, __global float* direction, __global float* chosen, int4 voxels)
+  int estimator, int top, float parameter, __global float* fluence, __global float* direction, __global float* chosen,
+  int4 voxels)
 {
-  const int y = ROW_Y, z = ROW_Z;
-  rows_between rows[TOP + 1], rows_of_counts[TOP + 1];
-#pragma unroll
-  for (int l = 0; l <= TOP; ++l)
+  const int y = ROW_Y, z = ROW_Z, lowest = estimator == ByConstantRadius ? top : 0;
+  rows_between rows[LevelsAtMost + 1], rows_of_counts[LevelsAtMost + 1];
+  for (int l = lowest; l <= top; ++l)
   {
     rows[l] = rows_beside(where, l, y, z);
-    rows_of_counts[l] = rows_beside(CONSTANT_RADIUS ? where : where_counts, l, y, z);
+    rows_of_counts[l] = rows_beside(where_counts, l, y, z);
   }
   const size_t begin = ((size_t)z * voxels.y + y) * voxels.w;
   FOR_CELLS(x, voxels.x)
   {
     real taken[CHANNELS] = { 0.0f };
-    real level = TOP;
-    if (PUBLISHED)
+    real level = (real)top;
+    if (estimator == ByPublished)
     {
-      real weight[CHANNELS] = { 0.0f };
-      populated(counts, rows_of_counts, 1.0f, weights, rows_of_counts, x, weight);
-      level = by_surround(light, rows, weight[0] / parameter, x, taken);
+      real weight = 0.0f;
+      populated(counts, rows_of_counts, 1.0f, weights, rows_of_counts, 1, top, x, &weight);
+      level = by_surround(light, rows, top, weight / parameter, x, taken);
     }
-    else if (CONSTANT_RADIUS)
+    else if (estimator == ByConstantRadius)
     {
-      sample_light(light, rows + TOP, TOP, x, taken);
+      sample_light(light, rows + top, top, x, taken);
     }
     else
     {
-      level = populated(counts, rows_of_counts, parameter, light, rows, x, taken);
+      level = populated(counts, rows_of_counts, parameter, light, rows, CHANNELS, top, x, taken);
     }
 #if CHANNELS == 3
     store_reals_of_three(taken[0], taken[1], taken[2], begin + x, fluence);
@@ -256,7 +244,7 @@ __kernel void choose_level(const __global float* light, const __global PyramidLe
     store_real(taken[0], begin + x, fluence);
 #endif
 #if DIRECTIONS
-    store_direction(light, rows, level, x, begin + x, direction);
+    store_direction(light, rows, lowest, top, level, x, begin + x, direction);
 #endif
     store_real(level, begin + x, chosen);
   }

@@ -5,6 +5,7 @@
 #include "Device/HostThreads.h"
 #include "Device/Sizes.h"
 #include "Reconstruction/LightPyramid.h"
+#include "Reconstruction/LightPyramidShared.h"
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
@@ -51,7 +52,6 @@ public:
 private:
   void Fill(std::size_t pyramid, const float* values, int components, int first, const char* what);
   void InParts(const cl::Kernel& kernel) const;
-  cl::Kernel Kernel(const char* name) const;
 
   const Reconstruction& Task;
   ReconstructedLight& Result;
@@ -103,15 +103,6 @@ LevelPasses::LevelPasses(const Reconstruction& task, ReconstructedLight& result)
     this->Pyramids.emplace_back(
       this->Kernels, task.light.grid, fields, task.top, what[this->Pyramids.size()], this->Part);
   }
-}
-
-cl::Kernel LevelPasses::Kernel(const char* name) const
-{
-  const Estimator estimator = this->Task.settings.estimator;
-  return this->Kernels.Kernel(name, kernel_source::LevelReconstruction,
-    Define("CHANNELS", this->Task.light.channels) + Define("DIRECTIONS", this->Task.directions) +
-      Define("PUBLISHED", estimator == Estimator::Published) +
-      Define("CONSTANT_RADIUS", estimator == Estimator::ConstantRadius) + Define("TOP", this->Task.top));
 }
 
 void LevelPasses::Fill(std::size_t pyramid, const float* values, int components, int first, const char* what)
@@ -167,10 +158,15 @@ void LevelPasses::Choose(double weightStep)
   const LightPyramid& light = this->Pyramids.front();
   const LightPyramid& heavy = this->Pyramids.back();
   const LightPyramid& photons = this->Pyramids[std::min<std::size_t>(1, this->Pyramids.size() - 1)];
-  cl::Kernel choose = this->Kernel("choose_level");
-  With(choose, light.Values(), light.Levels(), photons.Values(), heavy.Values(), photons.Levels(),
-    cl_float(this->Task.settings.estimator == Estimator::Published ? weightStep : this->Task.settings.nearest),
-    fluence.Handle(), direction.Handle(), chosen.Handle(), VoxelLayout(this->Size, this->Kernels.Width()));
+  const Estimator estimator = this->Task.settings.estimator;
+  const cl_int kind = estimator == Estimator::Published ? ByPublished
+    : estimator == Estimator::ConstantRadius            ? ByConstantRadius
+                                                        : ByNearestPhotons;
+  cl::Kernel choose = this->Kernels.Kernel("choose_level", kernel_source::LevelReconstruction,
+    Define("CHANNELS", this->Task.light.channels) + Define("DIRECTIONS", this->Task.directions));
+  With(choose, light.Values(), light.Levels(), photons.Values(), heavy.Values(), photons.Levels(), kind,
+    cl_int(this->Task.top), cl_float(kind == ByPublished ? weightStep : this->Task.settings.nearest), fluence.Handle(),
+    direction.Handle(), chosen.Handle(), VoxelLayout(this->Size, this->Kernels.Width()));
   this->InParts(choose);
   fluence.Fetch();
   chosen.Fetch();

@@ -101,16 +101,15 @@ void LightRows::Write(const std::vector<float>& cells)
   this->Memory.Write(memory.data(), memory.size());
 }
 
-RowKernels::RowKernels(Device& device, int width, const std::string& options)
+RowKernels::RowKernels(Device& device, int width)
   : TheDevice(device)
   , RowWidth(width)
-  , Options(Define("REAL_WIDTH", width) + options)
 {
 }
 
 cl::Kernel RowKernels::Kernel(const char* name, std::string_view source, const std::string& options) const
 {
-  return this->TheDevice.Kernel(name, source, this->Options + options);
+  return this->TheDevice.Kernel(name, source, Define("REAL_WIDTH", this->RowWidth) + options);
 }
 
 void RowKernels::Run(

@@ -59,7 +59,7 @@ private:
 class RowKernels
 {
 public:
-  RowKernels(Device& device, int width, const std::string& options = {});
+  RowKernels(Device& device, int width);
 
   int Width() const { return this->RowWidth; }
   Device& On() const { return this->TheDevice; }
@@ -74,7 +74,6 @@ public:
 private:
   Device& TheDevice;
   int RowWidth;
-  std::string Options;
 };
 
 /// A voxel array on the device whose rows are a multiple of two vectors: the host's own array if its rows are, else a

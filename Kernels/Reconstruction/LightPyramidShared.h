@@ -19,6 +19,14 @@ typedef struct
   ulong offset[LevelsAtMost + 1]; ///< offset of each level in the buffer, in floats
 } PyramidLevels;
 
+/// How LevelReconstruction.cl chooses the level from which a voxel's light is taken.
+enum LevelEstimator
+{
+  ByPublished,
+  ByConstantRadius, ///< the highest level in all voxels
+  ByNearestPhotons
+};
+
 /// Fields of the gains: for each cell of a level, the fraction of the details (the finer level less this level,
 /// interpolated) that is kept in its 2 x 2 x 2 cells of the next finer level, and the squared errors.
 enum
