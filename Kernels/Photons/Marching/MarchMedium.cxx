@@ -290,7 +290,8 @@ void MarchMedium::PackVoxels(const Medium& medium, const Field& ior, const std::
   const auto before = [this](int axis) { return cl_int(this->block.own.first[axis] - this->block.known.first[axis]); };
   cl::Kernel pack = this->MediumKernel("pack_extinction");
   With(pack, this->DescribeGrid(), SizeOf(this->block.known.size), before(0), before(1), before(2),
-    static_cast<float>(this->Diagonal()), this->sigmaA, this->sigmaS, low, high, this->sigma);
+    static_cast<float>(this->Diagonal()), cl_int(this->channels), cl_int(this->AComponents), cl_int(this->SComponents),
+    cl_int(this->bends), this->sigmaA, this->sigmaS, low, high, this->sigma);
   this->Launch(pack, Range(this->Padded(2)));
   this->device.Finish(); // the kernel must end before its arguments `low` and `high` are released
 }
@@ -303,7 +304,7 @@ void MarchMedium::PackNodes(const Buffer<float>& low, const Buffer<float>& high,
     ? Buffer<cl_uchar>(this->device, levels, this->block.known.VoxelCount(), "octree levels")
     : Buffer<cl_uchar>(this->device, 0, "octree levels");
   cl::Kernel pack = this->MediumKernel("pack_nodes");
-  With(pack, SizeOf(this->block.known.size), low, high, given, this->nodes);
+  With(pack, SizeOf(this->block.known.size), low, high, cl_int(this->hasLevels), given, this->nodes);
   this->Launch(pack, Range(padded));
   this->device.Finish(); // the kernel must end before its argument `given` is released
 }
@@ -386,21 +387,21 @@ MarchInfo MarchMedium::Describe() const
   info.slowest = 0.5f * this->traits.index.least / *std::max_element(info.spacing, info.spacing + 3);
   info.darkness = DarkUnits;
   info.eventLimit = this->EventLimit();
+  info.levels = this->hasLevels;
   info.copy = this->Records();
   return info;
 }
 
 std::string MarchMedium::Options() const
 {
-  return Define("MEDIUM_CHANNELS", this->channels) + Define("BENDS", this->bends) + Define("LEVELS", this->hasLevels) +
+  return Define("MEDIUM_CHANNELS", this->channels) + Define("BENDS", this->bends) +
     Define("NODE_BRICKS", this->nodesOfWhole) + Define("BRICKS", this->bricks.AreThere()) +
     Define("BLOCKS", this->IsBlock()) + MultiplyAdds;
 }
 
 cl::Kernel MarchMedium::MediumKernel(const char* name) const
 {
-  return this->device.Kernel(name, kernel_source::PhotonMedium,
-    this->Options() + Define("A_CHANNELS", this->AComponents) + Define("S_CHANNELS", this->SComponents));
+  return this->device.Kernel(name, kernel_source::PhotonMedium);
 }
 
 cl::Kernel MarchMedium::SumsKernel(const char* name, int lightChannels, const std::string& options) const

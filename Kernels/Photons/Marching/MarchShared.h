@@ -43,6 +43,7 @@ typedef struct
   float slowest;     ///< lower bound of the speed, in voxels per time, from which the duration of a step is computed
   float darkness;    ///< power, in units of PackedPhotons::unit, below which a photon ends as dark
   int eventLimit;    ///< maximum number of path segments (walls and velocity changes) of a photon
+  int levels;        ///< 1: there are octree levels
   ulong copy;        ///< number of records of extinction per channel: voxels of the padded grid, or records of bricks
 } MarchInfo;
 

@@ -1,6 +1,4 @@
-// Kernels that pack the medium for the marching kernels. The host defines
-//   MEDIUM_CHANNELS, BENDS, LEVELS  as in PhotonMarch.cl
-//   A_CHANNELS, S_CHANNELS          components of sigma_a and sigma_s, 0: absent
+// Kernels that pack the medium for the marching kernels.
 
 #include "Numerics/Numerics.cl"
 #include "Refraction/Index/SquaredIndex.cl"
@@ -21,25 +19,26 @@ static bool index_varies(
 
 // Packs the extinction of the voxels.
 //   x0, y0, z0  first voxel of the grid within the region `known`, where the index is known
-//   low, high   as in index_varies: bounds of the spline coefficients of n^2 near each voxel
-//   sigma       [MEDIUM_CHANNELS][voxel of the padded grid] optical thickness of a voxel diagonal, OUTSIDE in the
-//               padding; sign bit set where n^2 varies
-__kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, int z0, float diagonal,
-  const __global float* sigma_a, const __global float* sigma_s, const __global float* low, const __global float* high,
-  __global float* sigma)
+//   channels, of_a, of_s  channels of the extinction; components of sigma_a and sigma_s, 0: absent
+//   low, high   as in index_varies: bounds of the spline coefficients of n^2 near each voxel; read only if `bends`
+//   sigma       [channel][voxel of the padded grid] optical thickness of a voxel diagonal, OUTSIDE in the padding; sign
+//               bit set where n^2 varies
+__kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, int z0, float diagonal, int channels,
+  int of_a, int of_s, int bends, const __global float* sigma_a, const __global float* sigma_s,
+  const __global float* low, const __global float* high, __global float* sigma)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int row = grid.size[0] + 2, layer = row * (grid.size[1] + 2);
   const size_t copy = (size_t)layer * (grid.size[2] + 2), at = (size_t)z * layer + y * row + x;
   const bool inside = x > 0 && x <= grid.size[0] && y > 0 && y <= grid.size[1] && z > 0 && z <= grid.size[2];
   const size_t voxel = ((size_t)(z - 1) * grid.size[1] + y - 1) * grid.size[0] + x - 1;
-  const bool varies = BENDS && inside && index_varies(&known, low, high, x0 + x - 1, y0 + y - 1, z0 + z - 1);
-  for (int c = 0; c < MEDIUM_CHANNELS; ++c)
+  const bool varies = bends && inside && index_varies(&known, low, high, x0 + x - 1, y0 + y - 1, z0 + z - 1);
+  for (int c = 0; c < channels; ++c)
   {
     float s = OUTSIDE;
     if (inside)
     {
-      const float extinction = component(sigma_a, A_CHANNELS, voxel, c) + component(sigma_s, S_CHANNELS, voxel, c);
+      const float extinction = component(sigma_a, of_a, voxel, c) + component(sigma_s, of_s, voxel, c);
       s = fmin(diagonal * extinction, 1e30f); // infinity times zero length would be NaN
       s = varies ? -s : s;
     }
@@ -48,8 +47,9 @@ __kernel void pack_extinction(IndexGrid grid, IndexGrid known, int x0, int y0, i
 }
 
 // Packs the octree nodes of the region in which the index is known.
+//   levels  octree level of each voxel; read only if has_levels
 //   nodes  [voxel of `known` with its padding] 0: n^2 does not vary in the voxel; else 1 + the voxel's octree level
-__kernel void pack_nodes(IndexGrid known, const __global float* low, const __global float* high,
+__kernel void pack_nodes(IndexGrid known, const __global float* low, const __global float* high, int has_levels,
   const __global uchar* levels, __global uchar* nodes)
 {
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
@@ -57,7 +57,7 @@ __kernel void pack_nodes(IndexGrid known, const __global float* low, const __glo
   const bool inside = x > 0 && x <= nx && y > 0 && y <= ny && z > 0 && z <= known.size[2];
   const bool varies = inside && index_varies(&known, low, high, x - 1, y - 1, z - 1);
   const size_t voxel = ((size_t)(z - 1) * ny + y - 1) * nx + x - 1;
-  nodes[((size_t)z * (ny + 2) + y) * (nx + 2) + x] = varies ? 1 + (LEVELS ? levels[voxel] : 0) : 0;
+  nodes[((size_t)z * (ny + 2) + y) * (nx + 2) + x] = varies ? 1 + (has_levels ? levels[voxel] : 0) : 0;
 }
 
 // Computes the coarse cell of each voxel of a block.

@@ -1,7 +1,6 @@
 // Path integrator of photons. The host defines
 //   REAL_WIDTH  photons per packet: 1 on a GPU, 4 to 16 on a CPU
 //   BENDS       1: the index varies; ORDER of the integrator is then 1, 2 or 4
-//   LEVELS      1: there are octree levels
 //   NODE_BRICKS 1: the array `nodes` covers the domain, in the layout of BrickedBytes
 //   DIRECTIONS  1: directions are recorded
 //   MARKS       1: each photon carries a number, its mark (PhotonMarch.cl): from it, coarse cells or voxels sum the
@@ -291,12 +290,12 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
 // the photon (look-ahead, MarchShared.h).
 static real looked_ahead(const MarchInfo* info, real way)
 {
-  if (LEVELS && ORDER == 2)
+  if (ORDER == 2 && info->levels)
   {
     return way; // not limited: a step ends at the wall of its octree node, and the nodes of the entire domain are known
   }
   const float steps = 0.5f * (ORDER == 4 ? YoshidaLooksAhead : LeapfrogLooksAhead) * info->stepSize;
-  const float most = LEVELS ? greater(steps, (float)(1 << YoshidaLevel)) : steps;
+  const float most = info->levels ? greater(steps, (float)(1 << YoshidaLevel)) : steps;
   return lesser(greater(way, (real)-most), (real)most);
 }
 
@@ -365,7 +364,7 @@ static real times_of_steps(
   const real shortest =
     (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);
   real time = shortest;
-  if (LEVELS && anywhere(truth(node > 1)))
+  if (info->levels && anywhere(truth(node > 1)))
   {
     // The step lasts until the photon leaves the octree's node, or a cube within it, and slightly enters the next
     // one.
