@@ -3,15 +3,14 @@
 // With dt = ds / n, s the path length, a ray obeys dr/dt = T, dT/dt = grad(n^2) / 2, |T| = n, as photons do. The
 // integrator is a leapfrog (numerics.md, Eq. (91)) that reads the gradient at the midpoint of each step. Where the
 // index is constant, steps are straight and the gradient is not read.
-//
-// Macros set by the host:
-//   SURFACE  reflectance of the surface where the index rises through a given value, at which primary rays are split: 0
-//            no surface, 1 by Fresnel's equations, 2 constant
 
 #pragma once
 #include "Viewing/Rays/RayPackets.cl"
 
-#if SURFACE
+// Whether, and how, a surface reflects rays (OpticsInfo)
+#define SURFACE(s) ((s)->o->limits.w)
+
+#if BENDS
 // Fresnel reflectance for unpolarised light from a medium of squared index n1 into one of squared index n2
 // (numerics.md, Eq. (110)).
 //   across  (n sin(theta))^2, theta the angle to the surface's normal
@@ -57,7 +56,10 @@ inline real time_since_surface(const surroundings* s, const met_step* step)
 //   inwards  component of t along the normal
 inline real reflectance(const surroundings* s, real3 at, real3 t, real3 normal, real inwards)
 {
-#if SURFACE == 1
+  if (SURFACE(s) != 1)
+  {
+    return (real)s->o->surface.y;
+  }
   const real3 steps = stretched(normal, s->v->inverseSpacing);
   const real away = (real)s->o->surface.z / sqrt(greater(product(steps, steps), (real)1e-30f));
   real3 unused;
@@ -65,9 +67,6 @@ inline real reflectance(const surroundings* s, real3 at, real3 t, real3 normal, 
   const real n2 = index_at(s, kept_within(further(at, away, steps), s->v->size), &unused);
   const real across = fma(-inwards, inwards, product(t, t));
   return fresnel(lesser(n1, (real)s->o->surface.x), greater(n2, (real)s->o->surface.x), across);
-#else
-  return (real)s->o->surface.y;
-#endif
 }
 
 // Splits the rays `meets`, which meet the surface in this step, into a transmitted and a reflected part. The
@@ -106,16 +105,16 @@ inline void split_at_surface(
   const sample there = take_sample(&s->scene, &around, SAMPLES_SIZE(s), towards);
   const real whole = mean_left(*l);
   const integer behind = after_start >= (real)0.0f;
-#define SPLIT(sigma, left, later, EACH_SOURCE)                                  \
-  {                                                                             \
-    const real length = lesser(way, (real)1.0f / greater(sigma, (real)1e-20f)); \
-    real remains;                                                               \
-    const real weight = cross_length(sigma, length, &remains);                  \
-    const real at_surface = left * (behind ? remains : (real)1.0f / remains);   \
-    const real gained = part * weight * (behind ? left : -at_surface);          \
-    EACH_SOURCE                                                                 \
-    later = meets ? part * at_surface : later;                                  \
-    left = meets ? left * ((real)1.0f - part) : left;                           \
+#define SPLIT(sigma, left, later, EACH_SOURCE)                                   \
+  {                                                                              \
+    const real length = lesser(way, (real)1.0f / greater(sigma, (real)1e-20f));  \
+    real remains;                                                                \
+    const real weight = cross_length(sigma, length, THIN_STEPS(s->v), &remains); \
+    const real at_surface = left * (behind ? remains : (real)1.0f / remains);    \
+    const real gained = part * weight * (behind ? left : -at_surface);           \
+    EACH_SOURCE                                                                  \
+    later = meets ? part * at_surface : later;                                   \
+    left = meets ? left * ((real)1.0f - part) : left;                            \
   }
 #define GAIN(c) l->radiance.c = meets ? fma(there.source.c, gained, l->radiance.c) : l->radiance.c;
 #if COLOURED
@@ -249,14 +248,14 @@ __attribute__((always_inline)) inline void bend(
   const int4 size = s->v->size;
   const float4 spacing = s->o->spacing;
   const float stride = s->v->marching.x;
-  const float enough = s->v->marching.y;
   const int steps = s->o->limits.y;
   integer moves = done == 0;
   // Checks for faces of the box are needed only if a ray can reach one within these steps; usually none can.
   const int may_leave = any_lane(moves & (room_around(t->at, size) < (real)(stride * (float)(steps + 1) + 1.0f)));
-#if SURFACE
-  sample_unknown_index(s, t, moves, w);
-#endif
+  if (SURFACE(s))
+  {
+    sample_unknown_index(s, t, moves, w);
+  }
   real start = depth_of(t->at, s->v, spacing);
   for (int n = 0; n < steps; ++n)
   {
@@ -282,9 +281,10 @@ __attribute__((always_inline)) inline void bend(
     real square;
     gather(s->bending, &around, INDEX_SIZE(s), &xyz, &square);
     const real3 turn = { xyz.r, xyz.g, xyz.b };
-#if SURFACE
-    detect_surface(s, middle, half_time, square, t, moves, l, half_way, w);
-#endif
+    if (SURFACE(s))
+    {
+      detect_surface(s, middle, half_time, square, t, moves, l, half_way, w);
+    }
 #if ROUNDS
     corners_of_samples(s, middle, &around);
 #endif
@@ -295,7 +295,7 @@ __attribute__((always_inline)) inline void bend(
     t->at = kept_within(further(middle, half_time, t->velocity), size);
     moves = end_step(s, moves, may_leave, last, stops, t);
     const real end = depth_of(t->at, s->v, spacing);
-    cross_sample(met, time * pace, start, end - start, enough, l, half_way);
+    cross_sample(s->v, met, time * pace, start, end - start, l, half_way);
     start = end;
   }
 }
@@ -325,7 +325,7 @@ __attribute__((always_inline)) inline int go_straight(const surroundings* s, con
       corners_of_samples(s, along(*packet, fma(length, (real)0.5f, so_far)), &at);
       const sample met = take_sample(&s->scene, &at, SAMPLES_SIZE(s), towards);
       fetch_ahead(s->scene.samples, in_block(s, along(*packet, so_far + soon)), SAMPLES_SIZE(s));
-      cross_sample(met, length, fma(so_far, slope, start), length * slope, s->v->marching.y, l, half_way);
+      cross_sample(s->v, met, length, fma(so_far, slope, start), length * slope, l, half_way);
     }
   }
   const real end = step * (real)(float)steps;
@@ -383,8 +383,6 @@ __attribute__((always_inline)) inline void march(
       n += s->o->limits.y;
       continue;
     }
-#endif
-#if SURFACE
     w->forgotten = done ? w->forgotten : (integer)-1;
 #endif
     n += go_straight(s, &packet, step, ahead, done, leaves, t, l, half_way);

@@ -45,7 +45,7 @@ __kernel void cast_bent_rays(RayPass pass, __global const float4* restrict sampl
   const surroundings s = { v, o, { samples, extinctions, flow, glow, cosines, phase_rows, v->phase }, bending, bricks };
   seeing to;
   const real end = v->has.x ? ends_of(v, limits, column, row) : (real)ENDLESS;
-  const int marches = 1 + (SURFACE > 0) + o->face.w;
+  const int marches = 1 + (SURFACE(&s) > 0) + o->face.w;
   ray_packets t = enter(&s, rays_through(v, column, row), end, &to.entrySquare);
   to.l = unlit((real)1.0f);
   const waiting nothing = { t.at, t.velocity, unlit((real)0.0f).left };
@@ -56,7 +56,7 @@ __kernel void cast_bent_rays(RayPass pass, __global const float4* restrict sampl
   {
     if (turn > 0)
     {
-      const waiting next = SURFACE && turn == 1 ? w.reflected : to.mirrored;
+      const waiting next = SURFACE(&s) && turn == 1 ? w.reflected : to.mirrored;
       if (!send_off(&next, &t, &to.l))
       {
         continue;

@@ -3,7 +3,6 @@
 // with q = sigma_s times in-scattered radiance plus emission; q and sigma_t are interpolated between voxel centres.
 //
 // Macros set by the host:
-//   THIN_STEPS  1: the optical length of every step is at most 2
 //   PHASE, PHASE_CHANNELS  phase function for light whose mean direction is known, see PhaseFunction.cl
 //   FLOW        with PHASE, contents of the array `flow`, as in ScatteredLight.cl
 //   GLOW        1: emission is stored separately from scattered light
@@ -180,11 +179,15 @@ inline void add_surface_light(rgb missing, light* l)
 #undef MET
 }
 
+// Whether the optical length of every step of the picture is at most 2
+#define THIN_STEPS(v) ((v)->marching.w > 0.0f)
+
 // Crosses a segment of constant coefficients. Returns the radiance gained per unit of source, length (1 - exp(-tau)) /
 // tau with tau = sigma length; for tau = 0 that is `length`. `remains` receives exp(-tau).
-inline real cross_length(real sigma, real length, real* remains)
+//   thin  whether tau is at most 2 in all lanes
+inline real cross_length(real sigma, real length, int thin, real* remains)
 {
-  if (!THIN_STEPS)
+  if (!thin)
   {
     const real tau = greater(sigma * length, (real)1e-30f);
     const real fraction = extinguished(tau, remains) / tau;
@@ -340,11 +343,11 @@ inline void lose(real* left, real* rest, real part)
 // successive steps overlap in the processor.
 //   length  path length of the step
 //   start, gain  position of the step and its extent, along the ray or along the view axis
-//   enough  rays whose transmittance is at most this are not changed
 __attribute__((always_inline)) inline void cross_sample(
-  sample s, real length, real start, real gain, float enough, light* l, crossed* half_way)
+  const ViewInfo* v, sample s, real length, real start, real gain, light* l, crossed* half_way)
 {
-  const integer goes_on = most_left(*l) > (real)enough;
+  const integer goes_on = most_left(*l) > (real)v->marching.y;
+  const int thin = THIN_STEPS(v);
   const real before = mean_left(*l);
 #if MANY_STEPS
 #if COLOURED
@@ -354,11 +357,11 @@ __attribute__((always_inline)) inline void cross_sample(
 #define SIGMA(c) s.sigma
 #define LEFT(c) l->left
 #endif
-#define GATHER(c)                                                                                  \
-  {                                                                                                \
-    real remains;                                                                                  \
-    const real weight = goes_on ? cross_length(SIGMA(c), length, &remains) * LEFT(c) : (real)0.0f; \
-    add_to(&l->radiance.c, &l->radianceRest.c, s.source.c* weight);                                \
+#define GATHER(c)                                                                                        \
+  {                                                                                                      \
+    real remains;                                                                                        \
+    const real weight = goes_on ? cross_length(SIGMA(c), length, thin, &remains) * LEFT(c) : (real)0.0f; \
+    add_to(&l->radiance.c, &l->radianceRest.c, s.source.c* weight);                                      \
   }
   GATHER(r)
   GATHER(g)
@@ -367,7 +370,8 @@ __attribute__((always_inline)) inline void cross_sample(
 #undef SIGMA
 #undef LEFT
   real unused;
-#define LOSE(sigma, left, rest) lose(&left, &rest, goes_on ? sigma* cross_length(sigma, length, &unused) : (real)0.0f);
+#define LOSE(sigma, left, rest) \
+  lose(&left, &rest, goes_on ? sigma* cross_length(sigma, length, thin, &unused) : (real)0.0f);
 #if COLOURED
   LOSE(s.sigma.r, l->left.r, l->leftRest.r)
   LOSE(s.sigma.g, l->left.g, l->leftRest.g)
@@ -380,7 +384,7 @@ __attribute__((always_inline)) inline void cross_sample(
 #define CROSS(c)                                                                               \
   {                                                                                            \
     real remains;                                                                              \
-    const real weight = cross_length(s.sigma.c, length, &remains);                             \
+    const real weight = cross_length(s.sigma.c, length, thin, &remains);                       \
     l->radiance.c = fma(s.source.c * weight, goes_on ? l->left.c : (real)0.0f, l->radiance.c); \
     l->left.c *= goes_on ? remains : (real)1.0f;                                               \
   }
@@ -390,7 +394,7 @@ __attribute__((always_inline)) inline void cross_sample(
 #undef CROSS
 #else
   real remains;
-  const real weight = cross_length(s.sigma, length, &remains) * l->left;
+  const real weight = cross_length(s.sigma, length, thin, &remains) * l->left;
   l->radiance.r = goes_on ? fma(s.source.r, weight, l->radiance.r) : l->radiance.r;
   l->radiance.g = goes_on ? fma(s.source.g, weight, l->radiance.g) : l->radiance.g;
   l->radiance.b = goes_on ? fma(s.source.b, weight, l->radiance.b) : l->radiance.b;

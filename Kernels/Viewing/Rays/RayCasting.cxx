@@ -73,7 +73,11 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const GridBlock* block) const
   view.right = Float4(halfHeight * aspect * Vector(axes[0]), camera.shift[0]);
   view.up = Float4(halfHeight * Vector(axes[1]), camera.shift[1]);
   view.inverseSpacing = Float4(inverseSpacing, 0.0);
-  view.marching = Float4({ settings.stepSize, settings.minimumTransmittance, FarDepth(grid, eye, forward) }, 0.0);
+  // Largest optical length of a step. Bent steps can be slightly longer than stepSize.
+  const double longest = traits.largestSigmaT * settings.stepSize *
+    *std::max_element(traits.grid.spacing.begin(), traits.grid.spacing.end());
+  view.marching = Float4({ settings.stepSize, settings.minimumTransmittance, FarDepth(grid, eye, forward) },
+    longest <= (traits.bends ? 1.5 : 2.0) ? 1.0 : 0.0);
   view.picture = Int4({ settings.imageSize[0], settings.imageSize[1], 0 });
   view.size = Int4(traits.grid.size);
   if (block)
@@ -113,6 +117,7 @@ OpticsInfo RayCasting::OpticsOf() const
   optics.limits = Int4({ static_cast<int>(std::min(1e9, std::ceil(RoundsAtMost * edges / settings.stepSize))),
     static_cast<int>(std::clamp(BentStretch / settings.stepSize, 1.0, 1e3)),
     static_cast<int>(std::ceil(std::max(halvings, 1.0))) });
+  optics.limits.s[3] = traits.Reflects(settings) ? static_cast<int>(settings.surfaceReflection) : 0;
   if (ofWhole)
   {
     optics.knownFirst = Int4(ofWhole->known.first);
@@ -143,20 +148,13 @@ RayPass RayCasting::PassOf(const Camera& camera, const GridBlock* block, bool sh
 std::string RayCasting::Options(const std::string& ofKernel) const
 {
   const ViewTraits& traits = this->Traits;
-  const ViewSettings& settings = this->Settings;
-  // Largest optical length of a step; up to 2 the kernels use a faster formula (THIN_STEPS). Bent steps can be slightly
-  // longer than stepSize.
-  const double longest = traits.largestSigmaT * settings.stepSize *
-    *std::max_element(traits.grid.spacing.begin(), traits.grid.spacing.end());
-  return traits.PacketOptions() + Define("THIN_STEPS", longest <= (traits.bends ? 1.5 : 2.0)) +
-    Define("GLOW", traits.GlowsApart()) + traits.PhaseOptions(traits.knowsFlow) +
-    StepOption(LongestSteps(traits.grid, settings.stepSize)) + this->Samples.ShownOptions() + ofKernel;
+  return traits.PacketOptions() + Define("GLOW", traits.GlowsApart()) + traits.PhaseOptions(traits.knowsFlow) +
+    StepOption(LongestSteps(traits.grid, this->Settings.stepSize)) + this->Samples.ShownOptions() + ofKernel;
 }
 
 std::string RayCasting::BentOptions(bool rounds) const
 {
-  const int surface = this->Traits.Reflects(this->Settings) ? static_cast<int>(this->Settings.surfaceReflection) : 0;
-  return this->Options(Define("BENDS", this->Traits.bends) + Define("SURFACE", surface) + Define("ROUNDS", rounds));
+  return this->Options(Define("BENDS", this->Traits.bends) + Define("ROUNDS", rounds));
 }
 
 cl::Kernel RayCasting::Kernel(bool ofBlock) const

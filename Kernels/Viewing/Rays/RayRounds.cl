@@ -12,7 +12,7 @@
 #include "Viewing/Samples/Sampling.cl"
 
 // Largest number of rays that are split off one ray: by the surface and by the table.
-#define BORN(s) ((SURFACE > 0) + (s)->o->face.w)
+#define BORN(s) ((SURFACE(s) > 0) + (s)->o->face.w)
 
 // Initialises the state of a ray that is created in this block; the caller sets `pixel`, `where`, `at`, `velocity` and
 // `left`.
@@ -234,7 +234,7 @@ __kernel void march_rays(RayPass pass, __global const float4* restrict samples,
   const integer ended = ends | (a.state == (integer)RayHasEnded);
   a.state = ended ? (integer)RayHasEnded : out ? (integer)RayIsOut : (integer)RayGoesOn;
   store(&a, middle_of_next(&s, &a.t), rays, own, v->range.y);
-  if (SURFACE)
+  if (SURFACE(&s))
   {
     store_born(&s, &a, &a.w.reflected, RayIsReflected, 0, born, own, v->range.y);
   }

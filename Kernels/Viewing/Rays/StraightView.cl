@@ -62,7 +62,7 @@ __attribute__((always_inline)) inline void march_straight(const ViewInfo* v, con
 #if !BRICKED
       fetch_ahead(scene->samples, along(packet, start + soon), v->size);
 #endif
-      cross_sample(s, length, start, length, v->marching.y, l, half_way);
+      cross_sample(v, s, length, start, length, l, half_way);
     }
   }
 }

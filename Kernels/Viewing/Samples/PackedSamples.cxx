@@ -260,10 +260,10 @@ void PackedSamples::PackShown(const SceneOnDevice& scene, const Buffer<float>& d
 
 void PackedSamples::FindBricks(bool bends, bool shown)
 {
-  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::EmptyBricks,
-    this->Traits.SampleOptions() + Define("GLOW", this->Traits.GlowsApart()) + Define("BENDS", bends) +
-      Define("SHOWN", shown));
-  With(find, this->InfoOf({}), this->Samples(), this->Extinctions(), this->Glow(), this->Gradients, this->Seen,
+  const ViewTraits& traits = this->Traits;
+  const SampleTraits of = { traits.coloured, traits.grey, traits.bricked, traits.GlowsApart(), bends, shown };
+  cl::Kernel find = this->TheDevice.Kernel("find_empty_bricks", kernel_source::EmptyBricks);
+  With(find, this->InfoOf({}), of, this->Samples(), this->Extinctions(), this->Glow(), this->Gradients, this->Seen,
     this->First, this->Distances);
   this->TheDevice.Queue().enqueueNDRangeKernel(find, cl::NullRange,
     cl::NDRange(RoundUp<std::size_t>(this->Count[0], 4), this->Count[1], this->Count[2]), cl::NDRange(4, 1, 1));

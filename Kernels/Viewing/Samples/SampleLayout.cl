@@ -3,8 +3,11 @@
 #pragma once
 #include "Viewing/Scene/ViewShared.h"
 
+// Number of rows of samples in a slice of a brick; a grey sample also holds the sample of the next row
+#define SAMPLE_ROWS_OF(grey) ((grey) ? BrickEdge : SampleEdge)
+
 #if BRICKED
-#define SAMPLE_ROWS (GREY ? BrickEdge : SampleEdge) // with GREY a sample also holds the sample of the next row
+#define SAMPLE_ROWS SAMPLE_ROWS_OF(GREY)
 #define ROW_LENGTH(size) SampleEdge
 #define SLICE_LENGTH(size) (SampleEdge * SAMPLE_ROWS)
 #else

@@ -47,6 +47,13 @@ typedef struct
   float g;    ///< mean cosine g of the phase function, if it is equal in all voxels
 } PackInfo;
 
+/// What packed samples hold, as flags; the macros COLOURED, GREY, BRICKED, GLOW, BENDS and SHOWN of the kernels that
+/// pack them.
+typedef struct
+{
+  int coloured, grey, bricked, glow, bends, shown;
+} SampleTraits;
+
 /// A block of a larger grid, see GridBlock; all indices are those of voxels of the whole grid.
 typedef struct
 {
@@ -70,7 +77,7 @@ typedef struct
   /// radiance of the background, W / (length^2 sr), added to the environment; w = 0: no background is shown
   float4 background;
   /// x: step of the march in voxels; y: transmittance at which rays stop; z: depth of pixels whose transmittance stays
-  /// above 1/2
+  /// above 1/2; w: 1 if the optical length of every step is at most 2, for which there is a faster formula, else 0
   float4 marching;
   /// x, y: width and height in pixels; z, w: first row and first column of a launch, in packets of rays (z in pixels
   /// for start_rays of RayRounds.cl)
@@ -109,7 +116,8 @@ typedef struct
   int4 face;
   float4 flip; ///< factors by which reflection at the table multiplies the components of a direction
   /// x: largest number of steps of a ray; y: number of leapfrog steps between two checks of the index; z: number of
-  /// bisections that locate the surface
+  /// bisections that locate the surface; w: reflectance of the surface where the index rises through a given value, at
+  /// which primary rays are split: 0 no surface, 1 by Fresnel's equations, 2 constant
   int4 limits;
   // For a block whose rays travel between blocks: the voxels of the whole grid whose gradient of n^2 is stored.
   int4 knownFirst, knownSize;
