@@ -1,6 +1,7 @@
 #include "LightPropagation/Conservative/SolveMemory.h"
 
 #include "Device/Sizes.h"
+#include "LightPropagation/Sweep/SweepPlan.h"
 #include "LightPropagation/Sweep/VolumeLayout.h"
 #include "LightPropagation/ThickVoxels/OctantSources.h"
 
@@ -64,10 +65,16 @@ std::size_t ArraysOfOrders(const SolveExtent& solve)
 }
 
 /// Number of voxels in the largest plane of voxels perpendicular to an axis.
-std::size_t LargestPlane(const SolveExtent& solve)
+/// @param leastRow  shorter rows count as this number of voxels
+std::size_t LargestPlane(const SolveExtent& solve, int leastRow = 1)
 {
-  const std::array<int, 3>& n = solve.size;
-  return std::max({ Count(n[0]) * Count(n[1]), Count(n[1]) * Count(n[2]), Count(n[0]) * Count(n[2]) });
+  std::size_t largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const PlaneAxes across = AcrossAxis(axis);
+    largest = std::max(largest, Count(std::max(solve.size[across.u], leastRow)) * Count(solve.size[across.v]));
+  }
+  return largest;
 }
 
 /// Number of positions at which the parallel rays of one direction leave the box through faces parallel to their
@@ -92,7 +99,8 @@ std::size_t BytesOfSweep(const Device& device, const SolveExtent& solve)
   const std::size_t values = sizeof(float) * Count(solve.channels);
   if (device.IsCpu())
   {
-    return 2 * values * LargestPlane(solve) * (2 * directions + 16 * 4 * 16);
+    // Padding at most doubles rows of more than half of ShortestRow voxels.
+    return 2 * values * LargestPlane(solve, ShortestRow / 2) * (2 * directions + 16 * 4 * 16);
   }
   const std::size_t rays = solve.ofBlock ? PartsOf(directions, std::size_t{ 4 }) : 6 * directions;
   const std::size_t beside = solve.ofBlock || solve.byCells ? 2 * MostBesidePlanes(solve) : 0;

@@ -33,10 +33,10 @@ cl_int Int(T value)
 }
 
 /// Number of floats in a padded row: an odd number of vectors, so that rows do not map to the same cache sets, and one
-/// of a few sizes, since kernels are compiled for each size.
+/// of a few sizes, since kernels, which take seconds to compile, are compiled for each size.
 int RowFloats(int width, int vector)
 {
-  int vectors = 2;
+  int vectors = ShortestRow / vector;
   while (vectors * vector < width)
   {
     vectors *= 2;
@@ -186,7 +186,8 @@ void SweepPlan::LayPlane(const Device& device)
 /// together, row by row, so that rays are read from memory and written to it only once for all of these planes.
 int SweepPlan::PlanesChained(const Device& device) const
 {
-  const std::size_t rays = static_cast<std::size_t>(MaxMembers) * this->channels * this->row * this->plane.sizeV;
+  const int ofRow = this->plane.width + this->vector; // floats of a row that are used
+  const std::size_t rays = static_cast<std::size_t>(MaxMembers) * this->channels * ofRow * this->plane.sizeV;
   const bool alone = this->angular || this->faceIn || this->periodic[this->axes.u] || this->periodic[this->axes.v];
   return !alone && sizeof(float) * rays > device.CacheBytes() ? MostChained : 1;
 }

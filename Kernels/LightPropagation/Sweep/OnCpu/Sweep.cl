@@ -145,12 +145,12 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
         store_real((real)1.0f / s, at, row + PlaneInverse * ROW);
         store_real((real)0.0f, at, row + PlaneTaken * ROW);
       }
-      clear(row + PLANE_PATH * ROW, (PLANE_OCTANTS - PLANE_PATH) * ROW);
-      clear(row + PLANE_CURRENTS * ROW, layout->currents * CurrentFaces * CHANNELS * ROW);
+      clear_rows(row + PLANE_PATH * ROW, PLANE_OCTANTS - PLANE_PATH, layout->width);
+      clear_rows(row + PLANE_CURRENTS * ROW, layout->currents * CurrentFaces * CHANNELS, layout->width);
       if (!info->shines)
       {
-        clear(row + PlaneSource * ROW, (PLANE_PATH - PlaneSource) * ROW);
-        clear(row + PLANE_OCTANTS * ROW, (PLANE_CURRENTS - PLANE_OCTANTS) * ROW);
+        clear_rows(row + PlaneSource * ROW, PLANE_PATH - PlaneSource, layout->width);
+        clear_rows(row + PLANE_OCTANTS * ROW, PLANE_CURRENTS - PLANE_OCTANTS, layout->width);
       }
     }
   }
@@ -399,7 +399,7 @@ static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __glo
   const int rings = ANGULAR ? together * BUNDLE_FLOATS(CHANNELS, ROW)
                             : (state->tile > 0 ? together : 1) * state->rings * RingRows * RAYS_OF_ROW;
   state->moving = state->ring + rings;
-  clear(state->ring, rings + RAYS_OF_ROW + PAD);
+  clear_rows(state->ring, (rings + RAYS_OF_ROW) / ROW, layout->width + 2 * PAD);
   unit_scratch parts;
   parts.planes = state->moving + RAYS_OF_ROW + PAD; // begins after the padding of the last row
 #if FACES || SIDES
@@ -626,7 +626,8 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
   const unit_scratch parts = lay_scratch(&state, &info, scratch + unit.scratch, bundles_together(&state, unit.bundles));
   for (int b = unit.firstBundle; info.empty && range.x == 0 && range.y > 0 && b < unit.firstBundle + unit.bundles; ++b)
   {
-    clear(rays.maps + bundles[b].map, bundles[b].members * CHANNELS * ROW * (info.planes.sizeV + 2) + PAD);
+    clear_rows(
+      rays.maps + bundles[b].map, bundles[b].members * CHANNELS * (info.planes.sizeV + 2), info.planes.width + 2 * PAD);
   }
   float escaped[PLANES_TOGETHER][4][CHANNELS], rounding[PLANES_TOGETHER][4][CHANNELS];
   struct plane_place places[PLANES_TOGETHER];

@@ -549,7 +549,7 @@ static inline __attribute__((always_inline)) void CROSS_STAGE(sweep_state* state
   }
   else if (s == 0)
   {
-    clear(state->sources + slot * RAYS_OF_ROW + PAD, MEMBERS * CHANNELS * ROW);
+    clear_rows(state->sources + slot * RAYS_OF_ROW + PAD, MEMBERS * CHANNELS, state->width);
   }
 #endif
   STAGE_ROW(state, wrapped, slot, s == 0, inside, in, out, crossing->length[s], bundle);

@@ -57,6 +57,18 @@ static BY_ROW void clear(__global float* floats, int count)
   }
 }
 
+// Sets the first `count` floats, a multiple of the vector width, of each of `rows` padded rows to zero.
+static BY_ROW void clear_rows(__global float* row, int rows, int count)
+{
+  for (int r = 0; r < rows; ++r)
+  {
+    for (int i = 0; i < count; i += REAL_WIDTH)
+    {
+      store_real((real)0.0f, r * ROW + i, row);
+    }
+  }
+}
+
 // Copies a block, transposed: reads REAL_WIDTH rows, `step` floats apart, of REAL_WIDTH planes; writes as many vectors
 // along the rows, `plane` floats apart.
 // @param last  index of the last row that exists
