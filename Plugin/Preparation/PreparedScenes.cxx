@@ -27,46 +27,54 @@
 
 namespace
 {
-/// A cloud with fluence by light propagation maps; if `length` is 0, a glass ball in fog with photons instead.
+/// A cloud with fluence by light propagation maps, or a glass ball in fog with photons.
 struct Scene
 {
-  int length; ///< voxels along x; sweeps are compiled for rows of up to 32, 64 and 128
-  int preset;
-  double around; ///< density of the box outside the ellipsoidal cloud
+  int preset;    ///< of the cloud's medium; Glass: a glass ball
   bool coloured; ///< whether the light has a colour, so that three channels are solved
-  bool ground;   ///< whether the lower face of the box reflects
+  double around; ///< density of the cloud's box outside the ellipsoidal cloud
+  double radius; ///< of the cloud, relative to its box; a small one leaves most of the box empty
+  bool ground;   ///< whether the lower face of the cloud's box reflects
 };
 
+constexpr int Glass = -1;
+
+// Two processes prepare neighbours at the same time, so these should have few kernels in common.
 const Scene Scenes[] = {
-  { 64, vtkParticipatingMedium::CUSTOM, 0.5, false, false },
-  { 0, 0, 0.0, false, false },
-  { 64, vtkParticipatingMedium::CLOUD, 0.0, false, false },
-  { 64, vtkParticipatingMedium::CLOUD, 0.0, true, false },
-  { 64, vtkParticipatingMedium::CLOUD, 0.0, true, true },
-  { 128, vtkParticipatingMedium::CUSTOM, 0.0, false, false },
-  { 128, vtkParticipatingMedium::CLOUD, 0.0, true, false },
-  { 128, vtkParticipatingMedium::CLOUD, 0.0, false, false },
-  { 32, vtkParticipatingMedium::CUSTOM, 0.0, false, false },
+  { vtkParticipatingMedium::CUSTOM, false, 0.5, 1.0, false },
+  { Glass, false, 0.0, 0.0, false },
+  { vtkParticipatingMedium::CLOUD, true, 0.0, 1.0, false },
+  { Glass, true, 0.0, 0.0, false },
+  { vtkParticipatingMedium::CLOUD, true, 0.0, 1.0, true },
+  { vtkParticipatingMedium::CUSTOM, true, 0.0, 0.6, false },
+  { vtkParticipatingMedium::CLOUD, false, 0.0, 1.0, false },
+  { vtkParticipatingMedium::CUSTOM, false, 0.0, 0.6, false },
 };
 
+/// Voxels along x; sweeps are compiled for rows of up to 128, 256, 512 voxels.
+constexpr int Length = 64;
 /// Voxels along y and z: few, because only compilation matters, but enough that the same kernels are compiled as for a
 /// cube.
 constexpr int Across = 40;
+/// Voxels of the glass ball's box along each axis, a multiple of 16, as of most grids of users: its light is then read
+/// in place, not copied to longer rows.
+constexpr int GlassVoxels = 48;
 
 /// Density of an ellipsoid: 1 at its centre, decreasing outwards.
-vtkSmartPointer<vtkImageData> Density(int length, double around)
+vtkSmartPointer<vtkImageData> Density(const Scene& scene)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(length + 1, Across + 1, Across + 1);
+  image->SetDimensions(Length + 1, Across + 1, Across + 1);
   vtkNew<vtkFloatArray> density;
   density->SetName("density");
   density->SetNumberOfValues(image->GetNumberOfCells());
   const auto fromMiddle = [](vtkIdType i, int voxels) { return (2.0 * static_cast<double>(i) + 1.0) / voxels - 1.0; };
   for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i)
   {
-    const double x = fromMiddle(i % length, length), y = fromMiddle(i / length % Across, Across),
-                 z = fromMiddle(i / length / Across, Across);
-    density->SetValue(i, static_cast<float>(std::max(around, 1.0 - std::sqrt(x * x + y * y + z * z))));
+    const double x = fromMiddle(i % Length, Length), y = fromMiddle(i / Length % Across, Across),
+                 z = fromMiddle(i / Length / Across, Across);
+    density->SetValue(
+      i, static_cast<float>(std::max(scene.around, 1.0 - std::sqrt(x * x + y * y + z * z) / scene.radius)));
   }
   image->GetCellData()->SetScalars(density);
   return image;
@@ -88,7 +96,7 @@ void SolveCloud(const Scene& scene, vtkCommand* listener)
   vtkNew<vtkLightPropagationMaps> light;
   vtkNew<vtkMediumRayCaster> picture;
   Observe({ medium, light, picture }, listener);
-  medium->SetInputDataObject(Density(scene.length, scene.around));
+  medium->SetInputDataObject(Density(scene));
   medium->SetPreset(scene.preset);
   medium->SetMillimetresPerUnit(1e4); // unit of length 10 m, with which the preset CLOUD is optically thick
   light->SetInputConnection(medium->GetOutputPort());
@@ -108,11 +116,39 @@ void SolveCloud(const Scene& scene, vtkCommand* listener)
   picture->Update();
 }
 
-/// Follows photons through a glass ball in fog, from the mesh to the reconstructed fluence and a picture.
-void MarchPhotons(vtkCommand* listener)
+/// The picture of a ball of glass on a table.
+void SeeGlass(vtkAlgorithm* light, vtkMediumRayCaster* picture)
 {
-  vtkNew<vtkSphereSource> ball;
-  vtkNew<vtkMeshVoxelizer> medium;
+  picture->SetInputConnection(light->GetOutputPort());
+  picture->SetSurfaceReflection(vtkMediumRayCaster::FRESNEL);
+  picture->SetTableFace(4);
+  picture->Update();
+}
+
+/// Follows photons through a ball of green glass in haze, and renders their light.
+void MarchColouredPhotons(vtkMeshVoxelizer* medium, vtkCommand* listener)
+{
+  vtkNew<vtkLightRig> sun;
+  vtkNew<vtkPhotonEmitter> emitter;
+  vtkNew<vtkPhotonMarcher> marcher;
+  vtkNew<vtkMediumRayCaster> picture;
+  Observe({ emitter, marcher, picture }, listener);
+  sun->SetSunPower(4.0, 3.7, 3.2);
+  medium->SetInsideAbsorption(0.2, 0.05, 0.09);
+  medium->SetInsideMeanCosine(0.7);
+  medium->SetOutsideMeanCosine(0.7);
+  emitter->SetInputConnection(medium->GetOutputPort());
+  emitter->SetLightsConnection(sun->GetOutputPort());
+  emitter->SetPhotonCount(20000);
+  marcher->SetInputConnection(medium->GetOutputPort());
+  marcher->SetPhotonsConnection(emitter->GetOutputPort());
+  marcher->SetPathCount(1);
+  SeeGlass(marcher, picture);
+}
+
+/// Follows photons through a glass ball in fog, from the importance map to the reconstructed fluence, and renders it.
+void MarchPhotons(vtkMeshVoxelizer* medium, vtkCommand* listener)
+{
   vtkNew<vtkRefractionOctree> octree;
   vtkNew<vtkLightRig> lamp;
   vtkNew<vtkPhotonImportance> importance;
@@ -120,14 +156,7 @@ void MarchPhotons(vtkCommand* listener)
   vtkNew<vtkPhotonMarcher> marcher;
   vtkNew<vtkPhotonReconstruction> reconstruction;
   vtkNew<vtkMediumRayCaster> picture;
-  Observe({ medium, octree, importance, emitter, marcher, reconstruction, picture }, listener);
-  ball->SetThetaResolution(20);
-  ball->SetPhiResolution(20);
-  medium->SetInputConnection(ball->GetOutputPort());
-  medium->SetModelBounds(-1.0, 1.0, -1.0, 1.0, -1.0, 1.0);
-  medium->SetSampleDimensions(Across, Across, Across);
-  medium->SetInsideIndex(1.5);
-  medium->SetOutsideScattering(0.35, 0.35, 0.35);
+  Observe({ octree, importance, emitter, marcher, reconstruction, picture }, listener);
   octree->SetInputConnection(medium->GetOutputPort());
   lamp->SetSun(false);
   lamp->AddPointLight(0.9, 1.1, 3.6, 110.0, 110.0, 110.0);
@@ -140,9 +169,24 @@ void MarchPhotons(vtkCommand* listener)
   marcher->SetInputConnection(medium->GetOutputPort());
   marcher->SetPhotonsConnection(emitter->GetOutputPort());
   marcher->SetOctreeConnection(octree->GetOutputPort());
+  marcher->SetPathCount(1);
   reconstruction->SetInputConnection(marcher->GetOutputPort());
-  picture->SetInputConnection(reconstruction->GetOutputPort());
-  picture->Update();
+  SeeGlass(reconstruction, picture);
+}
+
+void PrepareGlass(const Scene& scene, vtkCommand* listener)
+{
+  vtkNew<vtkSphereSource> ball;
+  vtkNew<vtkMeshVoxelizer> medium;
+  Observe({ medium }, listener);
+  ball->SetThetaResolution(20);
+  ball->SetPhiResolution(20);
+  medium->SetInputConnection(ball->GetOutputPort());
+  medium->SetModelBounds(-1.0, 1.0, -1.0, 1.0, -1.0, 1.0);
+  medium->SetSampleDimensions(GlassVoxels, GlassVoxels, GlassVoxels);
+  medium->SetInsideIndex(1.5);
+  medium->SetOutsideScattering(0.35, 0.35, 0.35);
+  scene.coloured ? MarchColouredPhotons(medium, listener) : MarchPhotons(medium, listener);
 }
 }
 
@@ -160,14 +204,7 @@ bool PrepareScene(int number)
   count->SetCallback([](vtkObject*, unsigned long event, void* all, void*) {
     *static_cast<int*>(all) += event == vtkCommand::ErrorEvent ? 1 : 0;
   });
-  if (scene.length > 0)
-  {
-    SolveCloud(scene, count);
-  }
-  else
-  {
-    MarchPhotons(count);
-  }
+  scene.preset == Glass ? PrepareGlass(scene, count) : SolveCloud(scene, count);
   return errors == 0;
 }
 
