@@ -40,12 +40,16 @@ vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* mesh)
   {
     return mesh;
   }
-  // The filter reads a shallow copy, because `mesh` belongs to the pipeline that produced it.
+  // The filter reads polygons and strips only: since VTK 9.3 it leaves the cell data of vertices and lines among those
+  // of the triangles.
   vtkNew<vtkPolyData> input;
-  input->ShallowCopy(mesh);
+  input->SetPoints(mesh->GetPoints());
+  input->SetPolys(mesh->GetPolys());
+  input->SetStrips(mesh->GetStrips());
+  input->GetCellData()->CopyAllocate(mesh->GetCellData(), input->GetNumberOfCells());
+  input->GetCellData()->CopyData(
+    mesh->GetCellData(), 0, input->GetNumberOfCells(), mesh->GetNumberOfVerts() + mesh->GetNumberOfLines());
   vtkNew<vtkTriangleFilter> filter;
-  filter->PassVertsOff();
-  filter->PassLinesOff();
   filter->SetInputData(input);
   filter->Update();
   return filter->GetOutput();
