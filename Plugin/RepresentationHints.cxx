@@ -110,7 +110,10 @@ void FitColors(vtkSMProxy* colors, vtkPVArrayInformation* array)
 
 void ColorBy(vtkSMProxy* representation, vtkPVArrayInformation* array)
 {
-  vtkSMPVRepresentationProxy::SetScalarColoring(representation, array->GetName(), vtkDataObject::CELL);
+  if (auto* const colored = vtkSMPVRepresentationProxy::SafeDownCast(representation))
+  {
+    colored->SetScalarColoring(array->GetName(), vtkDataObject::CELL);
+  }
   vtkSMProxy* const colors = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
   if (colors && vtkSMPropertyHelper(colors, "ScalarRangeInitialized").GetAsInt() == 0)
   {

@@ -16,6 +16,7 @@
 #include <QPointer>
 #include <QTimer>
 #include <QToolButton>
+#include <QWindow>
 
 #include <map>
 #include <utility>
@@ -193,9 +194,13 @@ private:
       case QEvent::MouseButtonPress:
         // The window receives a mouse event before the button does, and ParaView's own event filter would stop the
         // event there.
-        if (receiver->isWindowType() && IsOver(this->Button, static_cast<QMouseEvent*>(event)->globalPos()))
+        if (receiver->isWindowType())
         {
-          this->Abort();
+          const QPoint inWindow = static_cast<QMouseEvent*>(event)->pos();
+          if (IsOver(this->Button, static_cast<QWindow*>(receiver)->mapToGlobal(inWindow)))
+          {
+            this->Abort();
+          }
         }
         return true;
       case QEvent::MouseButtonRelease:

@@ -135,7 +135,10 @@ void Fit(vtkSMProxy* representation)
 void ShowColors(vtkSMProxy* representation)
 {
   const char* const name = HintOf(representation)->GetAttributeOrEmpty("array");
-  vtkSMPVRepresentationProxy::SetScalarColoring(representation, name, vtkDataObject::CELL);
+  if (auto* const colored = vtkSMPVRepresentationProxy::SafeDownCast(representation))
+  {
+    colored->SetScalarColoring(name, vtkDataObject::CELL);
+  }
   Fit(representation);
   GiveDistance(representation);
 }

@@ -281,7 +281,7 @@ diy::Master& MasterOf(vtkMPIController* controller)
   {
     MPI_Comm_create_keyval(MPI_COMM_NULL_COPY_FN, MPI_COMM_NULL_DELETE_FN, &key, nullptr);
   }
-  const diy::mpi::communicator ranks = vtkDIYUtilities::GetCommunicator(controller);
+  diy::mpi::communicator ranks = vtkDIYUtilities::GetCommunicator(controller);
   void* kept = nullptr;
   int isThere = 0;
   MPI_Comm_get_attr(ranks, key, &kept, &isThere);
