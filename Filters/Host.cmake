@@ -1,7 +1,9 @@
 # Finds the host, builds the module Tyndall::LightTransport for it, and ParaView's plugin where the host is ParaView.
 # Sets TYNDALL_HOST ("ParaView 5.11.0", "VTK 9.1.0").
 
+include(Filters/MendedParaView.cmake)
 if (TYNDALL_WITH_PARAVIEW)
+  tyndall_mend_paraview()
   # Without components ParaView wants every Qt development file there is.
   find_package(ParaView 5.11 QUIET COMPONENTS RemotingServerManager RemotingApplication)
 endif ()
