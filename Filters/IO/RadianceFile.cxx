@@ -4,6 +4,7 @@
 #include "IO/Files.h"
 #include "Numerics/NumberText.h"
 
+#ifdef TYNDALL_HAS_OPENEXR
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -11,6 +12,7 @@
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 #include <openexr.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -303,6 +305,7 @@ void XyzToRgb(float* pixel)
 //
 // OpenEXR files (.exr)
 //
+#ifdef TYNDALL_HAS_OPENEXR
 
 /// Data and display window of the first part of an OpenEXR file, read by OpenEXR's C interface, which accepts a limit
 /// for the picture's size.
@@ -462,6 +465,7 @@ std::vector<float> ReadExrPixels(const std::string& path, const ExrWindows& wind
   }
   return pixels;
 }
+#endif
 }
 
 PictureSize SizeOfHdr(const std::string& path)
@@ -505,6 +509,7 @@ RadiancePicture ReadHdr(const std::string& path)
   return picture;
 }
 
+#ifdef TYNDALL_HAS_OPENEXR
 PictureSize SizeOfExr(const std::string& path)
 {
   const ExrWindows windows = WindowsOfExr(path);
@@ -547,4 +552,18 @@ RadiancePicture ReadExr(const std::string& path)
   }
   return picture;
 }
+#else
+PictureSize SizeOfExr(const std::string& path)
+{
+  throw InvalidInput("\"" + path +
+    "\" is not read: this build of Tyndall has no OpenEXR (TYNDALL_WITH_OPENEXR is off). Build it with OpenEXR 3, or "
+    "convert the picture to .hdr.");
+}
+
+RadiancePicture ReadExr(const std::string& path)
+{
+  SizeOfExr(path);
+  return {};
+}
+#endif
 }

@@ -192,7 +192,8 @@ std::unique_ptr<Communicator> Make(vtkMultiProcessController* ranks, [[maybe_unu
     return std::make_unique<ControllerCommunicator>(mpi, patience, std::move(stopped), conversation);
   }
 #endif
-  throw InvalidInput("Ranks that work together have to speak to each other by MPI, and VTK's controller does not.");
+  throw InvalidInput("Ranks work together by MPI only, and VTK's controller is of another kind, or this build of "
+                     "Tyndall has no MPI (TYNDALL_WITH_MPI). Use one rank, or a build with MPI.");
 }
 }
 
