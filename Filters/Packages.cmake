@@ -52,7 +52,7 @@ else ()
   set(soversion "${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}")
   file(WRITE "${debian_made}/shlibs" "libvtkTyndall ${soversion} ${library_package} (= ${PROJECT_VERSION})\n")
   tyndall_package(library ${library_package}
-    SUMMARY "The library of VTK filters, for Debian's VTK 9.1."
+    SUMMARY "The library of VTK filters, for Debian's VTK ${VTK_MAJOR_VERSION}.${VTK_MINOR_VERSION}."
     DEPENDS "${opencl}"
     CONTROL "${debian_made}/shlibs" "${debian}/triggers"
     COMPONENTS runtime)

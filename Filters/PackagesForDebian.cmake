@@ -28,8 +28,10 @@ foreach (root IN LISTS packages)
     "Files: *\nCopyright: the Tyndall authors\nLicense: BSD-3-Clause\n ${licence}\n")
   configure_file("${CPACK_TYNDALL_CHANGES}" "${documents}/CHANGELOG.md" COPYONLY)
   string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC) # that of SOURCE_DATE_EPOCH, where it is set
+  file(STRINGS "/etc/os-release" release REGEX "^VERSION_CODENAME=")
+  string(REPLACE "VERSION_CODENAME=" "" release "${release}")
   file(WRITE "${documents}/changelog"
-    "tyndall (${CPACK_PACKAGE_VERSION}) bookworm; urgency=medium\n\n"
+    "tyndall (${CPACK_PACKAGE_VERSION}) ${release}; urgency=medium\n\n"
     "  * Made by CPack. What changed in Tyndall is in CHANGELOG.md.gz.\n\n"
     " -- ${CPACK_PACKAGE_CONTACT}  ${now}\n")
   execute_process(COMMAND gzip -9n "${documents}/changelog" "${documents}/CHANGELOG.md" COMMAND_ERROR_IS_FATAL ANY)
