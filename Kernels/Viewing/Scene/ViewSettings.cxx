@@ -47,11 +47,12 @@ void CheckTable(const ViewSettings& settings)
   }
 }
 
-void SetLevel(ViewSettings& settings, double stepSize, int rectangleSamples)
+void SetLevel(ViewSettings& settings, double stepSize, int rectangleSamples, double minimumTransmittance)
 {
   const ViewSettings byDefault;
   SetUnlessChosen(settings.stepSize, byDefault.stepSize, stepSize);
   SetUnlessChosen(settings.rectangleSamples, byDefault.rectangleSamples, rectangleSamples);
+  SetUnlessChosen(settings.minimumTransmittance, byDefault.minimumTransmittance, minimumTransmittance);
 }
 }
 
@@ -89,10 +90,10 @@ ViewSettings AtQuality(Quality quality, ViewSettings settings)
 {
   switch (quality)
   {
-    case Quality::Draft: SetLevel(settings, 1.0, 2); break;
+    case Quality::Draft: SetLevel(settings, 1.0, 2, settings.minimumTransmittance); break;
     case Quality::Default: break;
-    case Quality::Fine: SetLevel(settings, 0.25, 5); break;
-    case Quality::Reference: SetLevel(settings, 0.1, 9); break;
+    case Quality::Fine: SetLevel(settings, 0.25, 5, 1e-4); break;
+    case Quality::Reference: SetLevel(settings, 0.1, 9, 1e-5); break;
   }
   return settings;
 }

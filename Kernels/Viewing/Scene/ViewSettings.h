@@ -58,8 +58,8 @@ struct ViewSettings
 /// @throws InvalidInput for a setting that is invalid in every scene
 void Check(const ViewSettings& settings);
 
-/// Settings with the step size and the samples of rectangular lights chosen by a quality, unless `settings` has other
-/// values than the defaults for them.
+/// Settings with the step size, the samples of rectangular lights and the transmittance at which rays stop chosen by a
+/// quality, unless `settings` has other values than the defaults for them.
 ViewSettings AtQuality(Quality quality, ViewSettings settings);
 
 /// Text "Name = value" for each setting that a quality (AtQuality) may choose.
