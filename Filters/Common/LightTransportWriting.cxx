@@ -215,7 +215,7 @@ namespace
 void RemoveLight(vtkImageData* output)
 {
   for (const char* array :
-    { "fluence", "fluence_direct", "fluence_error", "fluence_batches", "net_flux", "scattered_radiance",
+    { "fluence", "fluence_direct", FluenceErrorArray, "fluence_batches", "net_flux", "scattered_radiance",
       "mean_direction", "photon_count", "photon_weight", "mip_level", MomentsArray, StraightOnArray, LitColorArray })
   {
     output->GetCellData()->RemoveArray(array);
@@ -280,7 +280,7 @@ void WriteLight(LightField&& light, vtkImageData* output)
   output->GetCellData()->SetActiveScalars("fluence");
   const int stored = std::max(1, static_cast<int>(light.storedDirections.size()));
   add("fluence_direct", light.fluenceDirect, channels, NameChannels);
-  add("fluence_error", light.fluenceError, channels, NameChannels);
+  add(FluenceErrorArray, light.fluenceError, channels, NameChannels);
   add("net_flux", light.netFlux, 3 * channels, NameFluxComponents);
   add("scattered_radiance", light.scatteredRadiance, channels * stored, [](vtkDataArray*) {});
   WriteMoments(light, output);

@@ -65,6 +65,7 @@ constexpr const char* FaceAlbedoFact = "face_albedo";
 /// StraightOnArray: fraction of scattering that the solver treats as unscattered (LightField::straightOn).
 /// LampsApartFact: name of field data, the lamps whose first-collision source the moments exclude; one tuple for each
 /// lamp: type, position, direction, power, size, angle.
+constexpr const char* FluenceErrorArray = "fluence_error"; ///< standard error of `fluence`, W/length^2
 constexpr const char* MomentsArray = "scattered_moments";
 constexpr const char* StraightOnArray = "straight_on";
 constexpr const char* LampsApartFact = "lamps_apart";

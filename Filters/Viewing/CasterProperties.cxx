@@ -96,7 +96,7 @@ std::vector<double> PropertiesAsNumbers(vtkMediumRayCaster* filter)
     filter->GetCameraParallelScale(), filter->GetStepSize(), filter->GetSingleScatteringOnly() ? 1.0 : 0.0,
     filter->GetShadowRays() ? 1.0 : 0.0, filter->GetShowBackground() ? 1.0 : 0.0, filter->GetExposure(),
     filter->GetSurfaceIndex(), filter->GetSurfaceReflectance(), filter->GetTableReflectance(),
-    filter->GetLeaveOut() ? 1.0 : 0.0, filter->GetEnvironmentAzimuth() };
+    filter->GetLeaveOut() ? 1.0 : 0.0, filter->GetEstimateError() ? 1.0 : 0.0, filter->GetEnvironmentAzimuth() };
   for (int number : { filter->GetImageSize()[0], filter->GetImageSize()[1], filter->GetQuality(),
          filter->GetRectangleSamples(), filter->GetAutoExposure(), filter->GetToneCurve(),
          filter->GetSurfaceReflection(), filter->GetTableFace(), filter->GetEnvironmentUp() })

@@ -51,7 +51,7 @@ FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, 
 std::vector<FloatField*> FieldsOf(ViewedInputs& inputs)
 {
   return { &inputs.medium.sigma_a, &inputs.medium.sigma_s, &inputs.medium.emission, &inputs.medium.g, &inputs.fluence,
-    &inputs.direct, &inputs.meanDirection, &inputs.moments.moments, &inputs.moments.straightOn };
+    &inputs.fluenceError, &inputs.direct, &inputs.meanDirection, &inputs.moments.moments, &inputs.moments.straightOn };
 }
 }
 
@@ -67,6 +67,7 @@ SolvedLight ViewedInputs::Light() const
   light.scatteredMoments = this->moments.moments;
   light.straightOn = this->moments.straightOn;
   light.lampsApart = this->moments.lampsApart;
+  light.fluenceError = this->fluenceError;
   return light;
 }
 
@@ -81,11 +82,13 @@ ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const G
   inputs.direct = read(ViewedFluenceDirect, { 1, 3 });
   inputs.ior = read(ViewedIndex, { 1 });
   inputs.meanDirection = read(ViewedMeanDirection, { 3 });
-  // Moments and light at faces are valid only with the array `fluence` that the solver wrote.
+  // The error, moments and light at faces are valid only with the array `fluence` that the solver wrote.
   if (inputs.fluence.IsThere() &&
     ChosenArray(filter, ViewedFluence, image, ViewedNames[ViewedFluence]) == image->GetCellData()->GetArray("fluence"))
   {
     inputs.moments = ReadMoments(image);
+    inputs.fluenceError =
+      filter->GetEstimateError() ? ReadCells(image, FluenceErrorArray, Need::Optional) : FloatField();
     const std::size_t cells = BoxFaceCellCount(whole);
     inputs.surface = ReadFaces(image, SurfaceRadianceFact, cells, static_cast<int>(SurfaceCosines.size()));
     inputs.power = ReadFaces(image, FacePowerFact, cells, 1);
@@ -104,7 +107,7 @@ double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
   {
     add(ChosenArray(filter, number, image, ViewedNames[number]));
   }
-  for (const char* name : { "g", MomentsArray, StraightOnArray })
+  for (const char* name : { "g", MomentsArray, StraightOnArray, FluenceErrorArray })
   {
     add(image->GetCellData()->GetArray(name));
   }
@@ -205,7 +208,7 @@ BlockOfScene FetchHalo(
   const SceneSource& source, ViewedInputs& viewed, std::vector<VoxelBox>& held, std::vector<float>& ior)
 {
   const Domain& domain = source.Over();
-  const ViewSettings& settings = source.settings;
+  const ViewSettings settings = source.filter->GetEstimateError() ? CoarserSettings(source.settings) : source.settings;
   AgreeOnMeanCosine(domain.Comm(), !domain.IsEmpty(), viewed.medium.g, viewed.medium.medium);
   SharedScene own;
   domain.Collective([&] {
@@ -285,6 +288,11 @@ std::unique_ptr<CasterScene> MakeScene(
     const Field ior = domain.IsSerial() ? Field(viewed.ior) : Field{ known.empty() ? nullptr : known.data(), 1 };
     scene->caster = std::make_unique<MediumRayCaster>(*key.device, viewed.medium.medium, viewed.Light(), illumination,
       settings, ior, domain.IsSerial() ? nullptr : &part);
+    if (source.filter->GetEstimateError())
+    {
+      scene->error = std::make_unique<PictureErrorCasters>(*key.device, viewed.medium.medium, viewed.Light(),
+        illumination, settings, ior, domain.IsSerial() ? nullptr : &part);
+    }
     const std::vector<std::string>& warnings = scene->caster->Warnings();
     scene->doubts.insert(scene->doubts.end(), warnings.begin(), warnings.end());
     scene->made.Modified();

@@ -4,7 +4,7 @@
 #include "Common/InputsKey.h"
 #include "Common/LightTransportData.h"
 #include "Lights/Lights.h"
-#include "Viewing/MediumRayCaster.h"
+#include "Viewing/PictureError.h"
 
 #include "vtkTimeStamp.h"
 
@@ -47,6 +47,7 @@ struct ViewedInputs
 {
   MediumInput medium;
   FloatField fluence, direct, ior, meanDirection;
+  FloatField fluenceError; ///< read only with EstimateError
   MomentsInput moments;
   FaceValues surface, power, albedo; ///< outgoing radiance, power and albedo at the box's faces
 
@@ -72,6 +73,12 @@ struct CasterScene
   std::vector<std::string> doubts; ///< warnings that have not been issued yet
   std::vector<VoxelBox> held;      ///< voxels that the ray caster of each rank holds, by rank
   std::unique_ptr<MediumRayCaster> caster;
+  std::unique_ptr<PictureErrorCasters> error; ///< null without EstimateError
+
+  bool Adopt(const ViewSettings& settings)
+  {
+    return this->caster->Adopt(settings) && (!this->error || this->error->Adopt(settings));
+  }
 };
 
 /// Input of MakeScene: the image to render, the view settings, and the blocks of all ranks.

@@ -18,7 +18,7 @@
 #include "Pieces/UpdateExtent.h"
 #include "Pieces/WholeInputs.h"
 #include "Viewing/Blocks/PictureInBlocks.h"
-#include "Viewing/MediumRayCaster.h"
+#include "Viewing/PictureError.h"
 #include "Viewing/Scene/ViewSettings.h"
 #include "Viewing/ToneMapping.h"
 
@@ -51,7 +51,8 @@ std::array<int, 6> WholePicture(vtkMediumRayCaster* filter)
   return { 0, filter->GetImageSize()[0] - 1, 0, filter->GetImageSize()[1] - 1, 0, 0 };
 }
 
-/// Writes a picture as an image: point data `color` (red, green, blue, alpha), `radiance`, `alpha`, `depth`.
+/// Writes a picture as an image: point data `color` (red, green, blue, alpha), `radiance`, `alpha`, `depth`, and
+/// `picture_error` if the picture has it.
 /// @param first  column and row of the picture's first pixel in the whole picture
 /// @throws InvalidInput if a pixel is not finite; the message names it
 void WritePicture(
@@ -69,9 +70,14 @@ void WritePicture(
     return "pixel (" + std::to_string(first[0] + pixel % width) + ", " + std::to_string(first[1] + pixel / width) +
       ") from below";
   };
-  for (const auto& [name, values, components] : { std::tuple("radiance", &picture.radiance, 3),
-         std::tuple("alpha", &picture.alpha, 1), std::tuple("depth", &picture.depth, 1) })
+  for (const auto& [name, values, components] :
+    { std::tuple("radiance", &picture.radiance, 3), std::tuple("alpha", &picture.alpha, 1),
+      std::tuple("depth", &picture.depth, 1), std::tuple("picture_error", &picture.error, 3) })
   {
+    if (values->empty())
+    {
+      continue;
+    }
     const tyndall::ArrayRanges ranges =
       tyndall::RequireFinite(name, values->data(), values->size(), components, pixelName);
     const auto array = tyndall::ArrayOf<vtkFloatArray>(name, std::move(*values), components);
@@ -202,6 +208,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, cons
   key.Add(image->GetCellData()->GetArray(tyndall::MomentsArray));
   key.Add(image->GetCellData()->GetArray(tyndall::StraightOnArray));
   key.Add(image->GetFieldData()->GetArray(tyndall::LampsApartFact));
+  key.Add({ this->EstimateError ? 1.0 : 0.0 });
+  key.Add(this->EstimateError ? image->GetCellData()->GetArray(tyndall::FluenceErrorArray) : nullptr);
   for (int port : { LIGHTS, ENVIRONMENT })
   {
     key.Add(vtkDataObject::GetData(inputs[port]));
@@ -225,7 +233,7 @@ std::unique_ptr<tyndall::CasterScene> vtkMediumRayCaster::TakeKept(
   {
     tyndall::ViewSettings asked = settings;
     asked.shadowRays |= kept->lightsAlone;
-    stays = kept->caster->Adopt(asked);
+    stays = kept->Adopt(asked);
   }
   return stays ? std::move(kept) : nullptr;
 }
@@ -324,7 +332,8 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::See(
     this->SayDoubts(*shot.scene);
   }
   const tyndall::PixelRect counted = tyndall::OwnPixels(domain.Comm(), WholePicture(this));
-  const tyndall::PixelRect part = tyndall::Around(tyndall::RectOf(asked), counted);
+  const tyndall::PixelRect part =
+    tyndall::Around(tyndall::RectOf(this->EstimateError ? WholePicture(this) : asked), counted);
   const std::vector<tyndall::VoxelBox> held =
     shot.scene ? shot.scene->held : std::vector<tyndall::VoxelBox>(domain.Partition().blocks.size());
   tyndall::PictureInBlocks picture(domain, held, caster);
@@ -345,15 +354,36 @@ std::optional<vtkMediumRayCaster::Shot> vtkMediumRayCaster::See(
       if (caster)
       {
         settings.shadowRays |= shot.scene->lightsAlone;
-        caster->Adopt(settings);
+        shot.scene->Adopt(settings);
       }
       take();
     }
   }
   shot.first = part.begin;
-  shot.leftOut =
-    tyndall::OnAllLists(domain.Comm(), caster ? caster->LeftOut() : std::vector<std::string>(), caster != nullptr);
+  shot.leftOut = caster ? caster->LeftOut() : std::vector<std::string>();
+  if (this->EstimateError)
+  {
+    this->Estimate(domain, camera, shot);
+  }
+  shot.leftOut = tyndall::OnAllLists(domain.Comm(), shot.leftOut, caster != nullptr);
   return shot;
+}
+
+/// Estimates the error of the whole picture. Collective; all ranks compute the same.
+void vtkMediumRayCaster::Estimate(const tyndall::Domain& domain, const tyndall::Camera& camera, Shot& shot)
+{
+  const tyndall::PictureErrorCasters* const error = shot.scene ? shot.scene->error.get() : nullptr;
+  const std::vector<tyndall::VoxelBox> held =
+    shot.scene ? shot.scene->held : std::vector<tyndall::VoxelBox>(domain.Partition().blocks.size());
+  const auto render = [&](bool ofLight, const tyndall::Camera& seenBy, const std::array<int, 2>& size) {
+    tyndall::MediumRayCaster* const own = error ? (ofLight ? error->ofLight : error->coarse).get() : nullptr;
+    return tyndall::PictureInBlocks(domain, held, own).Take(seenBy, size, { { 0, 0 }, size }, tyndall::MonitorOf(this));
+  };
+  tyndall::EstimatePictureError(shot.picture, camera, domain.Any(error && error->ofLight), render);
+  if (error && !error->lightLeftOut.empty())
+  {
+    shot.leftOut.push_back(error->lightLeftOut);
+  }
 }
 
 void vtkMediumRayCaster::CropToRequest(Shot&& shot, vtkInformationVector* outputs)
@@ -364,6 +394,7 @@ void vtkMediumRayCaster::CropToRequest(Shot&& shot, vtkInformationVector* output
   const std::vector<float> opaque;
   auto color = tyndall::ToneMap(shot.picture.radiance, this->ShowBackground ? opaque : shot.picture.alpha, toneMapping);
   vtkImageData* const output = vtkImageData::GetData(outputs);
+  this->EstimatedError = shot.picture.relativeError;
   if (shot.picture.width > 0) // false if no pixels are requested from this rank
   {
     WritePicture(std::move(shot.picture), shot.first, std::move(color), output);
@@ -387,6 +418,7 @@ int vtkMediumRayCaster::RequestData(
   vtkInformation* request, vtkInformationVector** given, vtkInformationVector* outputs)
 {
   this->UsedExposure = 0.0;
+  this->EstimatedError = 0.0;
   this->SceneKept = false;
   this->DeviceName.clear();
   this->SettingsUsed.clear();
@@ -459,10 +491,10 @@ void vtkMediumRayCaster::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(Device, Quality, ImageSize, CameraPosition, CameraFocalPoint, CameraViewUp, CameraViewAngle,
-    CameraParallelProjection, CameraParallelScale, StepSize, SingleScatteringOnly, ShadowRays, RectangleSamples,
-    ShowBackground, BackgroundColor, BackgroundRadiance, Exposure, AutoExposure);
+    CameraParallelProjection, CameraParallelScale, StepSize, EstimateError, SingleScatteringOnly, ShadowRays,
+    RectangleSamples, ShowBackground, BackgroundColor, BackgroundRadiance, Exposure, AutoExposure);
   os << indent << "ToneCurve: " << (this->ToneCurve == LINEAR ? "linear" : "filmic") << "\n";
   tyndallPrintMacro(SurfaceReflection, SurfaceIndex, SurfaceReflectance, TableFace, TableColor, TableReflectance,
-    LeaveOut, UsedExposure, SceneKept, MemoryBudget, DeviceName, SettingsUsed);
+    LeaveOut, UsedExposure, EstimatedError, SceneKept, MemoryBudget, DeviceName, SettingsUsed);
   tyndall::PrintRun(os, indent, this);
 }

@@ -16,7 +16,9 @@ namespace tyndall
 {
 class BlocksOfRanks;
 class Device;
+class Domain;
 struct AskedView;
+struct Camera;
 struct CasterScene;
 struct InputsKey;
 struct Picture;
@@ -85,6 +87,7 @@ struct ViewSettings;
  * | `radiance` | float x 3 | W/(length^2 sr) | radiance that arrives at the camera |
  * | `alpha` | float | 1 | 1 - transmittance (mean of the channels) |
  * | `depth` | float | length | distance along the view direction where the channels' mean transmittance is 1/2 |
+ * | `picture_error` | float x 3 | W/(length^2 sr) | standard error of `radiance` (if EstimateError) |
  *
  * and field data `exposure` (the factor by which radiance was multiplied), `left_out` (computations that the scene did
  * not need), `settings_used` ("Name = value" of the properties that Quality chooses), `device`.
@@ -165,6 +168,14 @@ public:
   /// Distance between two samples on a ray, in voxels. Default 0.5, valid [0.01, 10]. The error is proportional to the
   /// square of the distance.
   tyndallRangeMacro(StepSize, double, 0.01, 10.0);
+  ///@}
+
+  ///@{
+  /// Whether to estimate the error of radiance, as the array `picture_error`, from two more pictures of every second
+  /// pixel: one with half as many samples, and one of `fluence_error`, the error of the light. Without this array,
+  /// `left_out` says that the light's part is missing. The error of interpolation between voxel centres is not
+  /// included. Needs a StepSize of at most 5. Default off.
+  tyndallFlagMacro(EstimateError);
   ///@}
 
   ///@{
@@ -277,11 +288,12 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: run time in seconds; the exposure used; whether
-  /// medium and light were on the device from an earlier picture; the device's name; and the computations that the
-  /// scene did not need, one per line.
+  /// Results of the last update: run time in seconds; the exposure used; estimated relative error of radiance (0
+  /// without EstimateError); whether medium and light were on the device from an earlier picture; the device's name;
+  /// and the computations that the scene did not need, one per line.
   tyndallSecondsMacro();
   vtkGetMacro(UsedExposure, double);
+  vtkGetMacro(EstimatedError, double);
   vtkGetMacro(SceneKept, bool);
   vtkGetCharFromStdStringMacro(DeviceName);
   tyndallLeftOutMacro();
@@ -327,6 +339,7 @@ private:
   bool PiecesFit(const tyndall::BlocksOfRanks& blocks, vtkImageData* image);
   std::optional<Shot> See(const tyndall::BlocksOfRanks& blocks, vtkInformationVector** inputs, double exposure,
     const std::array<int, 6>& asked);
+  void Estimate(const tyndall::Domain& domain, const tyndall::Camera& camera, Shot& shot);
   void CropToRequest(Shot&& shot, vtkInformationVector* outputs);
 
   std::string Device;
@@ -339,6 +352,7 @@ private:
   bool CameraParallelProjection = false;
   double CameraParallelScale = 1.0;
   double StepSize;
+  bool EstimateError = false;
   bool SingleScatteringOnly;
   bool ShadowRays;
   int RectangleSamples;
@@ -362,6 +376,7 @@ private:
   std::unique_ptr<tyndall::CasterScene> Kept; ///< cached scene of the last picture; null after an error
 
   double UsedExposure = 0.0;
+  double EstimatedError = 0.0;
   bool SceneKept = false;
   std::string DeviceName;
   std::string SettingsUsed;

@@ -409,6 +409,43 @@ void DarkMediumIsAWarning(test::Claims& claims)
   claims.That(caster->GetOutput()->GetNumberOfPoints() == 81, "the picture is made all the same");
 }
 
+void ErrorIsEstimatedOnRequest(test::Claims& claims)
+{
+  const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 1.0);
+  vtkNew<vtkMediumRayCaster> caster;
+  caster->SetInputData(image);
+  caster->SetImageSize(21, 16);
+  caster->Update();
+  claims.That(!Pixels(caster, "picture_error") && caster->GetEstimatedError() == 0.0, "no error unless asked for");
+  caster->EstimateErrorOn();
+  caster->Update();
+  const double ofRays = caster->GetEstimatedError();
+  claims.That(Pixels(caster, "picture_error") && Pixels(caster, "picture_error")->GetNumberOfComponents() == 3,
+    "picture_error has three channels");
+  claims.That(ofRays < 1e-3, "an even medium takes no small steps");
+  claims.That(
+    std::string(caster->GetLeftOut()).find("fluence_error") != std::string::npos, "the light's error is missing");
+
+  AddCells(image, "fluence_error", 3, [](double, double, double, int c) { return 0.1 * (c + 1); });
+  image->Modified();
+  caster->Update();
+  claims.That(caster->GetEstimatedError() > 0.02 && caster->GetEstimatedError() < 0.101, "the light's error is seen");
+  claims.That(
+    std::string(caster->GetLeftOut()).find("fluence_error") == std::string::npos, "the light's error is not missing");
+  claims.That(Pixels(caster, "picture_error")->GetComponent(21 * 8 + 10, 2) > 0.02 * MiddlePixel(caster, "radiance", 2),
+    "the error of a pixel");
+  const double estimated = caster->GetEstimatedError();
+  caster->SetImageSize(40, 30);
+  caster->Update();
+  claims.That(caster->GetSceneKept(), "the scene of the estimate is kept, too");
+  claims.Near(caster->GetEstimatedError(), estimated, 0.1 * estimated, "the same error in another size");
+
+  caster->SetStepSize(8.0);
+  test::Errors errors(caster);
+  caster->Update();
+  claims.That(errors.WasOneWith("StepSize"), "steps that cannot be doubled are one error");
+}
+
 void Stop(vtkObject* caster, unsigned long, void* calls, void*)
 {
   ++*static_cast<int*>(calls);
@@ -493,6 +530,7 @@ int TestMediumRayCaster(int argc, char* argv[])
   GroundIsSeen<vtkLightPropagationMaps>(claims, "light propagation maps");
   GroundIsSeen<vtkDiscreteOrdinates>(claims, "discrete ordinates");
   DarkMediumIsAWarning(claims);
+  ErrorIsEstimatedOnRequest(claims);
   AbortStops(claims);
   char* folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");
   PictureOfACloud(claims, std::string(folder) + "/MediumRayCasterCloud.png");

@@ -12,7 +12,7 @@ from pieces_of_ranks import Runs
 
 runs = Runs("PicturesOverRanks", "pictures_of_pieces.py")
 pieces = ["even", "coloured", "inside", "uneven", "alone", "bare", "bare_uneven", "bare_points", "phase", "ground", "reader",
-          "solved", "glass", "glass_coloured", "glass_bare", "mirror", "shadows", "table", "moments", "surface", "turned"]
+          "solved", "glass", "glass_coloured", "glass_bare", "mirror", "shadows", "estimate", "table", "moments", "surface", "turned"]
 of_even = ["uneven", "alone", "bare", "bare_uneven"]  # other pieces of the same
 
 
@@ -23,7 +23,7 @@ def whole(ranks, case):
     extents = numpy.array([part["extent"] for part in seen])
     size = extents.max(axis=0)[[3, 1]] + 1
     picture = {name: seen[0][name] for name in ("exposure", "left_out")}
-    for name in ("color", "radiance", "alpha", "depth"):
+    for name in ("color", "radiance", "alpha", "depth", *(["picture_error"] if case == "estimate" else [])):
         found = numpy.full([*size, seen[0][name].reshape(len(seen[0][name]), -1).shape[1]], numpy.nan)
         for part, (x0, x1, y0, y1, _, _) in zip(seen, extents):
             found[y0:y1 + 1, x0:x1 + 1] = part[name].reshape(y1 - y0 + 1, x1 - x0 + 1, -1)
@@ -41,6 +41,8 @@ def check(ranks, case, expected):
         ranks, case, apart["radiance"] / bright, apart["alpha"], apart["depth"], apart["color"],
         [int(part["bytes"]) for part in parts]), flush=True)
     assert apart["radiance"] < 1e-5 * bright and apart["alpha"] < 1e-5 and apart["color"] <= 1, (ranks, case, apart)
+    if case == "estimate":
+        assert abs(picture["picture_error"] - expected["picture_error"]).max() < 1e-3 * expected["picture_error"].max() > 0
     assert apart["depth"] < 1e-5 * expected["depth"].max(), (ranks, case, apart)
     assert abs(picture["exposure"] / expected["exposure"] - 1) < 1e-4, (ranks, case)
     assert (picture["left_out"] == expected["left_out"]).all(), (ranks, case, picture["left_out"])

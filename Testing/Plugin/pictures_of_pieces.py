@@ -113,8 +113,9 @@ def keep(case, caster):
     kept = {"given": given.GetExtent(), "bytes": given.GetActualMemorySize() * 1024}
     if picture.GetNumberOfPoints() > 0:
         kept["extent"] = picture.GetExtent()
-        for name in ("color", "radiance", "alpha", "depth"):
-            kept[name] = vtk_to_numpy(picture.GetPointData().GetArray(name))
+        for name in ("color", "radiance", "alpha", "depth", "picture_error"):
+            if picture.GetPointData().HasArray(name):
+                kept[name] = vtk_to_numpy(picture.GetPointData().GetArray(name))
         kept["exposure"] = vtk_to_numpy(picture.GetFieldData().GetArray("exposure"))
         left_out = picture.GetFieldData().GetAbstractArray("left_out")
         kept["left_out"] = [left_out.GetValue(i) for i in range(left_out.GetNumberOfValues())]
@@ -246,6 +247,14 @@ def mirror():
 def shadows():
     """Lamps throw shadows across pieces."""
     keep("shadows", cast(piece(), Lights=LightRig(SunElevation=20), ShadowRays=1))
+
+
+def estimate():
+    """Of which the error is estimated, that of its light too."""
+    image = piece()
+    z, y, x = cells_of(image.GetExtent())
+    add(image, "fluence_error", 0.05 + 0.03 * numpy.cos(x + z))
+    keep("estimate", cast(image, EstimateError=1))
 
 
 def table():

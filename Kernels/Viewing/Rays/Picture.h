@@ -17,6 +17,9 @@ struct Picture
   /// bent rays; `farDepth` if it does not.
   std::vector<float> depth;
   float farDepth = 0.0f; ///< depth beyond every point of the box, for rays whose transmittance stays above 1/2
+  /// Estimated standard error of the radiance, 3 per pixel, W / (length^2 sr); empty: not requested (PictureError.h).
+  std::vector<float> error;
+  double relativeError = 0.0; ///< root mean square of `error`, relative to that of the radiance
   /// Only for a block of a larger grid, 3 per pixel: transmittance of the block for radiance from behind it.
   std::vector<float> transmittance;
   /// Only for a block, 3 per pixel: transmittance for light from behind that is not scattered at all. Differs from

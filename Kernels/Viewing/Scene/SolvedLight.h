@@ -29,6 +29,8 @@ struct SolvedLight
   /// components (null: not known), and albedo of the faces, LightField::faceAlbedo.
   Field facePower = {};
   std::array<Rgb, 6> faceAlbedo = {};
+  /// Standard error of `fluence`, W / length^2, with 1 or 3 components, for PictureError.h; null: not known.
+  Field fluenceError = {};
 };
 
 struct ViewSettings;

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "Viewing/MediumRayCaster.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace tyndall
+{
+/// Settings of the pictures from which the error of a picture with `settings` is estimated.
+/// @throws InvalidInput if stepSize is above 5 voxels
+ViewSettings CoarserSettings(ViewSettings settings);
+
+/// Two more pictures from which the error of a picture is estimated without a reference (numerics.md, section 14.10),
+/// both of every second pixel along each axis:
+///  - `coarse`: half as many samples along rays and along the edges of rectangle lights, rays that end at four times
+///    the transmittance, and without the last degree of angular moments;
+///  - `ofLight`: the error of the light, fluenceError, in place of the light.
+/// The error due to the interpolation of light and medium between voxel centres is not estimated.
+struct PictureErrorCasters
+{
+  /// Prepares both pictures; parameters and exceptions as of MediumRayCaster and CoarserSettings.
+  PictureErrorCasters(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
+    const ViewSettings& settings, const Field& ior = {}, const BlockOfScene* block = nullptr);
+
+  /// Adopts the settings of the picture, as MediumRayCaster::Adopt.
+  bool Adopt(const ViewSettings& settings);
+
+  std::unique_ptr<MediumRayCaster> coarse;
+  std::unique_ptr<MediumRayCaster> ofLight; ///< null: the picture shows no solved light, or its error is not known
+  std::string lightLeftOut; ///< why the error of the light is not part of the estimate; empty: it is, or is none
+};
+
+/// Renders `coarse` (ofLight false) or `ofLight` by a camera, in a size in pixels.
+using RenderForError = std::function<Picture(bool ofLight, const Camera&, const std::array<int, 2>& size)>;
+
+/// Sets error and relativeError of a picture.
+/// @param picture  the whole picture
+/// @param knowsLight  whether there is `ofLight`
+void EstimatePictureError(Picture& picture, const Camera& camera, bool knowsLight, const RenderForError& render);
+}
