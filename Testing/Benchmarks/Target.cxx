@@ -1,6 +1,6 @@
 // TargetError against the best hand-made setting: true error and time.
 // `./run bench target [tuning] [falls] [size 0.5] [scene 3]`
-// Coverage of the errors that solvers estimate: `./run bench target coverage [maps | ordinates | lattice]`
+// Coverage of the errors that solvers estimate: `./run bench target coverage [maps | ordinates | lattice | pictures]`
 
 #include "Measure.h"
 #include "Program.h"
