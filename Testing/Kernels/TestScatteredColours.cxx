@@ -76,6 +76,29 @@ TEST_F(ScatteredColours, OfThePhaseFunctionAreScenesOfTheirOwn)
   this->ExpectEachAlone(scene);
 }
 
+// Faint channels are rounded in proportion to their own power.
+TEST_F(ScatteredColours, OfVeryUnlikePowersBalance)
+{
+  PhotonScene scene = AnyScene(3);
+  const std::vector<Photon> white = RandomPhotons(scene.medium.grid).ThroughAllFaces(2000);
+  std::vector<Photon> photons = white;
+  for (Photon& photon : photons)
+  {
+    photon.power[0] *= 1e-7f;
+    photon.power[2] *= 1e-4f;
+  }
+  const PhotonLight bright = scene.March(this->GetDevice(), white), found = scene.March(this->GetDevice(), photons);
+  const EnergyBalance& balance = found.light.balance;
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    EXPECT_NEAR((balance.absorbed[c] + balance.escaped[c] + balance.leftOver[c]) / balance.entered[c], 1.0, 1e-5) << c;
+  }
+  for (std::size_t i = 0; i < found.light.fluence.size(); i += 3)
+  {
+    ASSERT_NEAR(1e7f * found.light.fluence[i], bright.light.fluence[i], 3e-4f * bright.light.fluence[i]);
+  }
+}
+
 TEST_F(ScatteredColours, WhereNothingScattersAllLightIsDirect)
 {
   PhotonScene scene = UnitCube(3, 2.0, 0.0);

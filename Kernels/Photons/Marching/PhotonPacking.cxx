@@ -513,8 +513,12 @@ bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::arra
 
 PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger)
 {
+  // A channel much fainter than the others has a smaller unit in proportion, or rounding its deposits to units would
+  // lose a part of its power.
+  const double own = packed.entered[static_cast<std::size_t>(channel)], all = Sum(packed.entered);
+  const double scale = larger * (packed.channels == 3 && own > 0.0 ? std::exp2(std::ceil(std::log2(own / all))) : 1.0);
   PackedPhotons one;
-  one.unit = packed.unit * larger;
+  one.unit = packed.unit * scale;
   one.numbers = packed.numbers;
   one.batchBegin = packed.batchBegin;
   one.values.reserve(packed.Count() * 7);
@@ -522,7 +526,7 @@ PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour
   for (auto from = packed.values.begin(); from != packed.values.end(); from += each)
   {
     one.values.insert(one.values.end(), from, from + 6);
-    one.values.push_back(static_cast<float>(from[6 + channel] * (colour / larger)));
+    one.values.push_back(static_cast<float>(from[6 + channel] * (colour / scale)));
     // Powers are not rounded to whole units: the powers of equal photons would all be rounded in the same direction,
     // and the rounding errors would add up.
     one.entered[0] += one.unit * one.values.back();

@@ -49,7 +49,8 @@ PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool co
 /// Extracts one channel of packed photons, as photons of one channel.
 /// @param channel  index of the packed channel
 /// @param colour   power in the requested channel per unit of packed power
-/// @param larger   ratio of the new unit to the old one, a power of two
+/// @param larger   ratio of the new unit to the old one, a power of two, for a channel that carries all of the power; a
+///   fainter channel has a smaller unit
 PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger);
 
 /// Rounds power to whole units, so that sums do not depend on the order of their terms.
