@@ -77,7 +77,8 @@ std::string TwoAxes(int polarNodes)
 
 std::string DirectionsAlongSlab(int perFace)
 {
-  return "directions too few for a slab, or along it: solved with " + std::to_string(perFace) + " a face";
+  return "directions too few for a slab, or parallel to a periodic axis: solved with " + std::to_string(perFace) +
+    " a face";
 }
 }
 }

@@ -212,11 +212,12 @@ int DirectionsPerFaceFor(const PropagationSettings& settings, const UnvaryingAxe
 {
   const int told = settings.directionsPerFace;
   const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(std::max(told, 0)))));
-  if (settings.source == PropagationSource::Constant || !settings.adaptDirections || edge * edge != told)
+  if (!settings.adaptDirections || edge * edge != told)
   {
     return told;
   }
-  const bool goRound = settings.periodic[0] + settings.periodic[1] + settings.periodic[2] == 2;
+  const int periodicAxes = settings.periodic[0] + settings.periodic[1] + settings.periodic[2];
+  const bool goRound = periodicAxes == 1 || periodicAxes == 2;
   const int even = goRound || unvarying.IsSlab() ? edge + edge % 2 : edge;
   const bool stays = goRound && even == EdgeWithCosineZero;
   const int enough = unvarying.IsSlab() || stays ? std::max(even, EdgeInSlabs) : even;
