@@ -118,6 +118,10 @@ AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illuminati
     for (int c = 0; c < 3; ++c)
     {
       all.power += PowerLost(illumination.uncollided, medium, c);
+      for (const Rgb& escaped : illumination.uncollided.escaped)
+      {
+        all.power += escaped[c]; // a medium that takes next to nothing does not make the light faint
+      }
     }
   }
   return all;
