@@ -147,6 +147,7 @@ LightSources::LightSources(const PropagationProblem& problem, bool byBalance, co
   , Layout(layout)
   , Usual(usual)
   , Finer(finer)
+  , CorrectsEscape(finer.correctsEscape)
 {
   if (problem.HasGivenLight())
   {
@@ -234,7 +235,8 @@ void LightSources::FindFineBoundary()
   const bool ofAll = !this->Finer.ofFacesAlone;
   auto fine = std::make_unique<BoundaryLight>(
     grid, settings, *this->Fine, AlongFiner(this->Finer, shining), ofAll ? this->FarAway : Environment());
-  const bool isEven = (this->ByBalance || !ofAll) && fine->IsEven();
+  const bool isEven = fine->Shines() && fine->IsEven();
+  this->CorrectsEscape = this->CorrectsEscape && !isEven;
   if (!fine->Shines() || isEven || (this->ByBalance && Reflects(shining)))
   {
     return;

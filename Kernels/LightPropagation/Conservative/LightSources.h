@@ -65,6 +65,7 @@ public:
   const VolumeLayout& Layout;
   const SweptDirections& Usual;
   const UncollidedDirections Finer; ///< quadrature of boundary light until its first collision
+  bool CorrectsEscape;              ///< Finer.correctsEscape; false if the boundary source is uniform
   /// Rays of the quadrature Finer; null if that is the quadrature of scattered light.
   std::unique_ptr<const SweptDirections> Fine;
   /// Boundary sources. FineBoundary: transported along the quadrature Fine; null if there are none. UsualBoundary:
