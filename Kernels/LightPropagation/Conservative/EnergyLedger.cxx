@@ -14,6 +14,26 @@ void EnergyLedger::Count(const SweepTally& tally)
   }
 }
 
+void EnergyLedger::SettleOvercount(double error)
+{
+  for (std::size_t c = 0; c < 3; ++c)
+  {
+    double &left = this->Sums.leftOver[c], out = this->Sums.absorbed[c] + this->Sums.escaped[c];
+    if (left >= 0.0 || -left > error * out)
+    {
+      continue;
+    }
+    const double part = 1.0 + left / out;
+    this->Sums.absorbed[c] *= part;
+    this->Sums.escaped[c] *= part;
+    for (Rgb& face : this->Faces)
+    {
+      face[c] *= part;
+    }
+    left = 0.0;
+  }
+}
+
 void EnergyLedger::ShareEscaped(const Rgb& watts)
 {
   for (int c = 0; c < 3; ++c)

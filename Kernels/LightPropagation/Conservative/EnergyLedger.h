@@ -33,6 +33,11 @@ public:
   /// Replaces the unaccounted power: still in flight, or in sources that no sweep has carried.
   void SetUnaccounted(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 
+  /// Scales absorbed and escaped powers, of which a part is predicted, so that no unaccounted power is below 0: they
+  /// exceed the incoming power by the error of the prediction. Leaves a channel unchanged if that error is too large.
+  /// @param error  largest error, relative to the absorbed and escaped power
+  void SettleOvercount(double error);
+
   /// Adds the incident and escaped powers of a sweep.
   void Count(const SweepTally& tally);
 

@@ -1,7 +1,10 @@
 #include "LightPropagation/Conservative/NegativeFluence.h"
 
+#include "Device/HostThreads.h"
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 
 namespace tyndall
@@ -12,6 +15,8 @@ namespace
 /// from neighbouring voxels. Power that a pass cannot subtract from the direct neighbours of a voxel is passed one
 /// voxel farther by the next one.
 constexpr int MostTurns = 50;
+/// Fluence below its uncollided part by at most this fraction of it is raised without subtracting power elsewhere.
+constexpr float Rounding = 1e-6f;
 
 /// One channel of fluence on this rank, in which negative values are raised. A raised voxel absorbs additional power;
 /// it owes this power until the power has been subtracted from what its neighbours absorb.
@@ -145,11 +150,46 @@ void MakeFluence(Communicator& communicator, const Halo& around, const VolumeLay
 }
 
 void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
-  Buffer<float>& fluence)
+  const std::vector<float>& uncollided, Buffer<float>& fluence)
 {
-  std::vector<float> values;
-  communicator.Collective([&] { values = fluence.Read(); });
+  std::vector<float> direct, values;
+  communicator.Collective([&] {
+    direct = Planar(layout, layout.channels, [&](std::size_t i, int c) { return uncollided[i * layout.channels + c]; });
+    values = fluence.Read();
+    std::transform(values.begin(), values.end(), direct.begin(), values.begin(), [](float all, float direct) {
+      const float scattered = all - direct;
+      return scattered < 0.0f && scattered >= -Rounding * direct ? 0.0f : scattered;
+    });
+  });
   CutOffNegative(communicator, around, layout, sigma_a, values);
-  communicator.Collective([&] { fluence.Write(values.data()); });
+  communicator.Collective([&] {
+    std::transform(values.begin(), values.end(), direct.begin(), values.begin(), std::plus<float>());
+    fluence.Write(values.data());
+  });
+}
+
+void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& ofLight)
+{
+  const std::size_t stride = layout.Stride();
+  std::vector<float> flux = ofLight.Read();
+  const double volume = layout.grid.VoxelVolume();
+  for (int c = 0; c < layout.channels; ++c)
+  {
+    InThreads(layout.grid.VoxelCount(), 16384, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        float* const x = flux.data() + 3 * c * stride + i;
+        float* const y = x + stride;
+        float* const z = y + stride;
+        const double most = fluence[c * stride + i] * volume;
+        const double flows = std::hypot(*x, *y, *z);
+        const auto part = static_cast<float>(flows > most ? most / flows : 1.0);
+        *x *= part;
+        *y *= part;
+        *z *= part;
+      }
+    });
+  }
+  ofLight.Write(flux.data());
 }
 }

@@ -27,7 +27,14 @@ void CutOffNegative(Communicator& communicator, const Halo& around, const Volume
 void MakeFluence(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
   std::vector<float>& solved, std::vector<float> path, const std::vector<float>& uncollided);
 
-/// CutOffNegative() for an array on the device; negative values are replaced by 0.
+/// CutOffNegative() of the scattered part of a fluence on the device: fluence is nowhere below its uncollided part.
+/// @param uncollided  W / length^2, [voxel][channel], as LightField::fluenceDirect
 void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
-  Buffer<float>& fluence);
+  const std::vector<float>& uncollided, Buffer<float>& fluence);
+
+/// Scales the net flux down to the fluence where its magnitude exceeds it, which radiance cannot: sums over rays of
+/// thick voxels are inexact, and in absorbing voxels the mean of the powers through opposite faces exceeds the net flux.
+/// @param fluence  W / length^2, [channel][voxel]
+/// @param ofLight  net flux times the voxel's volume, [channel][x, y, z][voxel]; changed
+void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& ofLight);
 }

@@ -93,16 +93,9 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   if (this->Cells)
   {
     this->Result.ledger = this->Cells->WithOut(this->Result.ledger);
+    this->Result.ledger.SettleOvercount(this->Settings.tolerance);
   }
-  // Fluence can be slightly negative: behind voxels with sources by octant, in dark voxels after a warm start or
-  // coarse-mesh DSA, whose corrections stop before later sweeps would have removed the difference, and where sources
-  // by angular moments are negative in some directions.
-  if (this->AtFaces || this->Warm.Begins() || this->Cells || this->Parts.Problem.Scattering().Degree() > 0)
-  {
-    Communicator& comm = this->TheDomain.Comm();
-    CutOffNegative(comm, Halo(comm, this->TheDomain.Partition(), this->Settings.periodic, 1), this->Parts.Layout,
-      this->Parts.Problem.TheMedium().sigma_a, this->Parts.Fluence);
-  }
+  this->LimitLight();
   this->Result.ledger.ShareEscaped(this->Escaped);
   this->Result.leftOut = this->LeftOut();
   if (this->Warm.Keeps())
@@ -117,6 +110,27 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
       this->Cells ? faces.ScaledTo(faces.LeftInAll(), this->Result.ledger.FacePowerOut()) : faces.LeftInAll();
   }
   return std::move(this->Result);
+}
+
+/// Raises scattered fluence that is slightly negative: behind voxels with sources by octant, in dark voxels after a warm
+/// start or coarse-mesh DSA, whose corrections stop before later sweeps would have removed the difference, and where
+/// sources by angular moments are negative in some directions. Limits the net flux of thick voxels.
+void SourceIteration::LimitLight()
+{
+  TransportParts& parts = this->Parts;
+  if (!this->AtFaces && !this->Warm.Begins() && !this->Cells && parts.Problem.Scattering().Degree() == 0)
+  {
+    return;
+  }
+  Communicator& comm = this->TheDomain.Comm();
+  CutOffNegative(comm, Halo(comm, this->TheDomain.Partition(), this->Settings.periodic, 1), parts.Layout,
+    parts.Problem.TheMedium().sigma_a, this->Result.fluenceDirect, parts.Fluence);
+  this->TheDomain.Collective([&] {
+    if (this->AtFaces && this->Settings.netFlux)
+    {
+      LimitFlux(parts.Layout, parts.Fluence.Read(), parts.Flux);
+    }
+  });
 }
 
 /// Applies the escape correction (EscapeCorrection.h) to the path integrals of the last sweep.
@@ -141,7 +155,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   const LightSources::Sources lamps = lights.LampSources(), traced = lights.OtherSources(),
                               vacuum = lights.VacuumSources();
   const double all = static_cast<double>(lamps.size() + traced.size() + vacuum.size()) +
-    (lights.FineBoundary ? 1.0 : 0.0) + (lights.Finer.correctsEscape ? 1.0 : 0.0);
+    (lights.FineBoundary ? 1.0 : 0.0) + (lights.CorrectsEscape ? 1.0 : 0.0);
   double done = 0.0;
   const auto next = [&] {
     done += 1.0;
@@ -187,7 +201,7 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   });
   this->Result.ledger.Count(tally);
   this->ToCome.stranded = tally.onTheWay;
-  if (lights.Finer.correctsEscape)
+  if (lights.CorrectsEscape)
   {
     this->PrepareEscape(next());
   }
@@ -468,7 +482,13 @@ void SourceIteration::GoOnWarm()
   {
     this->Warm.TakeGuessFrom(this->Parts.Source);
   }
-  const Rgb magnitudes = this->Warm.MagnitudeOf(this->Parts.Source);
+  Rgb magnitudes = this->Warm.MagnitudeOf(this->Parts.Source, this->Parts.Functions());
+  if (this->AtFaces)
+  {
+    constexpr int Octants = 8;
+    const Rgb byOctant = this->Warm.MagnitudeOf(this->AtFaces->Sources(), 1, Octants);
+    std::transform(magnitudes.begin(), magnitudes.end(), byOctant.begin(), magnitudes.begin(), std::plus<>());
+  }
   this->Shining = Sum(magnitudes) > 0.0;
   this->ToCome.residual = 0.0;
   for (int c = 0; c < this->Parts.Layout.channels; ++c)

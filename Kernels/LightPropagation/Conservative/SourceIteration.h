@@ -69,6 +69,7 @@ private:
   void BeginWarm();
   void GoOnWarm();
   void GatherMoments();
+  void LimitLight();
   void Leave();
   bool Done() const;
   std::vector<std::string> LeftOut() const;

@@ -112,7 +112,7 @@ void WarmStart::TakeGuessFrom(const Buffer<float>& source)
   this->Scaled = {};
 }
 
-Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
+Rgb WarmStart::MagnitudeOf(const Buffer<float>& source, int functions, int parts) const
 {
   const VolumeLayout& layout = this->Layout;
   Device& device = this->Parts.TheDevice;
@@ -123,15 +123,16 @@ Rgb WarmStart::MagnitudeOf(const Buffer<float>& source) const
       return;
     }
     const std::size_t lines = static_cast<std::size_t>(layout.grid.size[1]) * layout.grid.size[2];
-    Buffer<float> tally(device, lines * layout.channels, "sums");
+    const std::size_t arrays = static_cast<std::size_t>(layout.channels) * parts;
+    Buffer<float> tally(device, lines * arrays, "sums");
     cl::Kernel kernel = device.Kernel("sum_magnitudes", kernel_source::SourceIteration);
-    With(kernel, layout.Places(this->Parts.Functions()), source, tally, cl_ulong(layout.Stride()));
+    With(kernel, layout.Places(functions), source, tally, cl_ulong(layout.Stride()));
     device.Queue().enqueueNDRangeKernel(
-      kernel, cl::NullRange, cl::NDRange(lines, layout.channels), GroupOfLargeItems(device, 2));
+      kernel, cl::NullRange, cl::NDRange(lines, arrays), GroupOfLargeItems(device, 2));
     const std::vector<float> values = tally.Read();
     for (std::size_t i = 0; i < values.size(); ++i)
     {
-      sums[i / lines] += values[i] * 4.0 * Pi * layout.grid.VoxelVolume();
+      sums[i / lines / parts] += values[i] * 4.0 * Pi / parts * layout.grid.VoxelVolume();
     }
   });
   return this->TheDomain.Sum(sums);

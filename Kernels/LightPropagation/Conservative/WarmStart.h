@@ -43,7 +43,9 @@ public:
   void TakeGuessFrom(const Buffer<float>& source);
   /// Magnitude of a source that may be negative, W by channel: root mean square over directions, summed over voxels
   /// (numerics.md, Eq. (46c)).
-  Rgb MagnitudeOf(const Buffer<float>& source) const;
+  /// @param functions  number of angular functions in `source`
+  /// @param parts  number of arrays of a channel, each for the same fraction of all directions
+  Rgb MagnitudeOf(const Buffer<float>& source, int functions, int parts = 1) const;
 
   /// Light to keep for the next solve: total fluence minus `base`.
   /// @param base  the part of the fluence that the next solve computes anew, W / length^2, [channel][voxel]

@@ -155,10 +155,20 @@ std::vector<double> FaceBalance::Left() const
 void FaceBalance::Count(EnergyLedger& ledger) const
 {
   const std::vector<double> left = this->Left();
+  std::array<Rgb, 6> all = {}, uncollided = {};
   for (std::size_t i = 0; i < left.size(); ++i)
   {
-    const int face = this->Faces.FaceOf(i % this->Cells), c = static_cast<int>(i / this->Cells);
-    ledger.Escape(c, face, (1.0 - this->Faces.AlbedoOf(i)) * left[i] - this->LeftUncollided[i]);
+    const int face = this->Faces.FaceOf(i % this->Cells);
+    all[face][i / this->Cells] += (1.0 - this->Faces.AlbedoOf(i)) * left[i];
+    uncollided[face][i / this->Cells] += this->LeftUncollided[i];
+  }
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int c = 0; c < this->Faces.Channels(); ++c)
+    {
+      // The diffusion solution's outgoing power may be slightly negative in the dark.
+      ledger.Escape(c, face, std::max(all[face][c], 0.0) - uncollided[face][c]);
+    }
   }
 }
 
