@@ -87,7 +87,7 @@ LightField SolveGrid(const StressSolver& row, const StressScene& scene, double t
   if (row.family == StressFamily::Ordinates)
   {
     OrdinatesSettings settings;
-    settings.maximumOrders = StressOrdersOrdinates;
+    settings.maximumOrders = row.Is(ByOrders) ? StressOrdersOrdinates : 0;
     settings.tolerance = tolerance;
     settings.periodic = scene.periodic;
     settings.netFlux = true;

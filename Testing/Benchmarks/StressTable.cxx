@@ -59,6 +59,7 @@ std::vector<StressSolver> OwnRows()
       With<Maps>([](auto* maps) { maps->SetAlgorithm(Maps::SEQUENTIAL); }) },
     { "steps", Family::Steps, Published, Nothing, "maps, parallel" },
     { "ordinates", Family::Ordinates, ByOrders },
+    { "ordinates, accelerated", Family::Ordinates },
     { "ordinates, all", Family::Ordinates, ByOrders, With<Ordinates>([](auto* all) { all->SetLeaveOut(false); }),
       "ordinates" },
     { "ordinates, matrix", Family::Ordinates, ByOrders,
@@ -144,7 +145,8 @@ void AddSharedRows(std::vector<StressSolver>& rows)
   for (StressSolver row : serial)
   {
     if (isOneOf(row.name,
-          { "maps", "maps, moments", "ordinates", "lattice", "lattice of 6", "photons", "photons, all orders" }))
+          { "maps", "maps, moments", "ordinates", "ordinates, accelerated", "lattice", "lattice of 6", "photons",
+            "photons, all orders" }))
     {
       row.like = row.name;
       row.name += ", 3 ranks";
@@ -319,8 +321,7 @@ StressCase CaseFor(const StressSolver& row, StressCase asked)
   }
   // What goes along a periodic axis through nothing never ends, and nothing enters along it (limits.md).
   const std::array<bool, 3>& periodic = asked.scene.periodic;
-  if ((row.family == Family::Ordinates || row.IsOfLattice()) && (periodic[0] || periodic[1] || periodic[2]) &&
-    ThickestOf(asked.scene) == 0.0)
+  if (row.IsOfLattice() && (periodic[0] || periodic[1] || periodic[2]) && ThickestOf(asked.scene) == 0.0)
   {
     asked.furnace = 0.0;
   }
