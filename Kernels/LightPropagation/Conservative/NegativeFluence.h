@@ -33,7 +33,7 @@ void CutOffNegative(Communicator& communicator, const Halo& around, const Volume
   const std::vector<float>& uncollided, Buffer<float>& fluence);
 
 /// Scales the net flux down to the fluence where its magnitude exceeds it, which radiance cannot: sums over rays of
-/// thick voxels are inexact, and in absorbing voxels the mean of the powers through opposite faces exceeds the net flux.
+/// thick voxels are inexact, and in absorbing voxels the mean of the powers through opposite faces exceeds the flux.
 /// @param fluence  W / length^2, [channel][voxel]
 /// @param ofLight  net flux times the voxel's volume, [channel][x, y, z][voxel]; changed
 void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& ofLight);

@@ -112,7 +112,7 @@ IterationResult SourceIteration::Run(const Monitor& monitor)
   return std::move(this->Result);
 }
 
-/// Raises scattered fluence that is slightly negative: behind voxels with sources by octant, in dark voxels after a warm
+/// Raises slightly negative scattered fluence: behind voxels with sources by octant, in dark voxels after a warm
 /// start or coarse-mesh DSA, whose corrections stop before later sweeps would have removed the difference, and where
 /// sources by angular moments are negative in some directions. Limits the net flux of thick voxels.
 void SourceIteration::LimitLight()
