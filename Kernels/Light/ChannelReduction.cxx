@@ -3,6 +3,8 @@
 #include "Light/LeftOut.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace tyndall
 {
@@ -114,20 +116,20 @@ void SceneChannels::Undo(LightField& light, int solved) const
   }
 }
 
-OneChannelScene::OneChannelScene(const Medium& given, const Illumination& illumination, const SceneChannels& channels)
+OneChannelScene::OneChannelScene(const Medium& given, const Illumination& illumination, int channel)
   : medium(given)
   , light(illumination)
 {
-  const int brightest = channels.colour.Brightest();
-  const auto grey = [&](Rgb& rgb) { rgb = { rgb[brightest], rgb[brightest], rgb[brightest] }; };
-  this->medium.sigma_a = InChannel(given.sigma_a, brightest);
-  this->medium.sigma_s = InChannel(given.sigma_s, brightest);
-  this->medium.emission = InChannel(given.emission, brightest);
-  this->medium.phase = given.phase.Seen(brightest);
-  this->light.uncollided.fluence = InChannel(illumination.uncollided.fluence, brightest);
+  const auto grey = [&](Rgb& rgb) { rgb = { rgb[channel], rgb[channel], rgb[channel] }; };
+  this->medium.sigma_a = InChannel(given.sigma_a, channel);
+  this->medium.sigma_s = InChannel(given.sigma_s, channel);
+  this->medium.emission = InChannel(given.emission, channel);
+  this->medium.phase = given.phase.Seen(channel);
+  this->light.uncollided.fluence = InChannel(illumination.uncollided.fluence, channel);
   std::for_each(this->light.uncollided.escaped.begin(), this->light.uncollided.escaped.end(), grey);
   grey(this->light.sky);
   std::for_each(this->light.faces.begin(), this->light.faces.end(), grey);
+  std::for_each(this->light.faceAlbedo.begin(), this->light.faceAlbedo.end(), grey);
   for (Light& lamp : this->light.lights)
   {
     grey(lamp.power);
@@ -135,7 +137,7 @@ OneChannelScene::OneChannelScene(const Medium& given, const Illumination& illumi
   std::vector<float>& radiance = this->light.environment.radiance;
   for (std::size_t i = 0; i + 2 < radiance.size(); i += 3)
   {
-    std::fill_n(radiance.begin() + i, 3, radiance[i + brightest]);
+    std::fill_n(radiance.begin() + i, 3, radiance[i + channel]);
   }
 }
 
@@ -149,6 +151,130 @@ void Spread(LightField& light, const Rgb& colour)
       watts = { watts[0] * colour[0], watts[0] * colour[1], watts[0] * colour[2] };
     },
     Sum(colour));
+}
+
+namespace
+{
+constexpr std::size_t Three = 3;
+
+/// Gives all channels angular moments of the highest degree of any of them, if any has moments.
+void AlignMoments(std::vector<LightField>& channels)
+{
+  const std::size_t voxels = std::max<std::size_t>(channels[0].fluence.size(), 1);
+  std::size_t harmonics = 0;
+  for (const LightField& light : channels)
+  {
+    harmonics = std::max(harmonics, light.scatteredMoments.size() / voxels);
+  }
+  for (LightField& light : channels)
+  {
+    const bool has = !light.scatteredMoments.empty();
+    const std::vector<float>& from = has ? light.scatteredMoments : light.scatteredRadiance;
+    const std::size_t own = from.size() / voxels;
+    std::vector<float> moments(harmonics > 0 ? voxels * harmonics : 0, 0.0f);
+    for (std::size_t i = 0; own > 0 && i < moments.size(); i += harmonics)
+    {
+      std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(i / harmonics * own), own,
+        moments.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    light.scatteredMoments = std::move(moments);
+    light.straightOn.resize(harmonics > 0 ? voxels : 0, 0.0f);
+    light.lampsApart = has ? light.lampsApart : std::vector<Light>();
+  }
+}
+
+/// Interleaves groups of `width` values of three channels; no values if the channels do not have the same number.
+std::vector<float> Interleave(const std::array<const std::vector<float>*, Three>& channels, std::size_t width)
+{
+  const std::size_t count = channels[0]->size();
+  std::vector<float> all;
+  for (std::size_t group = 0; group < count && channels[1]->size() == count && channels[2]->size() == count;
+       group += width)
+  {
+    for (const std::vector<float>* channel : channels)
+    {
+      const auto begin = channel->begin() + static_cast<std::ptrdiff_t>(group);
+      all.insert(all.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+    }
+  }
+  return all;
+}
+
+/// Adds the report of a channel that was solved after those of `light`.
+void AddReport(LightField& light, const LightField& channel)
+{
+  const auto add = [](std::vector<std::string>& all, const std::vector<std::string>& more) {
+    std::copy_if(more.begin(), more.end(), std::back_inserter(all),
+      [&](const std::string& line) { return std::find(all.begin(), all.end(), line) == all.end(); });
+  };
+  add(light.doubts, channel.doubts);
+  add(light.leftOut, channel.leftOut);
+  light.converged = light.converged && channel.converged;
+  std::vector<ConvergenceRow>&rows = light.convergence, more = channel.convergence;
+  const bool longer = more.size() > rows.size();
+  light.sweepsSaved = longer ? channel.sweepsSaved : light.sweepsSaved;
+  if (longer)
+  {
+    rows.swap(more);
+  }
+  for (std::size_t i = 0; i < rows.size() && !more.empty(); ++i)
+  {
+    const ConvergenceRow& other = more[std::min(i, more.size() - 1)];
+    rows[i].seconds += other.seconds;
+    rows[i].residual = std::max(rows[i].residual, other.residual);
+    rows[i].change = std::max(rows[i].change, other.change);
+    rows[i].absorbed += other.absorbed;
+    rows[i].escaped += other.escaped;
+    rows[i].leftOver += other.leftOver;
+  }
+}
+}
+
+LightField JoinChannels(std::vector<LightField> channels)
+{
+  AlignMoments(channels);
+  std::array<std::vector<std::pair<std::vector<float>*, std::size_t>>, Three> arrays;
+  for (std::size_t c = 0; c < Three; ++c)
+  {
+    ForArrays(
+      channels[c], [&](std::vector<float>& values, std::size_t width) { arrays[c].emplace_back(&values, width); });
+    arrays[c].emplace_back(&channels[c].straightOn, 1);
+  }
+  for (std::size_t i = 0; i < arrays[0].size(); ++i)
+  {
+    *arrays[0][i].first =
+      Interleave({ arrays[0][i].first, arrays[1][i].first, arrays[2][i].first }, arrays[0][i].second);
+  }
+  LightField light = std::move(channels[0]);
+  light.channels = static_cast<int>(Three);
+  std::vector<Light> lamps;
+  for (std::size_t c = 0; c < Three; ++c)
+  {
+    const LightField& one = c == 0 ? light : channels[c];
+    for (Light lamp : one.lampsApart)
+    {
+      const double power = lamp.power[0];
+      lamp.power = {};
+      lamp.power[c] = power;
+      lamps.push_back(lamp);
+    }
+    const auto put = [c](Rgb& all, const Rgb& channel) { all[c] = channel[0]; };
+    put(light.balance.entered, one.balance.entered);
+    put(light.balance.emitted, one.balance.emitted);
+    put(light.balance.absorbed, one.balance.absorbed);
+    put(light.balance.escaped, one.balance.escaped);
+    put(light.balance.leftOver, one.balance.leftOver);
+    for (std::size_t face = 0; face < light.facePowerOut.size(); ++face)
+    {
+      put(light.facePowerOut[face], one.facePowerOut[face]);
+    }
+    if (c > 0)
+    {
+      AddReport(light, one);
+    }
+  }
+  light.lampsApart = std::move(lamps);
+  return light;
 }
 
 void KeepOneChannel(std::vector<float>& interleaved)

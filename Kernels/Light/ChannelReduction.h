@@ -25,10 +25,15 @@ private:
   const char* LeftOut() const;
 };
 
-/// Grey scene with the values of the brightest channel, for a scene whose three channels are multiples of each other.
+/// Grey scene with the values of one channel.
 struct OneChannelScene
 {
-  OneChannelScene(const Medium& medium, const Illumination& illumination, const SceneChannels& channels);
+  OneChannelScene(const Medium& medium, const Illumination& illumination, int channel);
+  /// With the values of the brightest channel, for a scene whose three channels are multiples of each other.
+  OneChannelScene(const Medium& medium, const Illumination& illumination, const SceneChannels& channels)
+    : OneChannelScene(medium, illumination, channels.colour.Brightest())
+  {
+  }
 
   Medium medium; ///< medium of one channel, which refers to the arrays of the given medium
   Illumination light;
@@ -43,6 +48,11 @@ LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Med
 
 /// Expands light of one channel to three channels: its multiples by the components of `colour`.
 void Spread(LightField& light, const Rgb& colour);
+
+/// Joins the light of three channels, each solved as a scene of one channel (OneChannelScene). Arrays that not all of
+/// them have are left out, but for angular moments: a channel without them has its mean scattered radiance, which
+/// includes the light first scattered from lamps.
+LightField JoinChannels(std::vector<LightField> channels);
 
 /// Reduces light of three equal channels to one channel.
 void KeepOneChannel(LightField& light);

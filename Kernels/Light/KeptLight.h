@@ -41,6 +41,7 @@ struct KeptLight
   Rgb firstScattered = {};
   Rgb rate = {}; ///< ratio of the light of successive iterations at the end of the last solve
   std::vector<ConvergenceRow> fromDarkness; ///< convergence rows of the last solve without an initial guess
+  std::vector<KeptLight> channels; ///< of a solve of one channel after the other, in place of the members above
 
   /// Whether no light is kept. A rank without voxels keeps the powers of the domain, but no values.
   bool Empty() const { return Sum(this->firstScattered) == 0.0; }

@@ -101,7 +101,7 @@ struct Row
   bool IsGrey(const Field& field) const
   {
     bool grey = true;
-    for (int x = 0; field.components == 3 && field.values && grey && x < this->size; ++x)
+    for (int x = 0; field.HasColour() && field.values && grey && x < this->size; ++x)
     {
       const float* rgb = field.values + (this->first + x) * 3;
       const float tolerance = SameExtinction * rgb[0];

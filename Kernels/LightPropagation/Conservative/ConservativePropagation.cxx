@@ -3,6 +3,7 @@
 #include "Device/HostMemory.h"
 #include "Device/HostThreads.h"
 #include "Distribution/SharedMedium.h"
+#include "Light/ChannelReduction.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Conservative/Acceleration/DiffusionAcceleration.h"
 #include "LightPropagation/Conservative/SolveMemory.h"
@@ -16,7 +17,11 @@
 #include "TyndallKernelSources.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace tyndall
@@ -248,12 +253,83 @@ std::unique_ptr<Iteration> MakeIteration(TransportParts& parts, const KeptLight*
   return std::make_unique<DiffusionAcceleration>(parts, kept);
 }
 
+/// OneChannelScene with arrays of its own.
+struct ChannelArrays : OneChannelScene
+{
+  ChannelArrays(const Medium& given, const Illumination& illumination, int channel)
+    : OneChannelScene(given, illumination, channel)
+  {
+    const std::array<Field*, 4> fields = { &this->medium.sigma_a, &this->medium.sigma_s, &this->medium.emission,
+      &this->light.uncollided.fluence };
+    for (std::size_t f = 0; f < fields.size(); ++f)
+    {
+      for (std::size_t i = 0; fields[f]->values && i < given.grid.VoxelCount(); ++i)
+      {
+        this->Values[f].push_back(fields[f]->At(i, 0));
+      }
+      *fields[f] = { fields[f]->values ? this->Values[f].data() : nullptr, 1 };
+    }
+  }
+  ChannelArrays(const ChannelArrays&) = delete;
+  ChannelArrays& operator=(const ChannelArrays&) = delete;
+
+private:
+  std::array<std::vector<float>, 4> Values;
+};
+
+/// Whether any channel, solved alone, has another iteration scheme or degree of angular moments than all together:
+/// both change the light of optically thick voxels, which must not depend on the other channels. With isotropic
+/// scattering the difference is within the tolerance. Collective.
+bool ChannelsDiffer(Device& device, const Domain& domain, const PropagationProblem& all, const Medium& medium,
+  const Illumination& illumination, const PropagationSettings& settings)
+{
+  if (all.Channels() == 1 || all.IsIsotropic() || settings.angularDegree == 0)
+  {
+    return false;
+  }
+  const IterationScheme how = ChooseIterationScheme(all);
+  bool differ = false;
+  for (int c = 0; c < all.Channels() && !differ; ++c)
+  {
+    const ChannelArrays scene(medium, illumination, c);
+    const PropagationProblem one(domain, scene.medium, scene.light, settings, MemoryOf(device));
+    differ = ChooseIterationScheme(one) != how || one.Scattering().Degree() != all.Scattering().Degree();
+  }
+  return differ;
+}
+
 /// Solves a scene by sweeps; its axes are already permuted for fast sweeps.
 LightField Solve(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
-  const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
-  return SolveBySweeps(device, problem, illumination, ChooseIterationScheme(problem), monitor, kept);
+  std::optional<PropagationProblem> problem(std::in_place, domain, medium, illumination, settings, MemoryOf(device));
+  if (!ChannelsDiffer(device, domain, *problem, medium, illumination, settings))
+  {
+    return SolveBySweeps(device, *problem, illumination, ChooseIterationScheme(*problem), monitor, kept);
+  }
+  const std::size_t channels = static_cast<std::size_t>(problem->Channels());
+  problem.reset();
+  std::vector<KeptLight> keptOfChannels = kept ? std::move(kept->channels) : std::vector<KeptLight>();
+  keptOfChannels.resize(channels);
+  std::vector<LightField> found;
+  Rgb firstScattered = {};
+  for (std::size_t c = 0; c < channels; ++c)
+  {
+    const ChannelArrays scene(medium, illumination, static_cast<int>(c));
+    const Monitor part = OfPart(monitor, static_cast<double>(c) / channels, (c + 1.0) / channels);
+    found.push_back(
+      Solve(device, domain, scene.medium, scene.light, settings, part, kept ? &keptOfChannels[c] : nullptr));
+    firstScattered[c] = keptOfChannels[c].firstScattered[0];
+  }
+  LightField light = JoinChannels(std::move(found));
+  light.faceAlbedo = illumination.faceAlbedo;
+  if (kept)
+  {
+    *kept = {};
+    kept->firstScattered = firstScattered;
+    kept->channels = std::move(keptOfChannels);
+  }
+  return light;
 }
 }
 
