@@ -28,6 +28,10 @@ constexpr double ThickVoxel = 10.0;
 /// do above 8 mean free paths and an albedo of 0.55 (numerics.md, section 6.5).
 constexpr double GrowingThickness = 6.0, GrowingAlbedo = 0.5;
 
+/// Ratio of a voxel's longest to its shortest edge above which DSA may not converge, and number of orders up to which
+/// source iteration is used there instead.
+constexpr double VeryFlat = 100.0, MostOrdersOfFlat = 1000.0;
+
 /// Cost of an accelerated solve (`./run bench thick`). Times are relative to that of one scattering order of source
 /// iteration in the same scene: `setUp` is the time of set-up and finish, `rows` the number of iterations, and
 /// `correction` the time of an iteration's correction, in addition to its sweep. LightSources.cxx uses fixed totals
@@ -374,6 +378,12 @@ bool OctantOrdersMayGrow(const PropagationProblem& problem)
   return problem.TheDomain().Any(any);
 }
 
+/// Whether DSA may not converge, while source iteration does in an acceptable number of orders.
+bool PlainOrdersAreSafer(const ScatteringOfScene& scene)
+{
+  return HasVeryFlatVoxels(scene.grid) && OrdersNeeded(scene) <= MostOrdersOfFlat;
+}
+
 /// Whether the settings request acceleration, or let it depend on the scene. Without scattering there is nothing to
 /// accelerate.
 bool MayBeAccelerated(const PropagationSettings& settings, bool scatters)
@@ -414,6 +424,12 @@ std::array<int, 3> CellHalvings(const Grid& grid, double thickest)
   return halvings;
 }
 
+bool HasVeryFlatVoxels(const Grid& grid)
+{
+  const auto [least, most] = std::minmax_element(grid.spacing.begin(), grid.spacing.end());
+  return *most > VeryFlat * *least;
+}
+
 IterationScheme ChooseIterationScheme(const PropagationProblem& problem)
 {
   const PropagationSettings& settings = problem.Settings();
@@ -422,7 +438,8 @@ IterationScheme ChooseIterationScheme(const PropagationProblem& problem)
     return IterationScheme::SourceIteration;
   }
   const ScatteringOfScene scene = ScatteringOf(problem);
-  if (settings.source != PropagationSource::Linear && !ScatteredManyTimes(scene) && !OctantOrdersMayGrow(problem))
+  const bool plain = !ScatteredManyTimes(scene) || PlainOrdersAreSafer(scene);
+  if (settings.source != PropagationSource::Linear && plain && !OctantOrdersMayGrow(problem))
   {
     return IterationScheme::SourceIteration;
   }

@@ -24,6 +24,9 @@ enum class IterationScheme
   CoarseMeshDsa,
   Dsa, ///< diffusion synthetic acceleration on the voxels; Conservative/Acceleration/DiffusionAcceleration.h
 };
+/// Whether voxels are over a hundred times longer along one axis than along another: DSA may not converge there, and
+/// orders with sources by octant may grow.
+bool HasVeryFlatVoxels(const Grid& grid);
 /// Chooses the iteration scheme that is predicted to be fastest, unless the settings determine it. Collective.
 IterationScheme ChooseIterationScheme(const PropagationProblem& problem);
 

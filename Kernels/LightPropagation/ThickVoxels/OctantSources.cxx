@@ -2,6 +2,7 @@
 
 #include "LightPropagation/Diffusion/SweepModel.h"
 #include "LightPropagation/PlaneParallel/LayerResponse.h"
+#include "LightPropagation/Problem/ScatteringOrders.h"
 #include "Medium/VoxelSums.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"
@@ -198,7 +199,7 @@ bool OctantSources::Matter(const PropagationProblem& problem)
   const bool automatic = settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
     settings.acceleration == PropagationAcceleration::Automatic;
   if (!(asked || automatic) || !problem.Traits().scatters || problem.Scattering().Degree() > 0 ||
-    settings.firstMoments || settings.maximumOrders == 1)
+    settings.firstMoments || settings.maximumOrders == 1 || HasVeryFlatVoxels(problem.Whole()))
   {
     return false;
   }
