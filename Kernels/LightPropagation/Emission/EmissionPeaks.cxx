@@ -231,6 +231,38 @@ bool IsSeen(const Medium& medium, const EmissionPeak& peak)
   return clearest <= Hidden;
 }
 
+/// Whether a voxel around a peak scatters and is optically thick. The light that it scatters from exact rays starts
+/// anywhere in it, though it enters through one side and returns there; sweeps know what returns.
+bool IsBesideThickScatterer(const Medium& medium, const EmissionPeak& peak)
+{
+  const Grid& grid = medium.grid;
+  const double edge = std::max({ grid.spacing[0], grid.spacing[1], grid.spacing[2] });
+  const double reach = Clear * peak.Width(grid);
+  std::array<int, 3> first, last;
+  for (int a = 0; a < 3; ++a)
+  {
+    const int more = static_cast<int>(std::ceil(std::min(reach / grid.spacing[a], 1.0 * grid.size[a])));
+    first[a] = std::max(peak.first[a] - more, 0);
+    last[a] = std::min(peak.first[a] + peak.size[a] + more, grid.size[a]);
+  }
+  bool thick = false;
+  for (int i = 0; i < (last[0] - first[0]) * (last[1] - first[1]) * (last[2] - first[2]) && !thick; ++i)
+  {
+    const int nx = last[0] - first[0], ny = last[1] - first[1];
+    const Voxel at = { first[0] + i % nx, first[1] + i / nx % ny, first[2] + i / (nx * ny) };
+    bool outside = false;
+    for (int a = 0; a < 3; ++a)
+    {
+      outside = outside || at[a] < peak.first[a] || at[a] >= peak.first[a] + peak.size[a];
+    }
+    for (int c = 0; outside && c < medium.Channels(); ++c)
+    {
+      thick = thick || edge * medium.TransportSigmaS(IndexOf(grid, at), c) > Hidden;
+    }
+  }
+  return thick;
+}
+
 /// Whether any voxel of a group is so optically thick that light escaping from it cannot be resolved in single
 /// precision.
 bool IsOpaque(const Medium& medium, const std::vector<std::size_t>& group)
@@ -317,7 +349,7 @@ SplitEmission Split(const Medium& medium, const Rgb& comesIn)
     }
     const EmissionPeak peak = BoxAround(medium.grid, group);
     if (IsSmall(medium.grid, peak) && !IsOpaque(medium, group) && IsSeen(medium, peak) &&
-      !IsSelfAbsorbing(medium, group, comesIn))
+      !IsBesideThickScatterer(medium, peak) && !IsSelfAbsorbing(medium, group, comesIn))
     {
       candidates.push_back({ power, std::move(group), peak });
     }
