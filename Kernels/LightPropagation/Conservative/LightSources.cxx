@@ -220,9 +220,9 @@ void LightSources::FindBoundaryLight()
   }
 }
 
-/// Sets FineBoundary, the boundary source along the finer quadrature. A uniform boundary source stays with the
-/// quadrature of scattered light, so that the light in a furnace stays uniform. So does all boundary light in DSA with
-/// reflecting faces, because faces reflect only along the directions of sweeps.
+/// Sets FineBoundary, the boundary source along the finer quadrature. If the medium emits, a uniform boundary source
+/// stays with the quadrature of scattered light, so that the light in a furnace stays uniform. So does all boundary
+/// light in DSA with reflecting faces, because faces reflect only along the directions of sweeps.
 void LightSources::FindFineBoundary()
 {
   const PropagationSettings& settings = this->Problem.Settings();
@@ -235,7 +235,8 @@ void LightSources::FindFineBoundary()
   const bool ofAll = !this->Finer.ofFacesAlone;
   auto fine = std::make_unique<BoundaryLight>(
     grid, settings, *this->Fine, AlongFiner(this->Finer, shining), ofAll ? this->FarAway : Environment());
-  const bool isEven = fine->Shines() && fine->IsEven();
+  const bool balances = this->ByBalance || !ofAll || this->Problem.Traits().emits || HasVeryFlatVoxels(grid);
+  const bool isEven = balances && fine->Shines() && fine->IsEven();
   this->CorrectsEscape = this->CorrectsEscape && !isEven;
   if (!fine->Shines() || isEven || (this->ByBalance && Reflects(shining)))
   {
