@@ -30,6 +30,7 @@ namespace
 /// A cloud with fluence by light propagation maps, or a glass ball in fog with photons.
 struct Scene
 {
+  int length;    ///< voxels of the cloud's box along x; sweeps are compiled for rows of up to 64, 128, 256 voxels
   int preset;    ///< of the cloud's medium; Glass: a glass ball
   bool coloured; ///< whether the light has a colour, so that three channels are solved
   double around; ///< density of the cloud's box outside the ellipsoidal cloud
@@ -41,18 +42,18 @@ constexpr int Glass = -1;
 
 // Two processes prepare neighbours at the same time, so these should have few kernels in common.
 const Scene Scenes[] = {
-  { vtkParticipatingMedium::CUSTOM, false, 0.5, 1.0, false },
-  { Glass, false, 0.0, 0.0, false },
-  { vtkParticipatingMedium::CLOUD, true, 0.0, 1.0, false },
-  { Glass, true, 0.0, 0.0, false },
-  { vtkParticipatingMedium::CLOUD, true, 0.0, 1.0, true },
-  { vtkParticipatingMedium::CUSTOM, true, 0.0, 0.6, false },
-  { vtkParticipatingMedium::CLOUD, false, 0.0, 1.0, false },
-  { vtkParticipatingMedium::CUSTOM, false, 0.0, 0.6, false },
+  { 64, vtkParticipatingMedium::CUSTOM, false, 0.5, 1.0, false },
+  { 0, Glass, false, 0.0, 0.0, false },
+  { 64, vtkParticipatingMedium::CLOUD, true, 0.0, 1.0, false },
+  { 0, Glass, true, 0.0, 0.0, false },
+  { 64, vtkParticipatingMedium::CLOUD, true, 0.0, 1.0, true },
+  { 64, vtkParticipatingMedium::CUSTOM, true, 0.0, 0.6, false },
+  { 64, vtkParticipatingMedium::CLOUD, false, 0.0, 1.0, false },
+  { 64, vtkParticipatingMedium::CUSTOM, false, 0.0, 0.6, false },
+  { 128, vtkParticipatingMedium::CLOUD, true, 0.0, 1.0, false },
+  { 128, vtkParticipatingMedium::CUSTOM, false, 0.0, 1.0, false },
 };
 
-/// Voxels along x; sweeps are compiled for rows of up to 128, 256, 512 voxels.
-constexpr int Length = 64;
 /// Voxels along y and z: few, because only compilation matters, but enough that the same kernels are compiled as for a
 /// cube.
 constexpr int Across = 40;
@@ -64,15 +65,15 @@ constexpr int GlassVoxels = 48;
 vtkSmartPointer<vtkImageData> Density(const Scene& scene)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(Length + 1, Across + 1, Across + 1);
+  image->SetDimensions(scene.length + 1, Across + 1, Across + 1);
   vtkNew<vtkFloatArray> density;
   density->SetName("density");
   density->SetNumberOfValues(image->GetNumberOfCells());
   const auto fromMiddle = [](vtkIdType i, int voxels) { return (2.0 * static_cast<double>(i) + 1.0) / voxels - 1.0; };
   for (vtkIdType i = 0; i < image->GetNumberOfCells(); ++i)
   {
-    const double x = fromMiddle(i % Length, Length), y = fromMiddle(i / Length % Across, Across),
-                 z = fromMiddle(i / Length / Across, Across);
+    const double x = fromMiddle(i % scene.length, scene.length), y = fromMiddle(i / scene.length % Across, Across),
+                 z = fromMiddle(i / scene.length / Across, Across);
     density->SetValue(
       i, static_cast<float>(std::max(scene.around, 1.0 - std::sqrt(x * x + y * y + z * z) / scene.radius)));
   }

@@ -13,7 +13,7 @@
 namespace tyndall
 {
 /// On CPUs, rows of fewer voxels have as much memory as rows of this number, so that one program sweeps them all.
-constexpr int ShortestRow = 128;
+constexpr int ShortestRow = 64;
 
 /// Properties of a sweep along one axis on which its SweepPlan depends.
 struct SweepDescription
