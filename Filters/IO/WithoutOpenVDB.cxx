@@ -12,9 +12,6 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 
-#include <string>
-#include <vector>
-
 namespace
 {
 const char* const NoOpenVDB =
@@ -22,15 +19,9 @@ const char* const NoOpenVDB =
   "nor writes .vdb: build it with OpenVDB 10 or newer, or use another format, such as .vti.";
 }
 
-struct vtkVDBReader::Internals
-{
-  std::vector<std::string> Files;
-};
-
 vtkStandardNewMacro(vtkVDBReader);
 
 vtkVDBReader::vtkVDBReader()
-  : Internal(new Internals)
 {
   this->SetNumberOfInputPorts(0);
 }
@@ -43,27 +34,24 @@ void vtkVDBReader::SetFileName(const char* fileName)
   this->AddFileName(fileName);
 }
 
-void vtkVDBReader::AddFileName(const char* fileName)
+void vtkVDBReader::AddFileName(const char*)
 {
-  this->Internal->Files.emplace_back(fileName ? fileName : "");
   this->Modified();
 }
 
 void vtkVDBReader::RemoveAllFileNames()
 {
-  this->Internal->Files.clear();
   this->Modified();
 }
 
 int vtkVDBReader::GetNumberOfFileNames() const
 {
-  return static_cast<int>(this->Internal->Files.size());
+  return 0;
 }
 
-const char* vtkVDBReader::GetFileName(int index)
+const char* vtkVDBReader::GetFileName(int)
 {
-  const bool isThere = index >= 0 && index < this->GetNumberOfFileNames();
-  return isThere ? this->Internal->Files[static_cast<std::size_t>(index)].c_str() : nullptr;
+  return nullptr;
 }
 
 const char* vtkVDBReader::GetCurrentFileName()

@@ -147,7 +147,7 @@ private:
   vtkNew<vtkDataArraySelection> GridSelection;
 
   struct Internals;
-  std::unique_ptr<Internals> Internal;
+  std::shared_ptr<Internals> Internal; // empty in a build without OpenVDB
 };
 
 #endif
