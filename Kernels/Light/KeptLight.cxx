@@ -12,8 +12,8 @@ std::string LightKind::WhatChangedSince(const LightKind& last) const
     ? "the blocks that the grid is cut into have changed"
     : this->channels != last.channels     ? "the number of channels has changed"
     : this->degree != last.degree         ? "the degree of angular moments has changed"
-    : this->directions != last.directions ? "the directions have changed"
     : this->periodic != last.periodic     ? "the periodic axes have changed"
+    : this->directions != last.directions ? "the directions have changed"
     : this->method != last.method         ? "the light was found by " + last.method
                                           : std::string();
 }

@@ -59,6 +59,7 @@ Scene SceneOf(const Setting& setting, float sigma_a, float sigma_s = 0.0f)
   Scene scene(setting.size, sigma_a, sigma_s);
   scene.medium.grid.spacing = setting.spacing;
   scene.settings.directionsPerFace = setting.directions;
+  scene.settings.adaptDirections = false; // the flux of these directions is tested
   scene.settings.mapResolution = setting.mapResolution;
   scene.settings.staggeredRays = setting.staggered;
   scene.settings.periodic = setting.periodic;
