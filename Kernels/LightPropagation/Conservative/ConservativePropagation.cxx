@@ -263,10 +263,13 @@ struct ChannelArrays : OneChannelScene
       &this->light.uncollided.fluence };
     for (std::size_t f = 0; f < fields.size(); ++f)
     {
-      for (std::size_t i = 0; fields[f]->values && i < given.grid.VoxelCount(); ++i)
-      {
-        this->Values[f].push_back(fields[f]->At(i, 0));
-      }
+      this->Values[f].resize(fields[f]->values ? given.grid.VoxelCount() : 0);
+      InThreads(this->Values[f].size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+        {
+          this->Values[f][i] = fields[f]->At(i, 0);
+        }
+      });
       *fields[f] = { fields[f]->values ? this->Values[f].data() : nullptr, 1 };
     }
   }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Emission/EmissionPeaks.h"
 
+#include "Medium/VoxelBox.h"
 #include "Medium/VoxelSums.h"
 
 #include <cmath>
@@ -238,22 +239,22 @@ bool IsBesideThickScatterer(const Medium& medium, const EmissionPeak& peak)
   const Grid& grid = medium.grid;
   const double edge = std::max({ grid.spacing[0], grid.spacing[1], grid.spacing[2] });
   const double reach = Clear * peak.Width(grid);
-  std::array<int, 3> first, last;
+  VoxelBox around;
   for (int a = 0; a < 3; ++a)
   {
     const int more = static_cast<int>(std::ceil(std::min(reach / grid.spacing[a], 1.0 * grid.size[a])));
-    first[a] = std::max(peak.first[a] - more, 0);
-    last[a] = std::min(peak.first[a] + peak.size[a] + more, grid.size[a]);
+    around.first[a] = std::max(peak.first[a] - more, 0);
+    around.size[a] = std::min(peak.first[a] + peak.size[a] + more, grid.size[a]) - around.first[a];
   }
+  const VoxelBox own = { peak.first, peak.size };
   bool thick = false;
-  for (int i = 0; i < (last[0] - first[0]) * (last[1] - first[1]) * (last[2] - first[2]) && !thick; ++i)
+  for (std::size_t i = 0; i < around.VoxelCount() && !thick; ++i)
   {
-    const int nx = last[0] - first[0], ny = last[1] - first[1];
-    const Voxel at = { first[0] + i % nx, first[1] + i / nx % ny, first[2] + i / (nx * ny) };
+    const Voxel at = around.VoxelAt(i), within = own.Within(at);
     bool outside = false;
     for (int a = 0; a < 3; ++a)
     {
-      outside = outside || at[a] < peak.first[a] || at[a] >= peak.first[a] + peak.size[a];
+      outside = outside || within[a] < 0 || within[a] >= own.size[a];
     }
     for (int c = 0; outside && c < medium.Channels(); ++c)
     {
