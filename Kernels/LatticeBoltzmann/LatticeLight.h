@@ -40,8 +40,8 @@ void DoubtPhotons(const PhotonLight& photons, std::size_t all, LightField& light
 /// A LightField of zeros for the problem's voxels and channels.
 LightField BeginLight(const LatticeProblem& problem, const LatticeSettings& settings);
 
-/// Completes `light`: sums powers over ranks, checks the energy balance, converts to the user's units, and adds leftOut
-/// and doubts. Collective.
+/// Completes `light`: sums powers over ranks, checks the energy balance, converts to the user's units, and adds the
+/// lists of what was left out and of warnings (LightField::leftOut, doubts). Collective.
 /// @param illumination  as the user gave it
 /// @param thickest  sigma_t h of the thickest voxel of all ranks
 /// @param lost  incident power that neither collided nor escaped, on this rank (Uncollided::lost), W

@@ -459,7 +459,8 @@ inline __attribute__((always_inline)) void store_voxels(
 //   coarse, results, gains               light, result and gains of the level above, of `size`
 //   to          output: rows of RESULTS fields of this level; with FINEST the fluence of the grid's voxels
 //   number      number of this level, from 0
-//   mean_direction, blended     output with FINEST: mean directions and source levels of the grid's voxels
+//   mean_direction, blended     output with FINEST: mean direction of each voxel, and the level from which its
+//               light was taken
 __kernel void blend_level(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, const __global float* results, const __global float* gains, int4 size, float number,
   __global float* to, __global float* mean_direction, __global float* blended)

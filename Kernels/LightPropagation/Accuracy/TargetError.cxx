@@ -22,8 +22,8 @@ constexpr double DirectionPart = 0.9; ///< angular error that is allowed, as a f
 /// Smallest angular error that is allowed if the error in voxel size leaves less, as a fraction of Goal, the error at
 /// which the search ends. Voxels are halved only if the error in voxel size exceeds the same limit.
 constexpr double LeastRoom = 0.3;
-/// Error in voxel size above which more directions do not help, as a multiple of Goal, the error at which the search
-/// ends.
+/// While the voxels' size alone causes an error above this multiple of Goal, more directions do not help. Goal is the
+/// error at which the search ends.
 constexpr double MuchTooCoarse = 1.5;
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;

@@ -41,8 +41,8 @@ OrderSweeps::OrderSweeps(
   this->Whole = parts.Transport.MakeSweep(request);
   if (!octantSource && !byCells && this->MayOmitEmptySlabs())
   {
-    // This sweep adds no net flux: that of all later orders is computed by the final sweep, through the whole grid
-    // (SweepEmptySlabs).
+    // This sweep does not sum the net flux. The final sweep, through the whole grid (SweepEmptySlabs), sums that of all
+    // orders after the first.
     this->Filled = parts.Transport.MakeSweep(
       { { &parts.Path, nullptr, nullptr, nullptr }, parts.AllRays(), parts.Problem.Traits().filled });
   }

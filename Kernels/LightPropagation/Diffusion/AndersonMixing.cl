@@ -7,8 +7,9 @@
 #include "Numerics/GroupSum.cl"
 
 // Computes the sums for Anderson mixing (numerics.md, Eqs. (71), (72)) of a chunk of values. With the change f = found
-// - given, and its differences d1, d2 from the changes of the two previous iterations: f f and found found (both
-// weighted by scattering, over the first value of each voxel only), d1 d1, d1 d2, d2 d2, d1 f, d2 f.
+// - given, and its differences d1, d2 from the changes of the two previous iterations, these are the sums of the
+// products d1 d1, d1 d2, d2 d2, d1 f, d2 f over all values, and of f^2 and found^2 over the voxels' fluences (the first
+// value of each voxel), weighted by sigma_s.
 //   change1, change2  changes of the two previous iterations
 //   sums              receives the sums, [chunk][AndersonSums]
 __kernel void anderson_sums(const __global exact* given, const __global exact* found, const __global float* change1,

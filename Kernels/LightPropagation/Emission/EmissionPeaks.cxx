@@ -232,8 +232,9 @@ bool IsSeen(const Medium& medium, const EmissionPeak& peak)
   return clearest <= Hidden;
 }
 
-/// Whether a voxel around a peak scatters and is optically thick. The light that it scatters from exact rays starts
-/// anywhere in it, though it enters through one side and returns there; sweeps know what returns.
+/// Whether a voxel around a peak scatters and is optically thick. Exact rays from the peak scatter close to the side
+/// through which they enter such a voxel, and much of that light returns through the same side. Exact rays spread their
+/// scattered light over the voxel; sweeps account for the side.
 bool IsBesideThickScatterer(const Medium& medium, const EmissionPeak& peak)
 {
   const Grid& grid = medium.grid;

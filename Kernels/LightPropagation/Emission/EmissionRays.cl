@@ -237,8 +237,8 @@ typedef struct
 {
   int permutations[6][3]; // permutations of the scene's axes
   int count;
-  // Bit masks: axes that are reflected; axes along which the voxel is level with the emission's centre, so that both
-  // senses are averaged.
+  // Bit masks of axes: those that are reflected; those along which the voxel and the emission's centre have the same
+  // coordinate, so that the light is averaged over both signs of the axis.
   int turned, either;
 } ways_to_turn;
 

@@ -16,7 +16,8 @@
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
 // Writes the fluence of channel c to the same channel of the output, or to all output channels if CHANNELS is 1.
-//   path  sum over photons of power (units) times path length (voxel diagonals) in this channel
+//   path  sum over photons of power (in units of PackedPhotons::unit) times path length (in voxel diagonals) in
+//         channel c
 static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c, float path)
 {
   if (CHANNELS == COLOURS)

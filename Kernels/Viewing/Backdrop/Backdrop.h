@@ -36,7 +36,8 @@ public:
   bool HasGround() const { return this->GroundBits != 0; }
   bool HasSurfaceLight() const { return this->HasSurface; }
 
-  /// All lookup tables in one array, each beginning at an index in ViewInfo::backdrop; empty if there is none.
+  /// All lookup tables in one array, which is empty if the backdrop needs no table. The members of ViewInfo::backdrop
+  /// are the indices at which they begin.
   const Buffer<cl_float4>& Tables() const { return this->Cells; }
   /// Sets the parameters of background, environment and reflecting faces, and the indices of the lookup tables.
   /// @param sharp  whether the kernel renders the pass for unscattered light: if light is shown by angular moments,

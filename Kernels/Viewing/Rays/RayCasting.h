@@ -74,7 +74,8 @@ public:
   std::vector<RayOnItsWay> Start(RayPass pass, const PixelRows& rows) const;
   /// Marches each ray to the block's boundary or to its end.
   /// @param rays  rays in this block; receive their new states
-  /// @return rays that the surface or the table split off them
+  /// @return reflected and refracted rays that were split off at the glass surface, at the table on which the object
+  /// stands, or at both
   /// @throws Aborted
   std::vector<RayOnItsWay> March(RayPass pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
 

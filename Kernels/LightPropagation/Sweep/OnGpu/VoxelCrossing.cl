@@ -251,7 +251,7 @@ typedef struct
   float moments[CHANNELS][FUNCTIONS];
 #endif
   float flux[CHANNELS][3]; // net flux along u, v and the marching axis, W length
-  // Net flux, within the voxel along the marching axis, of the light that a source of 1 in it emits.
+  // Mean over the voxel of the net flux along the marching axis that a source of 1 in this voxel causes.
   float ownFlux;
   float currents[CHANNELS][CurrentFaces];
   float escaped[4][CHANNELS]; // power that escapes through -u, +u, -v, +v, W

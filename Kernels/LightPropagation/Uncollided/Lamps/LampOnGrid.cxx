@@ -15,8 +15,8 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t BeamsTogether = 1 << 18;
-/// Number of periodic images of a rectangle to either side whose light in vacuum is exact; fewer in a box that is
-/// periodic along all axes, where light never escapes.
+/// Number of periodic images of a rectangular lamp, on either side of it, whose light in vacuum is integrated
+/// analytically; fewer in a box that is periodic along all axes, where light never escapes.
 constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
 
 /// Width of beams where they leave the box, voxels: beams of a point or spot, of a rectangle, and of a rectangle that
