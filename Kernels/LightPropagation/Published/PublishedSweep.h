@@ -17,8 +17,8 @@ struct PublishedSizes
   std::size_t rays = 0, escaped = 0, carried = 0, contributions = 0, boundary = 0;
 };
 
-/// Schedule of the published algorithm of light propagation maps: batches of directions, the paths of their rays through
-/// the grid as tables of voxel crossings, and the memory that these tables need.
+/// Schedule of the published algorithm: batches of directions, the paths of their rays through the grid as tables of
+/// voxel crossings, and the memory that these tables need.
 class PublishedPlan
 {
 public:

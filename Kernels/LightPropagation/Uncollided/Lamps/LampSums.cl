@@ -213,8 +213,8 @@ __kernel void add_fixed(const __global long* fixed_path, __global float* path, u
     (float)fixed_path[i] * unit * gain_of(gains, i) / units_of(sigma[sigma_first + i], diagonal);
 }
 
-// Adds to face_out the power of a lamp's light that escaped through each cell of the box's faces. One work-item per cell and
-// channel.
+// Adds to face_out the power of a lamp's light that escaped through each cell of the box's faces. One work-item per
+// cell and channel.
 // cells     escaped power per cell in fixed point, from follow_lamp (LampBeams.cl)
 // face_out  W, [channel][cell], added to
 // watts     power of the lamp, W, [channel]
