@@ -2,7 +2,6 @@
 
 #include "Device/Device.h"
 #include "Device/Sizes.h"
-#include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "TyndallKernelSources.h"

@@ -5,6 +5,7 @@
 #include "LightPropagation/Diffusion/BlockWithGhosts.h"
 #include "LightPropagation/Diffusion/MultigridSolver.h"
 #include "LightPropagation/Problem/TruncatedScattering.h"
+#include "Medium/Grid.h"
 
 #include <array>
 #include <functional>
@@ -13,6 +14,23 @@
 
 namespace tyndall
 {
+/// Diffusion matrix on the cells of coarse-mesh DSA (numerics.md, Eq. (76d)), for MultigridSolver.
+struct CoarseMatrix
+{
+  /// Conductances of the cells' low faces, and absorbed power per fluence, length^2, in the memory layout of
+  /// MultigridSolver (MultigridLevel).
+  std::vector<float> conductance, loss;
+  /// Escaped power per fluence through each cell of the box's faces (BoxFaces.h), length^2.
+  std::vector<double> borders;
+};
+
+/// Computes the diffusion matrix of the cells.
+/// @param grid  voxels of the whole domain
+/// @param cells  grid of the cells of `box`; only its size is used
+/// @param sigmaT, sigmaS  1/length, summed over the voxels of each cell, x fastest
+CoarseMatrix FindCoarseMatrix(const Grid& grid, const CoarseCells& box, const Grid& cells,
+  const std::vector<float>& sigmaT, const std::vector<float>& sigmaS);
+
 /// Coarse-mesh DSA: diffusion on cells of 2, 4 or 8 voxels along each axis (numerics.md, section 7.13), which predicts
 /// the fluence of all later scattering orders from the power that the last sweep scattered. Cells are at most about a
 /// mean free path wide, so that sweeps damp errors below cell size quickly. The prediction is subtracted from the next

@@ -1,4 +1,4 @@
-#include "LightPropagation/CoarseDiffusion/CoarseMatrix.h"
+#include "LightPropagation/CoarseDiffusion/CoarseDiffusion.h"
 
 #include "LightPropagation/Diffusion/MultigridLayout.h"
 #include "Medium/BoxFaces.h"

@@ -1,4 +1,4 @@
-#include "LightPropagation/Emission/EmissionMirrors.h"
+#include "LightPropagation/Emission/EmissionRays.h"
 
 #include "LightPropagation/Emission/EmissionFans.h"
 #include "TyndallKernelSources.h"

@@ -1,7 +1,6 @@
 #include "LightPropagation/Emission/EmissionRays.h"
 
 #include "LightPropagation/Emission/EmissionFans.h"
-#include "LightPropagation/Emission/EmissionMirrors.h"
 #include "LightPropagation/Emission/EmissionRaysShared.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"

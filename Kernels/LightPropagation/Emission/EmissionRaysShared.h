@@ -14,7 +14,7 @@ typedef struct
   int fewestClose;                   ///< initial number of rays per voxel in the emitting box and next to it
   /// Accepted difference between the light of the first and the second half of a voxel's rays, relative to the sum
   float uneven;
-  int mirrored; ///< bit mask of axes across which the scene is symmetric (EmissionMirrors.h)
+  int mirrored; ///< bit mask of axes across which the scene is symmetric (EmissionRays.h)
   /// Distance of a voxel from the emitting box's centre, half voxels, below which it traces its own rays instead of
   /// sharing fans of rays
   int near;

@@ -1,4 +1,4 @@
-#include "Photons/Marching/MarchTurns.h"
+#include "Photons/Marching/MarchRun.h"
 
 #include "Device/Device.h"
 #include "Device/Sizes.h"

@@ -5,7 +5,7 @@
 #include "Distribution/Domain.h"
 #include "Distribution/Rounds.h"
 #include "Medium/Medium.h"
-#include "Photons/Marching/MarchTurns.h"
+#include "Photons/Marching/MarchRun.h"
 #include "Photons/Photons.h"
 
 #include <memory>

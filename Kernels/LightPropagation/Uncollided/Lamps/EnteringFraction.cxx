@@ -1,4 +1,4 @@
-#include "LightPropagation/Uncollided/Lamps/EnteringFraction.h"
+#include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"
 
 #include "LightPropagation/Uncollided/Lamps/LampPoints.h"
 #include "Numerics/Constants.h"

@@ -1,6 +1,5 @@
 #include "LightPropagation/Uncollided/Lamps/LampOnGrid.h"
 
-#include "LightPropagation/Uncollided/Lamps/EnteringFraction.h"
 #include "Medium/BoxFaces.h"
 #include "Numerics/Constants.h"
 #include "Numerics/NumberText.h"

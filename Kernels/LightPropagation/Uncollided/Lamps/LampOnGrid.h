@@ -169,4 +169,9 @@ private:
   double Entering = 0.0; ///< fraction of the lamp's power that enters the box; 0: unknown
   std::vector<LampPoint> Points, Centre;
 };
+
+/// Fraction of the power of a point, spot or rectangle lamp that enters the box, in closed form (numerics.md, section
+/// 5.3); 0 if unknown: for a spot that is not outside the box or whose cone is too narrow for doubles, and for a
+/// rectangle too far away.
+double EnteringFraction(const Light& light, const Grid& grid, const std::array<bool, 3>& periodic);
 }
