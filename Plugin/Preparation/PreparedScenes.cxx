@@ -101,6 +101,7 @@ void SolveCloud(const Scene& scene, vtkCommand* listener)
   medium->SetPreset(scene.preset);
   medium->SetMillimetresPerUnit(1e4); // unit of length 10 m, with which the preset CLOUD is optically thick
   light->SetInputConnection(medium->GetOutputPort());
+  light->SetTolerance(0.1); // few sweeps, of the same kernels
   vtkNew<vtkLightRig> sun;
   if (scene.coloured)
   {
@@ -172,6 +173,12 @@ void MarchPhotons(vtkMeshVoxelizer* medium, vtkCommand* listener)
   marcher->SetOctreeConnection(octree->GetOutputPort());
   marcher->SetPathCount(1);
   reconstruction->SetInputConnection(marcher->GetOutputPort());
+  // The published reconstruction needs photon counts, for which the march is compiled separately.
+  marcher->SetPhotonCounts(true);
+  reconstruction->SetScheme(vtkPhotonReconstruction::PUBLISHED);
+  reconstruction->Update();
+  marcher->SetPhotonCounts(false);
+  reconstruction->SetScheme(vtkPhotonReconstruction::CONSERVATIVE);
   SeeGlass(reconstruction, picture);
 }
 
