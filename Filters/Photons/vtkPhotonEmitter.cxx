@@ -142,6 +142,7 @@ int vtkPhotonEmitter::RequestData(vtkInformation* request, vtkInformationVector*
       const tyndall::EmittedPhotons emitted =
         tyndall::EmitPhotons(grid, illumination, settings, tyndall::MonitorOf(this));
       tyndall::WritePhotons(emitted, grid, tyndall::OwnAxesOf(this), vtkPolyData::GetData(outputs));
+      tyndall::TellLeftOut(this, vtkPolyData::GetData(outputs), emitted.leftOut);
       this->Photons = static_cast<vtkIdType>(emitted.photons.size());
       std::copy_n(emitted.power.begin(), 3, this->Power);
     });
@@ -160,5 +161,5 @@ void vtkPhotonEmitter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(PhotonCount, Sampler, Seed, Batches, MaximumDensity, SkyColor, Photons, Power);
-  os << indent << "Seconds: " << this->GetSeconds() << "\n";
+  tyndall::PrintRun(os, indent, this);
 }

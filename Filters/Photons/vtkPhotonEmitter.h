@@ -113,10 +113,12 @@ public:
 
   ///@{
   /// Results of the last update: number of photons; total power of the photons, red, green, blue, W; run time in
-  /// seconds. Photons and power are summed over the ranks that run the update together.
+  /// seconds; samples and light sources whose photons would miss the volume, one text per line (also field data
+  /// `left_out`). Photons and power are summed over the ranks that run the update together.
   vtkGetMacro(Photons, vtkIdType);
   vtkGetVector3Macro(Power, double);
   tyndallSecondsMacro();
+  tyndallLeftOutMacro();
   ///@}
 
 protected:

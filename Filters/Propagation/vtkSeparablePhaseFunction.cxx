@@ -1,6 +1,8 @@
 #include "vtkSeparablePhaseFunction.h"
 
+#include "Common/LightTransportWriting.h"
 #include "Common/PrintMembers.h"
+#include "Light/LeftOut.h"
 #include "LightPropagation/Angular/DirectionSet.h"
 #include "PhaseFunction/SeparablePhaseFunction.h"
 #include "Pieces/GuardedWork.h"
@@ -140,6 +142,15 @@ int vtkSeparablePhaseFunction::RequestData(vtkInformation*, vtkInformationVector
     WriteFactors(phase, vtkTable::GetData(outputs, 0));
     WriteErrors(
       phase, other, bySingularValues, function.Moments(MomentsDegree), this->Terms, vtkTable::GetData(outputs, 1));
+    std::vector<std::string> leftOut;
+    if (phase.Terms() < this->Terms)
+    {
+      leftOut.push_back(tyndall::left_out::TermsOfZero(phase.Terms(), this->Terms));
+    }
+    for (int port = 0; port < 2; ++port)
+    {
+      tyndall::TellLeftOut(this, vtkTable::GetData(outputs, port), leftOut);
+    }
   });
 }
 
@@ -148,5 +159,5 @@ void vtkSeparablePhaseFunction::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   tyndallPrintMacro(PhaseFunction, G, SecondG, FirstPart, DirectionSet, DirectionsPerFace, SpiralDirections, Terms,
     Factorisation, Sampling, Repaired);
-  os << indent << "Seconds: " << this->GetSeconds() << "\n";
+  tyndall::PrintRun(os, indent, this);
 }

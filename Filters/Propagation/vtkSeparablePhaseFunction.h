@@ -134,7 +134,12 @@ public:
   tyndallFlagMacro(Repaired);
   ///@}
 
-  tyndallSecondsMacro(); ///< result of the last update: run time in seconds
+  ///@{
+  /// Results of the last update: run time in seconds, and the terms whose eigenvalues are 0 (also field data `left_out`
+  /// of both outputs).
+  tyndallSecondsMacro();
+  tyndallLeftOutMacro();
+  ///@}
 
 protected:
   vtkSeparablePhaseFunction();

@@ -1,5 +1,7 @@
 #include "Light/LeftOut.h"
 
+#include "Numerics/NumberText.h"
+
 #include <cmath>
 
 namespace tyndall
@@ -67,6 +69,22 @@ std::string MirrorImages(int classes, int directions)
 {
   return "mirror images: nothing changes along periodic axes of one voxel, " + std::to_string(classes) + " of " +
     std::to_string(directions) + " directions stand for all";
+}
+
+std::string SourcesBesideVolume(int beside, int sources)
+{
+  return "light sources beside the volume: the light of " + std::to_string(beside) + " of " + std::to_string(sources) +
+    " does not reach it";
+}
+
+std::string PhotonsBesideVolume(double part)
+{
+  return "photons beside the volume: " + Text("%.2g", 100.0 * part) + "% of the samples would miss it";
+}
+
+std::string TermsOfZero(int terms, int asked)
+{
+  return "terms " + std::to_string(terms + 1) + " to " + std::to_string(asked) + ": their eigenvalues are 0";
 }
 
 std::string TwoAxes(int polarNodes)

@@ -50,6 +50,12 @@ std::string DarkDirections(double lit);
 /// Text that channels without sources are dark, and were not solved.
 std::string DarkChannels(int dark, int channels);
 std::string MirrorImages(int classes, int directions);
+/// Text that photons of some light sources would all miss the volume.
+std::string SourcesBesideVolume(int beside, int sources);
+/// Text that a part of the samples emits no photon, because it would miss the volume.
+std::string PhotonsBesideVolume(double part);
+/// Text that a phase function has fewer terms than were asked for; the eigenvalues of the others are 0.
+std::string TermsOfZero(int terms, int asked);
 /// Text that the scene varies along one axis only, so that it was solved as plane-parallel layers.
 /// @param polarNodes  number of polar cosines of that solve
 std::string TwoAxes(int polarNodes);

@@ -8,6 +8,7 @@
 #include "vtkPhotonEmitter.h"
 #include "vtkPhotonMarcher.h"
 #include "vtkPhotonReconstruction.h"
+#include "vtkRefractionOctree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,8 +61,12 @@ std::vector<StressSolver> OwnRows()
     { "steps", Family::Steps, Published, Nothing, "maps, parallel" },
     { "ordinates", Family::Ordinates, ByOrders },
     { "ordinates, accelerated", Family::Ordinates },
+    { "ordinates, accelerated, all", Family::Ordinates, 0, With<Ordinates>([](auto* all) { all->SetLeaveOut(false); }),
+      "ordinates, accelerated" },
     { "ordinates, all", Family::Ordinates, ByOrders, With<Ordinates>([](auto* all) { all->SetLeaveOut(false); }),
       "ordinates" },
+    { "ordinates, target", Family::Ordinates, OwnTolerance,
+      With<Ordinates>([](auto* ordinates) { ordinates->SetTargetError(0.05); }) },
     { "ordinates, matrix", Family::Ordinates, ByOrders,
       With<Ordinates>([](auto* matrix) { matrix->SetScattering(Ordinates::MATRIX); }) },
     { "ordinates, spiral", Family::Ordinates, ByOrders | Unturned,
@@ -69,6 +74,7 @@ std::vector<StressSolver> OwnRows()
     { "ordinates, published", Family::Ordinates, Published | Unturned,
       With<Ordinates>([](auto* own) { own->SetScattering(Ordinates::SINGULAR_VALUES); }) },
     { "lattice", Family::Lattice },
+    { "lattice, all", Family::Lattice, 0, With<Lattice>([](auto* all) { all->SetLeaveOut(false); }), "lattice" },
     { "lattice of 6", Family::Lattice, SixLinks },
     { "lattice, steps", Family::Lattice, ByOrders },
     { "lattice, blocks", Family::Lattice, ByOrders | Unturned,
@@ -78,17 +84,22 @@ std::vector<StressSolver> OwnRows()
     { "lattice, published", Family::Lattice, Published },
     { "photons", Family::Photons },
     { "photons, all orders", Family::Photons, Scattered },
-    { "photons, errors", Family::Photons, 0, With<Marcher>([](auto* marcher) { marcher->SetErrorBatches(8); }),
+    { "photons, errors", Family::Photons, Scattered, With<Marcher>([](auto* marcher) { marcher->SetErrorBatches(8); }),
+      "photons, all orders" },
+    { "photons, all", Family::Photons, 0, With<Marcher>([](auto* marcher) { marcher->SetLeaveOut(false); }),
       "photons" },
     { "photons, Yoshida", Family::Photons, 0, With<Marcher>([](auto* marcher) { marcher->SetIntegratorOrder(4); }) },
     { "photons, bricks", Family::Photons, 0,
       With<Marcher>([](auto* marcher) { marcher->SetEmptySpace(Marcher::BY_BRICK); }) },
     { "photons, published", Family::Photons, Published },
     { "rebuilt", Family::Rebuilt },
+    { "rebuilt, all", Family::Rebuilt, 0, With<Rebuilder>([](auto* all) { all->SetLeaveOut(false); }), "rebuilt" },
     { "rebuilt, published", Family::Rebuilt, Published },
     { "rebuilt, nearest", Family::Rebuilt, 0,
       With<Rebuilder>([](auto* nearest) { nearest->SetScheme(Rebuilder::NEAREST_PHOTONS); }) },
     { "octree", Family::Octree },
+    { "octree, all", Family::Octree, 0, With<vtkRefractionOctree>([](auto* all) { all->SetLeaveOut(false); }),
+      "octree" },
     { "emitter", Family::Emission },
     { "emitter, random", Family::Emission, 0,
       With<Emitter>([](auto* emitter) { emitter->SetSampler(Emitter::RANDOM); }) },
@@ -111,7 +122,8 @@ std::vector<StressSolver> MeshAndViewRows()
     { "mesh, fine", Family::Mesh, 0, With<Mesh>([](auto* mesh) { mesh->SetSupersamplingFactor(8); }) },
     { "mesh, noise", Family::Mesh, Noisy, With<Mesh>([](auto* mesh) { mesh->SetIndexNoise(0.1); }) },
     { "view", Family::View },
-    { "view, all", Family::View, 0, With<View>([](auto* view) { view->SetLeaveOut(false); }) },
+    { "view, all", Family::View, 0, With<View>([](auto* view) { view->SetLeaveOut(false); }), "view" },
+    { "view, estimate", Family::View, 0, With<View>([](auto* view) { view->SetEstimateError(true); }), "view" },
     { "view, draft", Family::View, 0, With<View>([](auto* view) { view->SetQuality(View::DRAFT); }) },
     { "view, fine", Family::View, 0, With<View>([](auto* view) { view->SetQuality(View::FINE); }) },
     { "view, shadow rays", Family::View, 0, With<View>([](auto* view) { view->SetShadowRays(true); }) },

@@ -56,6 +56,26 @@ void ASunGivesItsPhotons(test::Claims& claims)
   }
 }
 
+void WhatMissesTheVolumeIsLeftOut(test::Claims& claims)
+{
+  vtkNew<vtkLightRig> rig;
+  rig->SetSun(false);
+  rig->AddSpotLight(2.0, 2.0, 9.0, 0.5, 0.0, -1.0, 1.0, 1.0, 1.0, 40.0); // half of its cone passes the box
+  rig->AddSpotLight(2.0, 2.0, 9.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 40.0);  // shines away from the box
+  vtkNew<vtkPhotonEmitter> emitter;
+  emitter->SetInputDataObject(test::MakeImage({}));
+  emitter->SetLightsConnection(rig->GetOutputPort());
+  emitter->Update();
+  const std::string leftOut = emitter->GetLeftOut();
+  claims.That(leftOut.find("of the samples would miss it") != std::string::npos, "samples beside the box: " + leftOut);
+  claims.That(leftOut.find("1 of 2 does not reach it") != std::string::npos, "the lamp that shines away: " + leftOut);
+  claims.That(emitter->GetOutput()->GetFieldData()->GetAbstractArray("left_out") != nullptr, "in field data, too");
+  rig->RemoveAllSpotLights();
+  rig->SetSun(true);
+  emitter->Update();
+  claims.That(std::string(emitter->GetLeftOut()).empty(), "all photons of a sun meet the box");
+}
+
 void ASkyGivesPhotonsFromEverywhere(test::Claims& claims)
 {
   vtkNew<vtkPhotonEmitter> emitter;
@@ -193,6 +213,7 @@ int TestPhotonEmitter(int, char*[])
 {
   test::Claims claims;
   ASunGivesItsPhotons(claims);
+  WhatMissesTheVolumeIsLeftOut(claims);
   ASkyGivesPhotonsFromEverywhere(claims);
   AMapMakesPhotonsDense(claims);
   NothingShinesIsAWarning(claims);

@@ -80,7 +80,7 @@ def faults_of_groups(proxy):
             yield "a decorator looks at '%s', which there is not" % widget.get("property")
 
 
-# Proxies that compute: each shows its run time.
+# Proxies that compute: each shows its run time, and what the scene did not need.
 COMPUTING = """ParticipatingMedium MeshVoxelizer RefractionOctree PhotonImportance PhotonEmitter PhotonMarcher
 PhotonReconstruction LPMPropagate LPMCollect LightPropagationMaps DiscreteOrdinates LatticeBoltzmannLighting
 MediumRayCaster SeparablePhaseFunction SolverComparison""".split()
@@ -90,7 +90,7 @@ def faults_of_runs(proxy):
     names = {child.get("name") for child in proxy if child.tag.endswith("Property")}
     if proxy.get("name") in COMPUTING and "Seconds" not in names:
         yield "it does not show its run time (Seconds)"
-    if "LeaveOut" in names and "LeftOut" not in names:
+    if proxy.get("name") in COMPUTING and "LeftOut" not in names:
         yield "it does not show what it leaves out (LeftOut)"
 
 

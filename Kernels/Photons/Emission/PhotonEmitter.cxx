@@ -2,6 +2,7 @@
 
 #include "Device/Errors.h"
 #include "Device/HostMemory.h"
+#include "Light/LeftOut.h"
 #include "Medium/Medium.h"
 #include "Numerics/NumberText.h"
 #include "Photons/Emission/PhotonSources.h"
@@ -219,6 +220,30 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
   return tries;
 }
 
+/// What the emission of all parts leaves out.
+std::vector<std::string> LeftOutOf(const std::vector<Tried>& tried, const std::vector<Tries>& tries)
+{
+  std::vector<std::string> words;
+  const auto sources = static_cast<int>(tried.size());
+  const auto beside = static_cast<int>(
+    std::count_if(tried.begin(), tried.end(), [](const Tried& light) { return !(light.power > 0.0); }));
+  if (beside > 0)
+  {
+    words.push_back(left_out::SourcesBesideVolume(beside, sources));
+  }
+  double samples = 0.0, photons = 0.0;
+  for (std::size_t s = 0; s < tries.size(); ++s)
+  {
+    samples += static_cast<double>(tries[s].all);
+    photons += static_cast<double>(tries[s].all) * tried[s].hits;
+  }
+  if (photons < samples)
+  {
+    words.push_back(left_out::PhotonsBesideVolume(1.0 - photons / samples));
+  }
+  return words;
+}
+
 /// Emits the photons of one light, batch by batch.
 void EmitFrom(const Grid& grid, const SpreadSource& light, const Tries& tries, std::uint64_t seed,
   const EmissionSettings& settings, const Monitor& monitor, EmittedPhotons& emitted)
@@ -268,6 +293,7 @@ EmittedPhotons EmitPhotons(
   }
   const std::vector<Tries> tries = TriesOf(tried, settings);
   EmittedPhotons emitted;
+  emitted.leftOut = LeftOutOf(tried, tries);
   emitted.photons.reserve(settings.photonCount / static_cast<std::size_t>(settings.parts) + 1);
   for (std::size_t s = 0; s < lights.size(); ++s)
   {

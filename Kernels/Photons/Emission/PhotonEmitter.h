@@ -7,6 +7,9 @@
 #include "Photons/Importance/ImportanceMap.h"
 #include "Photons/Photons.h"
 
+#include <string>
+#include <vector>
+
 namespace tyndall
 {
 /// Maximum number of photon batches that the conservative reconstruction can compare.
@@ -41,7 +44,8 @@ struct EmittedPhotons
   /// Number of each photon's light: its index in `illumination.lights`, EnvironmentLight for the environment and the
   /// sky, -2 for the faces.
   std::vector<int> lights;
-  Rgb power = {}; ///< W, total power of the emitted photons
+  Rgb power = {};                   ///< W, total power of the emitted photons
+  std::vector<std::string> leftOut; ///< texts of left_out, of the photons of all parts
 };
 
 /// Samples the photons emitted by all lights (Pfeuti 2009, section 3.1.4; numerics.md, Eq. (94)), in double precision
