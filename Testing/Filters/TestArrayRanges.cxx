@@ -226,14 +226,5 @@ int TestArrayRanges(int, char*[])
   CheckRandom<vtkUnsignedCharArray>(claims, 3.0, 250.0);
   CheckThatTheyAreUsedAndGo(claims);
   CheckNotFinite(claims);
-  if (claims.Result() != EXIT_SUCCESS)
-  {
-    return EXIT_FAILURE;
-  }
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("no filter ran");
-  }
-  CheckFilters(claims);
-  return claims.Result();
+  return test::WithDevice(CheckFilters, claims);
 }

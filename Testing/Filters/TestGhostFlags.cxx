@@ -303,15 +303,14 @@ int TestGhostFlags(int, char*[])
 {
   test::Claims claims;
   DensityOfHiddenIsNone(claims);
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing is lit");
-  }
-  HiddenIsEmpty(claims);
-  ViewsFollowFlags(claims);
-  HiddenSkyIsBlack(claims);
-  DuplicatesCountOnce(claims);
-  PointsAreLeftOut(claims);
-  GhostsOfPiecesAreMarked(claims);
-  return claims.Result();
+  return test::WithDevice(
+    [](test::Claims& claims) {
+      HiddenIsEmpty(claims);
+      ViewsFollowFlags(claims);
+      HiddenSkyIsBlack(claims);
+      DuplicatesCountOnce(claims);
+      PointsAreLeftOut(claims);
+      GhostsOfPiecesAreMarked(claims);
+    },
+    claims);
 }

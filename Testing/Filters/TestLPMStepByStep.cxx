@@ -1,6 +1,6 @@
 // Three scattering orders chained by hand are what vtkLightPropagationMaps computes in one go.
 
-#include "TestSupport.h"
+#include "MediumScene.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -185,21 +185,10 @@ void SayWhatIsMissing(test::Claims& claims)
 
 int TestLPMStepByStep(int, char*[])
 {
-  vtkNew<vtkImageData> medium;
-  MakeMedium(medium, 1);
-  vtkNew<vtkLPMPropagate> first;
-  first->SetInputDataObject(medium);
-  test::Errors errors(first);
-  first->Update();
-  if (first->GetOutput()->GetNumberOfCells() == 0 && errors.WasOneWith("no OpenCL device"))
-  {
-    return test::SkippedWithoutDevice("LPMPropagate gave nothing");
-  }
-
-  test::Claims claims;
-  CompareChainWithSolver(claims, { 1, 1.0, 1, 0.0 });
-  CompareChainWithSolver(claims, { 1, 3.0, 1, 0.0 });
-  CompareChainWithSolver(claims, { 3, 1.0, 6, 0.6 });
-  SayWhatIsMissing(claims);
-  return claims.Result();
+  return test::WithDevice([](test::Claims& claims) {
+    CompareChainWithSolver(claims, { 1, 1.0, 1, 0.0 });
+    CompareChainWithSolver(claims, { 1, 3.0, 1, 0.0 });
+    CompareChainWithSolver(claims, { 3, 1.0, 6, 0.6 });
+    SayWhatIsMissing(claims);
+  });
 }

@@ -1,5 +1,4 @@
 #include "MediumScene.h"
-#include "TestSupport.h"
 
 #include "vtkActor.h"
 #include "vtkAutoInit.h"
@@ -208,19 +207,15 @@ void RefusesAStretchedVolume(test::Claims& claims)
 
 int TestLitVolumeMapper(int, char*[])
 {
-  if (!test::ThereIsADevice())
-  {
-    return test::SkippedWithoutDevice("none was found");
-  }
-  test::Claims claims;
-  const double turned[9] = { 0.48, -0.8, -0.36, 0.64, 0.6, -0.48, 0.6, 0.0, 0.8 };
-  const double mirrored[9] = { -0.48, -0.8, -0.36, -0.64, 0.6, -0.48, -0.6, 0.0, 0.8 };
-  for (const double* direction : { static_cast<const double*>(nullptr), turned, mirrored })
-  {
-    ShowsThePictureOfTheRayCaster(claims, direction);
-  }
-  EndsRaysAtOpaqueSurfaces(claims);
-  CastsFewerRaysWhileTheCameraMoves(claims);
-  RefusesAStretchedVolume(claims);
-  return claims.Result();
+  return test::WithDevice([](test::Claims& claims) {
+    const double turned[9] = { 0.48, -0.8, -0.36, 0.64, 0.6, -0.48, 0.6, 0.0, 0.8 };
+    const double mirrored[9] = { -0.48, -0.8, -0.36, -0.64, 0.6, -0.48, -0.6, 0.0, 0.8 };
+    for (const double* direction : { static_cast<const double*>(nullptr), turned, mirrored })
+    {
+      ShowsThePictureOfTheRayCaster(claims, direction);
+    }
+    EndsRaysAtOpaqueSurfaces(claims);
+    CastsFewerRaysWhileTheCameraMoves(claims);
+    RefusesAStretchedVolume(claims);
+  });
 }

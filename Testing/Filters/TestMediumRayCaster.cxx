@@ -1,4 +1,4 @@
-#include "TestSupport.h"
+#include "MediumScene.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
@@ -506,34 +506,22 @@ void PictureOfACloud(test::Claims& claims, const std::string& file)
 
 int TestMediumRayCaster(int argc, char* argv[])
 {
-  {
-    const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 1.0);
-    vtkNew<vtkMediumRayCaster> caster;
-    caster->SetInputData(image);
-    caster->SetImageSize(4, 4);
-    test::Errors errors(caster);
-    caster->Update();
-    if (!errors.None())
-    {
-      return test::SkippedWithoutDevice("the ray caster makes no picture");
-    }
-  }
-  test::Claims claims;
-  SlabFollowsTheClosedForm(claims);
-  SmokeLaidOverBlackLooksAsBeforeBlack(claims);
-  PointArraysAndChosenNamesServe(claims);
-  UntouchedCameraSeesTheWholeBox(claims);
-  LightsServeWhereThereIsNoFluence(claims);
-  EnvironmentIsTheBackground(claims);
-  BadInputIsAnError(claims);
-  ThickVoxelsShineAtTheirSurface(claims);
-  GroundIsSeen<vtkLightPropagationMaps>(claims, "light propagation maps");
-  GroundIsSeen<vtkDiscreteOrdinates>(claims, "discrete ordinates");
-  DarkMediumIsAWarning(claims);
-  ErrorIsEstimatedOnRequest(claims);
-  AbortStops(claims);
-  char* folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");
-  PictureOfACloud(claims, std::string(folder) + "/MediumRayCasterCloud.png");
-  delete[] folder;
-  return claims.Result();
+  return test::WithDevice([&](test::Claims& claims) {
+    SlabFollowsTheClosedForm(claims);
+    SmokeLaidOverBlackLooksAsBeforeBlack(claims);
+    PointArraysAndChosenNamesServe(claims);
+    UntouchedCameraSeesTheWholeBox(claims);
+    LightsServeWhereThereIsNoFluence(claims);
+    EnvironmentIsTheBackground(claims);
+    BadInputIsAnError(claims);
+    ThickVoxelsShineAtTheirSurface(claims);
+    GroundIsSeen<vtkLightPropagationMaps>(claims, "light propagation maps");
+    GroundIsSeen<vtkDiscreteOrdinates>(claims, "discrete ordinates");
+    DarkMediumIsAWarning(claims);
+    ErrorIsEstimatedOnRequest(claims);
+    AbortStops(claims);
+    char* folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");
+    PictureOfACloud(claims, std::string(folder) + "/MediumRayCasterCloud.png");
+    delete[] folder;
+  });
 }

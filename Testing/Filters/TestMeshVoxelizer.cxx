@@ -434,26 +434,17 @@ void BadInputIsOneError(test::Claims& claims)
 
 int TestMeshVoxelizer(int, char*[])
 {
-  vtkNew<vtkMeshVoxelizer> first;
-  test::Errors errors(first);
-  first->SetInputDataObject(Ball(0.0, 1.0));
-  first->SetSampleDimensions(2, 2, 2);
-  first->Update();
-  if (!errors.None())
-  {
-    return test::SkippedWithoutDevice("the mesh voxelizer has no device");
-  }
-  test::Claims claims;
-  GlassBallInFog(claims);
-  MaterialsKeepTheirMeanCosines(claims);
-  UntouchedTheFogSuitsTheMesh(claims);
-  ModelBoundsAreTheBox(claims);
-  AnyPolyDataWillDo(claims);
-  LaterMeshesWin(claims);
-  NumbersOfMaterialsAreWhole(claims);
-  MaterialsAreChecked(claims);
-  ConstantIndexIsLeftOut(claims);
-  AskedForPartsAreMadeAlone(claims);
-  BadInputIsOneError(claims);
-  return claims.Result();
+  return test::WithDevice([](test::Claims& claims) {
+    GlassBallInFog(claims);
+    MaterialsKeepTheirMeanCosines(claims);
+    UntouchedTheFogSuitsTheMesh(claims);
+    ModelBoundsAreTheBox(claims);
+    AnyPolyDataWillDo(claims);
+    LaterMeshesWin(claims);
+    NumbersOfMaterialsAreWhole(claims);
+    MaterialsAreChecked(claims);
+    ConstantIndexIsLeftOut(claims);
+    AskedForPartsAreMadeAlone(claims);
+    BadInputIsOneError(claims);
+  });
 }

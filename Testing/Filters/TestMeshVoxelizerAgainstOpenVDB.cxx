@@ -1,6 +1,6 @@
 #include "../Kernels/PlyFile.h"
+#include "MediumScene.h"
 #include "MeshData.h"
-#include "TestSupport.h"
 
 #include "vtkCellData.h"
 #include "vtkFloatArray.h"
@@ -104,24 +104,20 @@ void IsRefused(const std::string& name, const std::string& why, test::Claims& cl
 
 int TestMeshVoxelizerAgainstOpenVDB(int, char*[])
 {
-  if (!test::ThereIsADevice())
-  {
-    return test::SkippedWithoutDevice("the mesh voxelizer has no device");
-  }
   if (!std::ifstream(FileOf("armadillo")))
   {
     std::cerr << FileOf("armadillo") << " is not there; ./run test fetches it.\n";
     return 125;
   }
   openvdb::initialize();
-  test::Claims claims;
-  for (int size : { 64, 128, 256 })
-  {
-    AgreesOn("armadillo", size, claims);
-    AgreesOn("elephant", size, claims);
-  }
-  IsRefused("elephant-with-holes", "1353 boundary edges", claims);
-  IsRefused("mech-holes-shark", "304 boundary edges", claims);
-  IsRefused("lion-head", "36 boundary edges", claims);
-  return claims.Result();
+  return test::WithDevice([](test::Claims& claims) {
+    for (int size : { 64, 128, 256 })
+    {
+      AgreesOn("armadillo", size, claims);
+      AgreesOn("elephant", size, claims);
+    }
+    IsRefused("elephant-with-holes", "1353 boundary edges", claims);
+    IsRefused("mech-holes-shark", "304 boundary edges", claims);
+    IsRefused("lion-head", "36 boundary edges", claims);
+  });
 }

@@ -364,21 +364,13 @@ void BadInputIsOneError(test::Claims& claims)
 
 int TestRefractionOctree(int, char*[])
 {
-  vtkNew<vtkRefractionOctree> filter;
-  test::Errors errors(filter);
-  filter->SetInputDataObject(WithIndex({ { 2, 2, 2 } }, Waves));
-  filter->Update();
-  if (!errors.None())
-  {
-    return test::SkippedWithoutDevice("an octree of 2 x 2 x 2 voxels");
-  }
-  test::Claims claims;
-  LeavesEqualLevels(claims);
-  LevelsAreThoseOfTheIndex(claims);
-  ExtinctionCounts(claims);
-  OtherArraysCanBeChosen(claims);
-  AConstantIndexNeedsNoDevice(claims);
-  BothPortsAreMadeAtOnce(claims);
-  BadInputIsOneError(claims);
-  return claims.Result();
+  return test::WithDevice([](test::Claims& claims) {
+    LeavesEqualLevels(claims);
+    LevelsAreThoseOfTheIndex(claims);
+    ExtinctionCounts(claims);
+    OtherArraysCanBeChosen(claims);
+    AConstantIndexNeedsNoDevice(claims);
+    BothPortsAreMadeAtOnce(claims);
+    BadInputIsOneError(claims);
+  });
 }

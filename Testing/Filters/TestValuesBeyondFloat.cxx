@@ -195,12 +195,11 @@ int TestValuesBeyondFloat(int argc, char* argv[])
   char* const folder = vtkTestUtilities::GetArgOrEnvOrDefault("-T", argc, argv, "VTK_TEMP_DIR", "Testing/Temporary");
   PicturesAreRefused(claims, folder);
   delete[] folder;
-  if (!test::HasDevice())
-  {
-    return test::SkippedWithoutDevice("nothing marches");
-  }
-  MediaAreRefused(claims);
-  PhotonsAreRefused(claims);
-  PropagationIsRefused(claims);
-  return claims.Result();
+  return test::WithDevice(
+    [](test::Claims& claims) {
+      MediaAreRefused(claims);
+      PhotonsAreRefused(claims);
+      PropagationIsRefused(claims);
+    },
+    claims);
 }
