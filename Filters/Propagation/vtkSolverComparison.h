@@ -80,8 +80,8 @@ struct ComparisonSettings;
  * largest PhotonCount is tried with all IntegratorOrders and StepSizes, and with octrees of all OctreeTolerances, whose
  * construction is part of the time.
  *
- * With EstimateError (default on here) maps, and photons of MonteCarlo, estimate their errors, by an additional run
- * that is not timed. Photons do not support periodic axes and are skipped if there are any.
+ * With EstimateError (default on here) solvers, photons of MonteCarlo and pictures estimate their errors, by an
+ * additional run that is not timed. Photons do not support periodic axes and are skipped if there are any.
  *
  * In a parallel pipeline the first rank runs the comparison and returns output 0; each rank returns its piece of output
  * 1.

@@ -174,7 +174,7 @@ public:
   /// Whether to estimate the error of radiance, as the array `picture_error`, from two more pictures of every second
   /// pixel: one with half as many samples, and one of `fluence_error`, the error of the light. Without this array,
   /// `left_out` says that the light's part is missing. The error of interpolation between voxel centres is not
-  /// included. Needs a StepSize of at most 5. Default off.
+  /// included. Default off.
   tyndallFlagMacro(EstimateError);
   ///@}
 

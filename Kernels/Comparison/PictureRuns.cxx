@@ -1,6 +1,6 @@
 #include "Comparison/ComparedRun.h"
 
-#include "Viewing/MediumRayCaster.h"
+#include "Viewing/PictureError.h"
 
 #include <utility>
 
@@ -11,15 +11,27 @@ namespace
 constexpr std::pair<Quality, const char*> Qualities[] = { { Quality::Draft, "draft" }, { Quality::Default, "default" },
   { Quality::Fine, "fine" }, { Quality::Reference, "reference" } };
 
-/// Radiance of the scene's picture, 3 per pixel, without background.
-std::vector<float> Rendered(Device& device, const ComparedScene& scene, ViewSettings settings, const Monitor& monitor)
+/// Radiance of the scene's picture without background, as the fluence of three channels.
+/// @param estimate  whether to estimate its error, without that of the light
+LightField Rendered(
+  Device& device, const ComparedScene& scene, ViewSettings settings, bool estimate, const Monitor& monitor)
 {
   settings.imageSize = scene.imageSize;
   settings.showBackground = false;
   SolvedLight light;
   light.fluence = scene.seen;
   MediumRayCaster caster(device, scene.medium, light, scene.illumination, settings, scene.ior);
-  return caster.Render(*scene.camera, monitor).radiance;
+  Picture picture = caster.Render(*scene.camera, monitor);
+  if (estimate)
+  {
+    PictureErrorCasters(device, scene.medium, light, scene.illumination, settings, scene.ior)
+      .Estimate(picture, *scene.camera, monitor);
+  }
+  LightField radiance;
+  radiance.channels = 3;
+  radiance.fluence = std::move(picture.radiance);
+  radiance.relativeError = picture.relativeError;
+  return radiance;
 }
 }
 
@@ -35,11 +47,9 @@ std::vector<ComparedRun> PictureRunsOf(Device& device, const ComparedScene& scen
     run.filters = "MediumRayCaster Quality=" + std::to_string(static_cast<int>(quality));
     run.grid.size = { scene.imageSize[0], scene.imageSize[1], 1 };
     run.cost = 1.0 / settings.stepSize;
-    run.solve = [=, &device, &scene](bool, const Monitor& monitor) {
-      LightField picture;
-      picture.channels = 3;
-      picture.fluence = Rendered(device, scene, settings, monitor);
-      return picture;
+    run.estimates = true;
+    run.solve = [=, &device, &scene](bool estimate, const Monitor& monitor) {
+      return Rendered(device, scene, settings, estimate, monitor);
     };
     runs.push_back(std::move(run));
   }
@@ -51,6 +61,6 @@ std::vector<float> ReferencePicture(Device& device, const ComparedScene& scene, 
   ViewSettings settings = AtQuality(Quality::Reference, ViewSettings());
   settings.stepSize *= 0.5;
   settings.minimumTransmittance = 0.0;
-  return Rendered(device, scene, settings, monitor);
+  return Rendered(device, scene, settings, false, monitor).fluence;
 }
 }

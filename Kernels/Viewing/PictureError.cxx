@@ -1,12 +1,10 @@
 #include "Viewing/PictureError.h"
 
-#include "Device/Errors.h"
 #include "Distribution/CoarseBlocks.h"
 #include "Distribution/Domain.h"
 #include "Light/LightField.h"
 #include "LightPropagation/Accuracy/ErrorEstimate.h"
 #include "Numerics/Constants.h"
-#include "Numerics/NumberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +17,6 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LargestDoubled = 5.0; ///< voxels; twice this step is the largest that the ray caster takes
 /// Ratio of a picture's error to its difference from the coarse one: errors are of second order in the step
 /// (Richardson), and proportional to the transmittance at which rays end.
 constexpr double PartOfDifference = 1.0 / 3.0;
@@ -83,9 +80,6 @@ Camera OfEverySecondPixel(Camera camera, const std::array<int, 2>& size)
 
 ViewSettings CoarserSettings(ViewSettings settings)
 {
-  Require(settings.stepSize <= LargestDoubled,
-    "EstimateError compares the picture with one of twice the step: StepSize is " + Text("%g", settings.stepSize) +
-      " voxels, and must then be at most " + Text("%g", LargestDoubled) + ".");
   for (int& pixels : settings.imageSize)
   {
     pixels = (pixels + 1) / 2;
@@ -149,6 +143,14 @@ bool PictureErrorCasters::Adopt(const ViewSettings& settings)
     adopted = this->ofLight->Adopt(coarser) && adopted;
   }
   return adopted;
+}
+
+void PictureErrorCasters::Estimate(Picture& picture, const Camera& camera, const Monitor& monitor) const
+{
+  EstimatePictureError(
+    picture, camera, this->ofLight != nullptr, [&](bool light, const Camera& seenBy, const std::array<int, 2>&) {
+      return (light ? this->ofLight : this->coarse)->Render(seenBy, monitor);
+    });
 }
 
 void EstimatePictureError(Picture& picture, const Camera& camera, bool knowsLight, const RenderForError& render)

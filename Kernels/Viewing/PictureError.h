@@ -10,7 +10,6 @@
 namespace tyndall
 {
 /// Settings of the pictures from which the error of a picture with `settings` is estimated.
-/// @throws InvalidInput if stepSize is above 5 voxels
 ViewSettings CoarserSettings(ViewSettings settings);
 
 /// Two more pictures from which the error of a picture is estimated without a reference (numerics.md, section 14.10),
@@ -21,12 +20,15 @@ ViewSettings CoarserSettings(ViewSettings settings);
 /// The error due to the interpolation of light and medium between voxel centres is not estimated.
 struct PictureErrorCasters
 {
-  /// Prepares both pictures; parameters and exceptions as of MediumRayCaster and CoarserSettings.
+  /// Prepares both pictures; parameters and exceptions as of MediumRayCaster.
   PictureErrorCasters(Device& device, const Medium& medium, const SolvedLight& light, const Illumination& illumination,
     const ViewSettings& settings, const Field& ior = {}, const BlockOfScene* block = nullptr);
 
   /// Adopts the settings of the picture, as MediumRayCaster::Adopt.
   bool Adopt(const ViewSettings& settings);
+
+  /// Sets error and relativeError of a picture that one rank renders.
+  void Estimate(Picture& picture, const Camera& camera, const Monitor& monitor = {}) const;
 
   std::unique_ptr<MediumRayCaster> coarse;
   std::unique_ptr<MediumRayCaster> ofLight; ///< null: the picture shows no solved light, or its error is not known

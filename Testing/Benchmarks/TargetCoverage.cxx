@@ -118,11 +118,8 @@ public:
     Picture picture = caster.Render(this->Of);
     if (estimate)
     {
-      const PictureErrorCasters others(this->TheDevice, this->Scene.medium, light, this->Scene.light, this->Settings);
-      EstimatePictureError(
-        picture, this->Of, others.ofLight != nullptr, [&](bool ofLight, const Camera& camera, const auto&) {
-          return (ofLight ? others.ofLight : others.coarse)->Render(camera);
-        });
+      PictureErrorCasters(this->TheDevice, this->Scene.medium, light, this->Scene.light, this->Settings)
+        .Estimate(picture, this->Of);
     }
     LightField pixels;
     pixels.channels = 3;

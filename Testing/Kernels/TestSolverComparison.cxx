@@ -608,7 +608,7 @@ protected:
   std::map<std::string, double> ErrorsOf(SunlitCube& cube, ComparedMethod method)
   {
     cube.settings.methods = { method };
-    cube.settings.estimates = false;
+    cube.settings.estimates = method == ComparedMethod::Pictures;
     const Comparison found =
       CompareSolvers(this->GetDevice(), cube.scene, cube.settings, this->Reference(cube, method));
     EXPECT_TRUE(found.leftOut.empty()) << found.leftOut.front();
@@ -616,6 +616,7 @@ protected:
     for (const ComparisonRow& row : found.rows)
     {
       errors[row.setting] = row.errorL2;
+      this->Estimates[row.setting] = row.estimatedError;
     }
     return errors;
   }
@@ -666,6 +667,7 @@ protected:
   }
 
   std::string Best;
+  std::map<std::string, double> Estimates; ///< estimated errors by setting
   ReferenceLight Light;
   std::vector<float> Occupancy;
 };
@@ -754,6 +756,11 @@ TEST_F(ComparedStages, FinePicturesAreNearerThanDrafts)
   EXPECT_GT(errors["quality default"], errors["quality fine"]);
   EXPECT_GT(errors["quality fine"], errors["quality reference"]);
   EXPECT_LT(errors["quality reference"], 0.002);
+  for (const auto& [setting, error] : errors)
+  {
+    EXPECT_GT(this->Estimates[setting], 0.5 * error) << setting;
+    EXPECT_LT(this->Estimates[setting], 3.0 * error) << setting;
+  }
 }
 
 TEST_F(ComparedStages, AVoxelizationIsComparedWithAFinerOne)

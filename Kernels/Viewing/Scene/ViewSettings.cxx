@@ -10,7 +10,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr double LeastStep = 0.01, LargestStep = 10.0; ///< smallest and largest step size, voxels
+constexpr double LeastStep = 0.01, LargestStep = 20.0; ///< smallest and largest step size, voxels
 /// Largest radiance that a setting may have, W / (length^2 sr); a sum of radiances does not overflow a float.
 constexpr double LargestRadiance = 1e37;
 constexpr double MostPixels = 7e8; ///< largest number of pixels; with three values per pixel, indices stay below 2^31

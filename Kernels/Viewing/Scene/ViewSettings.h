@@ -25,7 +25,7 @@ constexpr double VoxelsBesideSurface = 5.0;
 struct ViewSettings
 {
   std::array<int, 2> imageSize = { 800, 600 }; ///< width and height of the picture, pixels
-  double stepSize = 0.5;                       ///< distance that a ray advances between samples, voxels, [0.01, 10]
+  double stepSize = 0.5;                       ///< distance that a ray advances between samples, voxels, [0.01, 20]
   bool singleScatteringOnly = false;           ///< whether to show only light that was scattered exactly once
   /// Whether to compute direct light by shadow rays to the lights, with the medium's phase function; no effect without
   /// lamps and suns.
