@@ -220,9 +220,9 @@ void RemoveLight(vtkImageData* output)
   {
     output->GetCellData()->RemoveArray(array);
   }
-  for (const char* fact :
-    { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux", "settings_used", IgnoredFact,
-      SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact, LitColorDistanceFact, LitColorExposureFact })
+  for (const char* fact : { "stored_directions", "scattered", "packing_loss", "fluence_bias", "half_range_flux",
+         "settings_used", IgnoredFact, SurfaceRadianceFact, LampsApartFact, FacePowerFact, FaceAlbedoFact,
+         FaceRadianceFact, LitColorDistanceFact, LitColorExposureFact })
   {
     output->GetFieldData()->RemoveArray(fact);
   }

@@ -60,6 +60,9 @@ constexpr const char* IgnoredFact = "ignored";
 /// +z.
 constexpr const char* FacePowerFact = "face_power";
 constexpr const char* FaceAlbedoFact = "face_albedo";
+/// Name of field data: radiance that enters through the faces -x to +z of the domain, W/(length^2 sr), for pictures of
+/// angular moments.
+constexpr const char* FaceRadianceFact = "face_radiance";
 
 /// Names of cell arrays with scattered light. MomentsArray: its angular moments (LightField::scatteredMoments).
 /// StraightOnArray: fraction of scattering that the solver treats as unscattered (LightField::straightOn).

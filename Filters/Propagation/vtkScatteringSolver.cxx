@@ -14,6 +14,7 @@
 #include "Propagation/SolverScene.h"
 #include "Viewing/LitColor.h"
 
+#include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
@@ -366,6 +367,12 @@ void vtkScatteringSolver::Write(const tyndall::PieceBlocks& pieces, tyndall::Lig
     {
       tyndall::WriteLight(std::move(light), output); // before any warning, because it throws if a value is not finite
       tyndall::NoteChoices(this, tyndall::QuantitiesOfMedium(), medium, output);
+      const double* const entering = this->FaceRadiance;
+      if (output->GetCellData()->HasArray(tyndall::MomentsArray) &&
+        std::any_of(entering, entering + 6, [](double radiance) { return radiance > 0.0; }))
+      {
+        tyndall::AddFact(output, tyndall::FaceRadianceFact, std::vector<double>(entering, entering + 6), 1);
+      }
       if (!this->Ignored.empty())
       {
         tyndall::AddFact(output, tyndall::IgnoredFact, this->Ignored);

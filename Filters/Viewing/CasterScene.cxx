@@ -60,10 +60,14 @@ SolvedLight ViewedInputs::Light() const
   SolvedLight light = { this->fluence, this->direct, this->meanDirection };
   light.surface = this->surface.Seen();
   light.facePower = this->power.Seen();
-  for (std::size_t i = 0; i < 18 && !this->albedo.values.empty(); ++i)
-  {
-    light.faceAlbedo[i / 3][i % 3] = this->albedo.Seen().At(i / 3, this->albedo.components == 3 ? i % 3 : 0);
-  }
+  const auto ofFaces = [](const FaceValues& faces, std::array<Rgb, 6>& to) {
+    for (std::size_t i = 0; i < 18 && !faces.values.empty(); ++i)
+    {
+      to[i / 3][i % 3] = faces.Seen().At(i / 3, faces.components == 3 ? i % 3 : 0);
+    }
+  };
+  ofFaces(this->albedo, light.faceAlbedo);
+  ofFaces(this->entering, light.faceRadiance);
   light.scatteredMoments = this->moments.moments;
   light.straightOn = this->moments.straightOn;
   light.lampsApart = this->moments.lampsApart;
@@ -93,6 +97,7 @@ ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const G
     inputs.surface = ReadFaces(image, SurfaceRadianceFact, cells, static_cast<int>(SurfaceCosines.size()));
     inputs.power = ReadFaces(image, FacePowerFact, cells, 1);
     inputs.albedo = ReadFaces(image, FaceAlbedoFact, 6, 1);
+    inputs.entering = ReadFaces(image, FaceRadianceFact, 6, 1);
   }
   return inputs;
 }
@@ -112,7 +117,7 @@ double ArraysInANumber(vtkMediumRayCaster* filter, vtkImageData* image)
     add(image->GetCellData()->GetArray(name));
   }
   vtkNew<vtkImageData> facts;
-  for (const char* name : { SurfaceRadianceFact, FacePowerFact, FaceAlbedoFact, LampsApartFact })
+  for (const char* name : { SurfaceRadianceFact, FacePowerFact, FaceAlbedoFact, FaceRadianceFact, LampsApartFact })
   {
     if (vtkDataArray* const fact = image->GetFieldData()->GetArray(name))
     {

@@ -49,7 +49,8 @@ struct ViewedInputs
   FloatField fluence, direct, ior, meanDirection;
   FloatField fluenceError; ///< read only with EstimateError
   MomentsInput moments;
-  FaceValues surface, power, albedo; ///< outgoing radiance, power and albedo at the box's faces
+  /// Outgoing radiance, power, albedo and incident radiance at the box's faces.
+  FaceValues surface, power, albedo, entering;
 
   SolvedLight Light() const;
 };

@@ -201,7 +201,8 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, cons
   {
     key.Add(tyndall::ChosenArray(this, number, image, tyndall::ViewedNames[number]));
   }
-  for (const char* fact : { tyndall::SurfaceRadianceFact, tyndall::FacePowerFact, tyndall::FaceAlbedoFact })
+  for (const char* fact :
+    { tyndall::SurfaceRadianceFact, tyndall::FacePowerFact, tyndall::FaceAlbedoFact, tyndall::FaceRadianceFact })
   {
     key.Add(image->GetFieldData()->GetArray(fact));
   }

@@ -171,6 +171,7 @@ private:
     seen.scatteredMoments = field(light.scatteredMoments, voxels);
     seen.straightOn = field(light.straightOn, voxels);
     seen.lampsApart = light.lampsApart;
+    seen.faceRadiance = this->Scene.light.faces;
     return seen;
   }
 

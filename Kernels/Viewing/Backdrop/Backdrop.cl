@@ -108,7 +108,9 @@ inline face_place face_behind(real3 p, real3 direction, int4 size)
 // Reflecting faces of the box, seen from inside, such as matt ground or snow.
 
 // Radiance from behind the medium: for rays of the mask `leaves` that leave the box through a reflecting face, the
-// radiance of that face; for all other rays, `behind`.
+// radiance of that face; for all other rays, `behind`. Through a face with incident light, the scattered light of a
+// picture of angular moments has this light added, and the unscattered light has it subtracted: their transmittances
+// differ by the light that was scattered by small angles.
 //   p     a point, in voxels, from which the ray leaves the box in a straight line
 //   size  number of voxels of the box along each axis; `backdrop` has the radiance of the cells of its faces
 inline rgb ground_or_behind(
@@ -116,15 +118,20 @@ inline rgb ground_or_behind(
 {
   const real3 back = { -direction.x, -direction.y, -direction.z };
   const face_place to = face_behind(p, back, size);
-  const integer is_ground = leaves & (((integer)v->environment.z >> to.face & (integer)1) != (integer)0);
+  const integer bits = (integer)v->environment.z >> to.face;
+  const integer is_ground = leaves & ((bits & (integer)1) != (integer)0);
+  const integer emits = leaves & ((bits & (integer)64) != (integer)0);
+  const rgb seen = between_four(backdrop + v->backdrop.y, to.at, to.at + to.row, to.a, to.b);
 #if SHOWN == 2
   // A picture of angular moments is the sum of two passes, for scattered and for unscattered light. Reflecting faces
   // are black in the latter, as the former already shows their light.
-  const rgb seen = { (real)0.0f, (real)0.0f, (real)0.0f };
+  const real shown = (real)0.0f, emitted = emits ? (real)-1.0f : (real)0.0f;
 #else
-  const rgb seen = between_four(backdrop + v->backdrop.y, to.at, to.at + to.row, to.a, to.b);
+  const real shown = (real)1.0f, emitted = emits ? (real)1.0f : (real)0.0f;
 #endif
-  const rgb light = { is_ground ? seen.r : behind.r, is_ground ? seen.g : behind.g, is_ground ? seen.b : behind.b };
+  const rgb light = { is_ground ? shown * seen.r : fma(emitted, seen.r, behind.r),
+    is_ground ? shown * seen.g : fma(emitted, seen.g, behind.g),
+    is_ground ? shown * seen.b : fma(emitted, seen.b, behind.b) };
   return light;
 }
 

@@ -56,21 +56,35 @@ int GroundFaces(const SolvedLight& light)
   return faces;
 }
 
-/// Radiance of the reflecting faces (ground), seen from inside, W / (length^2 sr): albedo / pi times the outgoing
-/// partial current in each cell (numerics.md, Eq. (111a)). [face][row][cell of the row], each face with a border of one
-/// cell that repeats the outermost cells. Empty if no face reflects or facePower is not known.
-std::vector<cl_float4> GroundLight(const Grid& grid, const SolvedLight& light)
+constexpr int Emits = 6; ///< bit of face -x among those of the faces through which light enters
+
+/// Bit mask of the faces that pictures show: bits 0 to 5 those that reflect; bits 6 to 11, in pictures of angular
+/// moments, the others through which light enters.
+int ShownFaces(const SolvedLight& light, bool byMoments)
 {
-  if (GroundFaces(light) == 0)
+  int faces = GroundFaces(light);
+  for (int face = 0; face < 6 && byMoments; ++face)
   {
-    return {};
+    const bool emits = !IsBlack(light.faceRadiance[face]) && (faces >> face & 1) == 0;
+    faces |= emits ? 1 << (Emits + face) : 0;
   }
+  return faces;
+}
+
+/// Radiance of the reflecting faces (ground), seen from inside, W / (length^2 sr): albedo / pi times the outgoing
+/// partial current in each cell (numerics.md, Eq. (111a)); on other faces, that which enters there. [face][row][cell
+/// of the row], each face with a border of one cell that repeats the outermost cells.
+std::vector<cl_float4> FaceLight(const Grid& grid, const SolvedLight& light, int bits)
+{
   std::vector<cl_float4> cells(BoxFaceCellCount(grid));
   ForBoxFaceCells(grid, [&](const BoxFaceCell& cell) {
     for (int c = 0; c < 3; ++c)
     {
-      const double leaves = light.facePower.At(cell.number, light.facePower.components == 3 ? c : 0);
-      cells[cell.number].s[c] = static_cast<float>(light.faceAlbedo[cell.face][c] * leaves / Pi);
+      const bool reflects = (bits >> cell.face & 1) != 0;
+      const double leaves =
+        reflects ? light.facePower.At(cell.number, light.facePower.components == 3 ? c : 0) / Pi : 1.0;
+      const Rgb& part = reflects ? light.faceAlbedo[cell.face] : light.faceRadiance[cell.face];
+      cells[cell.number].s[c] = static_cast<float>(part[c] * leaves);
     }
   });
   return WithBorders(grid, cells);
@@ -330,7 +344,7 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
   const Field& ior, const ViewSettings& settings, const ViewTraits& traits, const BlockOfScene* block)
   : UnderSky(!illumination.environment.Empty() || !IsBlack(illumination.sky))
   , Sky(illumination.sky)
-  , GroundBits(settings.showBackground ? GroundFaces(light) : 0)
+  , FaceBits(settings.showBackground ? ShownFaces(light, traits.ShowsMoments()) : 0)
 {
   std::vector<cl_float4> all;
   const auto add = [&](const std::vector<cl_float4>& table) {
@@ -361,9 +375,9 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
     }
     this->First.s[0] = add(shown);
   }
-  if (this->GroundBits != 0)
+  if (this->FaceBits != 0)
   {
-    this->First.s[1] = add(GroundLight(traits.grid, light));
+    this->First.s[1] = add(FaceLight(traits.grid, light, this->FaceBits));
   }
   if (ShowsSurface(light, traits))
   {
@@ -383,7 +397,7 @@ void Backdrop::Describe(const ViewSettings& settings, bool sharp, ViewInfo& view
 {
   const Rgb& colour = this->UnderSky ? this->Sky : settings.backgroundColor;
   view.background = Float4(Vector(colour), settings.showBackground ? 1.0 : 0.0);
-  view.environment = Int4({ this->Size[0], this->Size[1], this->GroundBits });
+  view.environment = Int4({ this->Size[0], this->Size[1], this->FaceBits });
   view.backdrop = this->First;
   view.backdrop.s[0] = sharp ? this->FirstSharp : this->First.s[0];
   for (int row = 0; row < 3; ++row)

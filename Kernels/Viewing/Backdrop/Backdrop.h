@@ -33,7 +33,7 @@ public:
   /// Whether the background is the illumination's environment or sky and not the settings' background colour.
   bool IsSky() const { return this->UnderSky; }
   bool HasEnvironment() const { return this->Size[0] > 0; }
-  bool HasGround() const { return this->GroundBits != 0; }
+  bool HasGround() const { return (this->FaceBits & 63) != 0; }
   bool HasSurfaceLight() const { return this->HasSurface; }
 
   /// All lookup tables in one array, which is empty if the backdrop needs no table. The members of ViewInfo::backdrop
@@ -49,7 +49,8 @@ private:
   Rgb Sky = {};
   std::array<int, 2> Size = {}; ///< width and height of the environment, pixels; 0: no environment
   Rotation Turn = {};           ///< rotation from world axes to the environment's axes
-  int GroundBits = 0;           ///< bit mask of the reflecting faces that are shown
+  /// Bit mask of the faces that are shown: bits 0 to 5 reflecting faces, 6 to 11 those through which light enters.
+  int FaceBits = 0;
   /// Index in Cells at which each lookup table begins: environment, reflecting faces, light at the surface, scene's
   /// table.
   cl_int4 First = {};

@@ -29,6 +29,9 @@ struct SolvedLight
   /// components (null: not known), and albedo of the faces, LightField::faceAlbedo.
   Field facePower = {};
   std::array<Rgb, 6> faceAlbedo = {};
+  /// Radiance that enters through the faces, W / (length^2 sr) (Illumination::faces): pictures of scatteredMoments show
+  /// its part that was scattered by small angles.
+  std::array<Rgb, 6> faceRadiance = {};
   /// Standard error of `fluence`, W / length^2, with 1 or 3 components, for PictureError.h; null: not known.
   Field fluenceError = {};
 };

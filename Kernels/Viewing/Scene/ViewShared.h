@@ -86,7 +86,7 @@ typedef struct
   int4 size;
   int4 held;   ///< number of voxels of the block's arrays, for rays that travel between blocks
   int4 bricks; ///< number of bricks, cubes of 8^3 voxels, along each axis
-  /// x, y: width and height of the environment in pixels, 0: no environment; z: bit mask of the reflecting faces
+  /// x, y: width and height of the environment in pixels, 0: no environment; z: bit mask of faces (Backdrop::FaceBits)
   int4 environment;
   /// indices, in the array of lookup tables of the Backdrop, at which environment (x), reflecting faces (y), light at
   /// the surface (z) and the table (w), a face of the box, begin
