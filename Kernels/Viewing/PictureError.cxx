@@ -27,22 +27,35 @@ int ChannelsOf(const Field& moments)
   return moments.components / ((degree + 1) * (degree + 1));
 }
 
-/// Angular moments of light without those of the last degree.
-std::vector<float> WithoutLastDegree(const SolvedLight& light, std::size_t voxels)
+/// Light of all degrees above the last one, relative to that of the last degree. The light that moments show was
+/// scattered at least twice, and each scattering multiplies moments by those of the phase function, which decrease from
+/// degree to degree by the mean ratio r = straightOn^(1 / (degree + 1)): the sum of r^2, r^4, ...
+double HigherDegrees(double straightOn, int degree)
+{
+  const double square = std::min(std::pow(std::abs(straightOn), 2.0 / (degree + 1)), 0.999);
+  return square / (1.0 - square);
+}
+
+/// Angular moments of light with those of the last degree changed such that PartOfDifference of what changes in the
+/// picture is the light of higher degrees.
+std::vector<float> ForHigherDegrees(const SolvedLight& light, std::size_t voxels)
 {
   const Field& moments = light.scatteredMoments;
   const int degree = DegreeOf(moments), channels = ChannelsOf(moments);
-  std::vector<float> fewer(moments.values, moments.values + voxels * moments.components);
-  for (std::size_t i = 0; i < fewer.size(); ++i)
+  std::vector<float> changed(moments.values, moments.values + voxels * moments.components);
+  for (std::size_t i = 0; i < changed.size(); ++i)
   {
-    const bool isLast = degree > 0 && static_cast<int>(i % moments.components) >= degree * degree * channels;
-    fewer[i] = isLast ? 0.0f : fewer[i];
+    const int place = static_cast<int>(i % moments.components);
+    if (degree > 0 && place >= degree * degree * channels)
+    {
+      const double straightOn = light.straightOn.At(i / moments.components, place % channels);
+      changed[i] *= static_cast<float>(1.0 - HigherDegrees(straightOn, degree) / PartOfDifference);
+    }
   }
-  return fewer;
+  return changed;
 }
 
-/// Angular moments of the error of light, which has the angular distribution of the light: their mean over directions
-/// is that of isotropic light of the fluence `light.fluenceError`.
+/// Angular moments of the error of light: relative to those of the light, as fluenceError to fluence.
 std::vector<float> MomentsOfError(const SolvedLight& light, std::size_t voxels)
 {
   const Field& moments = light.scatteredMoments;
@@ -52,10 +65,8 @@ std::vector<float> MomentsOfError(const SolvedLight& light, std::size_t voxels)
   {
     const std::size_t voxel = i / components;
     const int channel = static_cast<int>(i % components) % channels;
-    const double mean = moments.values[voxel * components + channel];
-    const double error =
-      light.fluenceError.At(voxel, channel) * (1.0 - light.straightOn.At(voxel, channel)) / (4.0 * Pi);
-    scaled[i] = mean > 0.0 ? static_cast<float>(scaled[i] * (error / mean)) : 0.0f;
+    const double fluence = light.fluence.At(voxel, channel), error = light.fluenceError.At(voxel, channel);
+    scaled[i] = fluence > 0.0 ? static_cast<float>(scaled[i] * (error / fluence)) : 0.0f;
   }
   return scaled;
 }
@@ -97,7 +108,7 @@ PictureErrorCasters::PictureErrorCasters(Device& device, const Medium& medium, c
   const bool byMoments = ShownDegree(light, settings) >= 0;
   ViewSettings coarser = CoarserSettings(settings);
   SolvedLight other = light;
-  std::vector<float> moments = byMoments ? WithoutLastDegree(light, voxels) : std::vector<float>();
+  std::vector<float> moments = byMoments ? ForHigherDegrees(light, voxels) : std::vector<float>();
   other.scatteredMoments.values = byMoments ? moments.data() : light.scatteredMoments.values;
   this->coarse = std::make_unique<MediumRayCaster>(device, medium, other, illumination, coarser, ior, block);
   const bool lightsOnly = settings.singleScatteringOnly && settings.shadowRays;

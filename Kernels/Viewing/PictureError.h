@@ -15,7 +15,7 @@ ViewSettings CoarserSettings(ViewSettings settings);
 /// Two more pictures from which the error of a picture is estimated without a reference (numerics.md, section 14.10),
 /// both of every second pixel along each axis:
 ///  - `coarse`: half as many samples along rays and along the edges of rectangle lights, rays that end at four times
-///    the transmittance, and without the last degree of angular moments;
+///    the transmittance, and with other angular moments of the last degree, which stand for higher degrees;
 ///  - `ofLight`: the error of the light, fluenceError, in place of the light.
 /// The error due to the interpolation of light and medium between voxel centres is not estimated.
 struct PictureErrorCasters

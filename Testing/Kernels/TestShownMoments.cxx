@@ -7,6 +7,7 @@
 
 #include "Numerics/Constants.h"
 #include "Reference/ReferenceTable.h"
+#include "Viewing/PictureError.h"
 #include "Viewing/Sources/SeenSources.h"
 
 #include <gmock/gmock.h>
@@ -56,7 +57,9 @@ Picture Look(Device& device, const Scene& scene, const LightField& light, const 
   ViewSettings small = settings;
   small.imageSize = { 24, 20 };
   small.minimumTransmittance = 0.0;
-  MediumRayCaster caster(device, scene.medium, Seen(light, scene.medium.grid.VoxelCount()), scene.light, small);
+  SolvedLight seen = Seen(light, scene.medium.grid.VoxelCount());
+  seen.faceRadiance = scene.light.faces;
+  MediumRayCaster caster(device, scene.medium, seen, scene.light, small);
   return caster.Render(FrameGrid(scene.medium.grid, 1.2, 30.0, towards));
 }
 
@@ -134,6 +137,42 @@ TEST_F(MomentsInPictures, LeaveOutLampsFirstScattering)
   EXPECT_LT(largest, 1e-6);
   ASSERT_EQ(light.lampsApart.size(), 1u);
   EXPECT_EQ(light.lampsApart[0].power, scene.light.lights[0].power);
+}
+
+/// Between six faces of radiance 1, which pictures do not show, a white medium scatters as much light to the eye as it
+/// hides of them.
+TEST_F(MomentsInPictures, ShowWhatIsScatteredStraightOnFromFaces)
+{
+  Scene scene = Cloudlet({ 9, 8, 7 }, 0.85);
+  scene.light.faces.fill({ 1.0, 1.0, 1.0 });
+  const Picture picture = Look(this->GetDevice(), scene, scene.Solve(this->GetDevice()), { 1.0, 0.4, 0.3 });
+  for (std::size_t i = 0; i < picture.alpha.size(); ++i)
+  {
+    EXPECT_NEAR(picture.radiance[3 * i], picture.alpha[i], 0.02) << i;
+  }
+}
+
+/// What moments up to degree 3 do not show of light that is scattered forwards is part of the picture's estimated error.
+TEST_F(MomentsInPictures, KnowWhatHigherDegreesWouldAdd)
+{
+  Scene scene = Cloudlet({ 12, 11, 10 }, 0.85, 0.99);
+  scene.ShineAlong({ 0.3, -0.5, -1.0 });
+  const std::size_t voxels = scene.medium.grid.VoxelCount();
+  const LightField light = scene.Solve(this->GetDevice());
+  scene.settings.angularDegree = 8;
+  const LightField better = scene.Solve(this->GetDevice());
+  ViewSettings settings;
+  settings.imageSize = { 24, 20 };
+  const Camera camera = FrameGrid(scene.medium.grid, 1.2, 30.0, { 1.0, 0.4, 0.3 });
+  const auto picture = [&](const LightField& seen) {
+    return MediumRayCaster(this->GetDevice(), scene.medium, Seen(seen, voxels), scene.light, settings).Render(camera);
+  };
+  Picture coarse = picture(light);
+  PictureErrorCasters(this->GetDevice(), scene.medium, Seen(light, voxels), scene.light, settings)
+    .Estimate(coarse, camera);
+  const double error = RelativeRmse(coarse.radiance, picture(better).radiance);
+  EXPECT_GT(coarse.relativeError, 0.3 * error);
+  EXPECT_LT(coarse.relativeError, 3.0 * error);
 }
 
 /// A white medium under an even sky cannot be seen, however it scatters, from anywhere.
