@@ -152,7 +152,7 @@ TEST_F(MomentsInPictures, ShowWhatIsScatteredStraightOnFromFaces)
   }
 }
 
-/// What moments up to degree 3 do not show of light that is scattered forwards is part of the picture's estimated error.
+/// What moments up to degree 3 do not show of light that is scattered forwards is part of a picture's estimated error.
 TEST_F(MomentsInPictures, KnowWhatHigherDegreesWouldAdd)
 {
   Scene scene = Cloudlet({ 12, 11, 10 }, 0.85, 0.99);
