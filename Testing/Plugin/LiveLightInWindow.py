@@ -22,7 +22,7 @@ LIGHTS = {
 }
 VIEW = ("pqClientMainWindow/centralwidget/MultiViewWidget/CoreWidget/qt_tabwidget_stackedwidget/MultiViewWidget1/"
         "Container/Frame.0/CentralWidgetFrame/Viewport")
-SOURCES = "pqClientMainWindow/menubar/menuSources/"
+SOURCES, FILTERS = ("pqClientMainWindow/menubar/menu%s/Alphabetical" % menu for menu in ("Sources", "Filters"))
 FILE = "pqClientMainWindow/menubar/menu_File"
 LIGHT_ROW, SOLVER_ROW = "/0:0/1:0", "/0:0/2:0"  # in the pipeline browser, below the density
 
@@ -100,11 +100,11 @@ def difference(one, other):
     return numpy.sqrt(((one - other) ** 2).sum() / (other ** 2).sum())
 
 
-make(SOURCES + "Alphabetical", "RTAnalyticSource")
-make(SOURCES + "Light Transport", kind)
+make(SOURCES, "RTAnalyticSource")
+make(SOURCES, kind)
 select("/0:0/0:0")
-make("pqClientMainWindow/menubar/menuFilters/Light Transport", "ParticipatingMedium")
-player.event("pqClientMainWindow/menubar/menuFilters/Light Transport", "activate", "LightPropagationMaps")
+make(FILTERS, "ParticipatingMedium")
+player.event(FILTERS, "activate", "LightPropagationMaps")
 player.event(tutorial.PROPERTIES + "Lights/1QComboBox0", "set_string", kind + "1:Lights")
 preview(True)
 player.event(tutorial.PANEL + "Accept", "activate")

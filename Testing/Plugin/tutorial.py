@@ -11,21 +11,26 @@ after the words "continue from the state after".
 """
 import os
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 
 from pipeline_browser import Browser
 
 SOURCE = os.environ["TYNDALL_SOURCE"]
+# The ParaView that plays, by the plugin's folder on its command line; the pages show the window of PICTURED.
+PARAVIEW = tuple(int(number) for number in re.search(r"/paraview-(\d+)\.(\d+)/", " ".join(sys.argv)).groups())
+PICTURED = (5, 11)
 WINDOW = "pqClientMainWindow/"
 PANEL = WINDOW + "propertiesDock/propertiesPanel/"
+TOOLBAR = WINDOW + ("filters." if PARAVIEW >= (5, 13) else "") + "Light Transport/"
 BROWSER = WINDOW + "pipelineBrowserDock/pipelineBrowser"
 PROPERTIES = PANEL + "scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel/"
 PROXIES_OF_OTHERS = {"Sphere": "SphereSource", "Slice": "Cut", "Plot Over Line": "ProbeLine"}
 BUTTONS = {
     "Z Normal": PROPERTIES + "CutFunction/ProxySelectionWidget/frame/ChosenProxyWidget/InteractivePlane/useZNormal",
     "X Axis": PROPERTIES + "InteractiveLine/xAxis",
-    "+Y": WINDOW + "cameraToolbar/1QToolButton7",
-    "Zoom to Data": WINDOW + "cameraToolbar/1QToolButton1",
+    "+Y": WINDOW + "cameraToolbar/actionPositiveY",
+    "Zoom to Data": WINDOW + "cameraToolbar/actionZoomToData",
 }
 
 
@@ -121,7 +126,7 @@ class Player:
             self.browser.apply()
             self.event(PANEL + "Accept", "activate")
         elif word == "Open":
-            self.event(WINDOW + "MainControlsToolbar/1QToolButton0", "activate")
+            self.event(WINDOW + "MainControlsToolbar/actionOpenData", "activate")
         elif word == "OK" and self.dialog:
             self.event(WINDOW + "SelectInputDialog/buttonBox/1QPushButton0", "activate")
             self.dialog = ""
@@ -130,7 +135,7 @@ class Player:
             self.browser.add_source(os.path.basename(before))
         elif word in ("Filters", "Sources"):
             self.menu = [word]
-            self.clicks += 1
+            self.event(WINDOW + "menubar", "activate", "menu" + word)
         elif word in BUTTONS:
             self.event(BUTTONS[word], "activate")
         elif self.browser.has(name):
@@ -138,7 +143,7 @@ class Player:
             self.browser.select(name)
         else:
             assert name in filters(), "no filter, and nothing in the pipeline: " + name
-            self.event(WINDOW + "Light Transport/1QToolButton%d" % filters().index(name), "activate")
+            self.event(TOOLBAR + "1QToolButton%d" % filters().index(name), "activate")
             self.browser.add_filter(name)
 
     def follow_menu(self, word):
