@@ -69,9 +69,10 @@ void ForArrays(LightField& light, const Act& act)
   act(light.firstMoments, std::size_t{ 6 });
 }
 
+/// A field whose component of `channel` is used for all channels; unchanged if one component is already.
 Field InChannel(const Field& field, int channel)
 {
-  return { field.values, field.components, field.components == 3 ? channel : -1 };
+  return { field.values, field.components, field.HasColour() ? channel : field.standsForAll };
 }
 }
 

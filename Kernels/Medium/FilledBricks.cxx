@@ -32,6 +32,11 @@ public:
     , Layer(layer)
     , Bits(Count(bricks.count[0]) * Count(bricks.count[1]) * Lanes, 0)
   {
+    const bool one = field.components == 3 && !field.HasColour();
+    for (std::size_t i = 0; i < this->Used.size(); ++i)
+    {
+      this->Used[i] = one && static_cast<int>(i % 3) != field.standsForAll ? 0 : -1;
+    }
   }
 
   /// Marks in `bricks` the bricks that have any non-zero value, and includes all values in the summary `all`.
@@ -90,13 +95,14 @@ private:
         {
           for (std::size_t lane = 0; lane < Lanes; ++lane)
           {
-            bits[brick * Lanes + lane] |= BitsOf(row[(brick * each + part) * Lanes + lane]);
+            bits[brick * Lanes + lane] |=
+              BitsOf(row[(brick * each + part) * Lanes + lane]) & this->Used[part * Lanes + lane];
           }
         }
       }
       for (std::size_t i = whole * ofBrick; i < values; ++i)
       {
-        bits[whole * Lanes] |= BitsOf(row[i]);
+        bits[whole * Lanes] |= BitsOf(row[i]) & this->Used[i - whole * ofBrick];
       }
     });
   }
@@ -110,7 +116,7 @@ private:
     this->ForRows(y, y + BrickEdge, [&](const float* row, int) {
       for (std::size_t i = begin; i < end; ++i)
       {
-        largest = std::max(largest, BitsOf(row[i]));
+        largest = std::max(largest, BitsOf(row[i]) & this->Used[i - begin]);
       }
     });
     return largest;
@@ -120,6 +126,8 @@ private:
   const Grid& TheGrid;
   const std::array<int, 3> BrickCount;
   const int Layer;
+  /// All bits set for the values of a row of a brick that belong to a component in use, else 0.
+  std::array<std::int32_t, 3 * BrickEdge> Used;
   /// [brick][lane of a vector instruction]: the bits of a brick's values in this lane, combined by OR
   std::vector<std::int32_t> Bits;
 };

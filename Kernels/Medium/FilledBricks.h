@@ -18,7 +18,7 @@ namespace tyndall
 /// that changes the arrays it would be wrong and lose light, and a medium that was not read from a file has none.
 struct FilledBricks
 {
-  /// Summary of all values of sigma_a, sigma_s or emission, in all components.
+  /// Summary of all values of sigma_a, sigma_s or emission, in all components that channels use.
   struct Values
   {
     float largest = 0.0f; ///< largest value; valid only if `sound` is true

@@ -90,12 +90,15 @@ struct Row
   std::size_t first;
   int size;
 
-  /// Whether a field, whose values are not negative, has a component above 0 in any voxel of this row.
+  /// Whether a field is above 0 in any voxel and channel of this row.
   bool Has(const Field& field) const
   {
-    const float* begin = field.values + this->first * field.components;
-    return field.values &&
-      std::any_of(begin, begin + this->size * field.components, [](float value) { return value > 0.0f; });
+    bool has = false;
+    for (std::size_t i = this->first; field.values && !has && i < this->first + this->size; ++i)
+    {
+      has = field.At(i, 0) > 0.0f || field.At(i, 1) > 0.0f || field.At(i, 2) > 0.0f;
+    }
+    return has;
   }
 
   bool IsGrey(const Field& field) const
@@ -249,11 +252,6 @@ private:
   std::array<int, 3> Lower, Upper;
 };
 
-bool HasThree(const Field& field)
-{
-  return field.values && field.components == 3;
-}
-
 void AddGrey(const Row& row, MediumTraits& traits)
 {
   traits.grey = traits.grey && row.IsGrey(row.medium.sigma_a) && row.IsGrey(row.medium.sigma_s);
@@ -274,12 +272,12 @@ MediumTraits TraitsOf(const Medium& medium, const FilledBricks& bricks, bool sim
   traits.scatters = bricks.scattering.largest > 0.0f;
   traits.emits = bricks.emission.largest > 0.0f;
   traits.grey = !medium.phase.HasColour() || bricks.filledCount == 0;
-  const bool coloursEmit = traits.emits && HasThree(medium.emission);
+  const bool coloursEmit = traits.emits && medium.emission.HasColour();
   if (traits.emits && !coloursEmit)
   {
     traits.emission.Add(Rgb{ 1.0, 1.0, 1.0 });
   }
-  if (coloursEmit || HasThree(medium.sigma_a) || HasThree(medium.sigma_s) || medium.phase.HasColour())
+  if (medium.Channels() == 3)
   {
     ForFilledRows(medium, bricks, similarity, [&](const Row& row) {
       AddGrey(row, traits);

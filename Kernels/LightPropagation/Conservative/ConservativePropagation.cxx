@@ -253,52 +253,68 @@ std::unique_ptr<Iteration> MakeIteration(TransportParts& parts, const KeptLight*
   return std::make_unique<DiffusionAcceleration>(parts, kept);
 }
 
-/// OneChannelScene with arrays of its own.
-struct ChannelArrays : OneChannelScene
+/// A channel of a scene, to be solved alone. Construct collectively.
+struct ChannelProblem
 {
-  ChannelArrays(const Medium& given, const Illumination& illumination, int channel)
-    : OneChannelScene(given, illumination, channel)
+  ChannelProblem(Device& device, const Domain& domain, const Medium& medium, const Illumination& illumination,
+    int channel, const PropagationSettings& settings)
+    : scene(medium, illumination, channel)
+    , problem(domain, this->scene.medium, this->scene.light, settings, MemoryOf(device))
+    , how(ChooseIterationScheme(this->problem))
   {
-    const std::array<Field*, 4> fields = { &this->medium.sigma_a, &this->medium.sigma_s, &this->medium.emission,
-      &this->light.uncollided.fluence };
-    for (std::size_t f = 0; f < fields.size(); ++f)
-    {
-      this->Values[f].resize(fields[f]->values ? given.grid.VoxelCount() : 0);
-      InThreads(this->Values[f].size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          this->Values[f][i] = fields[f]->At(i, 0);
-        }
-      });
-      *fields[f] = { fields[f]->values ? this->Values[f].data() : nullptr, 1 };
-    }
   }
-  ChannelArrays(const ChannelArrays&) = delete;
-  ChannelArrays& operator=(const ChannelArrays&) = delete;
 
-private:
-  std::array<std::vector<float>, 4> Values;
+  const OneChannelScene scene;
+  const PropagationProblem problem;
+  const IterationScheme how;
 };
 
-/// Whether any channel, solved alone, has another iteration scheme or degree of angular moments than all together:
-/// both change the light of optically thick voxels, which must not depend on the other channels. With isotropic
-/// scattering the difference is within the tolerance. Collective.
-bool ChannelsDiffer(Device& device, const Domain& domain, const PropagationProblem& all, const Medium& medium,
-  const Illumination& illumination, const PropagationSettings& settings)
+/// The channels of a scene if any of them, solved alone, has another iteration scheme or degree of angular moments than
+/// all together: both change the light of optically thick voxels, which must not depend on the other channels. With
+/// isotropic scattering the difference is within the tolerance. Empty: all channels are solved together. Collective.
+std::vector<std::unique_ptr<ChannelProblem>> UnlikeChannels(Device& device, const PropagationProblem& all,
+  IterationScheme how, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
+  const Domain& domain)
 {
-  if (all.Channels() == 1 || all.IsIsotropic() || settings.angularDegree == 0)
-  {
-    return false;
-  }
-  const IterationScheme how = ChooseIterationScheme(all);
+  std::vector<std::unique_ptr<ChannelProblem>> channels;
   bool differ = false;
-  for (int c = 0; c < all.Channels() && !differ; ++c)
+  const bool may = all.Channels() > 1 && !all.IsIsotropic() && settings.angularDegree != 0;
+  for (int c = 0; c < all.Channels() && may; ++c)
   {
-    const ChannelArrays scene(medium, illumination, c);
-    const PropagationProblem one(domain, scene.medium, scene.light, settings, MemoryOf(device));
-    differ = ChooseIterationScheme(one) != how || one.Scattering().Degree() != all.Scattering().Degree();
+    channels.push_back(std::make_unique<ChannelProblem>(device, domain, medium, illumination, c, settings));
+    const ChannelProblem& one = *channels.back();
+    differ = differ || one.how != how || one.problem.Scattering().Degree() != all.Scattering().Degree();
   }
-  return differ;
+  if (!differ)
+  {
+    channels.clear();
+  }
+  return channels;
+}
+
+/// Solves the channels of a scene one after the other, and releases each afterwards.
+LightField SolveOneByOne(
+  Device& device, std::vector<std::unique_ptr<ChannelProblem>> channels, const Monitor& monitor, KeptLight* kept)
+{
+  std::vector<KeptLight> keptOfChannels = kept ? std::move(kept->channels) : std::vector<KeptLight>();
+  keptOfChannels.resize(channels.size());
+  std::vector<LightField> found;
+  Rgb firstScattered = {};
+  for (std::size_t c = 0; c < channels.size(); ++c)
+  {
+    const Monitor part = OfPart(monitor, static_cast<double>(c) / channels.size(), (c + 1.0) / channels.size());
+    const std::unique_ptr<ChannelProblem> channel = std::move(channels[c]);
+    found.push_back(SolveBySweeps(
+      device, channel->problem, channel->scene.light, channel->how, part, kept ? &keptOfChannels[c] : nullptr));
+    firstScattered[c] = keptOfChannels[c].firstScattered[0];
+  }
+  if (kept)
+  {
+    *kept = {};
+    kept->firstScattered = firstScattered;
+    kept->channels = std::move(keptOfChannels);
+  }
+  return JoinChannels(std::move(found));
 }
 
 /// Solves a scene by sweeps; its axes are already permuted for fast sweeps.
@@ -306,32 +322,15 @@ LightField Solve(Device& device, const Domain& domain, const Medium& medium, con
   const PropagationSettings& settings, const Monitor& monitor, KeptLight* kept)
 {
   std::optional<PropagationProblem> problem(std::in_place, domain, medium, illumination, settings, MemoryOf(device));
-  if (!ChannelsDiffer(device, domain, *problem, medium, illumination, settings))
+  const IterationScheme how = ChooseIterationScheme(*problem);
+  auto channels = UnlikeChannels(device, *problem, how, medium, illumination, settings, domain);
+  if (channels.empty())
   {
-    return SolveBySweeps(device, *problem, illumination, ChooseIterationScheme(*problem), monitor, kept);
+    return SolveBySweeps(device, *problem, illumination, how, monitor, kept);
   }
-  const std::size_t channels = static_cast<std::size_t>(problem->Channels());
   problem.reset();
-  std::vector<KeptLight> keptOfChannels = kept ? std::move(kept->channels) : std::vector<KeptLight>();
-  keptOfChannels.resize(channels);
-  std::vector<LightField> found;
-  Rgb firstScattered = {};
-  for (std::size_t c = 0; c < channels; ++c)
-  {
-    const ChannelArrays scene(medium, illumination, static_cast<int>(c));
-    const Monitor part = OfPart(monitor, static_cast<double>(c) / channels, (c + 1.0) / channels);
-    found.push_back(
-      Solve(device, domain, scene.medium, scene.light, settings, part, kept ? &keptOfChannels[c] : nullptr));
-    firstScattered[c] = keptOfChannels[c].firstScattered[0];
-  }
-  LightField light = JoinChannels(std::move(found));
+  LightField light = SolveOneByOne(device, std::move(channels), monitor, kept);
   light.faceAlbedo = illumination.faceAlbedo;
-  if (kept)
-  {
-    *kept = {};
-    kept->firstScattered = firstScattered;
-    kept->channels = std::move(keptOfChannels);
-  }
   return light;
 }
 }

@@ -30,9 +30,15 @@ std::array<double, 3> FaceAreas(const Grid& grid)
 
 double LargestEmission(const Medium& medium)
 {
-  const std::size_t count = medium.grid.VoxelCount() * static_cast<std::size_t>(medium.emission.components);
-  const float* values = medium.emission.values;
-  return values ? *std::max_element(values, values + count) : 0.0;
+  float largest = 0.0f;
+  for (std::size_t i = 0; i < medium.grid.VoxelCount() && medium.emission.values; ++i)
+  {
+    for (int c = 0; c < (medium.emission.HasColour() ? 3 : 1); ++c)
+    {
+      largest = std::max(largest, medium.emission.At(i, c));
+    }
+  }
+  return largest;
 }
 
 void Divide(Rgb& values, double unit)
@@ -43,7 +49,7 @@ void Divide(Rgb& values, double unit)
   }
 }
 
-/// Replaces a field by change(value) of each of its values, stored in `values`.
+/// Replaces a field by change(value) of each value that it has for any channel, stored in `values`.
 template <class Change>
 void Copy(Field& field, std::size_t voxels, std::vector<float>& values, const Change& change)
 {
@@ -51,10 +57,13 @@ void Copy(Field& field, std::size_t voxels, std::vector<float>& values, const Ch
   {
     return;
   }
-  values.resize(voxels * static_cast<std::size_t>(field.components));
-  std::transform(field.values, field.values + values.size(), values.begin(),
-    [&](float value) { return static_cast<float>(change(value)); });
-  field.values = values.data();
+  const int components = field.HasColour() ? 3 : 1;
+  values.resize(voxels * static_cast<std::size_t>(components));
+  for (std::size_t i = 0; i < values.size(); ++i)
+  {
+    values[i] = static_cast<float>(change(field.At(i / components, static_cast<int>(i % components))));
+  }
+  field = { values.data(), components };
 }
 
 void Multiply(std::vector<float>& values, double unit, const char* name)
