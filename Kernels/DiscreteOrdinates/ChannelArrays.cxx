@@ -234,31 +234,6 @@ ChannelArrays::Powers ChannelArrays::PowersOf(const std::vector<float>& values, 
   return { sums[0], sums[1] };
 }
 
-double ChannelArrays::MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const
-{
-  double sum = 0.0;
-  for (std::size_t i = 0; i < this->Voxels; ++i)
-  {
-    const double other = others.empty() ? 0.0 : others[i];
-    sum += std::abs(values[i] - other) * this->Scattering[i];
-  }
-  return this->Scene.domain.Sum(sum * this->Layout.grid.VoxelVolume() * this->ScatteredAway());
-}
-
-void ChannelArrays::ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const
-{
-  std::vector<float> scattered(this->Voxels);
-  for (std::size_t i = 0; i < this->Voxels; ++i)
-  {
-    scattered[i] = static_cast<float>(factor * this->ScatteredAway() * this->Scattering[i] * values[i] / (4.0 * Pi));
-  }
-  const Buffer<float> even(this->TheDevice, scattered, "the last light");
-  cl::Kernel add = this->TheDevice.Kernel("add_even_source", kernel_source::UpwindSweep, Define("REAL_WIDTH", 8));
-  With(add, source, even, cl_ulong(OrdinateStride(this->Voxels)));
-  Launch(this->TheDevice, add, cl::NDRange(this->Voxels, this->Angles.groups.Count()));
-  this->TheDevice.Finish(); // the kernel reads `even`, which is destroyed on return
-}
-
 void ChannelArrays::EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const
 {
   double sum = 0.0;

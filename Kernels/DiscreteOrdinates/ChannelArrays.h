@@ -53,14 +53,9 @@ public:
   /// @param lamps  true: `values` is fluence of uncollided light of lamps, all of whose scattering counts; false: other
   ///   fluence, whose scattering into the forward peak does not count as scattering
   Powers PowersOf(const std::vector<float>& values, bool lamps) const;
-  /// Power, W, that the medium would scatter if the fluence were the absolute difference of two fluences; empty
-  /// `others` count as 0. Collective.
-  double MagnitudeOf(const std::vector<float>& values, const std::vector<float>& others) const;
   /// Writes the isotropic emission of the voxels to `source`, W / (length^3 sr). Collective if any voxel emits.
   /// @param ledger  receives the power of all emission
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
-  /// Adds the isotropic scattering source of a fluence, times `factor`, to `source`; the result may be negative.
-  void ScatterEvenly(const std::vector<float>& values, double factor, const Buffer<float>& source) const;
   bool Emits() const { return this->AnyEmission; }
   bool Scatters() const { return this->AnyScattering; }
   /// Fraction of this rank's voxels in groups that do not scatter, which AngularScattering can skip.

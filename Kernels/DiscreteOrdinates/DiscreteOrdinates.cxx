@@ -22,112 +22,6 @@ namespace tyndall
 {
 namespace
 {
-/// largest ratio of the powers of successive scattering orders that is passed to the next solve
-constexpr double SlowestRate = 1.0 - 1e-6;
-
-/// Initial guesses: for each channel the scattered fluence of the previous solve, from which this solve may start
-/// (numerics.md, section 6.4). Each rank keeps the light of its block; either all ranks use their kept light, or none
-/// does.
-class OrdinatesWarmStart
-{
-public:
-  /// @param kept  light of the previous solve; null: there is no initial guess, and no light is kept for the next
-  ///   solve. `kept` and `settings` must outlive this object
-  OrdinatesWarmStart(const KeptLight* kept, const OrdinatesSettings& settings)
-    : Kept(kept)
-    , Settings(settings)
-  {
-  }
-
-  /// Returns the initial guess of a channel; OrdinatesGuess::begins is false if the solve cannot start from it.
-  /// Collective.
-  /// @param channels  number of channels of the solve
-  OrdinatesGuess Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles);
-  /// Stores the light of a channel for the next solve.
-  void Take(const OrdinatesResult& found, int channel);
-  /// Replaces the kept light by that of this solve, and writes to left_out whether the solve started from an initial
-  /// guess. Does nothing if no light is kept.
-  void Finish(LightField& light, KeptLight* kept);
-
-private:
-  std::string WhyNotOf(const OrdinatesAngles& angles) const;
-  OrdinatesGuess GuessOf(int channel, bool begins) const;
-
-  const KeptLight* Kept;
-  const OrdinatesSettings& Settings;
-  KeptLight Left;
-  /// reason why a channel could not start from its initial guess, of the first such channel; empty: all channels start
-  /// from theirs
-  std::string WhyNot;
-};
-
-OrdinatesGuess OrdinatesWarmStart::Begin(int channel, int channels, const Domain& domain, const OrdinatesAngles& angles)
-{
-  if (!this->Kept)
-  {
-    return {};
-  }
-  if (channel == 0)
-  {
-    this->Left.kind = { "discrete ordinates", domain.Whole().size, domain.Whole().spacing, channels,
-      angles.phase.Terms(), angles.phase.DirectionCount(), this->Settings.periodic, domain.Own() };
-  }
-  const std::string why = WhyNotBegunOnAny(domain.Comm(), *this->Kept, this->WhyNotOf(angles));
-  OrdinatesGuess guess;
-  domain.Collective([&] { guess = this->GuessOf(channel, why.empty()); });
-  this->WhyNot = this->WhyNot.empty() ? why : this->WhyNot;
-  return guess;
-}
-
-std::string OrdinatesWarmStart::WhyNotOf(const OrdinatesAngles& angles) const
-{
-  if (IsPublished(this->Settings))
-  {
-    return NotBegunAsPublished;
-  }
-  if (!CanBeginWarm(angles, this->Settings))
-  {
-    return "sources that terms of the phase function make negative are set to 0 order by order, from darkness on";
-  }
-  return WhyNotBegun(*this->Kept, this->Left.kind, this->Settings.maximumOrders);
-}
-
-/// Initial guess of one channel from the kept light.
-/// @param begins  whether the solve may start from it
-OrdinatesGuess OrdinatesWarmStart::GuessOf(int channel, bool begins) const
-{
-  OrdinatesGuess guess;
-  guess.keeps = true;
-  guess.begins = begins;
-  if (begins)
-  {
-    const std::vector<float>& all = this->Kept->scattered;
-    const auto values = static_cast<std::ptrdiff_t>(all.size()) / this->Left.kind.channels;
-    guess.values.assign(all.begin() + channel * values, all.begin() + (channel + 1) * values);
-    guess.firstScattered = this->Kept->firstScattered[channel];
-    guess.rate = this->Kept->rate[channel];
-  }
-  return guess;
-}
-
-void OrdinatesWarmStart::Take(const OrdinatesResult& found, int channel)
-{
-  this->Left.scattered.insert(this->Left.scattered.end(), found.left.begin(), found.left.end());
-  this->Left.firstScattered[channel] = found.firstScattered;
-  this->Left.rate[channel] = this->Settings.maximumOrders > 0 ? 0.0 : std::min(found.rate, SlowestRate);
-}
-
-void OrdinatesWarmStart::Finish(LightField& light, KeptLight* kept)
-{
-  if (!kept)
-  {
-    return;
-  }
-  this->Left.fromDarkness = kept->fromDarkness;
-  light.leftOut.push_back(WordsOfWarmStart(this->WhyNot));
-  Keep(std::move(this->Left), this->WhyNot.empty(), light, *kept);
-}
-
 /// A scene in the units in which the solver computes (PropagationProblem), and the number of channels that are solved.
 struct SolvedScene
 {
@@ -166,7 +60,7 @@ std::vector<std::string> Words(
   const bool asked = settings.acceleration == PropagationAcceleration::Automatic && settings.maximumOrders == 0;
   if (traits.scatters && asked && !IsPublished(settings) && settings.seriesAfter == 0)
   {
-    const bool may = MayAccelerate(settings, scattersEvenly) && !scene.shining.uncollided.IsThere();
+    const bool may = IteratesAsMaps(settings, scattersEvenly) && !scene.shining.uncollided.IsThere();
     words.emplace_back(may ? left_out::Acceleration : left_out::SpiralAcceleration);
   }
   say(!settings.netFlux, left_out::NetFlux);
@@ -176,13 +70,12 @@ std::vector<std::string> Words(
 /// Solves for the light of all channels, one after the other. Collective.
 /// @return light in the units of `scene`
 LightField SolveChannels(
-  Device& device, const SolvedScene& scene, const OrdinatesSettings& settings, const Monitor& monitor, KeptLight* kept)
+  Device& device, const SolvedScene& scene, const OrdinatesSettings& settings, const Monitor& monitor)
 {
   const Domain& domain = scene.domain;
   const FarLight far = FarLightOf(scene.shining, scene.directionsPerFace, settings);
   LightField light;
   light.channels = scene.channels;
-  OrdinatesWarmStart warm(kept, settings);
   bool diverged = false;
   double thickest = 0.0;
   for (int c = 0; c < light.channels; ++c)
@@ -194,15 +87,12 @@ LightField SolveChannels(
     domain.Collective([&] { CheckMemory(device, scene.medium.grid, angles, settings); });
     const OrdinatesScene ofChannel = { domain, scene.medium, c, LampsOf(far, scene.shining, c),
       IncomingOf(far, scene.shining, c), FaceAlbedoOf(scene.shining, c), UncollidedOf(scene.shining, c),
-      warm.Begin(c, light.channels, domain, angles), scene.traits.filled };
+      scene.traits.filled };
     const Monitor part = OfPart(monitor, static_cast<double>(c) / light.channels, (c + 1.0) / light.channels);
     const OrdinatesResult found = IsPublished(settings)
       ? SolvePublishedOrders(device, ofChannel, angles, settings, part)
       : SolveSweptOrders(device, ofChannel, angles, settings, part);
-    domain.Collective([&] {
-      TakeChannel(light, found, c);
-      warm.Take(found, c);
-    });
+    domain.Collective([&] { TakeChannel(light, found, c); });
     diverged = diverged || found.diverged;
     if (c == 0)
     {
@@ -213,7 +103,6 @@ LightField SolveChannels(
   DescribeLight(light, device, far);
   light.doubts = DoubtsOf(settings, thickest, domain.Any(!domain.IsEmpty() && scene.medium.phase.Varies()));
   Judge(settings, diverged, domain, scene.medium, light);
-  warm.Finish(light, kept);
   if (!IsPublished(settings) && settings.seriesAfter > 0 &&
     light.convergence.size() >= static_cast<std::size_t>(settings.seriesAfter))
   {
@@ -259,18 +148,25 @@ LightField SolveDiscreteOrdinates(Device& device, const Domain& domain, const Me
 {
   CheckOrdinates(domain, medium, illumination, settings, kept != nullptr);
   const PropagationProblem problem(domain, medium, illumination, AsPropagation(settings));
-  std::optional<LightField> accelerated =
-    SolveAcceleratedOrdinates(device, { domain, medium, illumination }, settings, problem, monitor, kept);
-  if (accelerated)
+  std::optional<LightField> swept =
+    SolveBySweptOrdinates(device, { domain, medium, illumination }, settings, problem, monitor, kept);
+  if (swept)
   {
-    return std::move(*accelerated);
+    return std::move(*swept);
   }
   Illumination shining = problem.Shining();
   shining.uncollided = UncollidedKnown(domain, shining.uncollided);
   LightField light = SolveChannels(device,
     { problem.TheDomain(), problem.TheMedium(), problem.Traits(), shining, problem.Channels(),
       problem.Settings().directionsPerFace, problem.IsMuchThinner() },
-    settings, monitor, kept);
+    settings, monitor);
+  if (kept)
+  {
+    light.leftOut.push_back(WordsOfWarmStart(IsPublished(settings)
+        ? NotBegunAsPublished
+        : "sources that terms of the phase function make negative are set to 0 order by order, from darkness on"));
+    Keep({}, false, light, *kept);
+  }
   domain.Collective([&] { problem.Undo(light); });
   light.faceAlbedo = illumination.faceAlbedo;
   WarnAboutInputLight(domain, illumination, light);

@@ -33,8 +33,8 @@ namespace tyndall
 /// @param medium  of this rank's block, on the grid domain.OwnGrid(); not read if that is empty
 /// @param illumination, settings  the same on all ranks
 /// @param kept  light of the previous solve, used as first guess and replaced by the light of this solve (KeptLight.h);
-///   null, on all ranks or none: no first guess, nothing is kept. The conservative scheme uses the guess if scattering
-///   is isotropic; the published scheme never does.
+///   null, on all ranks or none: no first guess, nothing is kept. Used and kept by SolveBySweptOrdinates()
+///   (OrdinatesTransport.h)
 /// @return light of this rank's block; balance, face powers and convergence are of the whole grid
 /// @throws InvalidInput  from Check(medium), Check(illumination); if settings are out of range; for the published
 ///   scheme, if faces reflect or there are several ranks; if inputs differ between ranks, or the blocks have a cyclic

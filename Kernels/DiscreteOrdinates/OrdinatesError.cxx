@@ -66,6 +66,7 @@ OrdinatesSettings With(const OrdinatesSettings& given, const PropagationSettings
   settings.terms = TermsFor(given, how.directionsPerFace, choosesTerms);
   settings.directionsPerFace = how.directionsPerFace;
   settings.adaptDirections = how.adaptDirections;
+  settings.uncollidedDirections = how.uncollidedDirections;
   settings.tolerance = how.tolerance;
   settings.netFlux = how.netFlux;
   if (given.spiralDirections > 0)

@@ -24,18 +24,6 @@
 
 namespace tyndall
 {
-/// Initial guess of one channel: the scattered fluence of the previous solve (KeptLight.h), from which the iteration
-/// starts.
-struct OrdinatesGuess
-{
-  bool keeps = false;  ///< whether the light of this solve is kept for the next
-  bool begins = false; ///< whether this solve begins from the guess
-  /// Scattered fluence left by the previous solve (OrdinatesResult::left), W / length^2, by voxel.
-  std::vector<float> values;
-  double firstScattered = 0.0;
-  double rate = 0.0;
-};
-
 /// One channel of a scene, in the units in which the solver computes (PropagationProblem).
 struct OrdinatesScene
 {
@@ -45,11 +33,10 @@ struct OrdinatesScene
   /// Lamps of the scene and parallel beams that represent peaks of the environment, with the power of this channel in
   /// all three components.
   std::vector<Light> lamps;
-  IncomingRadiance incoming;          ///< boundary source; empty: no light is incident
+  IncomingRadiance incoming;          ///< boundary source of sweeps; empty: no light is incident
   std::array<Rgb, 6> faceAlbedo = {}; ///< albedo of this channel in all three components
   UncollidedImage uncollided;         ///< uncollided light of this channel, given by another solver
-  OrdinatesGuess guess;
-  VoxelBox filled; ///< box of this rank's voxels that contains all of the medium, in all channels
+  VoxelBox filled;                    ///< box of this rank's voxels that contains all of the medium, in all channels
 };
 
 /// Sums the incident and escaped powers of a sweep over all ranks. Collective.
@@ -74,12 +61,6 @@ struct OrdinatesResult
   std::vector<float> facePower;
   std::vector<ConvergenceRow> convergence;
   bool diverged = false;
-  /// scattered fluence, W / length^2, that the next solve may use as its initial guess; empty: not requested
-  std::vector<float> left;
-  /// power scattered by first collisions, W; the next solve multiplies its initial guess by the ratio of its own such
-  /// power to this one
-  double firstScattered = 0.0;
-  double rate = 0.0;                ///< ratio of the powers of the last two scattering orders
   std::vector<std::string> leftOut; ///< what the sweeps of this channel omitted (LeftOut.h)
 };
 
@@ -96,14 +77,8 @@ std::optional<LightOfCells> CellsOf(const FaceLight* faces);
 class OrdinatesRecord
 {
 public:
-  /// Declares that the next order is the first correction to an initial guess, and sets the ratio of successive orders
-  /// that the previous solve found (RestOfOrders::BeginWarm).
-  void BeginWarm(double rate) { this->Rest.BeginWarm(rate); }
-  /// @param goesOn  power still in transport, which the next order carries, W (published scheme: change of fluence);
-  ///   after an initial guess, whose corrections may be negative, the sum of its absolute values over voxels
-  void Add(double goesOn, const EnergyLedger& ledger) { this->Add(goesOn, goesOn, ledger); }
-  /// @param more  power by which the sum of all orders increases, W
-  void Add(double goesOn, double more, const EnergyLedger& ledger);
+  /// @param goesOn  power still in transport, which the next order carries, W (published scheme: change of fluence)
+  void Add(double goesOn, const EnergyLedger& ledger);
   double Rate() const { return this->Rest.Ratio(); }
   double Residual() const { return this->Left; }
   std::vector<ConvergenceRow>& All() { return this->Rows; }

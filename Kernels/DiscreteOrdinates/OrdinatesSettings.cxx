@@ -46,8 +46,9 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings)
   as.netFlux = settings.netFlux;
   as.leaveOut = settings.leaveOut;
   as.acceleration = settings.acceleration;
-  as.angularDegree = 0;        // no angular moments: scattering is between directions
-  as.uncollidedDirections = 0; // boundary light goes along the directions of scattered light
+  as.angularDegree = 0; // no angular moments: scattering is between directions
+  as.uncollidedDirections = IsPublished(settings) ? 0 : settings.uncollidedDirections;
+  as.alongRays = false;
   as.storeMoments = false;
   return as;
 }

@@ -32,6 +32,7 @@ typedef struct
   /// number of voxels from the radiance of one group of directions to that of the next (OrdinateStride)
   ulong stride;
   ulong firstT, firstSource; ///< index of the channel's first value in the extinction, and in an isotropic source
+  int ofMean;                ///< what sums over directions hold, see SweptSums::ofMean
 } SweptLayers;
 
 /// Range of voxels that a launch of a scattering kernel processes.

@@ -5,6 +5,7 @@
 #include "DiscreteOrdinates/PipelinedSweep.h"
 #include "DiscreteOrdinates/UpwindSweep.h"
 #include "LightPropagation/Conservative/ConservativePropagation.h"
+#include "LightPropagation/Conservative/OrderSweeps.h"
 #include "LightPropagation/Conservative/SolveMemory.h"
 #include "LightPropagation/Conservative/TransportParts.h"
 #include "LightPropagation/Diffusion/SweepModel.h"
@@ -29,9 +30,9 @@ namespace
 /// left, but at most MostLaps times.
 constexpr double WrappedLeft = 1e-6;
 constexpr int MostLaps = 500;
-/// Number of scattering orders up to which anisotropic scattering is not accelerated: scattering between directions and
-/// the first scattering of lamps are more accurate than angular moments.
-constexpr double FewOrders = 100.0;
+/// Number of scattering orders up to which anisotropic scattering in slabs is not accelerated: there sweeps by mean
+/// chords are of second order, and scattering between directions is more accurate than angular moments.
+constexpr double FewOrdersInSlabs = 100.0;
 
 /// Directions of a quadrature that are swept: one of each class whose directions carry the same light
 /// (SweptDirections), with the solid angle of the class.
@@ -62,12 +63,15 @@ public:
   OrdinatesTransport(TransportParts& parts, const SweepRequest& request)
     : Parts(parts)
     , Request(request)
+    , ByDiamonds(parts.How == IterationScheme::Dsa)
+    , Laps(request.mostPlanes < MostPlanesAround ? 1 : MostLaps)
     , Ordinates(parts.Usual)
     , Groups(this->Ordinates.directions)
     , Voxels(parts.Layout.grid.VoxelCount())
     , Sums(parts.TheDevice, 4 * this->Groups.Count() * OrdinateStride(this->Voxels), "sums over directions")
     , Nothing(parts.TheDevice, parts.Layout.Floats(), "no source")
   {
+    this->Sums.Fill(0.0f);
     this->Nothing.Fill(0.0f);
     std::vector<cl_int> up;
     for (const OrdinateGroup& group : this->Groups.All())
@@ -86,8 +90,8 @@ public:
   }
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
-  /// Does nothing: of the light that wraps around periodic axes, Apply() leaves at most WrappedLeft, except after
-  /// MostLaps.
+  /// Does nothing: of the light that wraps around periodic axes, a sweep that follows it (SweepRequest::mostPlanes)
+  /// leaves at most WrappedLeft, except after MostLaps.
   void Forget() override {}
 
 private:
@@ -101,7 +105,22 @@ private:
   void LoadFunctions(const AngularValues& angular);
   FacePowers SweepChannel(
     int channel, const Buffer<float>* source, const IncomingRadiance& incoming, bool onlyWraps, const Monitor& monitor);
+  /// Whether voxels or faces may shine on any direction of a sweep, in addition to its boundary source.
+  bool ShinesEverywhere(const Buffer<float>* source) const
+  {
+    return source || this->Request.faceIn || this->Parts.Problem.Settings().IsPeriodic();
+  }
   void Spread(int channel, const Buffer<float>* source);
+  /// Array of the deposit for light through the voxels' faces, and its number of parts by voxel: partial currents, 6;
+  /// or net flux, 3, unless that is among the angular moments; or none, 0.
+  std::pair<const Buffer<float>*, int> Through() const
+  {
+    const Deposit& deposit = this->Request.deposit;
+    using Found = std::pair<const Buffer<float>*, int>;
+    return deposit.partialCurrents                       ? Found(deposit.partialCurrents, 6)
+      : deposit.flux && this->Request.angular == nullptr ? Found(deposit.flux, 3)
+                                                         : Found(&this->Nothing, 0);
+  }
   void Gather(int channel) const;
   cl::Kernel Kernel(const char* name) const
   {
@@ -111,6 +130,8 @@ private:
 
   TransportParts& Parts;
   const SweepRequest Request;
+  const bool ByDiamonds; ///< weighted diamond differences
+  const int Laps;        ///< largest number of laps around periodic axes in a sweep
   const SweptOrdinates Ordinates;
   const OrdinateGroups Groups;
   const std::size_t Voxels;
@@ -203,9 +224,12 @@ void OrdinatesTransport::Gather(int c) const
   const cl_ulong stride = OrdinateStride(this->Voxels), ofChannel = parts.Layout.Stride();
   const auto volume = static_cast<float>(parts.Layout.grid.VoxelVolume());
   const cl_int groups = this->Groups.Count();
+  const std::array<double, 3>& h = parts.Layout.grid.spacing;
+  const cl_float4 edges = { { float(h[0]), float(h[1]), float(h[2]), 0.0f } };
+  const auto [through, partsOfThrough] = this->Through();
   cl::Kernel sums = this->Kernel("gather_sums");
-  With(sums, this->Sums, this->Up, groups, stride, volume, *deposit.path, *deposit.partialCurrents, ofChannel,
-    cl_ulong(c * ofChannel));
+  With(sums, this->Sums, this->Up, groups, stride, volume, *deposit.path, *through, cl_int(partsOfThrough), edges,
+    ofChannel, cl_ulong(c * ofChannel));
   Launch(parts.TheDevice, sums, cl::NDRange(this->Voxels));
   if (this->Request.angular)
   {
@@ -222,14 +246,24 @@ FacePowers OrdinatesTransport::SweepChannel(
   int c, const Buffer<float>* source, const IncomingRadiance& incoming, bool onlyWraps, const Monitor& monitor)
 {
   const TransportParts& parts = this->Parts;
-  parts.TheDomain().Collective([&] { this->Spread(c, source); });
+  const bool everywhere = this->ShinesEverywhere(source);
+  parts.TheDomain().Collective([&] {
+    this->Spread(c, source);
+    if (!everywhere)
+    {
+      this->Sums.Fill(0.0f); // dark directions are not swept
+    }
+  });
   const SweptSums sums = { this->Sums,
     this->Request.angular ? nullptr
       : source            ? source
                           : &this->Nothing,
-    parts.Layout.ExtinctionFirst(c), c * parts.Layout.Stride() };
-  const FacePowers powers = this->Channels[c]->sweep->Apply(
-    { this->Radiance, parts.OnDevice.SigmaT(), this->Nothing, &sums, onlyWraps }, incoming, true, monitor);
+    parts.Layout.ExtinctionFirst(c), c * parts.Layout.Stride(), this->ByDiamonds, this->Through().second == 3 };
+  const OrdinateArrays arrays = { this->Radiance, parts.OnDevice.SigmaT(), this->Nothing, &sums, onlyWraps };
+  const VoxelBox& box = this->Request.box;
+  OrdinateSweep& sweep = *this->Channels[c]->sweep;
+  const FacePowers powers = box.VoxelCount() == 0 ? sweep.Apply(arrays, incoming, everywhere, monitor)
+                                                  : static_cast<UpwindSweep&>(sweep).ApplyWithin(box, arrays, monitor);
   parts.TheDomain().Collective([&] { this->Gather(c); });
   return powers;
 }
@@ -244,7 +278,7 @@ SweepTally OrdinatesTransport::Apply(const Buffer<float>* source, const SweepBou
     const Monitor ofChannel = OfPart(monitor, static_cast<double>(c) / channels, (c + 1.0) / channels);
     const Monitor ofLaps = ofChannel ? Monitor([&](double) { return ofChannel(1.0); }) : Monitor();
     double wraps = 0.0;
-    for (int lap = 0; lap == 0 || (lap < MostLaps && tally.onTheWay[c] > WrappedLeft * wraps); ++lap)
+    for (int lap = 0; lap == 0 || (lap < this->Laps && tally.onTheWay[c] > WrappedLeft * wraps); ++lap)
     {
       const bool first = lap == 0;
       const FacePowers powers = this->SweepChannel(c, first ? source : nullptr,
@@ -294,14 +328,16 @@ SweepModel ModelOfOrdinates(const TransportParts& parts)
   return model;
 }
 
-/// Checks that an accelerated solve fits the device. @throws DeviceError
-void CheckMemoryOf(Device& device, const PropagationProblem& problem)
+/// Checks that a solve fits the device. @throws DeviceError
+void CheckMemoryOf(Device& device, const PropagationProblem& problem, IterationScheme how)
 {
   const int directions = 6 * problem.Settings().directionsPerFace;
   const std::size_t voxels = OrdinateStride(problem.TheGrid().VoxelCount());
+  const bool omitsSlabs = how == IterationScheme::SourceIteration &&
+    PaysToOmitEmptySlabs(problem.Traits().filled, problem.TheGrid(), problem.Settings());
   const std::size_t sums = sizeof(float) * voxels * directions / 2; // four floats for eight directions
   const std::size_t radiance = problem.Scattering().Degree() > 0 ? 2 * sums : 0;
-  CheckMemory(device, directions, BytesOfSolve(device, problem, IterationScheme::Dsa) + sums + radiance,
+  CheckMemory(device, directions, BytesOfSolve(device, problem, how) + (omitsSlabs ? 2 : 1) * sums + radiance,
     std::max(sums, radiance));
 }
 
@@ -328,56 +364,65 @@ void TransportByOrdinates(TransportParts& parts)
 
 }
 
-bool MayAccelerate(const OrdinatesSettings& settings, bool isIsotropic)
+bool IteratesAsMaps(const OrdinatesSettings& settings, bool isIsotropic)
 {
-  return !IsPublished(settings) && settings.acceleration == PropagationAcceleration::Automatic &&
-    settings.maximumOrders == 0 && settings.seriesAfter == 0 && settings.spiralDirections == 0 &&
+  return !IsPublished(settings) && settings.seriesAfter == 0 && settings.spiralDirections == 0 &&
     (isIsotropic || settings.scattering == OrdinatesScattering::SphericalHarmonics);
 }
 
 namespace
 {
-/// The problem that an accelerated solve has: `even` if scattering is isotropic, else one in angular moments; null if
-/// acceleration is not allowed, or not predicted to be faster than source iteration. Collective.
-/// @param inMoments  receives the problem in angular moments
-const PropagationProblem* AcceleratedProblem(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings,
-  const PropagationProblem& even, std::optional<PropagationProblem>& inMoments)
+/// A problem and how SolveBySweptOrdinates() solves it.
+struct SweptProblem
 {
-  if (!MayAccelerate(settings, even.IsIsotropic()) || even.HasGivenLight() ||
-    settings.terms > 6 * even.Settings().directionsPerFace)
+  /// Collective.
+  /// @param even  as for SolveBySweptOrdinates()
+  SweptProblem(
+    Device& device, const SceneBlock& scene, const OrdinatesSettings& settings, const PropagationProblem& even)
   {
-    return nullptr;
+    if (!IteratesAsMaps(settings, even.IsIsotropic()) || settings.terms > 6 * even.Settings().directionsPerFace)
+    {
+      return;
+    }
+    if (!even.IsIsotropic())
+    {
+      PropagationSettings as = AsPropagation(settings);
+      as.angularDegree = static_cast<int>(std::sqrt(settings.terms + 0.5)) - 1;
+      this->inMoments.emplace(scene.domain, scene.medium, scene.illumination, as, MemoryOf(device));
+    }
+    const PropagationProblem& own = this->inMoments ? *this->inMoments : even;
+    this->how = even.HasGivenLight() ? IterationScheme::SourceIteration : ChooseIterationScheme(own);
+    const bool byDirections =
+      this->inMoments && (!this->IsAccelerated() || (own.IsSlab() && OrdersNeeded(own) < FewOrdersInSlabs));
+    this->problem = byDirections ? nullptr : &own;
   }
-  if (!even.IsIsotropic())
-  {
-    PropagationSettings as = AsPropagation(settings);
-    as.angularDegree = static_cast<int>(std::sqrt(settings.terms + 0.5)) - 1;
-    inMoments.emplace(scene.domain, scene.medium, scene.illumination, as, MemoryOf(device));
-  }
-  const PropagationProblem& problem = inMoments ? *inMoments : even;
-  const bool pays = ChooseIterationScheme(problem) != IterationScheme::SourceIteration &&
-    (!inMoments || OrdersNeeded(problem) >= FewOrders);
-  return pays ? &problem : nullptr;
-}
+  SweptProblem(const SweptProblem&) = delete;
+  SweptProblem& operator=(const SweptProblem&) = delete;
+
+  bool IsAccelerated() const { return this->how != IterationScheme::SourceIteration; }
+
+  std::optional<PropagationProblem> inMoments;
+  const PropagationProblem* problem = nullptr; ///< null: it is not solved by SolveBySweptOrdinates()
+  IterationScheme how = IterationScheme::SourceIteration;
+};
 }
 
 bool AreAccelerated(Device& device, const SceneBlock& scene, const OrdinatesSettings& settings)
 {
   const PropagationProblem even(scene.domain, scene.medium, scene.illumination, AsPropagation(settings));
-  std::optional<PropagationProblem> inMoments;
-  return AcceleratedProblem(device, scene, settings, even, inMoments) != nullptr;
+  const SweptProblem swept(device, scene, settings, even);
+  return swept.problem && swept.IsAccelerated();
 }
 
-std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const SceneBlock& scene,
+std::optional<LightField> SolveBySweptOrdinates(Device& device, const SceneBlock& scene,
   const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor, KeptLight* kept)
 {
-  std::optional<PropagationProblem> inMoments;
-  const PropagationProblem* const problem = AcceleratedProblem(device, scene, settings, even, inMoments);
-  if (!problem)
+  const SweptProblem swept(device, scene, settings, even);
+  if (!swept.problem)
   {
     return {};
   }
-  scene.domain.Collective([&] { CheckMemoryOf(device, *problem); });
-  return SolveBySweeps(device, *problem, scene.illumination, IterationScheme::Dsa, monitor, kept, TransportByOrdinates);
+  scene.domain.Collective([&] { CheckMemoryOf(device, *swept.problem, swept.how); });
+  return SolveBySweeps(device, *swept.problem, scene.illumination, swept.how, monitor, kept, TransportByOrdinates);
 }
 }

@@ -12,19 +12,20 @@
 
 namespace tyndall
 {
-/// Whether the settings allow acceleration if scattering is isotropic or not. Not accelerated: the published scheme, a
-/// given number of orders, directions of a spiral, and anisotropic scattering by other terms than spherical harmonics;
-/// nor, whatever the settings, the light of another solver, whose scattering DSA overestimates.
-bool MayAccelerate(const OrdinatesSettings& settings, bool isIsotropic);
+/// Whether the iteration of light propagation maps can solve a scene, if scattering is isotropic or not: not by the
+/// published scheme, the series of a preview, directions of a spiral, and anisotropic scattering by terms other than
+/// spherical harmonics.
+bool IteratesAsMaps(const OrdinatesSettings& settings, bool isIsotropic);
 
-/// Solves a scene by discrete ordinates with diffusion synthetic acceleration, if that is predicted to be faster than
-/// source iteration: the iteration, the diffusion system and the uncollided light are those of light propagation maps
-/// (DiffusionAcceleration.h), the sweeps weighted diamond differences (UpwindSweep.h; numerics.md, Eq. (D15)). The
-/// phase function is represented by spherical harmonics up to the degree that `settings.terms` contain. Collective.
-/// Other parameters as for SolveDiscreteOrdinates().
+/// Solves a scene with the iteration of light propagation maps, and their uncollided light, in source iteration also
+/// that of faces; all other light is swept by discrete ordinates (UpwindSweep.h). Isotropic scattering is solved by
+/// source iteration or diffusion synthetic acceleration (SourceIteration.h, DiffusionAcceleration.h), whichever is
+/// predicted to be faster; but light of another solver is not accelerated, since DSA would overestimate its scattering.
+/// Anisotropic scattering is solved if acceleration is predicted to be faster, by spherical harmonics up to the degree
+/// that `settings.terms` contain. Collective. Other parameters as for SolveDiscreteOrdinates().
 /// @param even  problem of the scene with isotropic scattering, by AsPropagation(settings)
-/// @return no value: source iteration is to be used
-std::optional<LightField> SolveAcceleratedOrdinates(Device& device, const SceneBlock& scene,
+/// @return no value: source iteration between directions is to be used
+std::optional<LightField> SolveBySweptOrdinates(Device& device, const SceneBlock& scene,
   const OrdinatesSettings& settings, const PropagationProblem& even, const Monitor& monitor, KeptLight* kept);
 
 /// Whether SolveDiscreteOrdinates() accelerates the solve of a scene. Collective.

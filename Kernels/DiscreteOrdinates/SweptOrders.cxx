@@ -145,36 +145,10 @@ private:
     const ChannelArrays::Powers unscattered = this->Arrays.PowersOf(this->Result.direct, false);
     const ChannelArrays::Powers ofLamps = this->Arrays.PowersOf(lamps, true);
     this->Count(unscattered, ofLamps);
-    this->Result.firstScattered = unscattered.scattered + ofLamps.scattered;
     for (std::size_t i = 0; i < lamps.size(); ++i)
     {
       this->Result.direct[i] += lamps[i];
     }
-    this->BeginWarm();
-  }
-
-  bool IsWarm() const { return this->Scene.guess.begins; }
-
-  /// Warm start: adds the scattering source of the initial guess (the kept scattered fluence, scaled to the
-  /// first-scattered power of this solve) to the first-collision source (numerics.md, section 6.4).
-  void BeginWarm()
-  {
-    if (!this->IsWarm())
-    {
-      return;
-    }
-    const double before = this->Scene.guess.firstScattered;
-    const double scale = before > 0.0 ? this->Result.firstScattered / before : 0.0;
-    this->Scene.domain.Collective([&] {
-      for (float value : this->Scene.guess.values)
-      {
-        this->Guess.push_back(static_cast<float>(scale * value));
-      }
-      this->Arrays.ScatterEvenly(this->Guess, 1.0, this->Out());
-    });
-    this->GoesOn += this->Arrays.PowersOf(this->Guess, false).scattered;
-    this->CountsGuess = true;
-    this->Record.BeginWarm(this->Scene.guess.rate);
   }
 
   void Order(const Monitor& monitor)
@@ -183,26 +157,7 @@ private:
     std::vector<float> found;
     this->Scene.domain.Collective([&] { found = this->Arrays.Light.order.Read(); });
     const ChannelArrays::Powers powers = this->Arrays.PowersOf(found, false);
-    if (!this->IsWarm())
-    {
-      this->Count(powers, {});
-      return;
-    }
-    double guessed = 0.0;
-    if (std::exchange(this->CountsGuess, false))
-    {
-      guessed = this->Arrays.PowersOf(this->Guess, false).scattered;
-      this->Scene.domain.Collective([&] { this->Arrays.ScatterEvenly(this->Guess, -1.0, this->Out()); });
-    }
-    this->Reflect();
-    this->Result.ledger.Absorb(0, powers.absorbed);
-    this->Result.ledger.SetUnaccounted(
-      0, powers.scattered - guessed + this->OnTheWay + this->Reflected + this->Arrays.Stranded());
-    const double reflected = this->Arrays.Faces ? this->Arrays.Faces->Magnitude()[0] : 0.0;
-    this->GoesOn = GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->WasOnTheWay), std::abs(this->OnTheWay),
-      this->Arrays.MagnitudeOf(found, this->Guess) + reflected);
-    this->Record.Add(this->GoesOn, powers.scattered, this->Result.ledger);
-    this->Guess.clear();
+    this->Count(powers, {});
   }
 
   void Finish()
@@ -213,7 +168,6 @@ private:
     {
       this->Result.facePower = this->Arrays.Faces->PerArea(this->Arrays.Faces->LeftInAll());
     }
-    this->Leave();
     this->Result.convergence = std::move(this->Record.All());
   }
 
@@ -233,20 +187,6 @@ private:
       std::transform(last.begin(), last.end(), this->Result.fluence.begin(), this->Result.fluence.begin(),
         [&](float ofLast, float found) { return static_cast<float>(found + rate / (1.0 - rate) * ofLast); });
     }
-  }
-
-  void Leave()
-  {
-    for (float& value : this->Result.fluence)
-    {
-      // Sets negative fluence, which an initial guess can leave where it was too large, to 0.
-      value = this->IsWarm() ? std::max(value, 0.0f) : value;
-    }
-    for (std::size_t i = 0; i < this->Result.fluence.size() && this->Scene.guess.keeps; ++i)
-    {
-      this->Result.left.push_back(this->Result.fluence[i] - this->Result.direct[i]);
-    }
-    this->Result.rate = std::max(this->Record.Rate(), this->Scene.guess.rate);
   }
 
   OrdinateArrays Swept() const { return { this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale }; }
@@ -338,8 +278,8 @@ private:
       return true;
     }
     // Least number of orders: the sum of the later orders is estimated from the ratio of successive orders, which is
-    // known after three; a warm start uses the ratio that the previous solve found.
-    const int least = this->IsWarm() ? 2 : 3;
+    // known after three.
+    constexpr int least = 3;
     return this->Settings.maximumOrders > 0 ? orders >= this->Settings.maximumOrders
                                             : orders >= least && this->Record.Residual() <= this->Settings.tolerance;
   }
@@ -354,10 +294,6 @@ private:
   Buffer<float> Radiance, Source;
   OrdinatesRecord Record;
   OrdinatesResult Result;
-  /// Scattered fluence from which a warm start begins, W / length^2; empty once its source has been subtracted.
-  std::vector<float> Guess;
-  /// whether the next order's source contains that of the initial guess, which is then to be subtracted
-  bool CountsGuess = false;
   bool OmitsSlabs = false; ///< MayOmitEmptySlabs()
   /// Power that the next order carries, power that wraps around periodic axes in the next sweep, and reflected power,
   /// W.
@@ -365,11 +301,6 @@ private:
   /// Power that wrapped around periodic axes between the last two sweeps, W.
   double WasOnTheWay = 0.0;
 };
-}
-
-bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settings)
-{
-  return !CanBeNegative(angles, settings);
 }
 
 OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,

@@ -12,11 +12,6 @@ namespace tyndall
 OrdinatesResult SolveSweptOrders(Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles,
   const OrdinatesSettings& settings, const Monitor& monitor);
 
-/// Whether a solve can start from an initial guess of the scattered light: only if no source can be negative. Negative
-/// sources, which N terms can produce, are set to 0 order by order, so that the light is not a linear function of the
-/// sources, which the correction of a guess requires.
-bool CanBeginWarm(const OrdinatesAngles& angles, const OrdinatesSettings& settings);
-
 /// Bytes of device memory that SolveSweptOrders() needs.
 std::size_t BytesOfSweptOrders(const Grid& grid, const OrdinatesAngles& angles, const OrdinatesSettings& settings);
 }

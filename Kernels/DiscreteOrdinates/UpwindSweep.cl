@@ -128,17 +128,17 @@ inline real cross_by_diamonds(real tau, const real* share, const real* weight, r
   return mean;
 }
 
-// Where a sweep reads its source and writes its result.
+// Where a sweep reads its source and writes its result, and its scheme: sums of these values.
 enum
 {
-  ByDirection, // source by direction, replaced by mean radiance; mean chords
-  EvenInSums,  // isotropic source; sums over the directions of each group only; weighted diamond differences
-  InSums       // as ByDirection, and sums; weighted diamond differences
+  ByDirection = 1, // source by direction, replaced by mean radiance; else an isotropic source
+  InSums = 2,      // sums over the directions of each group; else the source is to be multiplied by `scale`
+  ByDiamonds = 4   // weighted diamond differences; else mean chords
 };
 
 typedef struct
 {
-  __global float* light; // source, see ByDirection ... InSums; W / (length^3 sr)
+  __global float* light; // source, W / (length^3 sr); with ByDirection replaced by mean radiance
   const __global float* sigma_t;
   const __global float* scale;
   const __global float* shares;
@@ -151,9 +151,8 @@ typedef struct
 // Sweeps a range of layers along z, of all voxels, of a box, or of the voxels downwind of the box. One work-item per
 // group of directions, or per direction. Downwind of a box: x, y, z hold the radiance that left the box, and its voxels
 // are set to 0.
-//   light     source, W / (length^3 sr), to be multiplied by scale; in the kernels by direction, replaced by the mean
-//             radiance
-//   scale     factor by voxel for all sources
+//   light     source, W / (length^3 sr); with ByDirection by direction, replaced by the mean radiance
+//   scale     factor by voxel for all sources, without InSums
 //   shares    [group][x, y, z, chord][8]: weight of the radiance from each upwind neighbour in the incident radiance;
 //             length of the mean chord
 //   across    [group][x, y, z, angle][8]: power that a radiance of 1 W / (length^2 sr) along the direction carries
@@ -161,8 +160,9 @@ typedef struct
 //   up        [group][3]: whether the directions of the group are positive along each axis
 //   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: incident before the
 //             sweep, outgoing after it
-//   sums      [group][voxel]: power that enters the voxel through its upwind faces normal to x, y, z, W; fluence
-//   mode      ByDirection ... InSums, a compile-time constant
+//   sums      [group][voxel]: power through faces normal to x, y, z, W, of the light that enters the voxel, or, if
+//             layers->ofMean, of its mean radiance; fluence
+//   mode      ByDirection ... ByDiamonds, a compile-time constant
 static inline __attribute__((always_inline)) void sweep_layers(
   const ordinate_arrays* arrays, const SweptLayers* layers, const int mode)
 {
@@ -210,30 +210,32 @@ static inline __attribute__((always_inline)) void sweep_layers(
         const int i = x_range.x + x_range.y * column;
         const real from_y = load_real(i * 8, along_y);
         const real from_z = load_real(i * 8, along_z);
-        real source = mode == EvenInSums ? (real)even[i] : load_real(i * 8, cells);
-        source = mode == ByDirection ? source * (real)arrays->scale[first + i] : source;
+        real source = mode & ByDirection ? load_real(i * 8, cells) : (real)even[i];
+        source = mode & InSums ? source : source * (real)arrays->scale[first + i];
         const real tau = (real)sigma_t[first + i] * chord;
         const real in[3] = { from_x, from_y, from_z };
         real mean, out[3];
-        if (mode == ByDirection)
-        {
-          const real aside = multiply_add(share_y, from_y, share_z * from_z);
-          out[0] = out[1] = out[2] = cross_voxel(tau, multiply_add(share_x, from_x, aside), source * chord, &mean);
-        }
-        else
+        if (mode & ByDiamonds)
         {
           const real weight[3] = { reciprocal_weight(tau * chords[0]), reciprocal_weight(tau * chords[1]),
             reciprocal_weight(tau * chords[2]) };
           mean = cross_by_diamonds(tau, share, weight, source * chord, in, out);
         }
-        if (mode != EvenInSums)
+        else
+        {
+          const real aside = multiply_add(share_y, from_y, share_z * from_z);
+          out[0] = out[1] = out[2] = cross_voxel(tau, multiply_add(share_x, from_x, aside), source * chord, &mean);
+        }
+        if (mode & ByDirection)
         {
           store_real(mean, i * 8, cells);
         }
-        if (mode != ByDirection)
+        if (mode & InSums)
         {
-          arrays->sums[group * layers->stride + first + i] = (float4)(sum_of(across_x * from_x),
-            sum_of(across_y * from_y), sum_of(across_z * from_z), sum_of(angle * mean));
+          const int of_mean = layers->ofMean;
+          arrays->sums[group * layers->stride + first + i] =
+            (float4)(sum_of(across_x * (of_mean ? mean : from_x)), sum_of(across_y * (of_mean ? mean : from_y)),
+              sum_of(across_z * (of_mean ? mean : from_z)), sum_of(angle * mean));
         }
         store_real(out[1], i * 8, along_y);
         store_real(out[2], i * 8, along_z);
@@ -262,27 +264,27 @@ __kernel void sweep_upwind(
   sweep_layers(&arrays, &layers, ByDirection);
 }
 
-// Sweeps of accelerated solves, with a whole group per work-item.
-__kernel void sweep_even(__global float* source, const __global float* sigma_t, __global float4* sums, ORDINATES)
-{
-  const ordinate_arrays arrays = { source, sigma_t, 0, shares, across, up, x, y, z, sums };
-  sweep_layers(&arrays, &layers, EvenInSums);
-}
+// Sweeps with sums, with a whole group per work-item.
+#define SWEEP_IN_SUMS(name, mode)                                                                            \
+  __kernel void name(__global float* light, const __global float* sigma_t, __global float4* sums, ORDINATES) \
+  {                                                                                                          \
+    const ordinate_arrays arrays = { light, sigma_t, 0, shares, across, up, x, y, z, sums };                 \
+    sweep_layers(&arrays, &layers, (mode) | InSums);                                                         \
+  }
+SWEEP_IN_SUMS(sweep_even, 0)
+SWEEP_IN_SUMS(sweep_even_by_diamonds, ByDiamonds)
+SWEEP_IN_SUMS(sweep_moments_by_diamonds, ByDirection | ByDiamonds)
 
-__kernel void sweep_moments(__global float* radiance, const __global float* sigma_t, __global float4* sums, ORDINATES)
-{
-  const ordinate_arrays arrays = { radiance, sigma_t, 0, shares, across, up, x, y, z, sums };
-  sweep_layers(&arrays, &layers, InSums);
-}
-
-// Adds the sums over the directions of each group to path integrals and partial currents.
+// Adds the sums over the directions of each group to path integrals, and to partial currents or net flux.
 //   sums      [group][voxel], as sweep_layers() writes them
 //   volume    of a voxel
 //   path      W length, [channel][voxel]
-//   currents  power that enters each voxel through each of its faces, W, [channel][-x, +x, -y, +y, -z, +z][voxel]
+//   through   [channel][part][voxel]: 6 parts: power that enters each voxel through its faces -x, +x, ... +z, W; 3: net
+//             flux along x, y, z, W length; 0 parts: not computed
+//   edges     of a voxel
 //   stride    values of a channel;  first: index of the channel's first value in path
 __kernel void gather_sums(const __global float4* sums, const __global int* up, int groups, ulong groupStride,
-  float volume, __global float* path, __global float* currents, ulong stride, ulong first)
+  float volume, __global float* path, __global float* through, int parts, float4 edges, ulong stride, ulong first)
 {
   const ulong i = get_global_id(0);
   float4 low = (float4)0.0f, high = (float4)0.0f;
@@ -294,13 +296,13 @@ __kernel void gather_sums(const __global float4* sums, const __global int* up, i
     high += select(sum, (float4)0.0f, rises);
   }
   path[first + i] += volume * low.w;
-  __global float* in = currents + 6 * first + i;
-  in[0 * stride] += low.x;
-  in[1 * stride] += high.x;
-  in[2 * stride] += low.y;
-  in[3 * stride] += high.y;
-  in[4 * stride] += low.z;
-  in[5 * stride] += high.z;
+  const float4 net = edges * (low - high);
+  const float values[6] = { parts == 3 ? net.x : low.x, parts == 3 ? net.y : high.x, parts == 3 ? net.z : low.y, high.y,
+    low.z, high.z };
+  for (int part = 0; part < parts; ++part)
+  {
+    through[parts * first + part * stride + i] += values[part];
+  }
 }
 
 // Computes the source along each direction from its angular moments and its beams.
@@ -400,13 +402,6 @@ __kernel void leave_by_cells(const __global float* face, __global float* out, co
   const float4 of_low = through_low.lo + through_low.hi, of_high = through_high.lo + through_high.hi;
   out[low + cell] += (of_low.x + of_low.y) + (of_low.z + of_low.w);
   out[high + cell] += (of_high.x + of_high.y) + (of_high.z + of_high.w);
-}
-
-// Adds an isotropic source, by voxel, to the source of all directions.
-__kernel void add_even_source(__global float* radiance, const __global float* source, ulong stride)
-{
-  const ulong i = get_global_id(0), group = get_global_id(1);
-  ((__global float8*)radiance)[group * stride + i] += (float8)source[i];
 }
 
 // Sets the source of all directions to an isotropic emission, by voxel.

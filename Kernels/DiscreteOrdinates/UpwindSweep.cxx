@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace tyndall
 {
@@ -219,7 +220,9 @@ void UpwindSweep::Sweep(int first, int count, SweptLayers part, const OrdinateAr
 {
   const SweptSums* const sums = arrays.sums;
   const int width = this->TheDevice.IsCpu() || sums ? OrdinateLanes : 1; // a work-item sums over a whole group
-  cl::Kernel sweep = this->Kernel(!sums ? "sweep_upwind" : sums->even ? "sweep_even" : "sweep_moments", width);
+  const std::string name = !sums ? "sweep_upwind" : sums->even ? "sweep_even" : "sweep_moments";
+  cl::Kernel sweep = this->Kernel((sums && sums->byDiamonds ? name + "_by_diamonds" : name).c_str(), width);
+  part.ofMean = sums && sums->ofMean;
   part.firstT = sums ? sums->firstExtinction : 0;
   part.firstSource = sums ? sums->first : 0;
   Batches batches;

@@ -24,14 +24,16 @@ struct FacePowers
   double onTheWay = 0.0; ///< power that left through periodic faces and wraps around in the next sweep
 };
 
-/// Sums over directions that a sweep of an accelerated solve computes.
+/// Sums over directions that a sweep computes.
 struct SweptSums
 {
-  /// Sums over the directions of each group, [group][voxel][4], groups OrdinateStride() voxels apart: power that enters
-  /// the voxel through its upwind faces normal to x, y and z, W; fluence, W / length^2.
+  /// Sums over the directions of each group, [group][voxel][4], groups OrdinateStride() voxels apart: power through
+  /// faces of a voxel normal to x, y and z, W; fluence, W / length^2.
   const Buffer<float>& values;
   const Buffer<float>* even; ///< isotropic source, W / (length^3 sr); null: the source is OrdinateArrays::radiance
   std::size_t firstExtinction, first; ///< index of the channel's first value in OrdinateArrays::sigma_t, and in `even`
+  bool byDiamonds;                    ///< whether the sweep is by weighted diamond differences; false: by mean chords
+  bool ofMean; ///< whether the powers are those of the voxel's mean radiance; false: of the light that enters it
 };
 
 /// Arrays over the voxels of a sweep.
@@ -90,8 +92,8 @@ struct SweptFaces
 /// Light crosses each voxel along the mean chord of the direction, with exponential attenuation: stable and positive
 /// for every optical thickness, and exact along an axis. Light leaves a voxel into its downwind neighbours with equal
 /// radiance, so that power is conserved to rounding. For oblique directions light spreads across the direction: first
-/// order in the voxel edges. With OrdinateArrays::sums the sweep is by weighted diamond differences, of second order
-/// (Eq. (D15)), equally positive and conservative, but not linear where it has to keep light from becoming negative.
+/// order in the voxel edges. Weighted diamond differences (SweptSums::byDiamonds) are of second order (Eq. (D15)),
+/// equally positive and conservative, but not linear where they have to keep light from becoming negative.
 class UpwindSweep : public OrdinateSweep
 {
 public:

@@ -1,6 +1,6 @@
 #include "DeviceTest.h"
 #include "Medium/Grid.h"
-#include "MediumScene.h"
+#include "OrdinatesScene.h"
 
 #include "Device/Errors.h"
 #include "DiscreteOrdinates/OrdinatesError.h"
@@ -166,6 +166,17 @@ TEST_F(ErrorEstimate, IsNearTheTrueErrorOfOrdinates)
       EstimateOrdinates(this->GetDevice(), { Domain(scene.medium.grid), scene.medium, scene.light }, {});
     this->ExpectHonest(light, scene, &scene == scenes ? "cube by ordinates" : "ball by ordinates", 0.5);
   }
+}
+
+TEST_F(ErrorEstimate, OfOrdinatesIsATargetThatAThinBoxUnderAShiningFaceMeets)
+{
+  LitMedium empty({ 16, 16, 16 }, 1e-6f, 1e-6f);
+  empty.light.faces[4] = { 1.0, 1.0, 1.0 };
+  empty.Attach();
+  const LightField light = SolveOrdinatesToTarget(
+    this->GetDevice(), { Domain(empty.medium.grid), empty.medium, empty.light }, empty.how, 0.02);
+  EXPECT_LE(light.relativeError, 0.02);
+  EXPECT_LE(ErrorInEmptyCube(light.fluence, empty.medium.grid), 0.02);
 }
 
 /// The lattice has the error of diffusion, large in a thin cube and small in a thick one.

@@ -103,6 +103,17 @@ TEST_F(Superposition, OfOrdersOneByOne)
   this->RecordProperty("of the largest", std::to_string(worst));
 }
 
+TEST_F(Superposition, OfOrdersOfOrdinates)
+{
+  const auto solve = [&](Scene& scene) {
+    scene.Attach();
+    OrdinatesSettings how;
+    how.tolerance = 1e-7;
+    return SolveDiscreteOrdinates(this->GetDevice(), Domain(scene.medium.grid), scene.medium, scene.light, how);
+  };
+  EXPECT_LT(Nonlinearity(UnevenMedium(1.0, 0.7), Lights, solve), 1e-5);
+}
+
 TEST_F(Superposition, OfThickVoxelsWhateverShines)
 {
   // Sources by octant were used with a sun alone, not beside small bright emission or given light: 4.1%.

@@ -334,9 +334,16 @@ TEST_F(TraitsOfOrdinates, EmptySlabsAreSweptOnce)
 
 TEST_F(TraitsOfOrdinates, DarkDirectionsAreNotSwept)
 {
-  Scene scene = Cloud();
-  scene.light.faces[4] = { 1.0, 1.0, 1.0 };
+  Scene scene = Cloud(), forward = Cloud();
+  Environment& above = scene.light.environment;
+  above.width = 16;
+  above.height = 8;
+  above.radiance.assign(3 * 16 * 8, 0.0f);
+  std::fill_n(above.radiance.begin(), 3 * 16 * 4, 1.0f);
   this->ExpectLeftOut(scene, {}, "dark directions");
+  forward.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+  forward.light.faces[4] = { 1.0, 1.0, 1.0 };
+  this->ExpectLeftOut(forward, {}, "dark directions");
 }
 
 TEST_F(TraitsOfOrdinates, AreTheSameByMatrixBesideEmptyVoxels)

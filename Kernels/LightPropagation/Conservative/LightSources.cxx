@@ -108,14 +108,14 @@ UncollidedDirections UncollidedDirectionsFor(
   const bool besideUsual = how == IterationScheme::Dsa;
   const PropagationSettings& settings = problem.Settings();
   const Illumination& shining = problem.Shining();
-  const bool scatters = problem.Traits().scatters;
-  if (settings.uncollidedDirections >= 0)
+  const bool scatters = problem.Traits().scatters, byOrdinates = !settings.alongRays;
+  if (settings.uncollidedDirections >= 0 && !byOrdinates)
   {
     return { settings.uncollidedDirections, false,
       settings.uncollidedDirections > 0 && !besideUsual && scatters && !Reflects(shining) };
   }
-  if (!FacesShine(shining) || Reflects(shining) || !scatters || problem.IsSlab() || usual.orbits.empty() ||
-    how == IterationScheme::CoarseMeshDsa)
+  if (!FacesShine(shining) || Reflects(shining) || problem.IsSlab() || how == IterationScheme::CoarseMeshDsa ||
+    (byOrdinates ? besideUsual : !scatters || usual.orbits.empty()))
   {
     return {};
   }
@@ -128,11 +128,15 @@ UncollidedDirections UncollidedDirectionsFor(
   const double before = settings.directionsPerFace;
   const double affordable = More * (TimeOfLaterOrders(problem, how) + Lit) * before;
   UncollidedDirections found;
+  if (byOrdinates)
+  {
+    found = { std::max(settings.uncollidedDirections, settings.directionsPerFace), true, false };
+  }
   for (int choice : Choices)
   {
     const double light = Lit * (besideUsual ? choice + before : choice - before);
     const double evenSky = besideUsual ? choice + before : 0.0;
-    if (choice > before && light + evenSky <= affordable)
+    if (settings.uncollidedDirections < 0 && choice > before && light + evenSky <= affordable)
     {
       found = { choice, true, false };
     }
@@ -214,7 +218,7 @@ void LightSources::FindBoundaryLight()
   const bool all = this->ByBalance || !this->FineBoundary;
   this->UsualBoundary = std::make_unique<BoundaryLight>(grid, settings, this->Usual,
     all ? shining : AlongUsual(this->Finer, shining), all || this->Finer.ofFacesAlone ? this->FarAway : Environment());
-  if (this->SweepCarriesBoundarySource())
+  if (settings.alongRays && this->SweepCarriesBoundarySource())
   {
     this->UsualBoundary->CheckRays(this->Layout.channels);
   }

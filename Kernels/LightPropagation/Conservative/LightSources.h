@@ -35,7 +35,8 @@ struct UncollidedDirections
 /// of 36, 49, 64 and 100 directions per cube face, for light of faces, with which a solve with one emitting face is
 /// predicted to take at most half as long again. The automatic choice is 0 if a face reflects; with coarse-mesh DSA
 /// (more directions gain nothing without the escape correction, which would change the light of lamps as well); and,
-/// for memory, with DSA and angular moments.
+/// for memory, with DSA and angular moments. Discrete ordinates (settings.alongRays is false) have light of faces alone
+/// along at least as many directions as scattered light; with DSA their sweeps carry it, too.
 /// @param usual  quadrature of scattered light; unless it is fitted (DirectionSet::orbits), the automatic choice is 0
 /// Collective.
 UncollidedDirections UncollidedDirectionsFor(

@@ -38,15 +38,16 @@ OrderSweeps::OrderSweeps(
   request.octantSource = octantSource;
   request.angular = parts.UsualValues();
   request.faceIn = parts.LightByCells();
-  this->Whole = parts.Transport.MakeSweep(request);
+  this->Whole = parts.Scattered.make(request);
   if (!octantSource && !byCells && this->MayOmitEmptySlabs())
   {
     // This sweep does not sum the net flux. The final sweep, through the whole grid (SweepEmptySlabs), sums that of all
     // orders after the first.
-    this->Filled = parts.Transport.MakeSweep(
+    this->Filled = parts.Scattered.make(
       { { &parts.Path, nullptr, nullptr, nullptr }, parts.AllRays(), parts.Problem.Traits().filled });
   }
-  if (settings.leaveOut && parts.Lights.SweepCarriesBoundarySource() && !shines && !settings.IsPeriodic())
+  const bool reflects = !settings.alongRays && parts.FacesReflect();
+  if (settings.leaveOut && parts.Lights.SweepCarriesBoundarySource() && !shines && !settings.IsPeriodic() && !reflects)
   {
     this->MakeLitSweep(deposit);
   }
@@ -83,7 +84,10 @@ void OrderSweeps::MakeLitSweep(const Deposit& deposit)
     this->LitPart = lit / all;
     SweepRequest request = { deposit, ways };
     request.angular = this->Parts.UsualValues();
-    this->Lit = this->Parts.Transport.MakeSweep(request);
+    if (this->Parts.Problem.Settings().alongRays) // else Whole omits dark directions
+    {
+      this->Lit = this->Parts.Transport.MakeSweep(request);
+    }
   }
 }
 

@@ -16,7 +16,7 @@ namespace tyndall
 {
 namespace
 {
-constexpr int MostOrders = 100000;
+constexpr int MostOrders = 100000, MostOfOrdinates = 10000;
 /// with coarse-mesh DSA: smallest ratio of successive orders assumed in the estimate of the orders not yet computed
 constexpr double FallByCells = 0.3;
 }
@@ -522,7 +522,7 @@ void SourceIteration::Leave()
 
 bool SourceIteration::Done() const
 {
-  if (this->ToCome.residual == 0.0 || this->Order >= MostOrders)
+  if (this->ToCome.residual == 0.0 || this->Order >= (this->Settings.alongRays ? MostOrders : MostOfOrdinates))
   {
     return true;
   }

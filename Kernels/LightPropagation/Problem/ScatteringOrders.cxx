@@ -443,6 +443,6 @@ IterationScheme ChooseIterationScheme(const PropagationProblem& problem)
   {
     return IterationScheme::SourceIteration;
   }
-  return CanUseCells(scene) ? IterationScheme::CoarseMeshDsa : IterationScheme::Dsa;
+  return CanUseCells(scene) && settings.alongRays ? IterationScheme::CoarseMeshDsa : IterationScheme::Dsa;
 }
 }

@@ -198,7 +198,7 @@ bool OctantSources::Matter(const PropagationProblem& problem)
   const bool asked = settings.source == PropagationSource::Octants;
   const bool automatic = settings.source == PropagationSource::Automatic && settings.maximumOrders == 0 &&
     settings.acceleration == PropagationAcceleration::Automatic;
-  if (!(asked || automatic) || !problem.Traits().scatters || problem.Scattering().Degree() > 0 ||
+  if (!(asked || automatic) || !settings.alongRays || !problem.Traits().scatters || problem.Scattering().Degree() > 0 ||
     settings.firstMoments || settings.maximumOrders == 1 || HasVeryFlatVoxels(problem.Whole()))
   {
     return false;
