@@ -73,4 +73,11 @@ std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition&
   }
   return values;
 }
+
+std::vector<float> ValuesOfGrid(
+  Communicator& communicator, const BlockPartition& partition, const std::vector<float>& own, int components)
+{
+  const std::vector<VoxelBox> wanted(partition.blocks.size(), VoxelBox{ {}, partition.whole.size });
+  return ValuesInBox(communicator, partition, wanted, own, components);
+}
 }

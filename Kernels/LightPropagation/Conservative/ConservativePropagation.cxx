@@ -84,11 +84,13 @@ std::vector<std::string> Words(const TransportParts& parts, const IterationResul
   {
     words.emplace_back(left_out::Acceleration);
   }
-  if (parts.Problem.Traits().emits && parts.Problem.Settings().emissionError > 0.0 && !parts.TheDomain().IsSerial())
+  const PropagationSettings& settings = parts.Problem.Settings();
+  if (parts.Problem.Traits().emits && settings.emissionError > 0.0 && !settings.IsPeriodic() &&
+    !HasExactEmission(parts.Problem))
   {
-    words.emplace_back("exact rays of small bright emission: the medium is spread over ranks");
+    words.emplace_back("exact rays of small bright emission: more than 2^24 voxels on several ranks");
   }
-  if (!parts.Problem.Settings().netFlux)
+  if (!settings.netFlux)
   {
     words.emplace_back(left_out::NetFlux);
   }
@@ -406,7 +408,7 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
   {
     return "layers, which it solves in the cosine alone";
   }
-  if (MayHaveEmissionPeaks(problem))
+  if (MayHaveEmissionPeaks(problem) && !HasExactEmission(problem))
   {
     return "small bright emission, whose light it has along exact rays";
   }

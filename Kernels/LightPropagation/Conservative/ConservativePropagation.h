@@ -36,7 +36,7 @@ enum class IterationScheme;
 /// (SweepInBlocks.h), and all decisions and sums are global. The fluence therefore equals that of a serial solve: to
 /// rounding with source iteration, to the tolerance with acceleration. A rank holds its block, a halo of one voxel if
 /// the source is linear, and values by cell of the box faces if these reflect or face power is requested. Serial only:
-/// exact rays for localised emission and the plane-parallel solver (see ReasonNotToDecompose).
+/// the plane-parallel solver, and exact rays for localised emission in more than 2^24 voxels (ReasonNotToDecompose).
 ///
 /// Collective.
 /// @param domain  the decomposed grid

@@ -57,16 +57,6 @@ void AddMeanRadiance(const BoundaryLight* boundary, Rgb& mean)
   }
 }
 
-/// Splits the emission of the medium into localised emission, which is traced along exact rays, and the rest. On
-/// periodic axes or several ranks nothing is localised: exact rays neither wrap around (there would be infinitely many
-/// images) nor cross between blocks.
-SplitEmission SplitEmissionOf(const PropagationProblem& problem, const Rgb& comesIn)
-{
-  const bool has = problem.TheDomain().IsSerial() && !problem.Settings().IsPeriodic();
-  return problem.Traits().emits && problem.Settings().emissionError > 0.0 && has ? Split(problem.TheMedium(), comesIn)
-                                                                                 : SplitEmission();
-}
-
 /// Boundary source that is transported along the finer directions, as an Illumination of which only the radiance of
 /// faces and sky is used.
 Illumination AlongFiner(const UncollidedDirections& finer, const Illumination& shining)
@@ -158,10 +148,6 @@ LightSources::LightSources(const PropagationProblem& problem, bool byBalance, co
     this->Given = std::make_unique<GivenLight>(problem.Shining().uncollided, problem.TheMedium(), problem.Scattering());
   }
   this->FindBoundaryLight();
-  Rgb comesIn = {};
-  AddMeanRadiance(this->UsualBoundary.get(), comesIn);
-  AddMeanRadiance(byBalance ? nullptr : this->FineBoundary.get(), comesIn);
-  this->Emission = SplitEmissionOf(problem, comesIn);
 }
 
 std::vector<float> LightSources::EmissionOf(bool emptyVoxels) const
@@ -174,8 +160,12 @@ std::vector<float> LightSources::EmissionOf(bool emptyVoxels) const
   });
 }
 
-void LightSources::FindVacuum()
+void LightSources::FindEmission()
 {
+  Rgb comesIn = {};
+  AddMeanRadiance(this->UsualBoundary.get(), comesIn);
+  AddMeanRadiance(this->ByBalance ? nullptr : this->FineBoundary.get(), comesIn);
+  this->Emission = SplitOfDomain(this->Problem, comesIn);
   const PropagationSettings& settings = this->Problem.Settings();
   const Grid& grid = this->Problem.Whole();
   if (!this->Problem.Traits().emits || !VacuumEmission::IsApart(grid, settings))

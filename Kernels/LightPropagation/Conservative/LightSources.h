@@ -57,9 +57,9 @@ public:
   LightSources(const LightSources&) = delete; // light sources refer to directions that this object owns
   LightSources& operator=(const LightSources&) = delete;
 
-  /// Sets OfVacuum, the quadrature for the emission of empty voxels, if these emit and need one of their own.
-  /// Collective; call before any method that concerns emission.
-  void FindVacuum();
+  /// Sets Emission, and OfVacuum if empty voxels emit and need a quadrature of their own. Collective; call before any
+  /// method that concerns emission.
+  void FindEmission();
 
   const PropagationProblem& Problem;
   const bool ByBalance;

@@ -85,7 +85,7 @@ int TransportParts::Functions() const
 
 void TransportParts::LoadSource()
 {
-  this->Lights.FindVacuum();
+  this->Lights.FindEmission();
   bool shines = false;
   this->TheDomain().Collective([&] {
     shines = this->LoadEmission(this->Source);

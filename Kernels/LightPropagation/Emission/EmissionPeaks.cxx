@@ -1,8 +1,10 @@
 #include "LightPropagation/Emission/EmissionPeaks.h"
 
+#include "Distribution/BoxExchange.h"
 #include "Medium/VoxelBox.h"
 #include "Medium/VoxelSums.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -301,6 +303,7 @@ void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<st
 {
   const std::size_t count = static_cast<std::size_t>(peak.size[0]) * peak.size[1] * peak.size[2];
   const Field& emission = medium.emission;
+  const int components = emission.HasColour() ? 3 : 1;
   peak.emission.assign(3 * count, 0.0f);
   for (std::size_t voxel : group)
   {
@@ -314,9 +317,9 @@ void Take(const Medium& medium, const BrightVoxels& bright, const std::vector<st
       const float all = emission.At(voxel, c);
       const float stays = static_cast<float>(all * kept);
       peak.emission[c * count + place] = all - stays;
-      if (c < emission.components)
+      if (c < components)
       {
-        smooth[voxel * emission.components + c] = stays;
+        smooth[voxel * components + c] = stays;
       }
     }
   }
@@ -369,8 +372,12 @@ SplitEmission Split(const Medium& medium, const Rgb& comesIn)
   {
     return split;
   }
-  split.smooth.assign(
-    medium.emission.values, medium.emission.values + medium.grid.VoxelCount() * medium.emission.components);
+  split.components = medium.emission.HasColour() ? 3 : 1;
+  split.smooth.resize(medium.grid.VoxelCount() * split.components);
+  for (std::size_t i = 0; i < split.smooth.size(); ++i)
+  {
+    split.smooth[i] = medium.emission.At(i / split.components, static_cast<int>(i % split.components));
+  }
   for (Candidate& candidate : candidates)
   {
     Take(medium, bright, candidate.group, candidate.peak, split.smooth);
@@ -453,11 +460,59 @@ private:
 };
 }
 
+bool HasExactEmission(const PropagationProblem& problem)
+{
+  constexpr std::size_t MostOnRanks = std::size_t(1) << 24;
+  const PropagationSettings& settings = problem.Settings();
+  return settings.emissionError > 0.0 && !settings.IsPeriodic() &&
+    (problem.TheDomain().IsSerial() || problem.Whole().VoxelCount() <= MostOnRanks);
+}
+
+SplitEmission SplitOfDomain(const PropagationProblem& problem, const Rgb& comesIn)
+{
+  const Domain& domain = problem.TheDomain();
+  if (!HasExactEmission(problem) || !problem.Traits().emits)
+  {
+    return {};
+  }
+  if (domain.IsSerial())
+  {
+    return Split(problem.TheMedium(), comesIn);
+  }
+  if (!MayHaveEmissionPeaks(problem))
+  {
+    return {};
+  }
+  const Medium& own = problem.TheMedium();
+  const int channels = problem.Channels();
+  std::array<std::vector<float>, 3> values;
+  const auto gather = [&](std::vector<float>& to, const auto& value) {
+    std::vector<float> ofBlock(domain.Own().VoxelCount() * channels);
+    for (std::size_t i = 0; i < ofBlock.size(); ++i)
+    {
+      ofBlock[i] = value(i / channels, static_cast<int>(i % channels));
+    }
+    to = ValuesOfGrid(domain.Comm(), domain.Partition(), ofBlock, channels);
+    return Field{ to.data(), channels };
+  };
+  Medium all; // isotropic, with the transport coefficients of the medium, from which alone Split() decides
+  all.grid = problem.Whole();
+  all.sigma_a = gather(values[0], [&](std::size_t i, int c) { return own.sigma_a.At(i, c); });
+  all.sigma_s = gather(values[1], [&](std::size_t i, int c) { return own.TransportSigmaS(i, c); });
+  all.emission = gather(values[2], [&](std::size_t i, int c) { return own.emission.At(i, c); });
+  SplitEmission split;
+  domain.Collective([&] {
+    split = Split(all, comesIn);
+    split.smooth = split.peaks.empty() ? std::vector<float>()
+                                       : PartOf(split.smooth, { {}, all.grid.size }, domain.Own(), split.components);
+  });
+  return split;
+}
+
 bool MayHaveEmissionPeaks(const PropagationProblem& problem)
 {
   const PropagationSettings& settings = problem.Settings();
-  const bool endless = settings.periodic[0] || settings.periodic[1] || settings.periodic[2];
-  if (!problem.Traits().emits || settings.emissionError == 0.0 || endless)
+  if (!problem.Traits().emits || settings.emissionError == 0.0 || settings.IsPeriodic())
   {
     return false;
   }

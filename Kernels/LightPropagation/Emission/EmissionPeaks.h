@@ -29,15 +29,14 @@ struct EmissionPeak
 struct SplitEmission
 {
   std::vector<EmissionPeak> peaks; ///< localised emission, at most 16 peaks
-  /// Emission minus peaks, W / (length^3 sr), [voxel][component] like Medium::emission; empty if there are no peaks
+  /// Emission minus peaks, W / (length^3 sr), [voxel][component]; empty if there are no peaks
   std::vector<float> smooth;
+  int components = 1; ///< components of `smooth`: 1, or 3 if the emission is coloured
 
   /// The medium's emission without the peaks, W / (length^3 sr).
   Field Smooth(const Medium& medium) const
   {
-    Field field = medium.emission;
-    field.values = this->peaks.empty() ? field.values : this->smooth.data();
-    return field;
+    return this->peaks.empty() ? medium.emission : Field{ this->smooth.data(), this->components };
   }
 };
 
@@ -50,6 +49,14 @@ struct SplitEmission
 /// @param comesIn  mean incident radiance at the domain's faces, W / (length^2 sr)
 SplitEmission Split(const Medium& medium, const Rgb& comesIn = {});
 
+/// Whether emission can be split into peaks and the rest: EmissionError is above 0, no axis is periodic (there would be
+/// infinitely many images), and the domain is on one rank or has at most 2^24 voxels, because every rank traces the
+/// peaks' rays through the whole domain.
+bool HasExactEmission(const PropagationProblem& problem);
+/// Splits the emission of a domain; `smooth` has the voxels of this rank's block. No peaks if HasExactEmission() is
+/// false. Collective.
+SplitEmission SplitOfDomain(const PropagationProblem& problem, const Rgb& comesIn);
+
 // Limits that Split() and MayHaveEmissionPeaks() apply to the brightness of voxels.
 constexpr std::size_t EmissionBrightPart = 64; ///< at most one voxel in so many belongs to a peak
 constexpr double EmissionOutshines = 4.0; ///< peaks exceed this multiple of the mean emission of the remaining voxels
@@ -58,8 +65,7 @@ constexpr double EmissionPartOfAll = 0.5; ///< minimum fraction of the emitted p
 /// Emission of a voxel, averaged over the three channels.
 double EmissionBrightness(const Field& emission, std::size_t voxel);
 
-/// Whether a few bright voxels dominate the emission, so that a serial solve might trace their light along exact rays
-/// (Split()), which a solve on several ranks does not. Necessary, not sufficient: Split() also requires that the voxels
-/// lie close together and do not absorb their own emission. Collective.
+/// Whether a few bright voxels dominate the emission, so that Split() may find peaks. Necessary, not sufficient: Split()
+/// also requires that the voxels lie close together and do not absorb their own emission. Collective.
 bool MayHaveEmissionPeaks(const PropagationProblem& problem);
 }

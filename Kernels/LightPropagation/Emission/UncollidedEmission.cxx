@@ -1,11 +1,13 @@
 #include "LightPropagation/Emission/UncollidedEmission.h"
 
+#include "Distribution/BoxExchange.h"
 #include "LightPropagation/Emission/EmissionRays.h"
 #include "LightPropagation/Uncollided/BoundaryLight.h"
 #include "LightPropagation/Uncollided/NarrowLight.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace tyndall
@@ -30,15 +32,22 @@ UncollidedEmission::UncollidedEmission(EmissionPeak peak, double error)
 
 SweepTally UncollidedEmission::AddTo(const UncollidedVolume& volume, const Monitor& monitor) const
 {
-  if (!volume.basis)
-  {
-    return this->Put(volume, monitor);
-  }
-  const NarrowLight light(volume, true);
+  std::optional<NarrowLight> light;
+  Deposit deposit = volume.deposit;
+  volume.domain.Collective([&] {
+    if (volume.basis)
+    {
+      light.emplace(volume, true);
+      deposit = light->To();
+    }
+  });
   UncollidedVolume apart = volume;
-  apart.deposit = light.To();
-  const SweepTally tally = this->Put(apart, monitor);
-  light.AddAlongFlux();
+  apart.deposit = deposit;
+  const SweepTally tally = volume.domain.IsSerial() ? this->Put(apart, monitor) : this->PutOnRanks(apart, monitor);
+  if (light)
+  {
+    light->AddAlongFlux();
+  }
   return tally;
 }
 
@@ -48,6 +57,90 @@ SweepTally UncollidedEmission::Put(const UncollidedVolume& volume, const Monitor
     return DepositEmission(volume.device, ofChannels, first, this->Peak, this->Error, ofGroup);
   };
   return AddByGroups(volume, monitor, add);
+}
+
+namespace
+{
+/// Extinction of the whole domain in the layout `whole`, from that of this rank's block. Collective.
+std::vector<float> WholeExtinction(const UncollidedVolume& volume, const VolumeLayout& whole)
+{
+  const Domain& domain = volume.domain;
+  const int extinctions = whole.sharedExtinction ? 1 : whole.channels;
+  const std::size_t voxels = domain.Own().VoxelCount();
+  std::vector<float> block, all(whole.FloatsOf(extinctions), 0.0f);
+  domain.Collective([&] { block = volume.sigma_t.Read(); });
+  for (int c = 0; c < extinctions; ++c)
+  {
+    const auto begin = block.begin() + static_cast<std::ptrdiff_t>(volume.layout.ExtinctionFirst(c));
+    const std::vector<float> values =
+      ValuesOfGrid(domain.Comm(), domain.Partition(), { begin, begin + static_cast<std::ptrdiff_t>(voxels) }, 1);
+    std::copy(values.begin(), values.end(), all.begin() + static_cast<std::ptrdiff_t>(whole.ExtinctionFirst(c)));
+  }
+  return all;
+}
+
+/// Adds `parts` values per channel and voxel, of this rank's voxels of the domain, to an array of its block.
+void AddOwn(const UncollidedVolume& volume, const VolumeLayout& whole, int parts, const Buffer<float>& from,
+  const Buffer<float>& to)
+{
+  const VoxelBox& own = volume.domain.Own();
+  const std::vector<float> found = from.Read();
+  std::vector<float> sums = to.Read();
+  for (int part = 0; part < parts * whole.channels; ++part)
+  {
+    for (std::size_t i = 0; i < own.VoxelCount(); ++i)
+    {
+      sums[part * volume.layout.Stride() + i] += found[part * whole.Stride() + whole.grid.IndexOf(own.VoxelAt(i))];
+    }
+  }
+  to.CopyFrom(Buffer<float>(volume.device, sums, "the light of what shines"), 0, sums.size());
+  volume.device.Finish(); // the copy must end before its source is released
+}
+
+/// The largest powers of all ranks, which differ by rounding on unlike devices. Collective.
+SweepTally LargestOf(const Domain& domain, const SweepTally& own)
+{
+  std::vector<double> powers(own.onTheWay.begin(), own.onTheWay.end());
+  for (const Rgb& face : own.out)
+  {
+    powers.insert(powers.end(), face.begin(), face.end());
+  }
+  powers = domain.Max(powers);
+  SweepTally all;
+  std::copy_n(powers.begin(), 3, all.onTheWay.begin());
+  for (std::size_t face = 0; face < all.out.size(); ++face)
+  {
+    std::copy_n(powers.begin() + static_cast<std::ptrdiff_t>(3 * (face + 1)), 3, all.out[face].begin());
+  }
+  return all;
+}
+}
+
+SweepTally UncollidedEmission::PutOnRanks(const UncollidedVolume& volume, const Monitor& monitor) const
+{
+  VolumeLayout whole = volume.layout;
+  whole.grid = volume.domain.Whole();
+  const std::vector<float> extinction = WholeExtinction(volume, whole);
+  SweepTally tally;
+  volume.domain.Collective([&] {
+    // Ranks without voxels trace the rays, too: all know the light at the box's faces.
+    const Buffer<float> sigma_t(volume.device, extinction, "sigma_t of the whole domain");
+    Buffer<float> path(volume.device, whole.Floats(), "the light of what shines");
+    Buffer<float> flux(volume.device, volume.deposit.flux ? whole.Floats(3) : 0, "its net flux");
+    path.Fill(0.0f);
+    flux.Fill(0.0f);
+    UncollidedVolume all = { volume.device, volume.domain, whole, sigma_t, volume.periodic, volume.makeSweep, {} };
+    all.deposit.path = &path;
+    all.deposit.flux = volume.deposit.flux ? &flux : nullptr;
+    all.deposit.faceOut = volume.deposit.faceOut; // of the whole domain on every rank
+    tally = this->Put(all, monitor);
+    AddOwn(volume, whole, 1, path, *volume.deposit.path);
+    if (volume.deposit.flux)
+    {
+      AddOwn(volume, whole, 3, flux, *volume.deposit.flux);
+    }
+  });
+  return LargestOf(volume.domain, tally);
 }
 
 bool VacuumEmission::IsApart(const Grid& whole, const PropagationSettings& settings)

@@ -9,7 +9,8 @@
 
 namespace tyndall
 {
-/// Uncollided source: light of a localised emission along exact rays (EmissionRays.h).
+/// Uncollided source: light of a localised emission along exact rays (EmissionRays.h). On several ranks each one traces
+/// the rays of the whole domain and keeps the light of its block.
 class UncollidedEmission : public UncollidedSource
 {
 public:
@@ -21,6 +22,7 @@ public:
 
 private:
   SweepTally Put(const UncollidedVolume& volume, const Monitor& monitor) const;
+  SweepTally PutOnRanks(const UncollidedVolume& volume, const Monitor& monitor) const;
 
   EmissionPeak Peak;
   double Error;
