@@ -11,7 +11,7 @@ constexpr std::size_t AtOnce = 512;
 
 std::vector<float> Interleaved(const VolumeLayout& layout, const Buffer<float>& planar, double scale)
 {
-  const std::size_t stride = layout.Stride(), parts = (planar.Size() - SweepPadding) / stride;
+  const std::size_t stride = layout.Stride(), parts = (planar.Size() - SweepPadding) / std::max(stride, std::size_t(1));
   const std::size_t voxels = layout.grid.VoxelCount();
   std::vector<float> interleaved = Zeros(voxels * parts);
   planar.ReadInPlace([&](const float* values) {
