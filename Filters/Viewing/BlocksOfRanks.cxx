@@ -24,10 +24,10 @@ OwnAxes AxesOfFirst(Communicator& communicator, vtkImageData* image)
   const std::vector<double> said = SaidByAll(communicator, words);
   for (auto rank = said.begin(); rank != said.end(); rank += static_cast<std::ptrdiff_t>(words.size()))
   {
-    const std::vector<double> own(rank, rank + static_cast<std::ptrdiff_t>(words.size()));
-    if (own.back() > 0.0)
+    const auto last = rank + static_cast<std::ptrdiff_t>(words.size() - 1);
+    if (*last > 0.0)
     {
-      return OwnAxes::From(own);
+      return OwnAxes::From({ rank, last + 1 });
     }
   }
   return {};
