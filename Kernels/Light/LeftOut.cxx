@@ -47,6 +47,12 @@ std::string EmptyVoxels(double part)
   return "scattering in empty voxels: " + std::to_string(std::lround(100.0 * part)) + "% of the voxels do not scatter";
 }
 
+std::string EmptyMoments(double part)
+{
+  return "angular moments in empty voxels: " + std::to_string(std::lround(100.0 * part)) +
+    "% of the voxels have no medium, and only their fluence is swept";
+}
+
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid)
 {
   const double part = 1.0 - static_cast<double>(filled.VoxelCount()) / static_cast<double>(grid.VoxelCount());

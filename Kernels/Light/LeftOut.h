@@ -43,6 +43,8 @@ extern const char* const NotByOctant;
 extern const char* const NotSideBySide; ///< text if the device does not run two queues concurrently
 /// Text that a part of the voxels does not scatter, so that no source is computed for them.
 std::string EmptyVoxels(double part);
+/// Text that a part of the voxels has no medium, so that no angular moments of their light are computed.
+std::string EmptyMoments(double part);
 std::string EmptySlabs(const VoxelBox& filled, const Grid& grid);
 /// Text that many directions carry no incident light.
 /// @param lit  fraction of the rays that carry incident light

@@ -56,6 +56,27 @@ Light Lamp(const Rgb& power)
   return lamp;
 }
 
+/// Two cloudlets, and a bright vacuum voxel between them.
+/// @param margin  empty voxels around their common box along y and z
+Scene Cloudlets(int margin)
+{
+  const std::array<int, 3> grid = { 43, 10 + 2 * margin, 9 + 2 * margin };
+  Scene scene = Cloud(grid, { 0, 0, 0 }, grid);
+  scene.medium.grid.spacing = { 1.0, 1.2, 0.9 };
+  scene.emission.assign(scene.sigma_a.size(), 0.0f);
+  ForGridVoxels(grid, [&](std::size_t i, int x, int y, int z) {
+    const int side = x < 21 ? 0 : 1, u = x - (side == 0 ? 4 : 30), v = y - margin, w = z - margin;
+    const bool inside = u >= 0 && u < 9 && (side == 0 ? v >= 0 && v < 4 : v >= 6 && v < 10) && w >= 0 && w < 9;
+    scene.sigma_a[i] *= inside ? 1.0f : 0.0f;
+    scene.sigma_s[i] *= inside ? 1.0f : 0.0f;
+    scene.emission[i] = x == 20 && v == 5 && w == 4 ? 0.3f : 0.0f;
+  });
+  scene.light.sky = { 0.3, 0.3, 0.3 };
+  scene.light.faces[1] = { 2.0, 2.0, 2.0 };
+  scene.light.lights = { Lamp({ 3.0, 3.0, 3.0 }) };
+  return scene;
+}
+
 /// Each voxel's value three times, in these proportions.
 std::vector<float> Coloured(const std::vector<float>& grey, const Rgb& colour)
 {
@@ -266,6 +287,22 @@ TEST_F(Traits, EmptySlabsAreSweptOnce)
   }
 }
 
+TEST_F(Traits, MomentsAreNotSweptInEmptyRows)
+{
+  for (const bool flux : { false, true })
+  {
+    Scene scene = Cloudlets(3);
+    scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+    scene.settings.angularDegree = 3;
+    scene.settings.maximumOrders = 4;
+    scene.settings.netFlux = flux; // it is computed from moments
+    scene.settings.periodic = { false, true, false };
+    const LightField light = this->ExpectLeftOut(scene, "colour: medium and light are grey", 1e-5);
+    const bool says = !flux && this->GetDevice().IsCpu();
+    EXPECT_EQ(says, testing::Value(light.leftOut, Contains(HasSubstr("angular moments in empty voxels: 9"))));
+  }
+}
+
 TEST_F(Traits, EmptySlabsInColour)
 {
   Scene scene = Cloud({ 21, 24, 19 }, { 4, 9, 2 }, { 9, 8, 12 });
@@ -328,6 +365,24 @@ TEST_F(TraitsOfOrdinates, EmptySlabsAreSweptOnce)
       const LightField light = this->ExpectLeftOut(scene, {}, "empty slabs");
       EXPECT_GT(light.convergence.size(), 3u);
       EXPECT_LT(light.balance.RelativeError(1), 1e-5);
+    }
+  }
+}
+
+TEST_F(TraitsOfOrdinates, EmptyVoxelsAreOnlySummed)
+{
+  for (const int margin : { 0, 4 }) // 4: empty slabs are left out, too
+  {
+    for (const OrdinatesScattering scattering :
+      { OrdinatesScattering::SphericalHarmonics, OrdinatesScattering::Matrix })
+    {
+      Scene scene = Cloudlets(margin);
+      scene.medium.phase = PhaseFunction::HenyeyGreenstein(0.6);
+      OrdinatesSettings settings;
+      settings.scattering = scattering;
+      settings.maximumOrders = 5;
+      settings.periodic = { false, margin == 0, false };
+      this->ExpectLeftOut(scene, settings, "scattering in empty voxels");
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "LightPropagation/Conservative/OrderSweeps.h"
 
+#include "Device/HostThreads.h"
 #include "Device/Sizes.h"
 #include "Light/LeftOut.h"
 #include "TyndallKernelSources.h"
@@ -17,6 +18,27 @@ constexpr double MostlyFilled = 0.75;
 /// Number of scattering orders assumed in the decision whether later sweeps omit the empty voxels around the medium, if
 /// the settings set no limit.
 constexpr int OrdersExpected = 6;
+
+/// Fraction of the domain's voxels without medium. Collective.
+double PartWithoutMedium(const PropagationProblem& problem)
+{
+  const Domain& domain = problem.TheDomain();
+  const Medium& medium = problem.TheMedium();
+  const double filled = SumInThreads(domain.Own().VoxelCount(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      float sigma_t = 0.0f;
+      for (int c = 0; c < 3; ++c)
+      {
+        sigma_t += medium.sigma_a.At(i, c) + medium.sigma_s.At(i, c);
+      }
+      sum += sigma_t > 0.0f ? 1.0 : 0.0;
+    }
+    return sum;
+  });
+  return 1.0 - domain.Sum(filled) / static_cast<double>(domain.Whole().VoxelCount());
+}
 }
 
 bool PaysToOmitEmptySlabs(const VoxelBox& filled, const Grid& grid, const PropagationSettings& settings)
@@ -38,6 +60,11 @@ OrderSweeps::OrderSweeps(
   request.octantSource = octantSource;
   request.angular = parts.UsualValues();
   request.faceIn = parts.LightByCells();
+  request.skipsEmpty = settings.leaveOut && settings.alongRays && !deposit.flux && !deposit.partialCurrents;
+  if (request.skipsEmpty && request.angular && parts.TheDevice.IsCpu())
+  {
+    this->EmptyPart = PartWithoutMedium(parts.Problem);
+  }
   this->Whole = parts.Scattered.make(request);
   if (!octantSource && !byCells && this->MayOmitEmptySlabs())
   {
@@ -84,6 +111,7 @@ void OrderSweeps::MakeLitSweep(const Deposit& deposit)
     this->LitPart = lit / all;
     SweepRequest request = { deposit, ways };
     request.angular = this->Parts.UsualValues();
+    request.skipsEmpty = !deposit.flux && !deposit.partialCurrents;
     if (this->Parts.Problem.Settings().alongRays) // else Whole omits dark directions
     {
       this->Lit = this->Parts.Transport.MakeSweep(request);
@@ -150,6 +178,10 @@ std::vector<std::string> OrderSweeps::LeftOut() const
   if (this->Filled)
   {
     words.push_back(left_out::EmptySlabs(this->Parts.Problem.Traits().filled, this->Parts.Layout.grid));
+  }
+  if (this->EmptyPart > 0.0)
+  {
+    words.push_back(left_out::EmptyMoments(this->EmptyPart));
   }
   if (this->LitPart < 1.0)
   {

@@ -54,6 +54,7 @@ private:
   /// Sweep of the later orders through the bounding box of the medium only, if the medium leaves much of the volume
   /// empty; else null.
   std::unique_ptr<SweepOperator> Filled;
-  double LitPart = 1.0; ///< fraction of the rays that the first order sweeps
+  double LitPart = 1.0;   ///< fraction of the rays that the first order sweeps
+  double EmptyPart = 0.0; ///< fraction of the voxels of which no angular moments are computed
 };
 }

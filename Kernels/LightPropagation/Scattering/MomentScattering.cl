@@ -23,6 +23,14 @@ static float16 load_group(const __global float* values, int voxels)
   return vload16(0, some);
 }
 
+static bool is_zero(float16 values)
+{
+  const int8 eight = as_int16(values).lo | as_int16(values).hi;
+  const int4 four = eight.lo | eight.hi;
+  const int2 two = four.lo | four.hi;
+  return (two.x | two.y) == 0;
+}
+
 // Runs ACTION for each angular function from the second on and each group of MomentGroup voxels in a row. In ACTION,
 // `at` is the index of the first of the group's moments for that function, and `scale` the factors of the group's
 // voxels that convert path integral to source.
@@ -43,13 +51,18 @@ static float16 load_group(const __global float* values, int voxels)
   }
 
 // Processes one scattering order: overwrites the moments of the source, from the second on, by those that are scattered
-// from `path`, and sets the moments of `path` to 0.
+// from `path`, and sets the moments of `path` to 0. Nothing is written where nothing scatters and `path` is 0, as in empty
+// voxels of sweeps with SweepInfo::skips: the moments of the source are 0 there.
 __kernel void scatter_moments(MomentPlaces places, int channel, __global float* path, __global float* source,
   const __global float* sigma_s, ulong stride, float per_path)
 {
-#define REPLACE                                            \
-  vstore16(vload16(0, path + at) * scale, 0, source + at); \
-  vstore16((float16)0.0f, 0, path + at);
+#define REPLACE                                  \
+  const float16 moments = vload16(0, path + at); \
+  if (!(is_zero(scale) && is_zero(moments)))     \
+  {                                              \
+    vstore16(moments* scale, 0, source + at);    \
+    vstore16((float16)0.0f, 0, path + at);       \
+  }
   FOR_MOMENTS(REPLACE)
 #undef REPLACE
 }

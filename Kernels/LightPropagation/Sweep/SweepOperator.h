@@ -161,6 +161,9 @@ struct SweepRequest
   /// is that of the source alone. Not with angular moments. Must outlive the sweep; null: the source is the same in
   /// all octants.
   const Buffer<float>* octantSource = nullptr;
+  /// Whether angular moments of the path integrals, except the first, may be left out in voxels without medium; the net
+  /// flux is among them
+  bool skipsEmpty = false;
 };
 
 /// One sweep: carries light once through the medium, from the sources in its voxels and the light incident on the box's

@@ -203,6 +203,7 @@ typedef struct
   EachWay eachWay;
   int empty;  ///< 1: the maps (powers of rays) are uninitialised, and are cleared where rays start
   int shines; ///< 1: the medium has a source (emission or scattered light)
+  int skips;  ///< 1: angular moments of path integrals, except the first, are not needed where there is no medium
   int border; ///< 1: light is incident on the faces parallel to the marching axis
   /// 1: rays wrap around the marching axis, so sums are added to each plane repeatedly, with compensated summation
   int roundAxis;

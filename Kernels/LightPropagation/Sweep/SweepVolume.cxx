@@ -69,6 +69,7 @@ SweepVolume SweepByGroups::VolumeOf(std::size_t group, const Buffer<float>* sour
   volume.deposit.flux = volume.angular ? nullptr : volume.deposit.flux;
   volume.faceIn = this->Request.faceIn;
   volume.octantSource = this->Request.octantSource;
+  volume.skipsEmpty = this->Request.skipsEmpty;
   volume.moments = this->Layout.Places(volume.angular ? volume.angular->Functions() : 1);
   return volume;
 }

@@ -34,6 +34,7 @@ struct SweepVolume
   const Buffer<float>* octantSource = nullptr;
   std::size_t faceFirst = 0; ///< index of the first channel's first cell in faceIn and faceOut
   int firstChannel = 0;
+  bool skipsEmpty = false;   ///< SweepRequest::skipsEmpty
   MomentPlaces moments = {}; ///< memory layout of source and path, if these have angular moments
 };
 

@@ -14,7 +14,7 @@ static void go_to_plane(sweep_state* state, int k)
 {
   const struct plane_place* place = state->places + k;
   state->planes = place->planes;
-  state->thin = place->thin;
+  state->words = place->words;
   state->escaped = place->escaped;
   state->rounding = place->rounding;
 #if FACES
@@ -81,7 +81,7 @@ typedef struct
 typedef struct
 {
   __global float* planes;
-  __global int* thin; // whether all voxels of a row are optically thin, [plane][row]
+  __global int* words; // words of rows (IS_THIN, IS_FILLED), [plane][row]
 #if ANGULAR
   __global float *momentSource, *momentPath; // packed moments of source and path, [plane][row]
 #endif
@@ -91,25 +91,38 @@ typedef struct
 typedef struct
 {
   __global float* planes;
-  __global int* thin; // whether all voxels of a row are optically thin, [plane][row]
+  __global int* words; // words of rows (IS_THIN, IS_FILLED), [plane][row]
   int first, count;
   // Path integral, within its voxel of origin, of the light that a source of 1 emits; one element per plane, in
   // marching order
   const __global OwnLightInfo* own;
 } packed_planes;
 
-// Determines the rows in which all voxels are optically thin, sigma_t < PlaneInfo::thin.
-static BY_ROW void find_thin_rows(const PlaneInfo* layout, const __global float* plane, int2 rows, __global int* thin)
+// Determines the words of rows of a packed plane (IS_THIN, IS_FILLED).
+static BY_ROW void find_words(const SweepInfo* info, const __global float* plane, int2 rows, __global int* words)
 {
+  const PlaneInfo* layout = &info->planes;
+  const int bits = segment_bits(layout->width), looks = ANGULAR && info->skips;
   for (int v = rows.x; v < rows.y; ++v)
   {
-    const __global float* sigma = ROW_IN(layout, plane, PlaneSigma, v);
+    const __global float* row = ROW_IN(layout, plane, 0, v);
     integer thick = (integer)0;
+    int word = looks ? 0 : -2;
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
-      thick |= load_real(u, sigma) >= layout->thin;
+      const real sigma = load_real(u, row + PlaneSigma * ROW);
+      thick |= sigma >= layout->thin;
+      if (looks)
+      {
+        integer filled = sigma > (real)0.0f;
+        for (int c = 0; info->shines && c < CHANNELS; ++c)
+        {
+          filled |= load_real(u, row + (PlaneSource + c) * ROW) != (real)0.0f;
+        }
+        word |= any(filled) << (1 + (u >> bits));
+      }
     }
-    thin[v] = !any(thick);
+    words[v] = word | (any(thick) ? 1 : 0);
   }
 }
 
@@ -133,7 +146,7 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
   for (int j = 0; j < count; ++j)
   {
     __global float* plane = packed->planes + j * plane_floats(layout);
-    find_thin_rows(layout, plane, rows, packed->thin + j * layout->sizeV);
+    find_words(info, plane, rows, packed->words + j * layout->sizeV);
     for (int v = rows.x; v < rows.y; ++v)
     {
       __global float* row = ROW_IN(layout, plane, 0, v);
@@ -354,6 +367,7 @@ static void begin_state(sweep_state* state, const SweepInfo* info)
   state->quantities = layout->quantities;
   state->currents = layout->currents;
   state->width = layout->width;
+  state->segmentBits = segment_bits(layout->width);
   state->shines = info->shines;
   state->border = info->border;
   state->roundAxis = info->roundAxis;
@@ -406,9 +420,9 @@ static unit_scratch lay_scratch(sweep_state* state, const SweepInfo* info, __glo
   state->outside = parts.planes;
 #endif
   parts.planes += SIDES || info->faces.in ? RAYS_OF_ROW + PAD : 0;
-  parts.thin = (__global int*)(parts.planes + layout->together * plane_floats(layout));
+  parts.words = (__global int*)(parts.planes + layout->together * plane_floats(layout));
 #if ANGULAR
-  parts.momentSource = (__global float*)parts.thin + layout->together * layout->sizeV + REAL_WIDTH;
+  parts.momentSource = (__global float*)parts.words + layout->together * layout->sizeV + REAL_WIDTH;
   parts.momentPath = parts.momentSource + layout->together * (layout->sizeV * info->packedMoments);
 #endif
   return parts;
@@ -428,9 +442,9 @@ static void begin_planes(const swept_volume* volume, const packed_planes* packed
   {
     if (info->shines)
     {
-      pack_moments(info, scratch->momentSource, packed->first, packed->count, volume->moments);
+      pack_moments(info, packed->words, scratch->momentSource, packed->first, packed->count, volume->moments);
     }
-    clear(scratch->momentPath, packed->count * info->planes.sizeV * info->packedMoments);
+    clear_moments(info, packed->words, packed->count, scratch->momentPath);
   }
 #endif
 }
@@ -446,7 +460,7 @@ static void end_planes(const swept_volume* volume, const packed_planes* packed, 
 #if ANGULAR
   if (!volume->info->momentsInPlace)
   {
-    unpack_moments(volume->info, scratch->momentPath, packed->first, packed->count, volume->momentPath);
+    unpack_moments(volume->info, packed->words, scratch->momentPath, packed->first, packed->count, volume->momentPath);
   }
 #endif
 }
@@ -491,7 +505,7 @@ static void place_planes(struct plane_place* places, const swept_volume* volume,
   {
     const int j = volume->backward ? packed->count - 1 - i : i;
     places[i].planes = packed->planes + j * plane_floats(layout);
-    places[i].thin = packed->thin + j * layout->sizeV;
+    places[i].words = packed->words + j * layout->sizeV;
     places[i].escaped = escaped[i];
     places[i].rounding = rounding[i];
     places[i].plane = packed->first + j;
@@ -511,7 +525,7 @@ static packed_planes part_of(const packed_planes* packed, const swept_volume* vo
 {
   const PlaneInfo* layout = &volume->info->planes;
   const int j = volume->backward ? packed->count - i - count : i;
-  const packed_planes part = { packed->planes + j * plane_floats(layout), packed->thin + j * layout->sizeV,
+  const packed_planes part = { packed->planes + j * plane_floats(layout), packed->words + j * layout->sizeV,
     packed->first + j, count, packed->own + i };
   return part;
 }
@@ -636,7 +650,7 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void sweep(SweepInfo inf
     // Number of planes crossed in earlier laps around a periodic axis.
     const int lap = begin / info.planes.sizeP * info.planes.sizeP;
     count = planes_to_pack(&info, begin, range.y, lap, way);
-    const packed_planes packed = { parts.planes, parts.thin,
+    const packed_planes packed = { parts.planes, parts.words,
       way ? info.planes.sizeP - (begin - lap) - count : begin - lap, count, own + u * info.patternPlanes + begin };
     begin_planes(&volume, &packed, &parts);
     place_planes(places, &volume, &packed, escaped, rounding);

@@ -22,6 +22,7 @@
 #define COUNT_CURRENTS NAME_OF(count_currents_, MEMBERS)
 #define MOVE_PART NAME_OF(move_part_, MEMBERS)
 #define CROSS_MOMENTS NAME_OF(cross_moments_, MEMBERS)
+#define PASS_EMPTY NAME_OF(pass_empty_, MEMBERS)
 #define ENTER_ASIDE NAME_OF(enter_aside_, MEMBERS)
 #define FILL_OUTSIDE NAME_OF(fill_outside_, MEMBERS)
 #define FIND_SOURCES NAME_OF(find_sources_, MEMBERS)
@@ -179,13 +180,13 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
   __global float* out, float length, const __global BundleInfo* bundle)
 {
 #if ANGULAR
-#define CROSS_ROW(thin) CROSS_MOMENTS(state, y, slot, first, thin, in, out, length, bundle)
+#define CROSS_ROW(thin) CROSS_MOMENTS(state, y, slot, first, deposit, thin, in, out, length, bundle)
 #else
   __global float* const entered =
     state->currents && first && deposit ? ROW_OF(state->planes, PLANE_CURRENTS + CurrentAxis, y) : 0;
 #define CROSS_ROW(thin) CROSS_VOXELS(state, y, deposit, thin, in, out, length, bundle, entered)
 #endif
-  if (state->thin[y])
+  if (IS_THIN(state->words[y]))
   {
     CROSS_ROW(true);
   }
@@ -613,6 +614,7 @@ static void CROSS_PLANES(sweep_state* state, int planes, __global float* map, co
 #undef FILL_OUTSIDE
 #undef FOR_FRAMES
 #undef CROSS_MOMENTS
+#undef PASS_EMPTY
 #undef FIND_SOURCES
 #undef GATHER_MOMENTS
 #undef FIRST

@@ -49,6 +49,7 @@ SweepInfo SweepKernel::InfoOf(const SweepVolume& volume, bool goesRound) const
   info.roundAxis = goesRound;
   info.sizeY = volume.grid.size[1];
   info.firstChannel = volume.firstChannel;
+  info.skips = volume.skipsEmpty;
   return info;
 }
 

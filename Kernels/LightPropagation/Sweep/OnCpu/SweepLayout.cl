@@ -88,15 +88,32 @@ typedef struct
   } of[STAGES];
 } chain_of_stages;
 
+// Word that describes a row of a packed plane. Bit 0: some voxel is not optically thin, sigma_t >= PlaneInfo::thin. Bits 1
+// to SEGMENTS, one per segment of the row: some voxel of the segment has a medium or a source, or SweepInfo::skips is 0.
+#define SEGMENTS 30
+#define IS_THIN(word) (((word)&1) == 0)
+#define IS_FILLED(word, x, bits) ((word) >> (1 + ((x) >> (bits))) & 1)
+
+// Binary logarithm of the number of voxels in a segment: a vector or, in longer rows, several.
+static int segment_bits(int width)
+{
+  int bits = 2;
+  while ((1 << bits) < REAL_WIDTH || (width - 1) >> bits >= SEGMENTS)
+  {
+    ++bits;
+  }
+  return bits;
+}
+
 // Compile-time check: the rows kept must hold a tile (the block of rows that all bundles cross in turn) and the rows by
 // which its last stage lags behind the first.
 typedef char kept_rows_suffice[!KEPT_ROWS || KEPT_ROWS >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 
-// A plane that is being crossed: its packed quantities, thin rows and escaped power.
+// A plane that is being crossed: its packed quantities, words of rows and escaped power.
 struct plane_place
 {
   __global float* planes;
-  __global int* thin;
+  __global int* words; // of rows (IS_THIN, IS_FILLED)
   float (*escaped)[CHANNELS];
   float (*rounding)[CHANNELS];
   int plane; // index of the plane in the box
@@ -113,7 +130,8 @@ typedef struct
   int allBundles;                   // number of bundles of all work-items
   const struct plane_place* places; // the planes of a chain, which a bundle crosses together
   __global float* planes;           // quantities of the plane that is being crossed
-  __global int* thin;               // 1 if all voxels of a row of that plane are thin, [row]
+  __global int* words;              // words of the rows of that plane (IS_THIN, IS_FILLED), [row]
+  int segmentBits;                  // segment_bits()
   float meanLength[MeanLengthTerms];
   int chained_before; // number of planes of the chain that were crossed before those in `places`
   // Prefetch of maps, if CHAINED: address of the next cache line, and number of cache lines per vector of voxels

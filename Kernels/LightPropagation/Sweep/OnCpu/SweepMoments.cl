@@ -50,6 +50,7 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
 {
   __global float* out = state->sources + slot * RAYS_OF_ROW;
+  const int word = state->words[y];
   BEGIN_PARITIES
   const __global float* of_beams = coefficients + frames * functions;
   for (int c = 0; c < CHANNELS; ++c)
@@ -59,6 +60,10 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
     const __global float* beams = ROW_OF(state->planes, PLANE_BEAMS + c, y);
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
+      if (!IS_FILLED(word, x, state->segmentBits))
+      {
+        continue;
+      }
       const int group = IN_ROW(x, functions - 1);
       real sums[MaxFrames][4];
 #pragma unroll
@@ -101,10 +106,34 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
   }
 }
 
+// Carries the rays of a vector of empty voxels through one segment each. Of their path integrals only the first moment is
+// computed, if `deposit`.
+static inline __attribute__((always_inline)) void PASS_EMPTY(
+  sweep_state* state, int y, int x, bool deposit, const __global float** in, __global float* out, float length)
+{
+  for (int c = 0; c < CHANNELS; ++c)
+  {
+    real sum = (real)0.0f;
+#pragma unroll
+    for (int m = 0; m < MEMBERS; ++m)
+    {
+      const real ray = load_real(x, in[m] + c * ROW);
+      sum += ray;
+      store_real(ray, x, out + FIRST(m, c));
+    }
+    __global float* path = ROW_OF(state->planes, PLANE_PATH + c, y);
+    if (deposit)
+    {
+      store_real(multiply_add(sum, (real)length, load_real(x, path)), x, path);
+    }
+  }
+}
+
 // Carries all rays of a row through one segment each, like CROSS_VOXELS, but with a separate source and path integral
 // for each direction (member) of the bundle.
 static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* state, int y, int slot, bool first,
-  bool thin, const __global float** in, __global float* out, float length, const __global BundleInfo* bundle)
+  bool deposit, bool thin, const __global float** in, __global float* out, float length,
+  const __global BundleInfo* bundle)
 {
   const __global float* sigma_row = ROW_OF(state->planes, PlaneSigma, y);
   const __global float* inverse_row = ROW_OF(state->planes, PlaneInverse, y);
@@ -112,8 +141,14 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
   __global float* paths = state->paths + slot * RAYS_OF_ROW;
   __global float* own_row = state->ownPath + slot * ROW;
   const float power = bundle->power;
+  const int word = state->words[y];
   for (int x = 0; x < state->width; x += REAL_WIDTH)
   {
+    if (!IS_FILLED(word, x, state->segmentBits))
+    {
+      PASS_EMPTY(state, y, x, deposit, in, out, length);
+      continue;
+    }
     const real_crossing crossing = cross_length(state, x, sigma_row, inverse_row, length, thin);
     const real mean_length = crossing.meanLength, keep = crossing.keep, change = crossing.change;
     const real shine = mean_length * power;
@@ -142,6 +177,7 @@ static inline __attribute__((always_inline)) void CROSS_MOMENTS(sweep_state* sta
 static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* state, int y, int slot,
   const __global BundleInfo* bundle, const __global float* coefficients, const int frames)
 {
+  const int word = state->words[y];
   const __global float* sources = state->sources + slot * RAYS_OF_ROW;
   const __global float* paths = state->paths + slot * RAYS_OF_ROW;
   const __global float* own_row = state->ownPath + slot * ROW;
@@ -152,6 +188,10 @@ static inline __attribute__((always_inline)) void GATHER_MOMENTS(sweep_state* st
     __global float* higher = state->momentPath + y * state->momentStep + c * state->momentChannel;
     for (int x = 0; x < state->width; x += REAL_WIDTH)
     {
+      if (!IS_FILLED(word, x, state->segmentBits))
+      {
+        continue;
+      }
       const int group = IN_ROW(x, functions - 1);
       real sums[MaxFrames][4];
 #pragma unroll

@@ -48,15 +48,6 @@ static int plane_floats(const PlaneInfo* layout)
   return layout->quantities * (KEPT_ROWS ? KEPT_ROWS : layout->sizeV) * ROW;
 }
 
-// Sets `count` floats, a multiple of the vector width, to zero.
-static BY_ROW void clear(__global float* floats, int count)
-{
-  for (int i = 0; i < count; i += REAL_WIDTH)
-  {
-    store_real((real)0.0f, i, floats);
-  }
-}
-
 // Sets the first `count` floats, a multiple of the vector width, of each of `rows` padded rows to zero.
 static BY_ROW void clear_rows(__global float* row, int rows, int count)
 {
@@ -235,19 +226,47 @@ static int of_one_group(const PlaneInfo* layout, int next, int backward)
   return backward ? plane % MomentGroup + 1 : MomentGroup - plane % MomentGroup;
 }
 
-static BY_ROW void pack_moments(
-  const SweepInfo* info, __global float* to, int first, int count, const __global float* source)
+// Words of row v of `count` packed planes together.
+//   words  words of the planes' rows, [plane][row]
+static int words_of_planes(const PlaneInfo* layout, const __global int* words, int count, int v)
+{
+  int all = 0;
+  for (int j = 0; j < count; ++j)
+  {
+    all |= words[j * layout->sizeV + v];
+  }
+  return all;
+}
+
+// Sets the moments of packed path integrals to 0, in rows that are not empty in all planes.
+static BY_ROW void clear_moments(const SweepInfo* info, const __global int* words, int count, __global float* path)
+{
+  const int size = info->planes.sizeV, floats = info->packedMoments;
+  for (int v = 0; v < size; ++v)
+  {
+    const bool any = words_of_planes(&info->planes, words, count, v) >> 1 != 0;
+    for (int j = 0; any && j < count; ++j)
+    {
+      clear_rows(path + (j * size + v) * floats, 1, floats);
+    }
+  }
+}
+
+static BY_ROW void pack_moments(const SweepInfo* info, const __global int* words, __global float* to, int first,
+  int count, const __global float* source)
 {
   const PlaneInfo* layout = &info->planes;
+  const int bits = segment_bits(layout->width);
   const int higher = info->moments.functions - 1;
   const ulong step = (ulong)info->moments.channels * info->moments.groups * (higher * MomentGroup);
   const int plane = layout->sizeV * info->packedMoments;
   for (int v = 0; v < layout->sizeV; ++v)
   {
+    const int all = words_of_planes(layout, words, count, v);
     for (int u = 0; u < layout->width; u += REAL_WIDTH)
     {
       const integer beyond = LANES >= layout->sizeU - u;
-      for (int c = 0; c < CHANNELS; ++c)
+      for (int c = 0; c < CHANNELS && IS_FILLED(all, u, bits); ++c)
       {
         const __global float* from = source + moments_of(info, c, u, v, first);
         __global float* here = to + packed_moments_of(info, c, u, v);
@@ -260,19 +279,21 @@ static BY_ROW void pack_moments(
   }
 }
 
-static BY_ROW void unpack_moments(
-  const SweepInfo* info, const __global float* from, int first, int count, __global float* path)
+static BY_ROW void unpack_moments(const SweepInfo* info, const __global int* words, const __global float* from,
+  int first, int count, __global float* path)
 {
   const PlaneInfo* layout = &info->planes;
+  const int bits = segment_bits(layout->width);
   const int higher = info->moments.functions - 1;
   const ulong step = (ulong)info->moments.channels * info->moments.groups * (higher * MomentGroup);
   const int plane = layout->sizeV * info->packedMoments;
   for (int v = 0; v < layout->sizeV; ++v)
   {
+    const int all = words_of_planes(layout, words, count, v);
     for (int u = 0; u < layout->sizeU; u += REAL_WIDTH)
     {
       const int used = min(REAL_WIDTH, layout->sizeU - u);
-      for (int c = 0; c < CHANNELS; ++c)
+      for (int c = 0; c < CHANNELS && IS_FILLED(all, u, bits); ++c)
       {
         const __global float* here = from + packed_moments_of(info, c, u, v);
         __global float* to = path + moments_of(info, c, u, v, first);
