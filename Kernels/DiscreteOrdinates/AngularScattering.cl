@@ -11,7 +11,7 @@
 #include "DiscreteOrdinates/OrdinatesShared.h"
 #include "Numerics/Numerics.cl"
 
-#define BLOCK 8 // number of voxels per work-item
+#define BLOCK OrdinateBlock // number of voxels per work-item
 #define MOMENTS (ROWS * REAL_WIDTH)
 
 typedef float8 float8_anywhere __attribute__((aligned(4)));
@@ -145,15 +145,40 @@ inline void pass_empty(const __global float* radiance, __global float* source, c
   EACH_VOXEL(KEEP_LIGHT)
 }
 
+// Adds the light of eight voxels without medium, of which the sweep has kept sums over the directions of each group.
+inline void take_sums(const __global float* radiance, ScatteringVoxels at, ulong first, __global float* order,
+  __global float* fluence, __global float* flux)
+{
+  for (int k = 0; k < (FLUX ? 4 : 1); ++k)
+  {
+    float8 sum = (float8)0.0f;
+    for (int group = 0; group < GROUPS; ++group)
+    {
+      sum += LOAD8((group * at.stride + first + k) * 8, radiance);
+    }
+    __global float* all = k == 0 ? fluence : flux + (k - 1) * at.voxels;
+    STORE8(LOAD8(first, all) + sum, first, all);
+    if (k == 0)
+    {
+      STORE8(sum, first, order);
+    }
+  }
+}
+
 // Computes the angular moments of eight voxels, and adds their light to fluence and net flux, with the arguments of
 // scatter_terms. Returns whether they scatter: the source of voxels that do not is set to 0, and voxels beside the box
 // with light are left as they are.
 inline bool take_light(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* angles, const __global float* sigma_s, __global float* order,
-  __global float* fluence, __global float* flux, ScatteringVoxels at, ulong first)
+  __global float* fluence, __global float* flux, const __global uchar* empty, ScatteringVoxels at, ulong first)
 {
   if (is_beside(at, first))
   {
+    return false;
+  }
+  if (at.hasSums && first < at.voxels && empty[first / BLOCK])
+  {
+    take_sums(radiance, at, first, order, fluence, flux);
     return false;
   }
   const bool scatters = !at.skips || any_scatters(sigma_s, at.voxels, first);
@@ -177,14 +202,15 @@ inline bool take_light(const __global float* radiance, __global float* source, _
 //   spread    [group][term][8]: factor of each term in the source of each direction
 //   angles    [group][8]: weights of the directions, sr
 //   order     fluence of this scattering order, W / length^2; it is also added to `fluence`, and net flux to `flux`
+//   empty     whether each block of voxels has no medium, if at.hasSums
 __kernel void scatter_terms(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* spread, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
-  __global float* scale, ScatteringVoxels at)
+  __global float* scale, const __global uchar* empty, ScatteringVoxels at)
 {
   const ulong voxels = at.voxels, stride = at.stride;
   const ulong first = at.begin + get_global_id(0) * BLOCK;
-  if (!take_light(radiance, source, moments, weights, angles, sigma_s, order, fluence, flux, at, first))
+  if (!take_light(radiance, source, moments, weights, angles, sigma_s, order, fluence, flux, empty, at, first))
   {
     return;
   }
@@ -211,11 +237,11 @@ __kernel void scatter_terms(const __global float* radiance, __global float* sour
 __kernel void scatter_matrix(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* matrix, const __global float* angles,
   const __global float* sigma_s, __global float* order, __global float* fluence, __global float* flux,
-  __global float* scale, ScatteringVoxels at)
+  __global float* scale, const __global uchar* empty, ScatteringVoxels at)
 {
   const ulong voxels = at.voxels, stride = at.stride;
   const ulong first = at.begin + get_global_id(0) * BLOCK;
-  if (!take_light(radiance, source, moments, weights, angles, sigma_s, order, fluence, flux, at, first))
+  if (!take_light(radiance, source, moments, weights, angles, sigma_s, order, fluence, flux, empty, at, first))
   {
     return;
   }

@@ -145,7 +145,7 @@ ScatteringVoxels AngularScattering::VoxelsFrom(std::size_t voxel, const Grid* gr
 
 void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<float>& sigma_s,
   const Buffer<float>& source, const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor,
-  const Grid* grid, const VoxelBox* lit) const
+  const Buffer<cl_uchar>* empty, const Grid* grid, const VoxelBox* lit) const
 {
   if (this->Sums == PairSums::Passes)
   {
@@ -162,8 +162,10 @@ void AngularScattering::Scatter(const Buffer<float>& radiance, const Buffer<floa
   batches.first = FirstBatch;
   batches.whole = GroupSize;
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
+    ScatteringVoxels at = this->VoxelsFrom(from + begin * VoxelsAtATime, grid, lit);
+    at.hasSums = empty != nullptr;
     With(scatter, radiance, source, this->Moments, this->Weights, this->Spread, this->Angles, sigma_s, light.order,
-      light.fluence, light.flux, scale, this->VoxelsFrom(from + begin * VoxelsAtATime, grid, lit));
+      light.fluence, light.flux, scale, empty ? empty->Handle() : sigma_s.Handle(), at);
     Launch(this->TheDevice, scatter, cl::NDRange(size), cl::NDRange(GroupSize));
   });
 }

@@ -34,7 +34,7 @@ struct OrdinatesLight
 class AngularScattering
 {
 public:
-  static constexpr std::size_t VoxelsAtATime = 8; ///< voxels per work-item
+  static constexpr std::size_t VoxelsAtATime = OrdinateBlock; ///< voxels per work-item
 
   /// @param positive  true: negative sources, which N terms can produce, are set to 0, and the positive ones of the
   ///   voxel are scaled to conserve power (Eq. (D8)); false: sources are not changed
@@ -53,11 +53,12 @@ public:
   /// Adds fluence and net flux of `radiance` to `light`, and writes the scattering source.
   /// @param source  W / (length^3 sr), to be multiplied by `scale`
   /// @param scale  factor by voxel for the sources of all directions; written if `positive`
+  /// @param empty  blocks of voxels of which `radiance` holds only sums (OrdinateArrays::empty); null: none
   /// @param lit  outside of this box of the grid the radiance is 0 and stays so; null: no such box. Only with
   ///   WorksInPlace(). The fluence of the last order, OrdinatesLight::order, is then undefined outside of it
   void Scatter(const Buffer<float>& radiance, const Buffer<float>& sigma_s, const Buffer<float>& source,
-    const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor, const Grid* grid = nullptr,
-    const VoxelBox* lit = nullptr) const;
+    const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor,
+    const Buffer<cl_uchar>* empty = nullptr, const Grid* grid = nullptr, const VoxelBox* lit = nullptr) const;
   /// Adds fluence and net flux of `radiance` to `light`, without scattering.
   void Gather(const Buffer<float>& radiance, const OrdinatesLight& light, const Monitor& monitor) const;
 

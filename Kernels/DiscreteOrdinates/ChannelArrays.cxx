@@ -1,6 +1,7 @@
 #include "DiscreteOrdinates/ChannelArrays.h"
 
 #include "Device/Device.h"
+#include "Device/HostThreads.h"
 #include "Distribution/SharedMedium.h"
 #include "LightPropagation/Conservative/BlockTransport.h"
 #include "LightPropagation/Emission/UncollidedEmission.h"
@@ -90,6 +91,28 @@ double ChannelArrays::PartWithoutScattering() const
     empty += std::all_of(begin, end, [](float sigma_s) { return sigma_s == 0.0f; }) ? end - begin : 0;
   }
   return this->Voxels > 0 ? static_cast<double>(empty) / static_cast<double>(this->Voxels) : 0.0;
+}
+
+std::vector<cl_uchar> ChannelArrays::EmptyBlocks(const VoxelBox& within) const
+{
+  std::vector<cl_uchar> empty(this->Voxels / OrdinateBlock + 1, 0);
+  InThreads(this->Voxels / OrdinateBlock, 1 << 14, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block)
+    {
+      empty[block] = 1;
+      for (std::size_t i = block * OrdinateBlock; i < (block + 1) * OrdinateBlock && empty[block]; ++i)
+      {
+        const std::array<int, 3> at = within.Within(this->Layout.grid.VoxelAt(i));
+        bool is = this->Absorption[i] == 0.0f && this->Scattering[i] == 0.0f;
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          is = is && at[axis] >= 0 && at[axis] < within.size[axis];
+        }
+        empty[block] = is ? 1 : 0;
+      }
+    }
+  });
+  return empty;
 }
 
 void ChannelArrays::LookAtAllRanks()

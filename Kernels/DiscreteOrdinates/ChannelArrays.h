@@ -60,6 +60,9 @@ public:
   bool Scatters() const { return this->AnyScattering; }
   /// Fraction of this rank's voxels in groups that do not scatter, which AngularScattering can skip.
   double PartWithoutScattering() const;
+  /// Whether each block of OrdinateBlock consecutive voxels lies in the box `within` of this rank's grid and has no
+  /// medium.
+  std::vector<cl_uchar> EmptyBlocks(const VoxelBox& within) const;
   void Read(OrdinatesResult& result) const;
 
   const Medium& TheMedium;

@@ -4,6 +4,10 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
+enum
+{
+  OrdinateBlock = 8 ///< number of consecutive voxels that scatter together, or together have no medium
+};
 /// Geometry of a lamp and of the grid, for LampScattering.cl.
 typedef struct
 {
@@ -29,6 +33,8 @@ typedef struct
   int first[3], last[3]; ///< lowest and highest voxel of the box; of the whole grid if part is SweepsAll
   int part;              ///< SweepsAll, SweepsBox or SweepsBeyondBox
   int begin, end; ///< range of layers of that part, counted in the order in which the directions of a group cross them
+  int skips;      ///< 1: sweep_upwind leaves only sums over directions in blocks without medium (UpwindSweep.cl)
+  float perArea[3]; ///< 1 / area of a voxel's face normal to each axis for the sums of the net flux; 0: no net flux
   /// number of voxels from the radiance of one group of directions to that of the next (OrdinateStride)
   ulong stride;
   ulong firstT, firstSource; ///< index of the channel's first value in the extinction, and in an isotropic source
@@ -44,5 +50,6 @@ typedef struct
   int width, height;     ///< number of voxels of the grid along x and y
   int first[2], last[2]; ///< along x and y: range of the voxels with light; blocks of voxels beside it are left out
   int skips;             ///< 1: voxels that do not scatter are not scattered from
+  int hasSums;           ///< 1: of blocks without medium, the radiance holds sums over directions (UpwindSweep.cl)
 } ScatteringVoxels;
 SHARED_END

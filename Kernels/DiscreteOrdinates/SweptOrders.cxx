@@ -48,7 +48,8 @@ class SweptOrders
 public:
   SweptOrders(
     Device& device, const OrdinatesScene& scene, const OrdinatesAngles& angles, const OrdinatesSettings& settings)
-    : Scene(scene)
+    : TheDevice(device)
+    , Scene(scene)
     , Settings(settings)
     , Arrays(device, scene, angles, settings.netFlux)
     , Cells(CellsOf(this->Arrays.Faces.get()))
@@ -71,6 +72,7 @@ public:
     {
       this->Result.leftOut.push_back(left_out::EmptyVoxels(empty));
     }
+    this->Scene.domain.Collective([&] { this->FindEmptyBlocks(empty); });
     while (!this->Done())
     {
       const double residual = std::clamp(this->Record.Residual(), this->Settings.tolerance, 1.0);
@@ -96,6 +98,20 @@ private:
       PaysToOmitEmptySlabs(this->Scene.filled, this->Scene.medium.grid, AsPropagation(this->Settings));
   }
 
+  /// Finds the voxels of which sweeps after the first keep only sums over directions.
+  /// @param part  fraction of the voxels that do not scatter
+  void FindEmptyBlocks(double part)
+  {
+    const Grid& grid = this->Scene.medium.grid;
+    if (this->TheDevice.IsCpu() && this->Arrays.Scatters() && part > 0.0) // on a GPU, work-items have one direction
+    {
+      this->Empty = Buffer<cl_uchar>(this->TheDevice,
+        this->Arrays.EmptyBlocks(this->OmitsSlabs ? this->Scene.filled : VoxelBox{ { 0, 0, 0 }, grid.size }),
+        "empty voxels");
+    }
+  }
+  const Buffer<cl_uchar>* EmptyBlocks() const { return this->Empty.Size() > 0 ? &this->Empty : nullptr; }
+
   /// Final sweep: computes the light of all orders after the first in the empty voxels around the medium, and its
   /// escaped power by face.
   void SweepEmptySlabs(const Monitor& monitor)
@@ -105,7 +121,7 @@ private:
       return;
     }
     auto& sweep = static_cast<UpwindSweep&>(*this->Sweep); // the domain is serial
-    const FacePowers powers = sweep.ApplyBeyond(this->Scene.filled, this->Swept(), monitor);
+    const FacePowers powers = sweep.ApplyBeyond(this->Scene.filled, this->Swept(nullptr), monitor);
     this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
     for (int face = 0; face < 6; ++face)
     {
@@ -189,7 +205,10 @@ private:
     }
   }
 
-  OrdinateArrays Swept() const { return { this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale }; }
+  OrdinateArrays Swept(const Buffer<cl_uchar>* empty) const
+  {
+    return { this->Radiance, this->Arrays.SigmaT, this->Arrays.Scale, nullptr, false, empty, this->Settings.netFlux };
+  }
 
   /// @param within  whether only the box of the medium is swept
   FacePowers SweepOrder(const IncomingRadiance& incoming, bool within, const Monitor& monitor)
@@ -197,7 +216,7 @@ private:
     if (within)
     {
       auto& sweep = static_cast<UpwindSweep&>(*this->Sweep); // the domain is serial
-      return sweep.ApplyWithin(this->Scene.filled, this->Swept(), monitor);
+      return sweep.ApplyWithin(this->Scene.filled, this->Swept(this->EmptyBlocks()), monitor);
     }
     const bool shines = !this->Record.All().empty() || this->Arrays.Emits() || !this->Settings.leaveOut;
     if (!shines && this->Scene.domain.IsSerial())
@@ -208,7 +227,7 @@ private:
         this->Result.leftOut.push_back(left_out::DarkDirections(lit));
       }
     }
-    return this->Sweep->Apply(this->Swept(), incoming, shines, monitor);
+    return this->Sweep->Apply(this->Swept(this->EmptyBlocks()), incoming, shines, monitor);
   }
 
   void SweepAndScatter(const IncomingRadiance& incoming, const Monitor& monitor)
@@ -226,7 +245,8 @@ private:
     {
       this->Scene.domain.Collective([&] {
         this->Scattering.Scatter(this->Radiance, this->Arrays.SigmaS, this->Out(), this->Arrays.Scale,
-          this->Arrays.Light, monitor, &this->Scene.medium.grid, within ? &this->Scene.filled : nullptr);
+          this->Arrays.Light, monitor, this->EmptyBlocks(), &this->Scene.medium.grid,
+          within ? &this->Scene.filled : nullptr);
       });
       return;
     }
@@ -284,6 +304,7 @@ private:
                                             : orders >= least && this->Record.Residual() <= this->Settings.tolerance;
   }
 
+  Device& TheDevice;
   const OrdinatesScene& Scene;
   const OrdinatesSettings& Settings;
   ChannelArrays Arrays;
@@ -295,6 +316,7 @@ private:
   OrdinatesRecord Record;
   OrdinatesResult Result;
   bool OmitsSlabs = false; ///< MayOmitEmptySlabs()
+  Buffer<cl_uchar> Empty;  ///< OrdinateArrays::empty of the orders after the first; no values: all voxels are stored
   /// Power that the next order carries, power that wraps around periodic axes in the next sweep, and reflected power,
   /// W.
   double GoesOn = 0.0, OnTheWay = 0.0, Reflected = 0.0;

@@ -146,7 +146,22 @@ typedef struct
   const __global int* up;
   __global float *x, *y, *z;
   __global float4* sums;
+  const __global uchar* empty; // whether each block of OrdinateBlock voxels has no medium, if SweptLayers::skips
 } ordinate_arrays;
+
+// Stores the sums, over the directions of a group, of fluence and net flux of voxel `voxel` of a block without medium:
+// [fluence, flux along x, y, z][voxel], in place of the radiance of the block's first voxels.
+//   across  power that a radiance of 1 carries through the faces normal to x, y, z, W;  up: signs of the directions
+static inline void keep_sums(__global float* block, int voxel, real mean, real angle, const real* across,
+  const SweptLayers* layers, const __global int* up)
+{
+  block[voxel] = sum_of(angle * mean);
+  for (int a = 0; a < 3 && layers->perArea[0] > 0.0f; ++a)
+  {
+    const float perArea = up[a] ? layers->perArea[a] : -layers->perArea[a];
+    block[(1 + a) * OrdinateBlock + voxel] = perArea * sum_of(across[a] * mean);
+  }
+}
 
 // Sweeps a range of layers along z, of all voxels, of a box, or of the voxels downwind of the box. One work-item per
 // group of directions, or per direction. Downwind of a box: x, y, z hold the radiance that left the box, and its voxels
@@ -163,6 +178,7 @@ typedef struct
 //   sums      [group][voxel]: power through faces normal to x, y, z, W, of the light that enters the voxel, or, if
 //             layers->ofMean, of its mean radiance; fluence
 //   mode      ByDirection ... ByDiamonds, a compile-time constant
+// With SweptLayers::skips, voxels of blocks without medium have no source, and of their radiance only sums are kept.
 static inline __attribute__((always_inline)) void sweep_layers(
   const ordinate_arrays* arrays, const SweptLayers* layers, const int mode)
 {
@@ -178,7 +194,8 @@ static inline __attribute__((always_inline)) void sweep_layers(
   const real across_y = load_real((group * 4 + 1) * 8 + lane, arrays->across);
   const real across_z = load_real((group * 4 + 2) * 8 + lane, arrays->across);
   const real angle = load_real((group * 4 + 3) * 8 + lane, arrays->across);
-  const real share[3] = { share_x, share_y, share_z };
+  const real share[3] = { share_x, share_y, share_z }, across[3] = { across_x, across_y, across_z };
+  const __global uchar* const empty = mode == ByDirection && REAL_WIDTH == 8 && layers->skips ? arrays->empty : 0;
   const real chords[3] = { 1.0f / fmax(share_x, (real)1e-6f), 1.0f / fmax(share_y, (real)1e-6f),
     1.0f / fmax(share_z, (real)1e-6f) }; // mean chords from face to face along each axis
   const int up_x = arrays->up[3 * group], up_y = arrays->up[3 * group + 1], up_z = arrays->up[3 * group + 2];
@@ -210,6 +227,15 @@ static inline __attribute__((always_inline)) void sweep_layers(
         const int i = x_range.x + x_range.y * column;
         const real from_y = load_real(i * 8, along_y);
         const real from_z = load_real(i * 8, along_z);
+        if (empty && empty[(first + i) / OrdinateBlock])
+        {
+          from_x = multiply_add(share_x, from_x, multiply_add(share_y, from_y, share_z * from_z));
+          keep_sums(arrays->light + (group * layers->stride + (first + i) / OrdinateBlock * OrdinateBlock) * 8,
+            (first + i) % OrdinateBlock, from_x, angle, across, layers, arrays->up + 3 * group);
+          store_real(from_x, i * 8, along_y);
+          store_real(from_x, i * 8, along_z);
+          continue;
+        }
         real source = mode & ByDirection ? load_real(i * 8, cells) : (real)even[i];
         source = mode & InSums ? source : source * (real)arrays->scale[first + i];
         const real tau = (real)sigma_t[first + i] * chord;
@@ -257,10 +283,10 @@ __kernel void add_face(__global float* sum, const __global float* face)
   const __global float *shares, const __global float *across, const __global int *up, __global float *x, \
     __global float *y, __global float *z, SweptLayers layers
 
-__kernel void sweep_upwind(
-  __global float* radiance, const __global float* sigma_t, const __global float* scale, ORDINATES)
+__kernel void sweep_upwind(__global float* radiance, const __global float* sigma_t, const __global float* scale,
+  const __global uchar* empty, ORDINATES)
 {
-  const ordinate_arrays arrays = { radiance, sigma_t, scale, shares, across, up, x, y, z, 0 };
+  const ordinate_arrays arrays = { radiance, sigma_t, scale, shares, across, up, x, y, z, 0, empty };
   sweep_layers(&arrays, &layers, ByDirection);
 }
 
@@ -268,7 +294,7 @@ __kernel void sweep_upwind(
 #define SWEEP_IN_SUMS(name, mode)                                                                            \
   __kernel void name(__global float* light, const __global float* sigma_t, __global float4* sums, ORDINATES) \
   {                                                                                                          \
-    const ordinate_arrays arrays = { light, sigma_t, 0, shares, across, up, x, y, z, sums };                 \
+    const ordinate_arrays arrays = { light, sigma_t, 0, shares, across, up, x, y, z, sums, 0 };              \
     sweep_layers(&arrays, &layers, (mode) | InSums);                                                         \
   }
 SWEEP_IN_SUMS(sweep_even, 0)

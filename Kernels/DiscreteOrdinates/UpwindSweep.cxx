@@ -225,13 +225,22 @@ void UpwindSweep::Sweep(int first, int count, SweptLayers part, const OrdinateAr
   part.ofMean = sums && sums->ofMean;
   part.firstT = sums ? sums->firstExtinction : 0;
   part.firstSource = sums ? sums->first : 0;
+  part.skips = arrays.empty != nullptr;
+  for (int axis = 0; axis < 3 && arrays.netFlux; ++axis)
+  {
+    part.perArea[axis] = static_cast<float>(1.0 / FaceArea(this->TheGrid, axis));
+  }
   Batches batches;
   batches.count = static_cast<std::size_t>(part.end);
   InBatches(this->TheDevice, batches, monitor, [&](std::size_t begin, std::size_t size) {
     part.begin = static_cast<cl_int>(begin);
     part.end = static_cast<cl_int>(begin + size);
-    With(sweep, sums && sums->even ? *sums->even : arrays.radiance, arrays.sigma_t, sums ? sums->values : arrays.scale,
-      this->Shares, this->Across, this->Up, this->Faces[0], this->Faces[1], this->Faces[2], part);
+    const Buffer<float>& light = sums && sums->even ? *sums->even : arrays.radiance;
+    const auto set = [&](const auto&... more) {
+      With(sweep, light, arrays.sigma_t, more..., this->Shares, this->Across, this->Up, this->Faces[0], this->Faces[1],
+        this->Faces[2], part);
+    };
+    sums ? set(sums->values) : set(arrays.scale, arrays.empty ? arrays.empty->Handle() : this->Up.Handle());
     const std::size_t items = OrdinateLanes / static_cast<std::size_t>(width);
     this->TheDevice.Queue().enqueueNDRangeKernel(
       sweep, cl::NDRange(first * items), cl::NDRange(count * items), GroupOfLargeItems(this->TheDevice));

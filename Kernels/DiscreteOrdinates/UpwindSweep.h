@@ -47,6 +47,10 @@ struct OrdinateArrays
   const SweptSums* sums = nullptr; ///< null: no sums
   /// Whether only light that wraps around periodic axes is incident: faces do not reflect.
   bool onlyWraps = false;
+  /// Whether each block of OrdinateBlock consecutive voxels has neither medium nor source: its source is then not read,
+  /// and `radiance` receives sums over directions alone, for AngularScattering. Null: no such block
+  const Buffer<cl_uchar>* empty = nullptr;
+  bool netFlux = false; ///< whether these sums include the net flux
 };
 
 /// Sweep of discrete ordinates: transports light along all directions through the grid once.
