@@ -1,5 +1,7 @@
 #include "LightPropagation/Conservative/EnergyLedger.h"
 
+#include <algorithm>
+
 namespace tyndall
 {
 void EnergyLedger::Count(const SweepTally& tally)
@@ -38,15 +40,17 @@ void EnergyLedger::ShareEscaped(const Rgb& watts)
 {
   for (int c = 0; c < 3; ++c)
   {
-    double through = 0.0;
+    double through = watts[c], positive = 0.0;
     for (const Rgb& face : this->Faces)
     {
       through += face[c];
+      positive += std::max(face[c], 0.0);
     }
     for (Rgb& face : this->Faces)
     {
-      face[c] *= through > 0.0 ? 1.0 + watts[c] / through : 1.0;
+      face[c] = positive > 0.0 ? std::max(face[c], 0.0) * std::max(through / positive, 0.0) : 0.0;
     }
+    this->Sums.escaped[c] = std::max(this->Sums.escaped[c], 0.0);
   }
 }
 }

@@ -28,8 +28,9 @@ public:
   /// Assigns escaped power to a face, after Escape(channel, watts) has counted it without a face.
   void AssignFace(int channel, int face, double watts) { this->Faces[face][channel] += watts; }
   /// Distributes `watts` of power that escaped through unknown faces over the six faces, in proportion to the escaped
-  /// power already assigned to each.
-  void ShareEscaped(const Rgb& watts);
+  /// power already assigned to each. Powers below 0, which rounding produces at dark faces, become 0; their sum is
+  /// kept.
+  void ShareEscaped(const Rgb& watts = {});
   /// Replaces the unaccounted power: still in flight, or in sources that no sweep has carried.
   void SetUnaccounted(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace tyndall
 {
@@ -43,8 +44,8 @@ public:
   }
 
   /// Subtracts the owed power, which voxels absorb in addition since their fluence was raised, from the neighbouring
-  /// voxels. A neighbour whose fluence becomes negative owes that power to its own neighbours in the next call.
-  /// Collective.
+  /// voxels. Where these absorb less than that, each of them owes an equal share in the next call, as does a neighbour
+  /// whose fluence becomes negative. Collective.
   void Collect()
   {
     std::vector<float> own(this->Owed.size());
@@ -53,13 +54,19 @@ public:
       own[i] = static_cast<float>(this->Sigma(i) * this->Fluence[i]);
     }
     const std::vector<float> absorbed = this->Around.Spread(own, 1);
+    const std::vector<float> ones(absorbed.size(), 1.0f);
+    std::vector<float> handed(own.size(), 0.0f);
     this->ForOwn([&](std::size_t i, std::size_t known, const std::array<int, 3>& at) {
-      const double beside = this->Owed[i] > 0.0 ? this->SumBeside(absorbed, known, at) : 0.0;
-      own[i] = beside > 0.0 ? static_cast<float>(this->Owed[i] / beside) : 0.0f;
-      this->Owed[i] = beside > 0.0 ? 0.0 : this->Owed[i];
+      const double owed = std::exchange(this->Owed[i], 0.0);
+      const double beside = owed > 0.0 ? this->SumBeside(absorbed, known, at) : 0.0;
+      const bool suffices = beside >= owed && owed > 0.0;
+      own[i] = suffices ? static_cast<float>(owed / beside) : 0.0f;
+      handed[i] =
+        suffices ? 0.0f : static_cast<float>(owed / std::max(this->SumBeside(ones, known, at), 1.0)); // one voxel: lost
     });
-    const std::vector<float> parts = this->Around.Spread(own, 1);
+    const std::vector<float> parts = this->Around.Spread(own, 1), shares = this->Around.Spread(handed, 1);
     this->ForOwn([&](std::size_t i, std::size_t known, const std::array<int, 3>& at) {
+      this->Owed[i] = this->SumBeside(shares, known, at);
       if (this->Sigma(i) > 0.0)
       {
         this->Fluence[i] = static_cast<float>(this->Fluence[i] * (1.0 - this->SumBeside(parts, known, at)));
@@ -146,7 +153,6 @@ void MakeFluence(Communicator& communicator, const Halo& around, const VolumeLay
     [perVolume](float value) { return std::max(static_cast<float>(value * perVolume), 0.0f); });
   CutOffNegative(communicator, around, layout, sigma_a, solved, path);
   std::transform(solved.begin(), solved.end(), uncollided.begin(), solved.begin(), std::plus<float>());
-  CutOffNegative(communicator, around, layout, sigma_a, solved);
 }
 
 void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,

@@ -42,25 +42,8 @@ constexpr int Several = 12;
 /// residual's root mean square, relative to the typical power of a voxel.
 constexpr double RefinedBy = 0.1, RefinedTo = 1e-6;
 
-/// Sets negative powers, which rounding can produce at dark faces, to 0, and scales the positive ones to conserve the
-/// sum.
-std::array<double, 6> NotNegative(std::array<double, 6> powers)
-{
-  const double sum = std::accumulate(powers.begin(), powers.end(), 0.0);
-  double positive = 0.0;
-  for (double& power : powers)
-  {
-    power = std::max(power, 0.0);
-    positive += power;
-  }
-  for (double& power : powers)
-  {
-    power *= positive > 0.0 ? std::max(sum, 0.0) / positive : 0.0;
-  }
-  return powers;
-}
-
-/// Escaped power through each of the box's faces in the last solution, W; 0 on periodic axes.
+/// Escaped power through each of the box's faces in the last solution, W; 0 on periodic axes. Rounding may make it
+/// negative at dark faces.
 /// @param sums  over all ranks
 /// @param entered  incident power of the sweep, W
 /// @param ofSweep  escaped power of the sweep through each face, W; determines how the power of voxels with several
@@ -85,7 +68,7 @@ std::array<double, 6> OutflowBy(const DiffusionSystem::BorderSums& sums, double 
     outflow[face] +=
       periodic[face / 2] ? 0.0 : sums.transportWeight / sums.shared * (missing[face] - all * ofSweep[face] / left);
   }
-  return NotNegative(outflow);
+  return outflow;
 }
 }
 

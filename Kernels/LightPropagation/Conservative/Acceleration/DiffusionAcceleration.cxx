@@ -328,6 +328,7 @@ void DiffusionAcceleration::CountLight()
     this->Box->TakeLeaving(lit);
     this->Box->Count(this->Result.ledger);
   }
+  this->Result.ledger.ShareEscaped();
 }
 
 bool DiffusionAcceleration::Done(int iterations) const
@@ -435,16 +436,16 @@ void DiffusionAcceleration::WriteFluence()
     }
   }
   this->CountLight();
-  const std::vector<float> fluence = this->FluenceOfSystems();
-  this->TheDomain.Collective([&] { this->Parts.Fluence.Write(fluence.data()); });
+  this->WriteFluenceOfSystems();
   if (this->Settings.netFlux)
   {
-    this->WriteFlux(fluence);
+    this->WriteFlux();
   }
 }
 
-/// Fluence of the diffusion systems plus uncollided fluence, W / length^2, [channel][voxel].
-std::vector<float> DiffusionAcceleration::FluenceOfSystems()
+/// Writes the fluence of the diffusion systems plus uncollided fluence, W / length^2, to Parts.Fluence; nowhere below
+/// Result.fluenceDirect.
+void DiffusionAcceleration::WriteFluenceOfSystems()
 {
   const VolumeLayout& layout = this->Parts.Layout;
   std::vector<float> fluence(layout.Floats(), 0.0f), path;
@@ -457,16 +458,17 @@ std::vector<float> DiffusionAcceleration::FluenceOfSystems()
     path = this->Parts.Path.Read();
   });
   const Halo around(this->TheDomain.Comm(), this->TheDomain.Partition(), this->Settings.periodic, 1);
-  MakeFluence(this->TheDomain.Comm(), around, layout, this->Parts.Problem.TheMedium().sigma_a, fluence, std::move(path),
-    this->UncollidedFluence);
+  const Field& sigma_a = this->Parts.Problem.TheMedium().sigma_a;
+  MakeFluence(this->TheDomain.Comm(), around, layout, sigma_a, fluence, std::move(path), this->UncollidedFluence);
   fluence.resize(layout.Values());
   fluence.resize(layout.Floats(), 0.0f);
-  return fluence;
+  this->TheDomain.Collective([&] { this->Parts.Fluence.Write(fluence.data()); });
+  CutOffNegative(this->TheDomain.Comm(), around, layout, sigma_a, this->Result.fluenceDirect, this->Parts.Fluence);
 }
 
 /// Adds the net flux of scattered light: from the diffusion systems or, with angular moments, from the moments of
 /// degree 1 of the sweep, in which the uneven pattern of rays is weaker.
-void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
+void DiffusionAcceleration::WriteFlux()
 {
   TransportParts& parts = this->Parts;
   GhostedBuffer flux(parts.TheDevice, this->Arrays.Block(), parts.Flux, 3 * parts.Layout.channels, "net_flux");
@@ -488,7 +490,7 @@ void DiffusionAcceleration::WriteFlux(const std::vector<float>& fluence)
     }
     if (!parts.IsEmpty())
     {
-      LimitFlux(parts.Layout, fluence, parts.Flux);
+      LimitFlux(parts.Layout, parts.Fluence.Read(), parts.Flux);
     }
   });
 }

@@ -47,8 +47,8 @@ private:
   bool Done(int iterations) const;
   bool HasMoments() const { return this->Arrays.Moments().Any(); }
   std::vector<float> SweptFluence() const;
-  std::vector<float> FluenceOfSystems();
-  void WriteFlux(const std::vector<float>& fluence);
+  void WriteFluenceOfSystems();
+  void WriteFlux();
   void Leave();
   void WriteFluence();
   void FindSurfaceRadiance();
