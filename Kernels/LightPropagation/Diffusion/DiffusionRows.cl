@@ -205,22 +205,27 @@ static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
 }
 
 // Marks the rows that contain voxels with a nonzero skin_of().
-//   skins  [z][y], 1: marked; initially 0
+//   skins  [z][y], 1: marked; 2: such a voxel is opaque, over 100 mean free paths; 3: over 1e9, where rounding in its
+//          balance is most of its fluence; initially 0
 __kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
 {
   FOR_ROWS(layout.rows)
   {
     const int y = r % layout.size[1], z = r / layout.size[1];
-    real most = (real)0.0f;
+    const real edge = (real)fmax(layout.spacing[0], fmax(layout.spacing[1], layout.spacing[2]));
+    real most = (real)0.0f, opaque = (real)0.0f, endless = (real)0.0f;
     FOR_VECTORS(x, 0, layout.size[0])
     {
       real sigma_t[7];
       find_extinctions(&layout, y, z, x, extinction, sigma_t);
-      most = fmax(most, in_row(skin_of(&layout, sigma_t), layout.size[0] - x));
+      const real skin = in_row(skin_of(&layout, sigma_t), layout.size[0] - x);
+      most = fmax(most, skin);
+      opaque = fmax(opaque, select((real)0.0f, skin, sigma_t[0] * edge > (real)100.0f));
+      endless = fmax(endless, select((real)0.0f, skin, sigma_t[0] * edge > (real)1e9f));
     }
     if (sum_of(most) > 0.0f)
     {
-      skins[r] = 1;
+      skins[r] = sum_of(endless) > 0.0f ? 3 : sum_of(opaque) > 0.0f ? 2 : 1;
     }
   }
 }

@@ -3,6 +3,7 @@
 #include "Medium/BoxFaces.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -34,6 +35,8 @@ CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, con
 /// Factor by which the diffusion solve after each sweep reduces the residual of the diffusion system; a stronger
 /// reduction would hardly save sweeps.
 constexpr double Reduction = 3e-3;
+/// The same where opaque voxels are beside thin ones, whose errors the norm of the residual hardly weighs.
+constexpr double ReductionBesideThin = 3e-4;
 /// Factor by which the diffusion solves from the 13th sweep on reduce the residual: if the iteration converges slowly,
 /// the residuals of successive solves add up.
 constexpr double SlowReduction = 1e-4;
@@ -41,6 +44,11 @@ constexpr int Several = 12;
 /// Targets of Refine(): factor by which it reduces the residual of the diffusion system, and upper bound on the
 /// residual's root mean square, relative to the typical power of a voxel.
 constexpr double RefinedBy = 0.1, RefinedTo = 1e-6;
+/// Relative change of the fluence, as a root mean square, at which Refine() ends, and largest number of its rounds. The
+/// residual alone does not bound the error: between opaque voxels, whose conductances are small, little power makes a
+/// large difference of fluence.
+constexpr double RefinedChange = 1e-5;
+constexpr int MostRounds = 8;
 
 /// Escaped power through each of the box's faces in the last solution, W; 0 on periodic axes. Rounding may make it
 /// negative at dark faces.
@@ -99,6 +107,12 @@ DiffusionSolver::DiffusionSolver(Device& device, const BlockWithGhosts& block, c
     }
   });
   this->Solver->Coarsen();
+  this->OpaqueBesideThin = this->TheDomain.Max(this->System ? 1.0 * this->System->MostOpaqueSkin() : 0.0) == 2.0;
+  this->TheDomain.Collective([&] {
+    const std::size_t floats = this->OpaqueBesideThin ? this->Solver->Right().Size() : 0;
+    this->Balance = Buffer<float>(device, floats, "the diffusion system");
+    this->Balance.Fill(0.0f);
+  });
 }
 
 /// Runs `step` on this rank's system, if the rank has voxels. Collective.
@@ -117,13 +131,20 @@ double DiffusionSolver::Correct(double unit)
   Buffer<float> none;
   this->OnSystem([](DiffusionSystem& system) { system.FindModel(); });
   this->Block.FillGhosts(this->System ? this->System->TheModel() : none);
-  this->OnSystem([](DiffusionSystem& system) { system.Balance(); });
-  const double reduction = this->Corrections++ < Several ? Reduction : SlowReduction;
+  this->OnSystem([&](DiffusionSystem& system) {
+    system.Balance();
+    if (this->OpaqueBesideThin)
+    {
+      this->Balance.CopyFrom(this->Solver->Right(), 0, this->Balance.Size());
+    }
+  });
+  const double usual = this->OpaqueBesideThin ? ReductionBesideThin : Reduction;
+  const double reduction = this->Corrections++ < Several ? usual : SlowReduction;
   this->Solver->Solve(this->System ? this->System->Solved() : this->NoVoxels, unit, reduction);
   AndersonMixing::Sums sums = {};
   this->OnSystem([&](DiffusionSystem& system) {
     system.FindFlux();
-    sums = system.SumsOfChange();
+    sums = system.SumsOfChange(this->OpaqueBesideThin);
   });
   const std::vector<double> all = this->TheDomain.Sum(std::vector<double>{ sums.begin(), sums.end() });
   std::copy(all.begin(), all.end(), sums.begin());
@@ -133,7 +154,33 @@ double DiffusionSolver::Correct(double unit)
 
 void DiffusionSolver::Refine(double unit)
 {
-  this->Solver->GoOn(this->System ? this->System->Solved() : this->NoVoxels, unit, RefinedBy, RefinedTo);
+  ExactValues& values = this->System ? this->System->Solved() : this->NoVoxels;
+  double change = 1.0;
+  for (int round = 0; round < MostRounds && change > RefinedChange; ++round)
+  {
+    std::vector<double> before, sums(2, 0.0);
+    this->TheDomain.Collective([&] {
+      before = this->Found();
+      if (this->OpaqueBesideThin)
+      {
+        this->Solver->Right().CopyFrom(this->Balance, 0, this->Balance.Size());
+      }
+    });
+    // A residual of its own in each round: what rounding leaves of the large powers between thin voxels would hide the
+    // small ones between opaque voxels.
+    this->OpaqueBesideThin ? this->Solver->Solve(values, unit, RefinedBy, RefinedTo)
+                           : this->Solver->GoOn(values, unit, RefinedBy, RefinedTo);
+    this->TheDomain.Collective([&] {
+      const std::vector<double> now = this->Found();
+      for (std::size_t i = 0; i < now.size(); ++i)
+      {
+        sums[0] += (now[i] - before[i]) * (now[i] - before[i]);
+        sums[1] += now[i] * now[i];
+      }
+    });
+    sums = this->TheDomain.Sum(sums);
+    change = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
+  }
 }
 
 void DiffusionSolver::BeginBeyond(const std::vector<double>& guessed)

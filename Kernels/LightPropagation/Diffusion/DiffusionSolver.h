@@ -33,7 +33,7 @@ public:
   /// @param unit  typical power of a voxel, W
   /// @return change of the fluence by sweep and solve, |found - given| / |found| (numerics.md, Eq. (72))
   double Correct(double unit);
-  /// Continues the linear solver's iteration of the last Correct(), to a smaller residual.
+  /// Continues the linear solver's iteration of the last Correct() until it hardly changes the fluence.
   /// @param unit  as in Correct()
   void Refine(double unit);
   double Absorbed() const; ///< absorbed power of the last solution, W
@@ -71,6 +71,9 @@ private:
   std::unique_ptr<DiffusionSystem> System; ///< system of the block with ghosts; null on a rank without voxels
   ExactValues NoVoxels;                    ///< empty; passed to the linear solver on a rank without voxels
   ExactValues OwnNext;                     ///< result of NextFluence(); empty if the block has no ghosts
+  /// Whether any voxel beside a thinner one has over 100 mean free paths, but none over 1e9.
+  bool OpaqueBesideThin = false;
+  Buffer<float> Balance; ///< right-hand side of the last system, if OpaqueBesideThin; else empty
   int Corrections = 0;
 };
 }

@@ -122,7 +122,7 @@ void DiffusionSystem::FindFlatSource(const SweepModel& model)
   this->TheDevice.Finish(); // the kernel reads `onDevice`, which is destroyed on return
 }
 
-/// Finds the rows of voxels that have thick voxels next to thinner ones, and sets Skins and Layout.skin.
+/// Finds the rows of voxels that have thick voxels next to thinner ones, and sets Skins, Layout.skin and MostOpaque.
 void DiffusionSystem::FindSkins()
 {
   this->Skins =
@@ -134,6 +134,7 @@ void DiffusionSystem::FindSkins()
   this->RunRows(kernel);
   const std::vector<cl_int> rows = this->Skins.Read();
   this->Layout.skin = std::any_of(rows.begin(), rows.end(), [](cl_int any) { return any != 0; });
+  this->MostOpaque = *std::max_element(rows.begin(), rows.end());
 }
 
 /// Copies sigma_t to rows of the solver's layout, in a scratch array of the solver that the next solve overwrites.
@@ -195,10 +196,11 @@ void DiffusionSystem::FindFlux()
   }
 }
 
-AndersonMixing::Sums DiffusionSystem::SumsOfChange() const
+AndersonMixing::Sums DiffusionSystem::SumsOfChange(bool alike) const
 {
   const auto& h = this->Layout.spacing;
-  const float edge = std::cbrt(h[0] * h[1] * h[2]); // mean edge of a voxel, invariant under permutation of the axes
+  // mean edge of a voxel, invariant under permutation of the axes
+  const float edge = alike ? 1e20f : std::cbrt(h[0] * h[1] * h[2]);
   return this->Mixing.SumsOf(this->Next, this->Solution, { this->Inputs.sigma_s, this->Inputs.first, edge });
 }
 

@@ -122,6 +122,8 @@ public:
   /// Changes the next sweep's source in optically thick voxels next to thinner ones, such that the sweep emits the
   /// outgoing partial current of diffusion there (numerics.md, Eqs. (63), (64)).
   void ShapeSource();
+  /// How thick the voxels beside thinner ones are: 2: any has over 100 mean free paths; 3: over 1e9; less: neither.
+  int MostOpaqueSkin() const { return this->MostOpaque; }
 
   // Steps of DiffusionSolver::Correct(), in order. The system of a rank's block includes ghost voxels, which have
   // `sigma_s` below 0 and are excluded from sums.
@@ -134,7 +136,9 @@ public:
   /// The solution, with ghost voxels: input and result of the linear solver.
   ExactValues& Solved() { return this->Solution; }
   void FindFlux(); ///< with angular moments: computes the moments of degree 1 of the solution, Eq. (70a)
-  AndersonMixing::Sums SumsOfChange() const; ///< this rank's sums for Anderson mixing of the solution
+  /// This rank's sums for Anderson mixing of the solution.
+  /// @param alike  whether voxels that hardly scatter have the same weight in the change as others
+  AndersonMixing::Sums SumsOfChange(bool alike) const;
   void MixBy(const AndersonMixing::Sums& sums) { this->Mixing.Mix(this->Next, this->Solution, sums); }
 
   /// Sums over cells of the box's faces, W, from which DiffusionSolver::Outflow() computes the escaped power.
@@ -192,7 +196,8 @@ private:
   std::size_t Count, BorderCells;
   MultigridSolver& Solver;
   Buffer<float> FlatSource, Pattern, Model;
-  Buffer<cl_int> Skins; ///< [z][y], 1: the row of voxels has optically thick voxels next to thinner ones
+  int MostOpaque = 0;
+  Buffer<cl_int> Skins; ///< [z][y], not 0: the row of voxels has optically thick voxels next to thinner ones
   AndersonMixing Mixing;
   ExactValues Borders;
   /// State from which the next sweep's source is computed, and the last solution, in the layout of State()
