@@ -401,7 +401,7 @@ void SourceIteration::ScatterOrder()
       const double now = GoesOnToItsEnd(this->Settings.maximumOrders, this->ToCome.wasOnTheWay[c],
         this->ToCome.onTheWay[c], this->ToCome.scattered[c] + this->ToCome.reflected[c]);
       this->ToCome.allScattered[c] += now;
-      this->ToCome.Expect(c, now);
+      this->ToCome.Expect(c, now, this->ToCome.reflected[c]);
     }
   }
   for (int c = 0; c < 3; ++c)
@@ -498,7 +498,8 @@ void SourceIteration::GoOnWarm()
     const double reflected = this->Parts.Faces ? this->Parts.Faces->Magnitude()[c] : 0.0;
     this->ToCome.Expect(c,
       GoesOnToItsEnd(this->Settings.maximumOrders, std::abs(this->ToCome.wasOnTheWay[c]),
-        std::abs(this->ToCome.onTheWay[c]), magnitudes[c] + reflected));
+        std::abs(this->ToCome.onTheWay[c]), magnitudes[c] + reflected),
+      reflected);
   }
 }
 

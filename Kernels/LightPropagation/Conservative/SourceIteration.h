@@ -30,11 +30,13 @@ struct OrdersToCome
   /// Updates `residual` with the estimated sum of the orders to come of a channel; the caller sets `residual` to 0
   /// before the first channel.
   /// @param now  power that the next order carries, or its magnitude if it may be negative, W
-  void Expect(int channel, double now)
+  /// @param reflected  part of it that faces reflect: its light is not in the fluence yet, whereas what scatters is
+  void Expect(int channel, double now, double reflected = 0.0)
   {
-    if (now != 0.0 && this->allScattered[channel] > 0.0)
+    const double all = this->allScattered[channel];
+    if (now != 0.0 && all > 0.0)
     {
-      this->residual = std::max(this->residual, this->rest[channel].After(now, this->allScattered[channel]));
+      this->residual = std::max(this->residual, this->rest[channel].After(now, all) + reflected / all);
     }
   }
 };
