@@ -282,13 +282,19 @@ LightSources::Sources LightSources::LampSources() const
   return sources;
 }
 
-LightSources::Sources LightSources::OtherSources() const
+LightSources::Sources LightSources::PeakSources() const
 {
   Sources sources;
   for (const EmissionPeak& peak : this->Emission.peaks)
   {
     sources.push_back(std::make_unique<UncollidedEmission>(peak, this->Problem.Settings().emissionError));
   }
+  return sources;
+}
+
+LightSources::Sources LightSources::GivenSources() const
+{
+  Sources sources;
   if (this->Given)
   {
     sources.push_back(std::make_unique<GivenLight>(*this->Given));

@@ -92,9 +92,8 @@ public:
 
   using Sources = std::vector<std::unique_ptr<UncollidedSource>>;
   Sources LampSources() const;
-  /// Sources of uncollided light, other than lamps, whose light is not swept: localised emission, and uncollided light
-  /// given by another solver.
-  Sources OtherSources() const;
+  Sources PeakSources() const;  ///< localised emission, along exact rays
+  Sources GivenSources() const; ///< uncollided light given by another solver
   /// Source of the emission of empty voxels, if it is swept along a quadrature of its own (OfVacuum); else none.
   Sources VacuumSources() const;
   /// Emission without localised emission, W / (length^3 sr), [channel][voxel].

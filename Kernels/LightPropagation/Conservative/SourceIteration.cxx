@@ -37,7 +37,7 @@ SourceIteration::SourceIteration(TransportParts& parts, const KeptLight* kept)
     if (parts.ByOctant)
     {
       this->AtFaces.emplace(OctantSources::Scene{ parts.TheDevice, this->Settings, parts.Layout, parts.OnDevice,
-        this->TheDomain.Whole(), this->TheDomain.Own(), !parts.Lights.Lamps.empty() });
+        this->TheDomain.Whole(), this->TheDomain.Own(), !parts.Lights.Lamps.empty() || parts.Lights.Given });
     }
     if (parts.StoresMoments())
     {
@@ -152,9 +152,9 @@ void SourceIteration::LetEscape()
 void SourceIteration::AddUncollided(const Monitor& monitor)
 {
   const LightSources& lights = this->Parts.Lights;
-  const LightSources::Sources lamps = lights.LampSources(), traced = lights.OtherSources(),
-                              vacuum = lights.VacuumSources();
-  const double all = static_cast<double>(lamps.size() + traced.size() + vacuum.size()) +
+  const LightSources::Sources lamps = lights.LampSources(), given = lights.GivenSources(),
+                              traced = lights.PeakSources(), vacuum = lights.VacuumSources();
+  const double all = static_cast<double>(lamps.size() + given.size() + traced.size() + vacuum.size()) +
     (lights.FineBoundary ? 1.0 : 0.0) + (lights.CorrectsEscape ? 1.0 : 0.0);
   double done = 0.0;
   const auto next = [&] {
@@ -175,6 +175,10 @@ void SourceIteration::AddUncollided(const Monitor& monitor)
   if (!lamps.empty())
   {
     this->ShowLamps();
+  }
+  for (const std::unique_ptr<UncollidedSource>& source : given)
+  {
+    Add(tally, this->AddLamp(*source, firstMoments, next()));
   }
   for (const std::unique_ptr<UncollidedSource>& source : traced)
   {
@@ -229,8 +233,8 @@ void SourceIteration::ShowLamps()
   });
 }
 
-/// Adds the uncollided light of a lamp. If there are sources by octant, they receive its path integrals and first
-/// moments in their own arrays; they are not used together with angular moments.
+/// Adds the uncollided light of a lamp, or light given by another solver. If there are sources by octant, they receive
+/// its path integrals and first moments in their own arrays; they are not used together with angular moments.
 SweepTally SourceIteration::AddLamp(
   const UncollidedSource& lamp, const Buffer<float>& firstMoments, const Monitor& monitor)
 {

@@ -72,10 +72,11 @@ UncollidedLight::UncollidedLight(
   this->CountAbsorbed();
 }
 
-/// Whether first moments of lamp light are needed: in optically thick voxels the position of first collisions matters.
+/// Whether first moments of lamps' and given light are needed: in optically thick voxels the position of first
+/// collisions matters.
 bool UncollidedLight::NeedsFirstMoments() const
 {
-  return this->LinearSource && !this->Parts.Lights.Lamps.empty() &&
+  return this->LinearSource && (!this->Parts.Lights.Lamps.empty() || this->Parts.Lights.Given) &&
     this->TheDomain.Any(AnyVoxelIsThickerThan(ThickForFirstMoments, this->TheMedium));
 }
 
@@ -102,14 +103,15 @@ void UncollidedLight::AddSources(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
   const LightSources::Sources lamps = parts.Lights.LampSources();
-  LightSources::Sources others = parts.Lights.OtherSources();
+  const LightSources::Sources given = parts.Lights.GivenSources();
+  LightSources::Sources others = parts.Lights.PeakSources();
   for (std::unique_ptr<UncollidedSource>& vacuum : parts.Lights.VacuumSources())
   {
     others.push_back(std::move(vacuum));
   }
   std::size_t done = 0;
   const auto monitorOfNext = [&] {
-    const double all = static_cast<double>(lamps.size() + others.size());
+    const double all = static_cast<double>(lamps.size() + given.size() + others.size());
     ++done;
     return OfPart(monitor, (done - 1) / all, done / all);
   };
@@ -118,18 +120,22 @@ void UncollidedLight::AddSources(const Monitor& monitor)
   {
     this->MakePassing();
   }
-  for (const std::unique_ptr<UncollidedSource>& lamp : lamps)
-  {
-    Add(this->OfSources,
-      passes ? this->AddLampThroughFaces(*lamp, monitorOfNext())
-             : parts.AddUncollided(*lamp, parts.WholeDeposit(), monitorOfNext()));
-  }
+  const auto add = [&](const LightSources::Sources& sources) {
+    for (const std::unique_ptr<UncollidedSource>& source : sources)
+    {
+      Add(this->OfSources,
+        passes ? this->AddLampThroughFaces(*source, monitorOfNext())
+               : parts.AddUncollided(*source, parts.WholeDeposit(), monitorOfNext()));
+    }
+  };
+  add(lamps);
   this->TheDomain.Collective([&] {
     if (!lamps.empty())
     {
       this->LengthsOfLamps = parts.Path.Read();
     }
   });
+  add(given);
   if (passes)
   {
     this->FindScatteredInVoxels();
@@ -189,17 +195,17 @@ void UncollidedLight::PassFaces()
   }
 }
 
-/// Computes OfLamps(): the first-collision source of lamps minus the power that leaves its voxel without another
-/// collision.
+/// Computes OfLamps(): the first-collision source of lamps and given light minus the power that leaves its voxel
+/// without another collision.
 void UncollidedLight::FindScatteredInVoxels()
 {
   const VolumeLayout& layout = this->Parts.Layout;
   this->PassedWithGhosts.TakeOwn();
   this->PassedWithGhosts.Fill();
   this->TheDomain.Collective([&] {
-    const std::vector<float> passed = this->ThroughFaces.Read();
+    const std::vector<float> passed = this->ThroughFaces.Read(), lengths = this->Parts.Path.Read();
     const auto scattered = [&](std::size_t i, int c) {
-      double power = this->Parts.Problem.Scattering().SigmaS(i, c) * this->LengthsOfLamps[c * layout.Stride() + i];
+      double power = this->Parts.Problem.Scattering().SigmaS(i, c) * lengths[c * layout.Stride() + i];
       for (int d = 0; d < 6; ++d)
       {
         power -= passed[(6 * c + d) * layout.Stride() + i];

@@ -26,8 +26,8 @@ public:
   /// Whether to use sources by octant. They are used if the settings request them, any voxel is thick, none is opaque,
   /// and scattering is isotropic. If the settings leave the choice open, at least a quarter of the scattering voxels
   /// must also be thick, and the tolerance must determine the number of orders. Independent of the light sources, so
-  /// that the light of several sources adds up. First-scattered light of localised emission and of given light is
-  /// uniform in a voxel; later orders have sources by octant. Collective.
+  /// that the light of several sources adds up. First-scattered light of localised emission is uniform in a voxel;
+  /// later orders have sources by octant. Collective.
   static bool Matter(const PropagationProblem& problem);
 
   /// The voxels of a rank's subdomain (or of a serial domain) on a device. All references must outlive the
@@ -40,7 +40,7 @@ public:
     const MediumOnDevice& medium;
     const Grid& whole;
     VoxelBox block; ///< the subdomain's voxels, in indices of the domain
-    bool lamps;     ///< whether there are lamps
+    bool lamps;     ///< whether there are lamps or light given by another solver
   };
   explicit OctantSources(const Scene& scene);
 

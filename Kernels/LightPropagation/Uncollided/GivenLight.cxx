@@ -37,6 +37,13 @@ std::vector<float> Along(const VolumeLayout& layout, const std::vector<float>& s
   return flux;
 }
 
+/// Mean place of the first collisions behind a face of light that falls as exp(-depth) over a voxel of this optical
+/// length: 1 at the face, 0 in the middle.
+double NearnessToFace(double tau)
+{
+  return tau < 0.05 ? tau / 6.0 : 1.0 - 2.0 * (1.0 / tau - 1.0 / std::expm1(tau));
+}
+
 double LeastOfPeak(int degree, double fall)
 {
   double least = 1.0;
@@ -107,11 +114,42 @@ SweepTally GivenLight::AddTo(const UncollidedVolume& volume, const Monitor&) con
   {
     AddFirst(volume.device, path, *volume.deposit.path);
   }
+  if (volume.deposit.firstMoments)
+  {
+    AddFirst(volume.device, this->FirstMoments(layout, path), *volume.deposit.firstMoments);
+  }
   if (!volume.basis && volume.deposit.flux)
   {
     AddFirst(volume.device, flux, *volume.deposit.flux);
   }
   return TallyOf(this->Image, this->TheMedium, 0, layout.channels);
+}
+
+std::vector<float> GivenLight::FirstMoments(const VolumeLayout& layout, const std::vector<float>& path) const
+{
+  const std::array<double, 3>& h = layout.grid.spacing;
+  const double faces = 1.0 / h[0] + 1.0 / h[1] + 1.0 / h[2];
+  std::vector<float> moments(layout.Floats(6), 0.0f);
+  for (std::size_t at = 0; at < layout.channels * layout.grid.VoxelCount(); ++at)
+  {
+    const std::size_t i = at % layout.grid.VoxelCount(), c = at / layout.grid.VoxelCount();
+    const Field& mean = this->Image.meanDirection;
+    const std::array<double, 3> way = { mean.At(i, 0), mean.At(i, 1), mean.At(i, 2) };
+    const double narrow = std::min(std::hypot(way[0], way[1], way[2]), 1.0);
+    const double ahead = std::abs(way[0]) / h[0] + std::abs(way[1]) / h[1] + std::abs(way[2]) / h[2];
+    const double half = 0.5 * path[c * layout.Stride() + i];
+    for (std::size_t a = 0; a < 3; ++a)
+    {
+      const double tau = this->Scattering.SigmaT(i, static_cast<int>(c)) * h[a], along = std::abs(way[a]);
+      const double even = half * (1.0 - narrow) / (2.0 * h[a] * faces) * NearnessToFace(2.0 * tau);
+      const double beam =
+        along > 0.0 ? half * narrow * along / (h[a] * ahead) * NearnessToFace(tau * narrow / along) : 0.0;
+      float* const low = &moments[(6 * c + 2 * a) * layout.Stride() + i];
+      low[0] = static_cast<float>(even + (way[a] > 0.0 ? beam : 0.0));
+      low[layout.Stride()] = static_cast<float>(even + (way[a] < 0.0 ? beam : 0.0));
+    }
+  }
+  return moments;
 }
 
 bool GivenLight::AddStraightOn(

@@ -29,6 +29,11 @@ public:
     Device& device, const VolumeLayout& layout, const AngularBasis* basis, const Buffer<float>& source) const;
 
 private:
+  /// First moments (Deposit::firstMoments) of light that entered each voxel through the faces upstream of its mean
+  /// direction, or, as far as it has none, through all faces alike (numerics.md, Eq. (41f)).
+  /// @param path  path integrals, W length, [channel][voxel]
+  std::vector<float> FirstMoments(const VolumeLayout& layout, const std::vector<float>& path) const;
+
   const UncollidedImage& Image;
   const Medium& TheMedium;
   const TruncatedScattering& Scattering;
