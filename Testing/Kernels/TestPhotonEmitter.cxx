@@ -477,6 +477,24 @@ TEST(PhotonEmitter, AnImportanceMapBiasesNoLargeRectangle)
   }
 }
 
+TEST(PhotonEmitter, ADirectionalLightGivesAllItsPowerByImportance)
+{
+  ImportanceMap map;
+  map.size = 4;
+  map.lights = { 0 };
+  map.density.assign(16, 0.4f);
+  map.density[5] = 10.0f; // from which few photons come where they are dense at most
+  EmissionSettings settings;
+  settings.photonCount = 3001;
+  settings.map = &map;
+  for (settings.batches = 1; settings.batches <= 3; settings.batches += 2)
+  {
+    Illumination light;
+    light.lights = { Lamp(LightType::Directional, {}) };
+    EXPECT_NEAR(EmitPhotons(Box(), light, settings).power[0], 10.0 * 6.0, 1e-4) << settings.batches;
+  }
+}
+
 TEST(PhotonEmitter, AnEvenSkyGivesItsRadianceTimesPiTimesTheSurface)
 {
   Illumination light;

@@ -41,6 +41,19 @@ struct SpreadSource
     }
     return this->source.shoot(sample);
   }
+
+  /// Mean weight of samples: 1 but for chance, by which powers are divided, so that those of directional light sum to
+  /// the power that reaches the volume.
+  double MeanWeight(const SampleSequence& samples, std::size_t count) const
+  {
+    double sum = this->sampler ? 0.0 : static_cast<double>(count);
+    for (std::size_t i = 0; this->sampler && i < count; ++i)
+    {
+      const PhotonSample sample = samples[i];
+      sum += 1.0 / this->sampler->At(sample[0], sample[1]).density;
+    }
+    return sum / static_cast<double>(count);
+  }
 };
 
 std::vector<SpreadSource> SpreadSources(std::vector<PhotonSource> sources, const EmissionSettings& settings)
@@ -254,11 +267,12 @@ void EmitFrom(const Grid& grid, const SpreadSource& light, const Tries& tries, s
     const std::size_t first = b * tries.all / batches, count = (b + 1) * tries.all / batches - first;
     const SampleSequence samples(settings.sampler, count, seed, settings.batches > 1 ? static_cast<int>(b) : 0);
     const std::size_t end = std::min(count, std::max(tries.end, first) - first);
+    const double all = static_cast<double>(batches) * count * light.MeanWeight(samples, count);
     for (std::size_t i = std::max(tries.begin, first) - first; i < end; ++i)
     {
       double weight;
       const std::optional<Shot> shot = light.Shoot(samples[i], weight);
-      std::optional<Photon> photon = PhotonOf(grid, shot, weight, 1.0 / (static_cast<double>(batches) * count));
+      std::optional<Photon> photon = PhotonOf(grid, shot, weight, 1.0 / all);
       if (photon)
       {
         photon->batch = static_cast<std::int32_t>(b);
