@@ -78,6 +78,14 @@ TEST(Quality, LooksAtTheScene)
   const PropagationSettings lit = fine(scene);
   EXPECT_GT(lit.uncollidedDirections, lit.directionsPerFace);
   EXPECT_LT(fine(Cloud(30.0)).directionsPerFace, lit.directionsPerFace) << "a thick box forgets directions";
+  Scene forward = Cloud(30.0);
+  forward.sigma_a.assign(forward.sigma_a.size(), 0.0f);
+  forward.medium.phase = PhaseFunction::HenyeyGreenstein(0.999);
+  forward.settings.angularDegree = 0;
+  EXPECT_EQ(AtQuality(Domain(forward.medium.grid), Quality::Fine, forward.settings, forward.medium, forward.light)
+              .directionsPerFace,
+    lit.directionsPerFace)
+    << "solved by similarity it is thin";
   scene.light.faces = {};
   EXPECT_EQ(fine(scene).uncollidedDirections, 0) << "no light comes in through faces";
   scene = Cloud(0.3);

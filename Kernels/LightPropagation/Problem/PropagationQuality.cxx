@@ -1,6 +1,7 @@
 #include "LightPropagation/Problem/PropagationQuality.h"
 
 #include "LightPropagation/Problem/AngularDegree.h"
+#include "Medium/VoxelSums.h"
 #include "Numerics/NumberText.h"
 
 #include <algorithm>
@@ -63,7 +64,12 @@ PropagationSettings AtQuality(const Domain& domain, Quality quality, Propagation
   {
     return settings;
   }
-  const double extinction = domain.Sum(domain.IsEmpty() ? 0.0 : SumOfExtinction(medium, 0));
+  // Without angular moments the medium is solved by the similarity relation.
+  const double own = domain.IsEmpty() ? 0.0
+    : settings.angularDegree == 0
+    ? SumOverVoxels(medium.grid, [&](std::size_t i) { return double(medium.TransportSigmaT(i, 0)); })
+    : SumOfExtinction(medium, 0);
+  const double extinction = domain.Sum(own);
   const SceneOfQuality scene = { ShinesThroughFaces(illumination), domain.Any(!domain.IsEmpty() && Scatters(medium)),
     MeanThickness(domain.Whole(), extinction) };
   SetLevel(quality == Quality::Draft ? Draft : quality == Quality::Fine ? Fine : Reference, settings, scene);
