@@ -179,6 +179,11 @@ void RunGrid(
   {
     solver->SetSkyColor(scene.sky[0] + 0.3, scene.sky[1] + 0.3, scene.sky[2] + 0.3);
     solver->Update();
+    if (!outcome.errors.empty())
+    {
+      outcome.empty = vtkImageData::SafeDownCast(solver->GetOutputDataObject(0))->GetNumberOfCells() == 0;
+      return; // it would say so again
+    }
     solver->SetSkyColor(scene.sky.data());
   }
   solver->Update();
