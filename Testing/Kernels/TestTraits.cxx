@@ -5,6 +5,7 @@
 
 #include "DiscreteOrdinates/DiscreteOrdinates.h"
 #include "LatticeBoltzmann/LatticeBoltzmann.h"
+#include "Light/ChannelReduction.h"
 #include "Light/LeftOut.h"
 #include "LightPropagation/Published/ParallelPropagation.h"
 #include "LightPropagation/Published/SequentialPropagation.h"
@@ -178,6 +179,22 @@ TEST_F(Traits, OneColourIsThatOfAllThatShines)
   EXPECT_EQ(ColourOf(light).Relative(), (Rgb{ 0.5, 1.0, 0.0 }));
   light.faces[3] = { 0.5, 1.0, 1e-5 };
   EXPECT_FALSE(ColourOf(light).IsOne());
+}
+
+// The second reduction took the first component: blue had the coefficients of red.
+TEST_F(Traits, AChannelReducedOnceMoreIsTheSame)
+{
+  const std::vector<float> absorbs = { 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f },
+                           emits = { 1.0f, 1.0f, 0.0f, 1.0f, 0.0f, 0.0f };
+  Medium medium;
+  medium.grid.size = { 2, 1, 1 };
+  medium.sigma_a = { absorbs.data(), 3 };
+  medium.emission = { emits.data(), 3 };
+  const OneChannelScene blue(medium, {}, 2), again(blue.medium, blue.light, 0);
+  EXPECT_EQ(again.medium.sigma_a.At(1, 0), 6.0f);
+  const MediumTraits traits = TraitsOf(blue.medium);
+  EXPECT_TRUE(traits.absorbs && traits.grey && traits.emission.IsOne());
+  EXPECT_FALSE(traits.emits);
 }
 
 TEST_F(Traits, GreyIsOneChannel)

@@ -65,7 +65,7 @@ constexpr double EmissionPartOfAll = 0.5; ///< minimum fraction of the emitted p
 /// Emission of a voxel, averaged over the three channels.
 double EmissionBrightness(const Field& emission, std::size_t voxel);
 
-/// Whether a few bright voxels dominate the emission, so that Split() may find peaks. Necessary, not sufficient: Split()
-/// also requires that the voxels lie close together and do not absorb their own emission. Collective.
+/// Whether a few bright voxels dominate the emission, so that Split() may find peaks. Necessary, not sufficient:
+/// Split() also requires that the voxels lie close together and do not absorb their own emission. Collective.
 bool MayHaveEmissionPeaks(const PropagationProblem& problem);
 }
