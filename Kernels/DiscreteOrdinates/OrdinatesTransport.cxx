@@ -30,9 +30,9 @@ namespace
 /// left, but at most MostLaps times.
 constexpr double WrappedLeft = 1e-6;
 constexpr int MostLaps = 500;
-/// Number of scattering orders up to which anisotropic scattering in slabs is not accelerated: there sweeps by mean
-/// chords are of second order, and scattering between directions is more accurate than angular moments.
-constexpr double FewOrdersInSlabs = 100.0;
+/// Number of scattering orders up to which anisotropic scattering is not accelerated: scattering between directions and
+/// the first scattering of lamps are more accurate than angular moments.
+constexpr double FewOrders = 100.0;
 
 /// Directions of a quadrature that are swept: one of each class whose directions carry the same light
 /// (SweptDirections), with the solid angle of the class.
@@ -392,8 +392,7 @@ struct SweptProblem
     }
     const PropagationProblem& own = this->inMoments ? *this->inMoments : even;
     this->how = even.HasGivenLight() ? IterationScheme::SourceIteration : ChooseIterationScheme(own);
-    const bool byDirections =
-      this->inMoments && (!this->IsAccelerated() || (own.IsSlab() && OrdersNeeded(own) < FewOrdersInSlabs));
+    const bool byDirections = this->inMoments && (!this->IsAccelerated() || OrdersNeeded(own) < FewOrders);
     this->problem = byDirections ? nullptr : &own;
   }
   SweptProblem(const SweptProblem&) = delete;

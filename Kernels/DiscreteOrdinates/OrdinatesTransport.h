@@ -21,8 +21,8 @@ bool IteratesAsMaps(const OrdinatesSettings& settings, bool isIsotropic);
 /// that of faces; all other light is swept by discrete ordinates (UpwindSweep.h). Isotropic scattering is solved by
 /// source iteration or diffusion synthetic acceleration (SourceIteration.h, DiffusionAcceleration.h), whichever is
 /// predicted to be faster; but light of another solver is not accelerated, since DSA would overestimate its scattering.
-/// Anisotropic scattering is solved if acceleration is predicted to be faster, by spherical harmonics up to the degree
-/// that `settings.terms` contain. Collective. Other parameters as for SolveDiscreteOrdinates().
+/// Anisotropic scattering is solved by acceleration alone, where many orders are needed, in spherical harmonics up to
+/// the degree that `settings.terms` contain. Collective. Other parameters as for SolveDiscreteOrdinates().
 /// @param even  problem of the scene with isotropic scattering, by AsPropagation(settings)
 /// @return no value: source iteration between directions is to be used
 std::optional<LightField> SolveBySweptOrdinates(Device& device, const SceneBlock& scene,
