@@ -1,8 +1,8 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
-/// As GoogleTest's own, but that 125 tells ctest of tests that were all skipped, and that a division by zero ends it: PoCL 3
-/// goes on after those of the host, too.
+/// As GoogleTest's own, but that 125 tells ctest of tests that were all skipped, and that a division by zero ends it:
+/// PoCL 3 goes on after those of the host, too.
 int main(int count, char** arguments)
 {
   setenv("POCL_SIGFPE_HANDLER", "0", 0);

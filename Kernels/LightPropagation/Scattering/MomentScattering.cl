@@ -51,8 +51,8 @@ static bool is_zero(float16 values)
   }
 
 // Processes one scattering order: overwrites the moments of the source, from the second on, by those that are scattered
-// from `path`, and sets the moments of `path` to 0. Nothing is written where nothing scatters and `path` is 0, as in empty
-// voxels of sweeps with SweepInfo::skips: the moments of the source are 0 there.
+// from `path`, and sets the moments of `path` to 0. Nothing is written where nothing scatters and `path` is 0, as in
+// empty voxels of sweeps with SweepInfo::skips: the moments of the source are 0 there.
 __kernel void scatter_moments(MomentPlaces places, int channel, __global float* path, __global float* source,
   const __global float* sigma_s, ulong stride, float per_path)
 {

@@ -88,8 +88,9 @@ typedef struct
   } of[STAGES];
 } chain_of_stages;
 
-// Word that describes a row of a packed plane. Bit 0: some voxel is not optically thin, sigma_t >= PlaneInfo::thin. Bits 1
-// to SEGMENTS, one per segment of the row: some voxel of the segment has a medium or a source, or SweepInfo::skips is 0.
+// Word that describes a row of a packed plane. Bit 0: some voxel is not optically thin, sigma_t >= PlaneInfo::thin.
+// Bits 1 to SEGMENTS, one per segment of the row: some voxel of the segment has a medium or a source, or
+// SweepInfo::skips is 0.
 #define SEGMENTS 30
 #define IS_THIN(word) (((word)&1) == 0)
 #define IS_FILLED(word, x, bits) ((word) >> (1 + ((x) >> (bits))) & 1)

@@ -106,8 +106,8 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
   }
 }
 
-// Carries the rays of a vector of empty voxels through one segment each. Of their path integrals only the first moment is
-// computed, if `deposit`.
+// Carries the rays of a vector of empty voxels through one segment each. Of their path integrals only the first moment
+// is computed, if `deposit`.
 static inline __attribute__((always_inline)) void PASS_EMPTY(
   sweep_state* state, int y, int x, bool deposit, const __global float** in, __global float* out, float length)
 {
