@@ -440,10 +440,10 @@ void ErrorIsEstimatedOnRequest(test::Claims& claims)
   claims.That(caster->GetSceneKept(), "the scene of the estimate is kept, too");
   claims.Near(caster->GetEstimatedError(), estimated, 0.1 * estimated, "the same error in another size");
 
-  caster->SetStepSize(8.0);
+  caster->SetStepSize(10.0);
   test::Errors errors(caster);
   caster->Update();
-  claims.That(errors.WasOneWith("StepSize"), "steps that cannot be doubled are one error");
+  claims.That(errors.None() && caster->GetEstimatedError() > estimated, "the longest steps have a larger error");
 }
 
 void Stop(vtkObject* caster, unsigned long, void* calls, void*)

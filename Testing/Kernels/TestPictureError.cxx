@@ -142,6 +142,37 @@ TEST_F(PictureErrorTest, LightByMomentsHasTheErrorOfItsFluence)
   EXPECT_NEAR(1.0, byMoments.relativeError / byFluence.relativeError, 1e-3);
 }
 
+TEST_F(PictureErrorTest, DegreesThatAreMissingAreASeries)
+{
+  // Towards the eye the light of each degree is 0.64 of that of the one before.
+  constexpr double ratio = 0.8;
+  Scene scene(GridOf(6, 6, 6));
+  scene.sigma_s = scene.Everywhere(0.2);
+  scene.fluence = scene.Everywhere(1.0);
+  scene.straightOn = scene.Everywhere(std::pow(ratio, 4.0));
+  scene.settings.stepSize = 0.25;
+  const auto showUpTo = [&](int degree) {
+    std::vector<float> ofVoxel((degree + 1) * (degree + 1));
+    for (int l = 0; l <= degree; ++l)
+    {
+      ofVoxel[l * l + l] = static_cast<float>(std::pow(ratio, 2.0 * l) / std::sqrt(2.0 * l + 1.0));
+    }
+    scene.moments.clear();
+    for (std::size_t voxel = 0; voxel < scene.grid.VoxelCount(); ++voxel)
+    {
+      scene.moments.insert(scene.moments.end(), ofVoxel.begin(), ofVoxel.end());
+    }
+  };
+  Camera camera = FromAbove(scene.grid, 5.0);
+  camera.parallelScale = 1.5;
+  showUpTo(3);
+  const Picture picture = this->SeenWithError(scene, camera);
+  showUpTo(15);
+  const double missing = scene.Seen(this->GetDevice(), camera).radiance[0] - picture.radiance[0];
+  EXPECT_GT(missing, 0.1 * picture.radiance[0]);
+  EXPECT_NEAR(picture.error[0], missing, 0.03 * missing);
+}
+
 // Rays that end where a thousandth of the light is left would hide what small steps gain.
 TEST_F(PictureErrorTest, EveryQualityIsBetterThanTheOneBefore)
 {

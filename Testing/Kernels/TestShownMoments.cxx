@@ -7,7 +7,6 @@
 
 #include "Numerics/Constants.h"
 #include "Reference/ReferenceTable.h"
-#include "Viewing/PictureError.h"
 #include "Viewing/Sources/SeenSources.h"
 
 #include <gmock/gmock.h>
@@ -150,29 +149,6 @@ TEST_F(MomentsInPictures, ShowWhatIsScatteredStraightOnFromFaces)
   {
     EXPECT_NEAR(picture.radiance[3 * i], picture.alpha[i], 0.02) << i;
   }
-}
-
-/// What moments up to degree 3 do not show of light that is scattered forwards is part of a picture's estimated error.
-TEST_F(MomentsInPictures, KnowWhatHigherDegreesWouldAdd)
-{
-  Scene scene = Cloudlet({ 12, 11, 10 }, 0.85, 0.99);
-  scene.ShineAlong({ 0.3, -0.5, -1.0 });
-  const std::size_t voxels = scene.medium.grid.VoxelCount();
-  const LightField light = scene.Solve(this->GetDevice());
-  scene.settings.angularDegree = 8;
-  const LightField better = scene.Solve(this->GetDevice());
-  ViewSettings settings;
-  settings.imageSize = { 24, 20 };
-  const Camera camera = FrameGrid(scene.medium.grid, 1.2, 30.0, { 1.0, 0.4, 0.3 });
-  const auto picture = [&](const LightField& seen) {
-    return MediumRayCaster(this->GetDevice(), scene.medium, Seen(seen, voxels), scene.light, settings).Render(camera);
-  };
-  Picture coarse = picture(light);
-  PictureErrorCasters(this->GetDevice(), scene.medium, Seen(light, voxels), scene.light, settings)
-    .Estimate(coarse, camera);
-  const double error = RelativeRmse(coarse.radiance, picture(better).radiance);
-  EXPECT_GT(coarse.relativeError, 0.3 * error);
-  EXPECT_LT(coarse.relativeError, 3.0 * error);
 }
 
 /// A white medium under an even sky cannot be seen, however it scatters, from anywhere.
