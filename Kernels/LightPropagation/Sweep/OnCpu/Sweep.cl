@@ -119,10 +119,10 @@ static BY_ROW void find_words(const SweepInfo* info, const __global float* plane
         {
           filled |= load_real(u, row + (PlaneSource + c) * ROW) != (real)0.0f;
         }
-        word |= any(filled) << (1 + (u >> bits));
+        word |= any_lane(filled) ? 2 << (u >> bits) : 0;
       }
     }
-    words[v] = word | (any(thick) ? 1 : 0);
+    words[v] = word | (any_lane(thick) ? 1 : 0);
   }
 }
 

@@ -95,6 +95,21 @@ typedef struct
 #define IS_THIN(word) (((word)&1) == 0)
 #define IS_FILLED(word, x, bits) ((word) >> (1 + ((x) >> (bits))) & 1)
 
+// Whether a mask (0 or -1 per lane) selects any lane. PoCL compiles the built-in function any to one branch per lane.
+static bool any_lane(integer mask)
+{
+#if REAL_WIDTH == 16
+  const int8 eight = mask.lo | mask.hi;
+  const int4 four = eight.lo | eight.hi;
+#elif REAL_WIDTH == 8
+  const int4 four = mask.lo | mask.hi;
+#else
+  const int4 four = mask;
+#endif
+  const int2 two = four.lo | four.hi;
+  return (two.x | two.y) != 0;
+}
+
 // Binary logarithm of the number of voxels in a segment: a vector or, in longer rows, several.
 static int segment_bits(int width)
 {
