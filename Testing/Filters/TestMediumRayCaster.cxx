@@ -10,6 +10,7 @@
 #include "vtkLightPropagationMaps.h"
 #include "vtkLightRig.h"
 #include "vtkMediumRayCaster.h"
+#include "vtkParticipatingMedium.h"
 #include "vtkPNGWriter.h"
 #include "vtkPointData.h"
 #include "vtkTestUtilities.h"
@@ -396,6 +397,35 @@ void GroundIsSeen(test::Claims& claims, const std::string& which)
   claims.That(!facts->GetArray("face_power") && !facts->GetArray("face_albedo"), which + ": nor said");
 }
 
+// Between faces of radiance 1, which pictures do not show, a white medium scatters as much light to the eye as it hides
+// of them, the light that small angles scatter included.
+void LightOfFacesIsScatteredStraightOn(test::Claims& claims)
+{
+  vtkNew<vtkParticipatingMedium> medium;
+  medium->SetInputData(Homogeneous(0.0, 0.4, 1.0));
+  medium->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sigma_s");
+  medium->SetAlbedo(1.0, 1.0, 1.0);
+  medium->SetMeanCosine(0.85);
+  vtkNew<vtkLightPropagationMaps> solver;
+  solver->SetInputConnection(medium->GetOutputPort());
+  solver->SetFaceRadiance(1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
+  solver->SetStoreMoments(true);
+  vtkNew<vtkMediumRayCaster> caster;
+  test::Errors errors(caster);
+  caster->SetInputConnection(solver->GetOutputPort());
+  caster->SetImageSize(9, 9);
+  caster->Update();
+  const double alpha = MiddlePixel(caster, "alpha");
+  claims.That(errors.None() && alpha > 0.1, "a medium is seen");
+  claims.Near(MiddlePixel(caster, "radiance", 0), alpha, 0.02, "as bright as what it hides");
+  vtkNew<vtkImageData> without;
+  without->ShallowCopy(solver->GetOutputDataObject(0));
+  without->GetFieldData()->RemoveArray("face_radiance");
+  caster->SetInputData(without);
+  caster->Update();
+  claims.That(MiddlePixel(caster, "radiance", 0) < 0.9 * alpha, "as face_radiance says");
+}
+
 void DarkMediumIsAWarning(test::Claims& claims)
 {
   const vtkNew<vtkImageData> image = Homogeneous(0.1, 0.4, 1.0);
@@ -517,6 +547,7 @@ int TestMediumRayCaster(int argc, char* argv[])
     ThickVoxelsShineAtTheirSurface(claims);
     GroundIsSeen<vtkLightPropagationMaps>(claims, "light propagation maps");
     GroundIsSeen<vtkDiscreteOrdinates>(claims, "discrete ordinates");
+    LightOfFacesIsScatteredStraightOn(claims);
     DarkMediumIsAWarning(claims);
     ErrorIsEstimatedOnRequest(claims);
     AbortStops(claims);
