@@ -61,7 +61,8 @@ OrderSweeps::OrderSweeps(
   request.angular = parts.UsualValues();
   request.faceIn = parts.LightByCells();
   request.skipsEmpty = settings.leaveOut && settings.alongRays && !deposit.flux && !deposit.partialCurrents;
-  if (request.skipsEmpty && request.angular && parts.TheDevice.IsCpu())
+  // a rank without voxels has no values of angular functions
+  if (parts.TheDomain().Any(request.skipsEmpty && request.angular && parts.TheDevice.IsCpu()))
   {
     this->EmptyPart = PartWithoutMedium(parts.Problem);
   }

@@ -42,8 +42,8 @@ struct SpreadSource
     return this->source.shoot(sample);
   }
 
-  /// Mean weight of samples: 1 but for chance, by which powers are divided, so that those of directional light sum to
-  /// the power that reaches the volume.
+  /// Mean weight of samples: 1 but for chance. Weights and powers are divided by it, so that the powers of directional
+  /// light sum to the power that reaches the volume.
   double MeanWeight(const SampleSequence& samples, std::size_t count) const
   {
     double sum = this->sampler ? 0.0 : static_cast<double>(count);
@@ -267,12 +267,12 @@ void EmitFrom(const Grid& grid, const SpreadSource& light, const Tries& tries, s
     const std::size_t first = b * tries.all / batches, count = (b + 1) * tries.all / batches - first;
     const SampleSequence samples(settings.sampler, count, seed, settings.batches > 1 ? static_cast<int>(b) : 0);
     const std::size_t end = std::min(count, std::max(tries.end, first) - first);
-    const double all = static_cast<double>(batches) * count * light.MeanWeight(samples, count);
+    const double all = static_cast<double>(batches) * count, mean = light.MeanWeight(samples, count);
     for (std::size_t i = std::max(tries.begin, first) - first; i < end; ++i)
     {
       double weight;
       const std::optional<Shot> shot = light.Shoot(samples[i], weight);
-      std::optional<Photon> photon = PhotonOf(grid, shot, weight, 1.0 / all);
+      std::optional<Photon> photon = PhotonOf(grid, shot, weight / mean, 1.0 / all);
       if (photon)
       {
         photon->batch = static_cast<std::int32_t>(b);
