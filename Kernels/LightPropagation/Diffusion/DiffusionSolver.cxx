@@ -156,11 +156,12 @@ void DiffusionSolver::Refine(double unit)
 {
   ExactValues& values = this->System ? this->System->Solved() : this->NoVoxels;
   double change = 1.0;
+  std::vector<double> before;
+  this->TheDomain.Collective([&] { before = this->Found(); });
   for (int round = 0; round < MostRounds && change > RefinedChange; ++round)
   {
-    std::vector<double> before, sums(2, 0.0);
+    std::vector<double> sums(2, 0.0);
     this->TheDomain.Collective([&] {
-      before = this->Found();
       if (this->OpaqueBesideThin)
       {
         this->Solver->Right().CopyFrom(this->Balance, 0, this->Balance.Size());
@@ -171,12 +172,13 @@ void DiffusionSolver::Refine(double unit)
     this->OpaqueBesideThin ? this->Solver->Solve(values, unit, RefinedBy, RefinedTo)
                            : this->Solver->GoOn(values, unit, RefinedBy, RefinedTo);
     this->TheDomain.Collective([&] {
-      const std::vector<double> now = this->Found();
+      std::vector<double> now = this->Found();
       for (std::size_t i = 0; i < now.size(); ++i)
       {
         sums[0] += (now[i] - before[i]) * (now[i] - before[i]);
         sums[1] += now[i] * now[i];
       }
+      before = std::move(now);
     });
     sums = this->TheDomain.Sum(sums);
     change = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
