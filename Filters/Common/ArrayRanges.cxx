@@ -20,13 +20,13 @@ namespace tyndall
 {
 namespace
 {
-/// Number of values in a block. A thread processes the values of an array block by block, so that a block is still in
-/// the processor's cache when, after the test for infinity and NaN, its extremes and norms are computed.
+/// Number of values in a block. A thread passes over each block twice: first to test for infinity and NaN, then to
+/// compute extremes and norms. A block is small enough to stay in the processor's cache between the two passes.
 constexpr std::size_t BlockValues = 8192;
 constexpr std::size_t ThreadValues = 65536; ///< minimum number of values that one thread processes
-/// Minimum number of lanes. Of n lanes, lane k holds the smallest and the largest of the values k, k + n, k + 2 n, ...
-/// of a block, so that the loop over lanes has no dependences and is vectorised; 32 lanes suffice for vector units of
-/// any width.
+/// Minimum number of lanes for the extremes of a block. With n lanes, lane k holds the smallest and the largest of the
+/// values k, k + n, k + 2 n, ..., so that the loop over lanes has no dependences and is vectorised. 32 lanes suffice
+/// for vector units of any width.
 constexpr std::size_t Lanes = 32;
 
 /// Whether any of `count` floating-point numbers is infinite or NaN: all bits of its exponent (mask `exponent`) are 1.
@@ -83,7 +83,7 @@ public:
     const std::size_t components = this->Lowest.size();
     this->FindExtremesOfLanes(values, count);
     // Bounds of the squared norms of the block's tuples, from the extremes of their components. Rounding is monotonic,
-    // so they hold for the rounded norms as well.
+    // so that the bounds hold for rounded norms as well.
     double least = 0.0, most = 0.0;
     for (std::size_t c = 0; c < components; ++c)
     {

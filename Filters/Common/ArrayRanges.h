@@ -13,10 +13,10 @@
 
 class vtkDataArray;
 
-/// Ranges (smallest and largest value) of arrays, computed in parallel when the values are produced and stored in the
-/// array's vtkInformation, where VTK and ParaView look for a range before they compute it. ParaView requests the range
-/// of every component and of the tuples' norm of every output array; VTK computes each of them in a separate pass on
-/// one core.
+/// Ranges (smallest and largest value) of arrays, computed in parallel when the values are produced. They are stored in
+/// the array's vtkInformation, where VTK and ParaView look for a range before they compute one. ParaView requests the
+/// range of every component and of the tuples' norm of every output array; VTK computes each of them in a separate pass
+/// on one core.
 namespace tyndall
 {
 struct ArrayRanges
@@ -32,8 +32,8 @@ struct ArrayRanges
 /// @param count  number of values: components times tuples
 ArrayRanges RangesOf(const float* values, std::size_t count, int components);
 
-/// Stores ranges in the information of an array, where VTK looks for them. The array's values must be finite and final,
-/// and its name and number of components set before: Modified() removes the ranges, as it does VTK's own.
+/// Stores ranges in the information of an array, where VTK looks for them. To be called when the array's values (all
+/// finite), its name and its number of components are final: Modified() removes stored ranges.
 void LeaveRanges(const ArrayRanges& ranges, vtkDataArray* array);
 
 /// Copies the ranges that are stored in the array `from`, if any, to `array`, which must have the same values.

@@ -36,7 +36,7 @@ double NumberInFile(const char* path)
 double LeftInContainer()
 {
   const double most = NumberInFile("/sys/fs/cgroup/memory.max"), taken = NumberInFile("/sys/fs/cgroup/memory.current");
-  // File cache that the operating system frees on demand, bytes; memory.current includes it.
+  // File cache, bytes. memory.current includes the file cache, although the operating system frees it on demand.
   const double cache = NumberAfter("/sys/fs/cgroup/memory.stat", "inactive_file");
   return most == Unknown || taken == Unknown ? Unknown : most - taken + (cache == Unknown ? 0.0 : cache);
 }

@@ -58,8 +58,7 @@ vtkSmartPointer<vtkFloatArray> AsFloats(vtkDataArray* array)
     return given;
   }
   auto floats = vtkSmartPointer<vtkFloatArray>::New();
-  // Array types that are converted in parallel because they are frequent: doubles of VTK's filters, bytes of octree
-  // levels.
+  // The two most frequent array types are converted in parallel: doubles of VTK's filters and bytes of octree levels.
   if (!ConvertInThreads<vtkDoubleArray>(array, floats) && !ConvertInThreads<vtkUnsignedCharArray>(array, floats))
   {
     floats->DeepCopy(array);
@@ -167,8 +166,8 @@ struct Choice
 /// The name that ParaView's panel passes if the input has no array of the default name (none_string of the proxies).
 const char* const NothingChosen = "(by name)";
 
-/// Text that follows the array's name in the field data of NoteChoices if the point array of that name takes precedence
-/// over the cell array.
+/// Text that NoteChoices writes after an array's name if the point array of that name takes precedence over the cell
+/// array.
 const char* const OfPoints = "points";
 
 std::string ChoiceFact(const std::string& quantity)

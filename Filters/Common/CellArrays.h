@@ -67,18 +67,17 @@ using Components = std::initializer_list<int>;
 void CheckShape(vtkDataArray* array, const std::string& name, vtkIdType tuples, Components components);
 
 /// Reads one value per cell and component of the image from the cell array `name`, or from the point array `name`
-/// averaged to cells. (If voxels are around points, Guarded has already turned point arrays into cell arrays,
-/// ImageInput.h.) Float arrays are used in place, other types are converted. Hidden cells (ImageInput.h) read as 0, or
-/// as refractive index 1.
+/// averaged to cells. (If point arrays are read with one voxel around each point, Guarded has already made cell arrays
+/// of them, ImageInput.h.) Float arrays are used in place, other types are converted. Hidden cells (ImageInput.h) read
+/// as 0, or as refractive index 1.
 /// @throws InvalidInput naming the array and its number of components, or the arrays that exist if it is missing
 FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Components components = { 1, 3 });
 
-/// Calls ReadCells for the array that the user selected by SetInputArrayToProcess, under the number `index`, by name or
-/// by attribute. If a point array was selected, it takes precedence over a cell array of the same name. If nothing was
-/// selected (SCALARS in VTK, "" in ParaView before it knows the input), or an array of the name `otherwise`, the
-/// function reads the array that the filter upstream used for this quantity (NoteChoices). If that filter recorded
-/// none, it reads the array `otherwise`; "" means the active scalars. An array selected by another name is never
-/// optional.
+/// Calls ReadCells for the array that the user selected for number `index` of SetInputArrayToProcess, by name or by
+/// attribute. A selected point array takes precedence over a cell array of the same name. If the user selected nothing
+/// (SCALARS in VTK, "" in ParaView before it knows the input) or the default array `otherwise`, the function reads the
+/// array that the filter upstream used for this quantity (NoteChoices) or, without such a record, the array `otherwise`
+/// ("": the active scalars). An array selected by another name is never optional.
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 

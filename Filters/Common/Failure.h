@@ -40,8 +40,7 @@ Ending EndingOf(const std::function<void()>& work);
 /// threw; nothing if the work succeeded.
 void Throw(const Ending& ending);
 
-/// Names of field data that inform filters downstream: the outputs are empty because the filter was aborted, or because
-/// it failed.
+/// Names of field data of empty outputs, which inform filters downstream: the filter was aborted, or it failed.
 constexpr const char* AbortedFact = "aborted";
 constexpr const char* FailedFact = "failed";
 /// Name of field data: the output is empty because the file that it was read from contains no data, which is no error.
@@ -50,7 +49,7 @@ constexpr const char* EmptyFact = "nothing_in_file";
 /// not wait for that rank again.
 constexpr const char* MissingFact = "rank_missing";
 
-/// Ends a filter's work (Guarded) by an exception that is not reported as an error, if field data of the input say that
-/// the filter upstream failed, was aborted, or read an empty file. Called for empty inputs.
+/// To be called for an empty input. If the input's field data say that the filter upstream failed, was aborted, or read
+/// an empty file, ends the filter's work (Guarded) by an exception that is not reported as an error.
 void StopIfUpstreamFailed(vtkDataObject* input);
 }

@@ -34,7 +34,8 @@ namespace tyndall
 {
 namespace
 {
-/// Key in a filter's information: the medium axes (OwnAxes) in which the filter works, set by NoteOwnAxes.
+/// Key of vtkInformation, in a filter's information: axes of the medium (OwnAxes), in which the filter works, set by
+/// NoteOwnAxes.
 vtkInformationDoubleVectorKey* AxesOfFilter()
 {
   static auto* const key = vtkInformationDoubleVectorKey::MakeKey("OWN_AXES", "Tyndall");
@@ -49,8 +50,8 @@ constexpr double Aslant = 1e-6; ///< tolerance of direction cosines: an axis is 
 vtkSmartPointer<vtkIdList> OrderOf(const AxisWays& ways, const std::array<vtkIdType, 3>& count)
 {
   const std::array<vtkIdType, 3> stride = { 1, count[0], count[0] * count[1] };
-  // Along each world axis: number of values, index of the first one in the given image, index difference between
-  // neighbours.
+  // For each world axis: number of values along it, index in the given image of the first value, and difference of the
+  // indices of neighbouring values.
   std::array<vtkIdType, 3> counts, first, step;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -310,7 +311,8 @@ vtkSmartPointer<vtkDataArray> TurnedArray(vtkDataArray* array, const Turn& turn)
   return turned;
 }
 
-/// Replaces array number `index` by the array `other` of the same name, which keeps the role of active attribute.
+/// Replaces array number `index` by the array `other` of the same name. If the old array was the active attribute, the
+/// new one is.
 void Replace(vtkDataSetAttributes* arrays, int index, vtkDataArray* other)
 {
   const int attribute = arrays->IsArrayAnAttribute(index);

@@ -25,7 +25,7 @@ struct AxisWays
   std::array<double, 3> spacing = { 1.0, 1.0, 1.0 }; ///< spacing along each world axis, above 0
 
   bool AreAlike() const; ///< whether the image axes are the world axes
-  /// Converts the image's extent to indices that increase along the world axes.
+  /// Converts the image's extent to the extent of the aligned image, whose indices increase along the world axes.
   std::array<int, 6> Extent(const int* ofImage) const;
 };
 

@@ -117,7 +117,7 @@ void FlagVoxels(vtkImageData* points, vtkImageData* voxels)
   voxels->GetCellData()->AddArray(flags);
 }
 
-/// World position of that corner of the voxel around point 0 which has the lowest indices.
+/// World position of the corner with the lowest indices of the voxel around point 0.
 std::array<double, 3> CornerBefore(const double* origin, const double* spacing, const double* direction)
 {
   std::array<double, 3> corner;
@@ -132,8 +132,8 @@ std::array<double, 3> CornerBefore(const double* origin, const double* spacing, 
   return corner;
 }
 
-/// Whether an image may be read with one voxel around each point (AreAroundPoints), as far as announced information
-/// tells before the image exists.
+/// Whether an image may be read with one voxel around each point (AreAroundPoints). Decided from announced information,
+/// before the image exists.
 bool MayBeAroundPoints(vtkAlgorithm* filter, int port, vtkInformation* input)
 {
   auto* const image = vtkImageData::SafeDownCast(vtkDataObject::GetData(input));
@@ -321,7 +321,7 @@ void RequireWholeArrays(vtkAlgorithm* filter)
     {
       vtkDataObject* const input = filter->GetInputDataObject(port, i);
       auto* const image = vtkImageData::SafeDownCast(input);
-      // An image without points, which VTK has emptied, may still have its old arrays.
+      // An image that VTK has cropped to no points may still have its old arrays.
       const bool isCutToNothing = image && image->GetNumberOfPoints() == 0;
       for (const auto& [kind, elements] : kinds)
       {
@@ -351,8 +351,8 @@ VoxelArrays VoxelArraysOf(vtkInformation* port)
 
 namespace
 {
-/// Whether the medium at port 0 is read by its cells, and has the same number of points along each axis as `image`, the
-/// image at another port.
+/// Whether the cell arrays of the medium at port 0 are read, and the medium has as many points along each axis as
+/// `image`, the image at another port.
 bool MediumHasCellsBetween(vtkAlgorithm* filter, vtkImageData* image)
 {
   const bool any = filter->GetNumberOfInputConnections(0) > 0;

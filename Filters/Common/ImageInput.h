@@ -80,9 +80,9 @@ void RequireImages(vtkAlgorithm* filter);
 void RequireWholeArrays(vtkAlgorithm* filter);
 
 /// In RequestInformation of a filter whose output has the voxels of the input at `port`: announces the extent of these
-/// voxels, along aligned axes. If voxels are around points, as far as that is known, the announced extent is one larger
-/// along each axis. If the input has no extent because it is no image, one voxel is announced so that the pipeline runs
-/// the filter.
+/// voxels, along aligned axes. If point arrays will probably be read with one voxel around each point, the announced
+/// extent is one larger along each axis. If the input is no image and has no extent, one voxel is announced so that the
+/// pipeline runs the filter.
 void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vtkInformationVector* outputs);
 
 // Meaning of the flags vtkGhostType of an input image:
@@ -93,11 +93,11 @@ void TellVoxels(vtkAlgorithm* filter, int port, vtkInformationVector* inputs, vt
 //
 // Duplicates (DUPLICATECELL) are ghost cells that another rank owns. If one process has the complete image, they are
 // ordinary cells of the medium, and their power counts once. If ranks run a filter together, each cell is taken from
-// the rank that owns it (WholeInputs.h). If one process streams the output in pieces, each piece would be solved with
-// cells of its neighbours, and their power would count twice: this is refused.
+// the rank that owns it (WholeInputs.h). Duplicates are an error if one process streams the output in pieces: each
+// piece would be solved with cells of its neighbours, whose power would count twice.
 //
-// Hidden and duplicate lights and photons are skipped: every rank asks for all of them, so the original of each
-// duplicate is present.
+// Hidden and duplicate lights and photons are skipped: every rank requests all lights and photons, so that the original
+// of each duplicate is present.
 
 /// Flag of each cell of an image, not 0 if the cell is hidden; empty if no cell is hidden.
 std::vector<unsigned char> HiddenCells(vtkImageData* image);

@@ -61,8 +61,8 @@ inline std::vector<vtkMTimeType> TimesOfArrays(vtkDataObject* data)
 }
 
 /// Hash of everything a dataset holds, byte by byte: position, grid, points, arrays with their names. Unlike
-/// modification times, the hash does not change if a filter upstream runs again with the same result, as ParaView's
-/// readers do, which read a file twice if one time step is requested in two ways.
+/// modification times, the hash does not change if a filter upstream runs again with the same result. ParaView's
+/// readers, for example, read a file twice if one time step is requested in two ways.
 /// @param data  may be null, for which the hash is a constant
 std::uint64_t ContentKey(vtkDataObject* data);
 

@@ -30,7 +30,8 @@ void AddCells(
 /// Adds a cell array with one component per channel to an image by AddCells, and names three components R, G, B.
 void AddLight(vtkImageData* image, const char* name, std::vector<float>&& values, int channels);
 
-/// Adds the image's array `as` a second time, under the name `name`. The arrays share memory; values are not checked.
+/// Adds a second array `name` with the values of the image's array `as`. The arrays share memory; values are not
+/// checked.
 void AddSameLight(vtkImageData* image, const char* name, const char* as);
 
 /// Adds a cell array of light from the user's input. Unlike AddLight it does not check the values, which may be NaN
@@ -51,8 +52,8 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array
 /// one tuple for each face of a boundary voxel, ordered by face of the domain, -x to +z, and within it with the lower
 /// axis fastest.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
-/// Name of field data: arrays of the medium that the solver ignores, and filters that use them; one text for each
-/// array.
+/// Name of field data with one text for each array of the medium that the solver ignores: the array, and filters that
+/// use it.
 constexpr const char* IgnoredFact = "ignored";
 /// Names of field data. FacePowerFact: outgoing partial current LightField::facePower, W / length^2, one tuple for each
 /// face of a boundary voxel, ordered by face of the domain, -x to +z, and within it with the lower axis fastest.
@@ -89,7 +90,8 @@ constexpr const char* const OrderFact = "scattering_order";
 /// Joins texts with line breaks, for ParaView's panel.
 std::string Lines(const std::vector<std::string>& texts);
 
-/// Writes what a filter left out to the field data `left_out` of its output, and to its property LeftOut.
+/// Records the computations that a filter skipped, in the field data `left_out` of its output and in its property
+/// LeftOut.
 void TellLeftOut(vtkAlgorithm* filter, vtkDataObject* output, const std::vector<std::string>& texts);
 
 /// Writes everything a solver computed except its convergence. Cell arrays: `fluence` (made the active scalars),

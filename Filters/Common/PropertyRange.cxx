@@ -16,8 +16,8 @@ namespace tyndall
 {
 namespace
 {
-/// Key in a filter's information: one text for each property out of its range, starting with the property's name and a
-/// blank.
+/// Key in a filter's information: one text for each property whose value is out of range. A text starts with the
+/// property's name and a blank.
 vtkInformationStringVectorKey* Refused()
 {
   static auto* const key = vtkInformationStringVectorKey::MakeKey("REFUSED_PROPERTIES", "Tyndall");
@@ -31,7 +31,7 @@ vtkInformationDoubleKey* SecondsKey()
   return key;
 }
 
-/// Key in a filter's information: what its last run left out, one per line.
+/// Key in a filter's information: the computations that its last run skipped, one per line.
 vtkInformationStringKey* LeftOutKey()
 {
   static auto* const key = vtkInformationStringKey::MakeKey("LEFT_OUT_OF_RUN", "Tyndall");

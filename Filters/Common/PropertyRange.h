@@ -14,9 +14,9 @@ class vtkAlgorithm;
 /// Properties of filters with a valid range.
 ///
 /// Every filter of Tyndall refuses a number that is out of its range, whether it comes from ParaView's panel, Python or
-/// C++. A setter never replaces the value it is given, and no filter works with another value than the one set. The
-/// property keeps the invalid value; the next update ends with one VTK error that names property, value and range, and
-/// the outputs are empty. Setting a valid value clears the error. A number that is not finite is out of every range.
+/// C++. A setter stores any value unchanged, and no filter replaces it by another. The property keeps the invalid
+/// value; the next update ends with one VTK error that names property, value and range, and the outputs are empty.
+/// Setting a valid value clears the error. A number that is not finite is out of every range.
 ///
 /// Ranges known to the setter are given in the macros below. Conditions that only RequestData can check (a number that
 /// must be a square, a camera that looks along its view up, a sum of two properties) are refused there in the same way.
@@ -48,8 +48,9 @@ TYNDALL_EXPORT bool SetPointData(vtkAlgorithm* filter, int& held, int kind);
 /// Value of the property PointData of a filter.
 PointDataKind PointDataOf(vtkAlgorithm* filter);
 
-// Facts of a filter's last run, which its panel shows. Guarded (Pieces/GuardedWork.h) measures the seconds of every
-// filter, and sets both to nothing if the run fails or is aborted; a filter reports what it left out.
+// Results of a filter's last run, shown on its panel: run time and skipped computations. Guarded (Pieces/GuardedWork.h)
+// measures the run time, and resets both results if the run fails or is aborted. The filter itself reports the
+// computations that it skipped.
 
 /// Wall-clock time of the last run in seconds, from the inputs to the outputs; 0 if it failed.
 TYNDALL_EXPORT double SecondsOfRun(vtkAlgorithm* filter);
@@ -168,8 +169,8 @@ bool SetInRange(vtkAlgorithm* filter, const char* property, Type* heldValues, st
 
 /// The property PointData: how point arrays are read. 0 (default): each point is the centre of a voxel with its value;
 /// n points along an axis are n voxels, bounds are half a spacing wider on each side, and point arrays become cell
-/// arrays of the output. 1: voxels are the cells between points and have the mean of their points, n - 1 voxels. If a
-/// cell array is read as well, voxels are the cells, and point arrays are averaged.
+/// arrays of the output. 1: voxels are the cells between points, n - 1 voxels, with the mean value of their points. If
+/// a cell array is read as well, voxels are the cells, and point arrays are averaged.
 #define tyndallPointDataMacro()                             \
   virtual void SetPointData(int kind)                       \
   {                                                         \

@@ -116,8 +116,8 @@ void WholeFile::LookAtTarget()
   {
     this->Fail(S_ISDIR(this->Before.st_mode) ? "there is a folder of that name" : "what has that name is not a file");
   }
-  // Replacing a file requires write permission for its folder only, and root has every permission; nevertheless a
-  // read-only file is not replaced.
+  // A read-only file is not replaced, although the system would allow it: replacing needs write permission for the
+  // folder only, and root has every permission.
   const bool readOnly = this->WasThere &&
     ((this->Before.st_mode & 0222) == 0 || faccessat(AT_FDCWD, this->Target.c_str(), W_OK, AT_EACCESS) != 0);
   if (readOnly)

@@ -6,8 +6,8 @@
 
 namespace tyndall
 {
-/// Whether a path is not a pipe, a socket or a device, from which a process might wait for data forever. True if
-/// nothing exists at the path.
+/// False for a pipe, a socket or a device, from which a process might wait for data forever. True for other files, and
+/// if nothing exists at the path.
 bool HasAnEnd(const std::string& path);
 
 /// Returns the size of a file that is to be read, bytes.

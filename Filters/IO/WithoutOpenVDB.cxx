@@ -59,7 +59,7 @@ const char* vtkVDBReader::GetCurrentFileName()
   return "";
 }
 
-/// Any file, so that whoever opens one reads the error.
+/// Accepts any file, so that opening a .vdb file reports the error.
 int vtkVDBReader::CanReadFile(const char* fileName)
 {
   return fileName != nullptr;

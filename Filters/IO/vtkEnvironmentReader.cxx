@@ -47,8 +47,7 @@ Kind KindOf(const std::string& path)
   return text == "\x76\x2f\x31\x01" ? Kind::OpenExr : text.compare(0, 2, "#?") == 0 ? Kind::Radiance : Kind::Unknown;
 }
 
-/// File type by content, or by extension if the content is not recognised: the reader of that type then reports the
-/// error.
+/// File type by content. If the content is not recognised, the type by extension, whose reader then reports the error.
 Kind KindToRead(const char* path)
 {
   tyndall::Require(path != nullptr && path[0] != '\0', "No file: set FileName.");
@@ -108,8 +107,8 @@ void Expose(RadiancePicture& picture, double exposure, double maximum)
   }
 }
 
-/// Weights of an average from `from` equal intervals of [0, 1] to `to` equal intervals: new interval k is the mean of
-/// the old intervals from First[k] on with the weights Weights[k], which sum to 1.
+/// Weights for averaging values on `from` equal intervals of [0, 1] to `to` equal intervals. The value of new interval
+/// k is the mean of the old intervals from First[k] on, with the weights Weights[k], whose sum is 1.
 struct Overlaps
 {
   std::vector<std::size_t> First;

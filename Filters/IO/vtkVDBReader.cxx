@@ -94,9 +94,9 @@ double ActivePart(const std::vector<const VDBGrid*>& grids, const std::array<std
   return most;
 }
 
-/// Default limit of an image's memory, bytes: the larger of SmallImage and MostOfFile times the length of the file. It
-/// does not apply if the file notes that it was made from an image of that size. Clouds with a sparse outline need 10
-/// to 300 bytes per byte of their file; a single changed bit in a small file can demand terabytes.
+/// Default limit of an image's memory, bytes: the larger of SmallImage and MostOfFile times the length of the file. The
+/// limit does not apply if the file's metadata record that it was made from an image of that size. Images of sparse
+/// clouds need 10 to 300 bytes per byte of their file; a single changed bit in a small file can demand terabytes.
 constexpr double SmallImage = 1073741824.0, MostOfFile = 1000.0;
 
 openvdb::CoordBBox CellsIn(const int* extent)
@@ -653,7 +653,7 @@ int vtkVDBReader::RequestData(vtkInformation*, vtkInformationVector**, vtkInform
     std::array<int, 6> extent = this->ExtentToRead(info);
     if (!internal.NoImageYet.empty())
     {
-      // This error is not thrown when the file is listed, because Resample may be set after that.
+      // Thrown only when data are read, not when the grids are listed: the user may set Resample in between.
       throw InvalidInput(internal.NoImageYet);
     }
     if (internal.IsSeries())

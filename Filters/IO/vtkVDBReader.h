@@ -97,8 +97,8 @@ public:
 
   ///@{
   /// Whether level sets are converted to fog: 1 inside the surface, decreasing linearly within one voxel of it, 0
-  /// outside. A level set is a grid of real numbers whose class says so, or whose class is unknown, with a positive
-  /// background and values below 0. Default off: values are signed distances.
+  /// outside. A grid of real numbers is a level set if its class says so or, if the class is unknown, if its background
+  /// is positive and some values are negative. Default off: values are signed distances.
   tyndallFlagMacro(LevelSetsAsFog);
   ///@}
 
@@ -118,7 +118,8 @@ public:
   tyndallRangeMacro(MaximumMemory, vtkIdType, 0, VTK_ID_MAX >> 20);
   ///@}
 
-  /// Ignores executives other than the reader's own, which a series needs; ParaView assigns a new one to every source.
+  /// Accepts only the reader's own executive, which series of files need. ParaView assigns a new executive to every
+  /// source.
   void SetExecutive(vtkExecutive* executive) override;
 
   /// Modification time of the reader, including that of the grid selection.

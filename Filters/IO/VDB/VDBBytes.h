@@ -1,9 +1,8 @@
 #pragma once
 
-// The only header that includes OpenVDB. OpenVDB's templates keep default visibility, although the module hides its
-// other symbols. Otherwise std::call_once, which OpenVDB instantiates and which is always visible, would run the
-// module's copy of a function with the library's copy of the variable that it sets, and openvdb::initialize would read
-// a null pointer.
+// All sources include OpenVDB through this header, which gives OpenVDB's templates default visibility; the module hides
+// its other symbols. With hidden templates openvdb::initialize would read a null pointer: std::call_once, which stays
+// visible, would use the module's copy of a function together with the library's copy of a variable.
 #pragma GCC visibility push(default)
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/GridDescriptor.h>

@@ -33,8 +33,8 @@ void AddGridCells(const openvdb::GridBase& grid, const std::string& type, const 
 void AddResampled(vtkImageData* cells, const VDBGrid& grid, const openvdb::CoordBBox& box, vtkImageData* image);
 
 /// Converts a cell array to fog if it is a level set (FogInside), and updates field data `class` and `background`.
-/// Other arrays are left unchanged. A level set consists of real numbers, and its class says so, or its class is
-/// unknown, its background is positive and some cells are negative.
+/// Other arrays are left unchanged. An array of real numbers is a level set if its class says so or, if the class is
+/// unknown, if its background is positive and some cells are negative.
 void MakeFogOfLevelSet(vtkImageData* image, const std::string& name);
 
 /// Options for the conversion of cells to voxels.
@@ -51,7 +51,7 @@ struct VoxelOptions
 };
 
 /// Makes the grids of one cell array: one grid, or one for each component, named after the array. Cells that equal the
-/// background, exactly or within the tolerance, are inactive.
+/// background within the tolerance are inactive voxels.
 /// @param field  field data, which may contain `background` and `type` of the array
 /// @throws InvalidInput naming the array, if no grid type can hold its numbers, or if they do not fit 16 bits
 openvdb::GridPtrVec MakeGrids(

@@ -313,7 +313,8 @@ double TripleProduct(const std::array<std::array<double, 3>, 3>& v)
     v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
 }
 
-/// Returns why an image cannot represent the grid's map; empty if it can. Also sets VDBGrid::Shears.
+/// Reason why an image cannot represent the grid's map from index to world space; empty if it can. Also sets
+/// VDBGrid::Shears.
 std::string FaultOfMap(VDBGrid& grid)
 {
   const auto dot = [&](int i, int j) {

@@ -44,8 +44,7 @@ constexpr std::tuple<ValueKind<bool, vtkUnsignedCharArray>, ValueKind<Int32, vtk
   ValueKind<Mat4s, vtkFloatArray, 16>, ValueKind<Mat4d, vtkDoubleArray, 16>>
   Kinds;
 
-/// Calls `act` with one ValueKind (a type of metadata and its type of VTK array) after the other until `act` returns
-/// true.
+/// Calls `act` with each ValueKind (type of metadata and of VTK array) in turn, until `act` returns true.
 template <typename Do>
 void ForKinds(const Do& act)
 {
@@ -142,7 +141,8 @@ struct MediumFact
 };
 constexpr MediumFact MediumFacts[] = { { "g", "medium_g" }, { "phase_function", "medium_phase_function" },
   { "phase_second_g", "medium_phase_second_g" }, { "phase_first_part", "medium_phase_first_part" } };
-/// Field data with any number of rows, for which OpenVDB has no type: they are stored as text.
+/// Columns of a phase function's table: names of field data and of metadata. OpenVDB has no type for an array of any
+/// length, so that the numbers are stored as text.
 constexpr MediumFact MediumTables[] = { { "phase_cosine", "medium_phase_cosine" },
   { "phase_value", "medium_phase_value" } };
 

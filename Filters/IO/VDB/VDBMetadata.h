@@ -16,11 +16,12 @@ inline std::string FieldName(const std::string& grid, const std::string& key)
   return "vdb:" + grid + ":" + key;
 }
 
-/// Adds metadata as field data `<prefix><key>`, if VTK has their type, except metadata that the image itself expresses.
+/// Adds metadata as field data `<prefix><key>`. Skips metadata of types that VTK lacks, the geometry (IsGeometry), and
+/// properties of the medium (AddMediumFacts).
 void AddMetadata(vtkDataObject* image, const std::string& prefix, const openvdb::MetaMap& map);
 
-/// Restores metadata from field data whose names start with `prefix`, except a grid's type and background and the
-/// entries that describe the file it was read from.
+/// Restores metadata from field data whose names start with `prefix`. Skips a grid's type and background, and entries
+/// that describe the file from which the grid was read.
 void RestoreMetadata(openvdb::MetaMap& map, vtkFieldData* field, const std::string& prefix);
 
 /// Adds field data that define a medium in addition to its cell arrays (`g`, `phase_function` and its parameters). In a
