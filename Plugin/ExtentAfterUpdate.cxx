@@ -44,8 +44,8 @@ public:
   static vtkSIExtentAfterUpdateProxy* New();
   vtkTypeMacro(vtkSIExtentAfterUpdateProxy, vtkSISourceProxy);
 
-  /// Output port of the post filter, which ParaView appends to each output. The superclass creates it in the first
-  /// call, in which this method starts observing it.
+  /// Output port of the post filter, which ParaView appends to each output. The superclass creates the post filter in
+  /// the first call; this method then starts to observe it.
   vtkAlgorithmOutput* GetOutputPort(int port) override
   {
     vtkAlgorithmOutput* const output = this->Superclass::GetOutputPort(port);

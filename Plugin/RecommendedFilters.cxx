@@ -27,7 +27,7 @@ namespace
 {
 using Proxies = std::vector<vtkSmartPointer<vtkSMProxy>>;
 
-/// A filter that is recommended, with the properties that are listed.
+/// A recommended filter and its listed properties.
 struct Recommended
 {
   std::string filter;
@@ -55,7 +55,7 @@ std::vector<Recommended> FiltersIn(const std::string& text)
 }
 
 /// Sets a property to a listed value (RecommendedFilters.h).
-/// @param made  the filters before this one
+/// @param made the new filters that precede this one in the list, already created
 void Set(vtkSMProperty* property, const std::string& value, vtkSMProxy* source, const Proxies& made)
 {
   vtkSMPropertyHelper values(property);
@@ -84,8 +84,8 @@ void Set(vtkSMProperty* property, const std::string& value, vtkSMProxy* source, 
   }
 }
 
-/// Copies the values of a property of the same name; of a chosen array, its association and name, since the number of
-/// the array differs between filters.
+/// Copies the values of a property to the property of the same name of another filter. If the property selects an
+/// array, copies only association and name, because the array's index differs between filters.
 void Copy(vtkSMProperty* from, vtkSMProperty* to)
 {
   constexpr unsigned int ofArray = 5;
@@ -100,8 +100,8 @@ void Copy(vtkSMProperty* from, vtkSMProperty* to)
   to->Copy(from);
 }
 
-/// Whether a property of the recommending filter has the meaning of a new filter's property of the same name: lists of
-/// what is compared do not.
+/// Whether a property of the recommending filter has the same meaning as the property of this name of a new filter. A
+/// list of settings to compare has not.
 bool IsShared(vtkSMProperty* from, vtkSMProperty* to)
 {
   auto* const list = vtkSMVectorProperty::SafeDownCast(from);
@@ -109,7 +109,7 @@ bool IsShared(vtkSMProperty* from, vtkSMProperty* to)
   return hasValues && !from->GetInformationOnly() && std::strcmp(from->GetClassName(), to->GetClassName()) == 0;
 }
 
-/// Sets the inputs of a new filter, or its other properties.
+/// Sets the inputs of a new filter or, if `inputs` is false, its other properties.
 void SetAll(bool inputs, const Recommended& wanted, vtkSMProxy* filter, vtkSMProxy* source, const Proxies& made)
 {
   auto properties = vtk::TakeSmartPointer(filter->NewPropertyIterator());
@@ -135,7 +135,7 @@ void SetAll(bool inputs, const Recommended& wanted, vtkSMProxy* filter, vtkSMPro
   filter->UpdateVTKObjects();
 }
 
-/// Creates a filter and registers it as those of the menu are.
+/// Creates a filter and registers it as ParaView's menu does.
 vtkSmartPointer<vtkSMProxy> Make(const Recommended& wanted, vtkSMProxy* source, const Proxies& made)
 {
   auto filter = vtk::TakeSmartPointer(source->GetSessionProxyManager()->NewProxy("filters", wanted.filter.c_str()));

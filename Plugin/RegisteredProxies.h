@@ -7,7 +7,8 @@
 #include "vtkSMProxy.h"
 #include "vtkSMProxyManager.h"
 
-/// Makes a command that calls a function. It is never destroyed: observers are added to objects that live longer.
+/// Makes a command that calls a function. The command is never destroyed, because the observed objects may exist until
+/// the process ends.
 inline vtkCallbackCommand* CommandOf(void (*function)(vtkObject*, unsigned long, void*, void*))
 {
   auto* const command = vtkCallbackCommand::New();

@@ -135,8 +135,9 @@ vtkCallbackCommand* FirstChange()
   return command;
 }
 
-/// Colours a representation that opened as Lit Volume by the array of the hint <ColoredBy>, when its type is first
-/// changed. Not before, because Lit Volume does not use the colour map, whose colour bar would mislead.
+/// When the type of a representation that opened as Lit Volume is first changed, colours the representation by the
+/// array of the hint <ColoredBy>. Earlier, the colour bar would mislead, because Lit Volume does not use the colour
+/// map.
 void ColorAtFirstChange(vtkObject* caller, unsigned long, void*, void* property)
 {
   auto* const representation = vtkSMProxy::SafeDownCast(caller);

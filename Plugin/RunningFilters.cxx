@@ -148,7 +148,7 @@ private:
   void ShowLater(const vtkWeakPointer<vtkSMProxy>& proxy, bool isAborted, int milliseconds)
   {
     QTimer::singleShot(milliseconds, this, [this, proxy, isAborted] {
-      // Waits longer: the update is still running other filters, and timers fire between their progress events.
+      // The update is still running other filters, since timers fire between progress events: wait again.
       if (this->Running)
       {
         this->ShowLater(proxy, isAborted, 50);

@@ -102,8 +102,8 @@ std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
   return Numbers(view, moves ? property + "Info" : property);
 }
 
-/// Values for a property of the source, taken from the view's camera as a <Property> element of the source's hint
-/// requests.
+/// Values of the view's camera for one property of the source, which a <Property> element of the source's hint
+/// describes.
 std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
 {
   std::vector<double> numbers = OfView(view, property->GetAttributeOrEmpty("of"));

@@ -55,7 +55,7 @@ double DistanceOf(vtkSMProxy* representation)
   return fact ? fact->GetComponentRange(0)[0] : 0.0;
 }
 
-/// Sets the unit distance of a volume's alpha, for which ParaView has no property: see vtkVolumeUnitDistance.
+/// Sets the unit distance of a volume's alpha by vtkVolumeUnitDistance, because ParaView has no property for it.
 void GiveDistance(vtkSMProxy* representation)
 {
   const double distance = DistanceOf(representation);

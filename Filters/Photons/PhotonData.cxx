@@ -106,7 +106,8 @@ std::array<float, 3> Turned(const std::array<float, 3>& direction, const Turn& t
   return { static_cast<float>(way[0]), static_cast<float>(way[1]), static_cast<float>(way[2]) };
 }
 
-/// Points whose bounds FindBounds computes in parallel (LeaveRanges); VTK would compute them on one core.
+/// Points whose bounds are computed in parallel, by FindBounds from the ranges of LeaveRanges; VTK would compute the
+/// bounds on one core.
 class BoundedPoints : public vtkPoints
 {
 public:
@@ -355,8 +356,8 @@ void SetGrid(vtkImageData* image, const Grid& grid)
 }
 
 /// Index of the light of each layer of an importance map, from field data `light`: 0, 1, ... in the order of the
-/// scene's lights, -1 for the environment or sky, -2 for the box's faces. Without that field data layer k is of light
-/// k.
+/// scene's lights, -1 for the environment or sky, -2 for the box's faces. Without field data `light`, layer k belongs
+/// to light k.
 /// @throws InvalidInput if `light` has not one light number for each layer
 std::vector<int> LightsOf(vtkImageData* image, int layers)
 {
@@ -391,7 +392,7 @@ bool Shines(const Illumination& illumination, int light)
 
 /// Checks the lights of an importance map.
 /// @param lights  index of the light of each layer, as LightsOf returns it
-/// @throws InvalidInput if the map has a layer of a light that the scene does not have, or two layers of one light
+/// @throws InvalidInput if the scene lacks the light of a layer, or two layers are of the same light
 void CheckLights(const std::vector<int>& lights, const Illumination& illumination)
 {
   std::set<int> seen;

@@ -21,8 +21,8 @@ class Communicator;
 /// @param axes  axes of the box and of the emitted photons; photons are written in the scene's coordinates
 void WritePhotons(const EmittedPhotons& emitted, const Grid& box, const OwnAxes& axes, vtkPolyData* output);
 
-/// Text of the warning that photons were made for another box than the medium's (field data `photon_box`); empty if the
-/// boxes are equal or `photon_box` is missing.
+/// Text of the warning that the box for which photons were emitted (field data `photon_box`) is not the medium's; empty
+/// if the boxes are equal or `photon_box` is missing.
 std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium);
 
 /// Reads photons from polydata: points, and point data `direction` (3), `power` (1 or 3 components, W), `weight`

@@ -40,8 +40,8 @@ vtkPolyData* vtkPhotonEmitter::GetOutput()
   return vtkPolyData::SafeDownCast(this->GetOutputDataObject(0));
 }
 
-/// Declares the arrays of the medium, although none is read, so that the box is the same as in filters that read these
-/// arrays (PointData).
+/// Declares the medium's arrays as read, although the emitter reads none. The box then has voxels around points, or
+/// between them, exactly if it has in the filters that do read these arrays (PointData).
 int vtkPhotonEmitter::FillInputPortInformation(int port, vtkInformation* information)
 {
   const int done = this->Superclass::FillInputPortInformation(port, information);
@@ -95,8 +95,8 @@ tyndall::Grid WholeGrid(vtkAlgorithm* filter, vtkMultiProcessController* ranks, 
 }
 
 /// Sets which part of the photons this rank emits: the part that corresponds to the requested piece. If any rank is
-/// asked for all photons, every rank emits all photons, because parts in addition to a complete set would have too much
-/// power. Collective.
+/// asked for all photons, every rank emits all photons: one complete set and parts on other ranks would together have
+/// too much power. Collective.
 /// @param others  the ranks that run the update together; null on one rank
 void TellPart(vtkInformation* asking, tyndall::Communicator* others, tyndall::EmissionSettings& settings)
 {

@@ -246,8 +246,8 @@ int vtkPhotonMarcher::RequestInformation(vtkInformation*, vtkInformationVector**
   return 1;
 }
 
-/// Whether this rank can march photons through its piece of the medium (BLOCKS), as far as Decomposition, the request
-/// and the medium's size decide.
+/// Whether this rank prefers to march photons through its piece of the medium (BLOCKS): decided by Decomposition, the
+/// pipeline's request and the medium's size.
 bool vtkPhotonMarcher::WantsBlocks(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) const
 {
@@ -256,7 +256,6 @@ bool vtkPhotonMarcher::WantsBlocks(
     : this->Decomposition == BLOCKS;
 }
 
-/// Frees the device memory of a cached medium that is out of date before upstream filters run. Requests this rank's
 /// Frees the device memory of a cached medium that is out of date before upstream filters run. Requests this rank's
 /// piece of each input if photons are marched through the pieces (BLOCKS), else the complete inputs.
 int vtkPhotonMarcher::RequestUpdateExtent(

@@ -41,9 +41,9 @@ namespace tyndall
 {
 namespace
 {
-/// Root cells of the vtkHyperTreeGrid of an octree: cubes of 2^level voxels per edge. `level` is that of the largest
-/// node or, if that is larger, three less than that of the cube that contains the grid, so that roots extend little
-/// beyond the grid. Each rank builds the trees of the roots whose first voxel is in its block.
+/// Root cells of the vtkHyperTreeGrid of an octree: cubes of 2^level voxels per edge. `level` is the larger of two: the
+/// level of the largest node, and three less than the level of the cube that contains the grid. Roots then extend
+/// little beyond the grid. Each rank builds the trees of the roots whose first voxel is in its block.
 struct OctreeRoots
 {
   /// @param whole  the grid of the domain
@@ -110,7 +110,7 @@ struct Tree
 {
   std::vector<unsigned char> levels;  ///< octree level of each vertex (cube of 2^level voxels per edge)
   std::vector<unsigned char> outside; ///< whether each vertex (cube of voxels) is outside the grid
-  /// Whether each vertex (cube) has children; the deepest vertices, which have none, are left out.
+  /// Whether each vertex (cube of voxels) has children; the deepest vertices, which have none, have no flag.
   std::vector<unsigned char> refined;
   vtkIdType nodes = 0;
 };

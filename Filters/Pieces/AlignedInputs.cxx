@@ -82,7 +82,7 @@ void AlignedInputs::AlignGiven(vtkInformationVector** given)
   }
 }
 
-/// Determines the medium axes (OwnAxes), those of the image at port 0, from any rank whose image has points.
+/// Determines the medium axes (OwnAxes): the axes of the image at port 0, on any rank whose image has points.
 /// Collective.
 void AlignedInputs::AgreeOnAxes(vtkMultiProcessController* ranks)
 {

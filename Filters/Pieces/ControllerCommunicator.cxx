@@ -41,7 +41,8 @@ namespace
 constexpr int FirstOfAll = 1000000; ///< first message tag of communicators, above the tags of VTK and of Ranks.cxx
 constexpr double Grace = 1.0;       ///< time after a request to stop for which messages are still received, seconds
 
-/// Keeps messages whose sends are not complete when an error occurs: MPI may read their memory until the process ends.
+/// Never frees messages whose sends are incomplete when an error occurs: MPI may read their memory until the process
+/// ends.
 template <class Messages>
 void LeaveBehind(Messages& messages)
 {
@@ -174,8 +175,8 @@ std::vector<std::vector<char>> ControllerCommunicator::Swap(
 
 namespace
 {
-/// Number of communicators per call of WorkOnAllRanks, and number of such calls, after which message tags are reused.
-/// The tags of CommunicatorOfFrame follow those of WorkOnAllRanks.
+/// Message tags are reused after this number of communicators in one call of WorkOnAllRanks, and after this number of
+/// calls. The tags of CommunicatorOfFrame follow those of WorkOnAllRanks.
 constexpr int Conversations = 64, Works = 16;
 int Work = 0, Conversation = 0, Frame = 0;
 

@@ -20,7 +20,7 @@ class vtkMultiProcessController;
 namespace tyndall
 {
 /// Timeout for waiting on another rank, seconds: the current value of the environment variable TYNDALL_RANKS_WAIT,
-/// default 600. A filter upstream may take this much longer on one rank than on another.
+/// default 600. A filter upstream may therefore take up to this time longer on one rank than on another.
 double SecondsToWait();
 
 /// Starts a new range of message tags, so that messages left over from earlier work are not received. Called on all

@@ -55,8 +55,8 @@ public:
   /// @param size  size of a value, bytes
   void Paste(int piece, const char* values, std::size_t size, char* whole) const;
 
-  /// Calls act(index in the piece, index in the image) for each value of a piece that is neither duplicate nor hidden
-  /// there but is assigned to another piece.
+  /// Calls act(index in the piece, index in the image) for each value of a piece that is assigned to another piece,
+  /// although it is neither duplicate nor hidden in this piece.
   template <typename Do>
   void ForOverlap(int piece, const Do& act) const
   {
@@ -446,7 +446,7 @@ std::vector<PieceValues> GatheredImage::ShareFlags(Kind kind, const std::vector<
   return pieces;
 }
 
-/// Assigns the cells, or points, of the image to pieces, and finds those that are hidden. Collective.
+/// Assigns the cells, or points, of the image to pieces, and finds the hidden ones. Collective.
 /// @param own  vtkGhostType of this rank's piece
 void GatheredImage::LayOut(Kind kind, const std::vector<unsigned char>& own)
 {

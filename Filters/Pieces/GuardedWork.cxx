@@ -191,8 +191,8 @@ void EmptyWithout(vtkInformationVector* outputs)
   }
 }
 
-/// Whether it is known that a rank will not reach this filter: the rank was missing here at the last run and nothing
-/// has changed since, or it was missing at a filter upstream.
+/// Whether a rank is known to be missing: it did not reach this filter in the last run and nothing has changed since,
+/// or it did not reach a filter upstream.
 bool IsKnownToMiss(vtkAlgorithm* filter, const LastFailure& last)
 {
   bool known = last.Was(LastFailure::Missing) && last.StillHolds();
@@ -240,7 +240,7 @@ bool StillHolds(vtkMultiProcessController* ranks, const LastFailure& last)
   return all != 0;
 }
 
-/// Key in a filter's information: the last run gave back the outputs of an earlier one.
+/// Key in a filter's information: its last run returned cached outputs of an earlier run (LastOutputs).
 vtkInformationIntegerKey* GivenBack()
 {
   static auto* const key = vtkInformationIntegerKey::MakeKey("GIVEN_BACK", "Tyndall");
@@ -261,7 +261,8 @@ void NoteRun(vtkAlgorithm* filter, bool succeeded, double seconds)
   }
 }
 
-/// Sends the facts of the run from the first rank, which has worked alone, to the other ranks. Collective.
+/// Sends the list of skipped computations, and whether the outputs were cached ones, from the first rank, which has
+/// worked alone, to the other ranks. Collective.
 void ShareRun(Communicator& ranks, vtkAlgorithm* filter)
 {
   std::string leftOut = LeftOutOfRun(filter);
@@ -414,7 +415,7 @@ namespace
 {
 constexpr int PartTag = 745205; ///< tag of messages with parts of outputs
 
-/// Whether the extent of an output port's image becomes known only when the work is done.
+/// Whether the extent of the image at an output port is unknown until the work is done.
 bool TellsExtent(const WorkOnSubdomains& work, int port)
 {
   return work.tellsExtents || port > 0;

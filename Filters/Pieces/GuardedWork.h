@@ -62,8 +62,8 @@ struct WorkOnSubdomains
   /// Sends the results that the filter keeps in its members (read-only properties) from the first rank, which has
   /// worked alone, to the other ranks. Collective.
   std::function<void(Communicator& ranks)> shareResults;
-  /// Whether each rank works on the complete inputs, instead of the first rank alone: if that costs less than sending
-  /// the outputs.
+  /// Whether each rank works on the complete inputs, instead of the first rank alone; worth it if the work takes less
+  /// time than sending the outputs.
   bool wholeOnEachRank = false;
   /// Whether the extents of the output images become known only when the work is done; each rank then makes the
   /// complete images.
@@ -81,8 +81,8 @@ int GuardedInPieces(vtkAlgorithm* filter, vtkInformation* request, vtkInformatio
   vtkInformationVector* outputs, int port,
   const std::function<void(vtkMultiProcessController* ranks, WholeInputs& inputs)>& work);
 
-/// Reports, during the work, that this run gives back the outputs of an earlier run, whose run time remains the value
-/// of Seconds.
+/// To be called during the work if this run returns cached outputs of an earlier run. The property Seconds then keeps
+/// the time of that run.
 void NoteGivenBack(vtkAlgorithm* filter);
 
 /// Whether the outputs are empty because the filter failed or was aborted. Called after Guarded.

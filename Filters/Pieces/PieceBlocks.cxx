@@ -83,8 +83,8 @@ Piece PieceOf(vtkInformation* asked, vtkImageData* image, int rank, int ranks)
   return piece;
 }
 
-/// Array for the extents, origins and spacings of the pieces of all ranks, in which only this rank's entries are set.
-/// The other entries are 0, so that the sum of the ranks' arrays describes all pieces.
+/// Array with the extents, origins and spacings of the pieces of all ranks, in which entries of other ranks are 0. The
+/// sum of the arrays of all ranks then describes all pieces.
 std::vector<double> WordsOf(const Piece& piece, int rank, int ranks)
 {
   std::vector<double> words(WordsOfPiece * static_cast<std::size_t>(ranks), 0.0);

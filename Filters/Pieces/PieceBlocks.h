@@ -93,8 +93,8 @@ std::optional<AgreedBlocks> AgreeOnBlocks(
   vtkMultiProcessController* ranks, vtkAlgorithm* filter, bool wanted, vtkInformation* asked, vtkImageData* given);
 
 /// Whether an image is large enough to decompose: more than 64^3 voxels, or more than the environment variable
-/// TYNDALL_PIECES_FROM says. Below that, communication costs more than solving the complete image on each rank. True on
-/// a rank whose source announces no voxels, which leaves the decision to the other ranks.
+/// TYNDALL_PIECES_FROM says. For smaller images communication costs more than solving the complete image on each rank.
+/// True on a rank whose source announces no voxels, so that the other ranks decide.
 bool IsWorthPieces(vtkInformationVector* image);
 
 /// Whether the complete image does not fit the available memory of this machine (AvailableMemory.h). The result may

@@ -284,7 +284,8 @@ namespace
 #ifdef TYNDALL_HAS_MPI
 constexpr int Nobody = -1;
 constexpr int ArriveTag = 745203, AnswerTag = 745204; ///< tags of messages to the first rank, and from the first rank
-/// Time by which other ranks wait longer than the first rank, which decides whether a rank is missing, seconds.
+/// Additional waiting time of the other ranks, seconds: the first rank times out before them, and decides whether a
+/// rank is missing.
 constexpr double Slack = 5.0;
 
 bool IsPast(const std::chrono::steady_clock::time_point& start, double seconds)
@@ -313,8 +314,8 @@ int NumberOf(const char* filter)
   return static_cast<int>(number >> 1);
 }
 
-/// Receives arrivals until all ranks have arrived or the timeout `wait` (seconds) is over, then every message sent so
-/// far: a rank that was too late for the previous barrier has withdrawn its arrival.
+/// Receives arrivals until all ranks have arrived or the timeout `wait` (seconds) is over. Then receives all messages
+/// sent so far, such as the withdrawal of a rank that was too late for the previous barrier.
 void Collect(vtkMPIController* ranks, double wait, std::vector<Arrival>& arrived)
 {
   const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();

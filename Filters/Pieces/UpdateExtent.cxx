@@ -130,7 +130,7 @@ Extent PartOfRank(vtkInformation* information, int rank)
   return extent;
 }
 
-/// Flags cells of this rank's output as duplicates if a rank with a lower number is asked for the same cells
+/// Flags cells of this rank's output as duplicates if they are also requested from a rank with a lower number
 /// (NotePartsOfRanks).
 void MarkThoseBefore(vtkInformation* information, vtkImageData* output)
 {
@@ -156,14 +156,15 @@ struct Part
 {
   bool isOfRank = false; ///< whether the part is one recorded by NotePartsOfRanks
   bool divided = false;
-  /// Requested extents. If they are empty: nothing is requested if `divided`, else the complete output.
+  /// Requested extents. Empty extents mean that nothing is requested if `divided`, else that the complete output is.
   AskedPiece piece;
 };
 
-/// Determines the requested part of an output. A request for a whole extent that was announced (AsksForAll) means all
-/// of `image`, although the two may differ: the announced extent may be that of another time step, or may have been
-/// announced before it was known that voxels are around points. Likewise a piece of an announced extent means a piece
-/// of `image`, unless `image` does not contain the announced extent, for example because only the piece was made.
+/// Determines the requested part of an output. A request for an announced whole extent (AsksForAll) means all of
+/// `image`, and a request for a piece of that extent means a piece of `image`. The two extents may differ, if another
+/// time step was announced, or if the extent was announced before point arrays were known to have one voxel around each
+/// point. If `image` does not contain the announced extent, for example because only the piece was made, the piece is
+/// that of the announced extent.
 /// @param image  the extent of the output as it was made
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {

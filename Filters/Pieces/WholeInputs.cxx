@@ -176,7 +176,7 @@ void AddHidden(vtkDataSetAttributes* attributes, const std::vector<unsigned char
   }
 }
 
-/// Gathers an image from its pieces; on ranks on which the image is not gathered, returns the piece. Collective.
+/// Gathers an image from its pieces. Ranks that do not receive the gathered image get their piece. Collective.
 vtkSmartPointer<vtkDataObject> WholeImageOf(vtkMultiProcessController* ranks, vtkImageData* piece,
   const OnRanks& summaries, const std::string& named, GatheredImage::On where)
 {
@@ -222,8 +222,8 @@ std::string Words(const Extent& extent)
   return text;
 }
 
-/// Checks that the pieces of an image cover the announced whole extent, if all ranks announce the same one. If only one
-/// rank can read a file, that rank receives just its requested piece, and the other pieces are missing.
+/// Checks that the pieces of an image cover the whole extent, if all ranks announce the same one. They do not if only
+/// one rank can read the file: this rank reads only its piece, and the other pieces are missing.
 void CheckExtent(const OnRanks& summaries, const std::string& named)
 {
   const auto isPiece = [](const InputSummary& summary) { return summary.isThere && summary.isImage; };
@@ -452,8 +452,8 @@ Extent Around(Extent points)
   return points;
 }
 
-/// Records the part of each output that each rank is asked for, if ranks are asked for different parts, as with sources
-/// that know only their own piece.
+/// Records which part of each output is requested from each rank, if the parts differ, as with sources that know only
+/// their own piece.
 void NoteParts(const std::vector<RankSummary>& all, int rank, vtkInformationVector* outputs)
 {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)

@@ -24,8 +24,8 @@ namespace tyndall
 /// lights, are broadcast from the rank that has them. Points that are distributed among ranks are appended in the order
 /// of ranks.
 ///
-/// Images are aligned first (AlignedInputs.h). Images of which point arrays are read get a voxel around each point
-/// (Common/ImageInput.h), also on a single rank; where pieces share a plane of points, its voxels belong to the lowest
+/// Images are aligned first (AlignedInputs.h). Images whose point arrays are read get a voxel around each point
+/// (Common/ImageInput.h), also on a single rank. If pieces share a plane of points, its voxels belong to the lowest
 /// rank.
 ///
 /// Memory per rank: the complete image, and one piece of one array.

@@ -49,8 +49,8 @@ private:
 class LastOutputs
 {
 public:
-  /// Cache key, of all that the outputs depend on: the time of the last property change, the axes in which the filter
-  /// works (OwnAxes), and hashes of the inputs' content.
+  /// Cache key: the time of the last property change, the axes in which the filter works (OwnAxes), and hashes of the
+  /// inputs' content.
   using Key = std::vector<std::uint64_t>;
   static Key KeyOf(vtkMTimeType settings, const OwnAxes& axes, vtkInformationVector** inputs, int ports);
 

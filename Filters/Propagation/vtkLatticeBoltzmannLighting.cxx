@@ -36,8 +36,8 @@ tyndall::LightField SolvePreviewOf(
                                    : tyndall::SolvePreview(scene, tyndall::AsPropagation(settings), coarse, solve);
 }
 
-/// Relative error of the energy balance if the left-over power counts as an error: the fraction of the power that was
-/// neither absorbed nor escaped, in the channel where it is largest.
+/// Fraction of the power that was neither absorbed nor escaped, in the channel where this fraction is largest: the
+/// relative error of the energy balance if left-over power counts as an error.
 double UnaccountedPart(const tyndall::LightField& light)
 {
   tyndall::EnergyBalance balance = light.balance;
@@ -141,7 +141,7 @@ tyndall::LightField vtkLatticeBoltzmannLighting::LightOf(
 
 std::string vtkLatticeBoltzmannLighting::NotByBlocks(vtkInformationVector** inputs) const
 {
-  // Both inputs are an error on one rank as well: photons and UncollidedLight are the same light in two forms.
+  // Photons and UncollidedLight are the same light in two forms. Connecting both inputs is an error, also on one rank.
   const bool both =
     inputs[PHOTONS]->GetNumberOfInformationObjects() > 0 && inputs[UNCOLLIDED]->GetNumberOfInformationObjects() > 0;
   return both ? "Photons beside UncollidedLight" : tyndall::NotInBlocks(this->Settings());

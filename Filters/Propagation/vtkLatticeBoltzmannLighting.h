@@ -162,7 +162,7 @@ protected:
   void Note(const tyndall::LightField& light) override;
   void ShareResults(tyndall::Communicator& ranks) override;
   bool KnowsIndex() const override { return this->Scheme == CONSERVATIVE; }
-  bool ReadsQuality() const override { return !this->Preview; } // with a target error, too, which chooses nothing
+  bool ReadsQuality() const override { return !this->Preview; } // TargetError changes no settings here
   std::string NotByBlocks(vtkInformationVector** inputs) const override;
   tyndall::LightField Solve(const tyndall::SolverScene& scene) override;
   int PortOfShares() const override { return PHOTONS; }

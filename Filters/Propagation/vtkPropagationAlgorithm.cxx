@@ -15,7 +15,7 @@
 
 namespace
 {
-/// Whether all light enters through the faces of the box: all lights are directional.
+/// Whether all lights are directional, so that all light enters through the faces of the box.
 bool OnlyFromFarAway(const tyndall::Illumination& illumination)
 {
   return std::all_of(illumination.lights.begin(), illumination.lights.end(),

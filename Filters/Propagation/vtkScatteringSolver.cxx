@@ -201,8 +201,8 @@ bool vtkScatteringSolver::WantsPieces(
                                                         : this->Decomposition == BLOCKS;
 }
 
-/// Reason why the first rank solves the whole domain although Decomposition is automatic and each rank requests its own
-/// piece; for field data `left_out`.
+/// Text for field data `left_out`: why the first rank solves the whole domain, although Decomposition is automatic and
+/// each rank requests its own piece.
 std::string vtkScatteringSolver::ReasonNotToAgree(vtkInformationVector** inputs) const
 {
   const std::string refused = this->NotByBlocks(inputs);
@@ -260,8 +260,8 @@ std::string vtkScatteringSolver::ReadShiningOrRefuse(tyndall::SolverScene& scene
   return refused;
 }
 
-/// Reads the light sources of the subdomain into `scene`, and sets WholeFor, the reason if the first rank is to solve
-/// the whole domain. Collective.
+/// Reads the light sources of the subdomain into `scene`. If the first rank is to solve the whole domain, sets WholeFor
+/// to the reason. Collective.
 /// @return false, on all ranks, if the first rank is to solve the whole domain
 bool vtkScatteringSolver::ReadOrRefuse(tyndall::SolverScene& scene, vtkInformationVector** inputs)
 {

@@ -91,9 +91,9 @@ public:
   ///@}
 
   ///@{
-  /// Accuracy: DRAFT, USUAL (default), FINE or REFERENCE. Chooses values for those properties below that have their
-  /// default value, depending on the scene; the other properties keep their values. USUAL changes no property. FINE and
-  /// REFERENCE also divide rectangle lights more finely.
+  /// Accuracy: DRAFT, USUAL (default), FINE or REFERENCE. Chooses values, depending on the scene, for properties below
+  /// that have their default value; other properties keep their values. USUAL changes no property. FINE and REFERENCE
+  /// also divide rectangle lights more finely.
   tyndallRangeMacro(Quality, int, DRAFT, REFERENCE);
   ///@}
 

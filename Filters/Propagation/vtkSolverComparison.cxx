@@ -61,7 +61,8 @@ void AddNumbers(
   table->AddColumn(column);
 }
 
-/// Adds a column `error of METHOD` per method that has rows, for charts: `error_l2`, NaN in rows of other methods.
+/// For charts: adds a column `error of METHOD` for each method that has rows, with `error_l2` in its rows and NaN in
+/// the rows of other methods.
 void AddErrorsByMethod(vtkTable* table, const std::vector<Row>& rows)
 {
   std::set<tyndall::ComparedMethod> methods;
@@ -99,7 +100,7 @@ std::string SizeOf(const Row& row)
   return std::to_string(size[0]) + "x" + std::to_string(size[1]) + "x" + std::to_string(size[2]);
 }
 
-/// A recommended row for the user.
+/// Describes a recommended row of the table to the user.
 /// @param row  null: there is none
 std::string InWords(const Row* row)
 {

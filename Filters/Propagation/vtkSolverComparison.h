@@ -136,15 +136,16 @@ public:
   ///@}
 
   ///@{
-  /// Whether lattices of 18 and of 6 directions are compared, as vtkLatticeBoltzmannLighting solves them by default:
-  /// diffusion. Default off. Skipped if voxels are not cubes. If light is refracted, the uncollided light of the
-  /// lattice is computed by photons, for each PhotonCount, and the lattice is skipped if Monte Carlo is.
+  /// Whether diffusion on lattices of 18 and of 6 directions is compared, solved by vtkLatticeBoltzmannLighting with
+  /// its default settings. Default off. Skipped if voxels are not cubes. If light is refracted, photons compute the
+  /// uncollided light of the lattice, for each PhotonCount, and the lattice is skipped whenever MonteCarlo is.
   tyndallFlagMacro(LatticeBoltzmann);
   ///@}
 
   ///@{
-  /// Whether a chain is compared: photons along bent rays compute the uncollided light, for each PhotonCount, and light
-  /// propagation maps scatter it, along straight rays. Default off. Skipped where MonteCarlo is.
+  /// Whether a chain of two methods is compared: photons along bent rays compute the uncollided light, for each
+  /// PhotonCount, and light propagation maps scatter it, along straight rays. Default off. Skipped whenever MonteCarlo
+  /// is.
   tyndallFlagMacro(PhotonsThenMaps);
   ///@}
 
@@ -154,10 +155,10 @@ public:
   ///@}
 
   ///@{
-  /// Whether pictures of the reference light are compared, of all qualities of vtkMediumRayCaster, with one of half the
-  /// step of its quality Reference. Default off. They need the camera (tyndallCameraMacro), whose position must differ
-  /// from its focal point (default (0, 0, 0) both); default of CameraViewUp (0, 0, 1), of CameraViewAngle 30, of
-  /// ImageSize 320 x 240.
+  /// Whether pictures of the reference light at each Quality of vtkMediumRayCaster are compared with a picture at half
+  /// the step size of Quality REFERENCE. Default off. They need the camera (tyndallCameraMacro), whose position must
+  /// differ from its focal point. Defaults: position and focal point (0, 0, 0), CameraViewUp (0, 0, 1), CameraViewAngle
+  /// 30, ImageSize 320 x 240.
   tyndallFlagMacro(Pictures);
   tyndallCameraMacro();
   ///@}
@@ -255,8 +256,8 @@ public:
   ///@}
 
   ///@{
-  /// Error `error_l2` that the recommended setting may have: the fastest row of at most this error is recommended or,
-  /// if there is none, the most accurate. Default 0.01, valid above 0.
+  /// Largest accepted error `error_l2`: the fastest row with at most this error is recommended or, if there is none,
+  /// the most accurate row. Default 0.01, valid above 0.
   tyndallRangeMacro(AcceptedError, double, tyndall::AboveZero, tyndall::AnyHigh);
   ///@}
 

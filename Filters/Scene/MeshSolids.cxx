@@ -40,8 +40,8 @@ vtkSmartPointer<vtkPolyData> Triangulated(vtkPolyData* mesh)
   {
     return mesh;
   }
-  // The filter reads polygons and strips only: since VTK 9.3 it leaves the cell data of vertices and lines among those
-  // of the triangles.
+  // vtkTriangleFilter gets polygons and strips only: since VTK 9.3 it mixes cell data of vertices and lines with those
+  // of triangles.
   vtkNew<vtkPolyData> input;
   input->SetPoints(mesh->GetPoints());
   input->SetPolys(mesh->GetPolys());

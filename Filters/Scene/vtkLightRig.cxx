@@ -43,8 +43,8 @@ Light SunLight(double elevation, double azimuth, const double power[3])
   return sun;
 }
 
-/// A type of light: its name, and count and names of the arguments of the method that adds it, such as AddPointLight.
-/// Used by the methods that take one argument per call (AddPointLightNumber), and by their messages.
+/// A type of light: its name, and number and names of the arguments of the method that adds it, such as AddPointLight.
+/// Used by methods that take one of these arguments per call, such as AddPointLightNumber, and by their error messages.
 struct NumbersOfLight
 {
   const char* Kind;

@@ -41,10 +41,10 @@ public:
   const Grid& Whole() const { return this->Over().Whole(); }
   /// Voxels of the input image of each rank, ghost cells included, by rank.
   const std::vector<VoxelBox>& Given() const { return this->Pieces.HeldByRanks(); }
-  /// Whether the boxes `held`, by rank, equal the boxes Given().
+  /// Whether the boxes `held`, one per rank, equal the boxes of the input images (Given).
   bool AreGiven(const std::vector<VoxelBox>& held) const;
-  /// Voxels that each rank needs to render its block (HeldBox), by rank. If the input image of each rank contains them,
-  /// the voxels of the input images, Given(), instead.
+  /// Voxels that each rank needs to render its block (HeldBox), by rank. If the input image of every rank contains its
+  /// needed voxels, returns the voxels of the input images (Given) instead.
   /// @param moments, surface  whether the light has angular moments, or radiance at the faces
   std::vector<VoxelBox> HeldFor(const ViewSettings& settings, bool moments, bool surface) const;
 

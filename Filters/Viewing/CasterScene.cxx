@@ -47,7 +47,7 @@ FaceValues ReadFaces(vtkImageData* image, const char* name, std::size_t tuples, 
   return faces;
 }
 
-/// Arrays of the inputs with a value per voxel, without `ior`, in an order that is the same on all ranks.
+/// Arrays of the inputs that have a value per voxel, except `ior`, in the same order on all ranks.
 std::vector<FloatField*> FieldsOf(ViewedInputs& inputs)
 {
   return { &inputs.medium.sigma_a, &inputs.medium.sigma_s, &inputs.medium.emission, &inputs.medium.g, &inputs.fluence,

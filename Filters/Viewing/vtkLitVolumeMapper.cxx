@@ -33,7 +33,7 @@
 
 namespace
 {
-constexpr double StillTime = 1.0;         ///< the view counts as still if a frame may take this time or longer, seconds
+constexpr double StillTime = 1.0;         ///< time allowed for a frame from which on the view counts as still, seconds
 constexpr double CoarsestRays = 8.0;      ///< largest distance between neighbouring rays, pixels
 constexpr double StepsOfCoarseness = 4.0; ///< the ray distance is a multiple of 1/4 pixel, so that it rarely changes
 /// Distance by which the bounds of a piece that draws the background are extended, in diagonals of the piece.
@@ -58,8 +58,8 @@ std::vector<std::uint8_t> PixelsOf(
   return pixels;
 }
 
-/// Pixels to blend over objects that cover only part of a pixel and that the pixel's ray missed, such as a line thinner
-/// than a pixel: the medium attenuates the object, and the object hides the background.
+/// Pixels to blend over objects that the pixel's ray missed because they cover only part of the pixel, such as a line
+/// thinner than a pixel: the medium attenuates the object, and the object hides the background.
 /// @param pixels  pixels of PixelsOf with background
 std::vector<std::uint8_t> PixelsBeforeObjects(
   std::vector<std::uint8_t> pixels, const tyndall::Picture& picture, const std::vector<float>& ends)

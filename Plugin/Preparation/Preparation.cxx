@@ -50,8 +50,8 @@ Note NoteOfAll()
   return { tyndall::PreparePocl().folder + "/tyndall-prepared", LibraryVersion() + (device ? device : "") + "\n" };
 }
 
-/// Scenes that two processes prepare: each takes the next one that none has taken. OpenCL compilers hold a lock, so
-/// that threads of one process would compile one after another.
+/// Scenes shared by two processes: each process takes the next scene that none has taken. Threads would not do instead:
+/// OpenCL compilers hold a lock, so that the threads of a process compile one after another.
 class ScenesInTurn
 {
 public:
@@ -67,7 +67,8 @@ public:
     new (this->Next) std::atomic<int>(0);
   }
 
-  /// @return whether none of the scenes that this process took reported an error
+  /// Prepares scenes until all are taken.
+  /// @return whether this process prepared its scenes without an error
   bool PrepareThem() noexcept
   {
     bool prepared = true;

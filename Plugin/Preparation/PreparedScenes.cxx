@@ -31,16 +31,17 @@ namespace
 struct Scene
 {
   int length;    ///< voxels of the cloud's box along x; sweeps are compiled for rows of up to 64, 128, 256 voxels
-  int preset;    ///< of the cloud's medium; Glass: a glass ball
+  int preset;    ///< preset of the cloud's medium; Glass: the scene is a glass ball
   bool coloured; ///< whether the light has a colour, so that three channels are solved
   double around; ///< density of the cloud's box outside the ellipsoidal cloud
-  double radius; ///< of the cloud, relative to its box; a small one leaves most of the box empty
+  double radius; ///< radius of the cloud, relative to its box; if it is small, most of the box is empty
   bool ground;   ///< whether the lower face of the cloud's box reflects
 };
 
 constexpr int Glass = -1;
 
-// Two processes prepare neighbours at the same time, so these should have few kernels in common.
+// Two processes prepare consecutive scenes of this list at the same time; these scenes should have few kernels in
+// common.
 const Scene Scenes[] = {
   { 64, vtkParticipatingMedium::CUSTOM, false, 0.5, 1.0, false },
   { 0, Glass, false, 0.0, 0.0, false },
@@ -57,7 +58,7 @@ const Scene Scenes[] = {
 /// Voxels along y and z: few, because only compilation matters, but enough that the same kernels are compiled as for a
 /// cube.
 constexpr int Across = 40;
-/// Voxels of the glass ball's box along each axis, a multiple of 16, as of most grids of users: its light is then read
+/// Voxels of the glass ball's box along each axis: a multiple of 16, as in most grids of users, so that light is read
 /// in place, not copied to longer rows.
 constexpr int GlassVoxels = 48;
 
@@ -118,7 +119,7 @@ void SolveCloud(const Scene& scene, vtkCommand* listener)
   picture->Update();
 }
 
-/// The picture of a ball of glass on a table.
+/// Renders a ball of glass on a table.
 void SeeGlass(vtkAlgorithm* light, vtkMediumRayCaster* picture)
 {
   picture->SetInputConnection(light->GetOutputPort());
