@@ -14,9 +14,9 @@ class vtkAlgorithm;
 /// Properties of filters with a valid range.
 ///
 /// Every filter of Tyndall refuses a number that is out of its range, whether it comes from ParaView's panel, Python or
-/// C++. A setter stores any value unchanged, and no filter replaces it by another. After an
-/// invalid value the next update ends with one VTK error that names property, value and range, and the outputs are empty.
-/// Setting a valid value clears the error. A number that is not finite is out of every range.
+/// C++. A setter stores any value unchanged, and no filter replaces it by another. After an invalid value, the next
+/// update ends with one VTK error that names property, value and range, and the outputs are empty. Setting a valid
+/// value clears the error. A number that is not finite is out of every range.
 ///
 /// Ranges known to the setter are given in the macros below. Conditions that only RequestData can check (a number that
 /// must be a square, a camera that looks along its view up, a sum of two properties) are refused there in the same way.

@@ -164,7 +164,7 @@ struct Part
 /// `image`, and a request for a piece of that extent means a piece of `image`. The two extents may differ, if another
 /// time step was announced, or if the extent was announced before point arrays were known to have one voxel around each
 /// point. If `image` does not contain the announced extent, for example because only the piece was made, the piece is
-/// that of the announced extent.
+/// that of the requested extent.
 /// @param image  the extent of the output as it was made
 Part PartAskedFor(vtkInformation* information, const Extent& image)
 {
