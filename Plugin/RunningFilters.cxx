@@ -170,8 +170,8 @@ private:
   }
 
   /// Processes pending window events. Called on progress events, because the window is blocked while an algorithm runs
-  /// in its process. Timers do not fire, and user input is discarded except pressing the abort button: nothing may
-  /// start a second update within the first.
+  /// in its process. Timers do not fire, and user input other than pressing the abort button is discarded, so that no
+  /// second update starts within the first.
   void HandleWaitingEvents()
   {
     const bool soonAfterTheLast = this->SinceLast.isValid() && this->SinceLast.elapsed() < 50;

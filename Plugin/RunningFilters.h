@@ -9,8 +9,8 @@
 /// - The results on the panel (information_only) are those of the last run. Without this, ParaView reads them before
 ///   the run that Apply starts.
 ///
-/// Installs both for ParaView's window. To be called when the plugin is loaded. Without a window (pvpython, pvbatch,
-/// pvserver) the function does nothing.
+/// Installs these abilities for ParaView's window. To be called when the plugin is loaded. Without a window (pvpython,
+/// pvbatch, pvserver) the function does nothing.
 void FollowRunningFilters();
 
 #endif

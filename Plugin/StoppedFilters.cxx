@@ -64,7 +64,7 @@ bool ShowsLight(vtkSMProxy* proxy)
   return output && output->GetNumberOfElements(vtkDataObject::CELL) > 0;
 }
 
-/// Whether the output of a stopped filter is still that of an aborted run, even if the filter has been updated again.
+/// Whether the output of a filter is still marked as that of an aborted run.
 bool IsStillStopped(vtkSMProxy* proxy)
 {
   vtkDataObject* const output = OutputOf(proxy);

@@ -119,7 +119,7 @@ MomentsInput ReadMoments(vtkImageData* image)
 
 namespace
 {
-/// Net escaped power through the faces -x, +x, -y, +y, -z, +z, W, from field data `face_power_out`; 0 if missing.
+/// Net power that escapes through the faces -x, +x, -y, +y, -z, +z, W, from field data `face_power_out`; 0 if missing.
 std::array<Rgb, 6> FacePowersOf(vtkDataObject* data)
 {
   std::array<Rgb, 6> powers = {};

@@ -20,7 +20,7 @@ namespace tyndall
 {
 namespace
 {
-/// Largest accepted deviation of g from the mean cosine that the phase function determines.
+/// Largest accepted difference between field data `g` and the mean cosine of a phase function that determines it.
 constexpr double Contradicts = 0.01;
 
 constexpr const char* NameFact = "phase_function";

@@ -52,16 +52,16 @@ struct PhaseDescription
 /// @throws InvalidInput if field data have another type or shape than the table above says
 PhaseDescription ReadPhaseDescription(vtkDataObject* medium);
 
-/// Summary of the field data about the phase function, for messages and comparisons: names and numbers; for a table the
-/// number of rows and a hash.
+/// Summary of the field data about the phase function, for messages and comparisons: their names and numbers; of a
+/// table, number of rows and hash.
 std::string PhaseInWords(vtkDataObject* medium);
 
 /// Writes the description as field data and removes field data that this phase function does not need. For functions
 /// that determine their mean cosine, `g` is written as that mean cosine.
 void WritePhaseDescription(vtkDataObject* medium, const PhaseDescription& description);
 
-/// Reads the cell array `g` of an image; empty if there is none. Values in voxels that do not scatter have no meaning:
-/// invalid ones read as 0.
+/// Reads the cell array `g` of an image; empty if there is none. In voxels that do not scatter, g has no meaning:
+/// invalid values read as 0.
 FloatField ReadMeanCosines(vtkImageData* medium, const Field& sigma_s);
 
 /// Reads the phase function of a medium from field data and the cell array `g`.

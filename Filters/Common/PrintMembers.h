@@ -15,7 +15,8 @@
 
 namespace tyndall
 {
-/// In PrintSelf: prints the read-only properties Seconds and LeftOut, which Guarded keeps for every filter.
+/// In PrintSelf: prints the read-only properties Seconds (run time) and LeftOut (skipped computations), which every
+/// filter has.
 inline void PrintRun(std::ostream& os, vtkIndent indent, vtkAlgorithm* filter)
 {
   os << indent << "Seconds: " << SecondsOfRun(filter) << "\n";

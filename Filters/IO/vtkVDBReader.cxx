@@ -382,10 +382,10 @@ vtkVDBReader::Internals::Limit vtkVDBReader::Internals::LimitOfMemory(vtkIdType 
 }
 
 /// Executive for series of files that differ in extent. VTK requests the extent before it specifies the time step. If
-/// that time step belongs to another file than the one announced, this executive announces the new extent; filters
-/// downstream may still request a former extent, or a part of it that the new extent does not cover, and then receive
-/// the complete new extent. (VTK's list of consumers cannot be used to inform them: it includes consumers that no
-/// longer exist.)
+/// the time step belongs to another file than the announced one, this executive announces the extent of that file.
+/// Filters downstream may still request the earlier extent; a request that the new extent does not cover is replaced by
+/// the complete new extent. (VTK's list of consumers cannot be used to inform these filters: it includes consumers that
+/// no longer exist.)
 class vtkVDBReader::SeriesPipeline : public vtkCompositeDataPipeline
 {
 public:

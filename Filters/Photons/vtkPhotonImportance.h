@@ -92,13 +92,13 @@ public:
   ///@}
 
   ///@{
-  /// Source of the thresholds by which cells are chosen: OWN or AUTOMATIC (default).
+  /// Thresholds by which the filter chooses coarse cells that receive more photons: OWN or AUTOMATIC (default).
   tyndallRangeMacro(Thresholds, int, OWN, AUTOMATIC);
   ///@}
 
   ///@{
-  /// Thresholds of the choice of cells if Thresholds is OWN, W/length^2: a cell is chosen if `gradient` is at least
-  /// GradientThreshold, or if it is lit and `fluence` is at most LuminanceThreshold. Default 0 both, valid [0,
+  /// Thresholds if Thresholds is OWN, W/length^2: a coarse cell receives more photons if its `gradient` is at least
+  /// GradientThreshold, or if it is lit and its `fluence` is at most LuminanceThreshold. Default 0 both, valid [0,
   /// infinity).
   tyndallRangeMacro(GradientThreshold, double, 0.0, tyndall::AnyHigh);
   tyndallRangeMacro(LuminanceThreshold, double, 0.0, tyndall::AnyHigh);
@@ -128,9 +128,9 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: whether the light is even, so that a map would not reduce the noise; the thresholds
-  /// used (W/length^2), run time in seconds, the device's name, and the computations that the scene did not need, one
-  /// per line.
+  /// Results of the last update: whether the light varies so little that a map would not reduce the noise; the
+  /// thresholds used (W/length^2), run time in seconds, the device's name, and the computations that the scene did not
+  /// need, one per line.
   vtkGetMacro(Even, bool);
   vtkGetMacro(UsedGradientThreshold, double);
   vtkGetMacro(UsedLuminanceThreshold, double);

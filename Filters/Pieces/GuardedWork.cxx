@@ -65,7 +65,8 @@ public:
   {
     auto* pipeline = vtkDemandDrivenPipeline::SafeDownCast(this->Filter->GetExecutive());
     const vtkMTimeType time = this->Facts->Has(Time()) ? this->Facts->Get(Time()) : 0;
-    // The filter's own modification time counts as well: ParaView's reader for series bypasses the reader's pipeline.
+    // The filter's own modification time counts too, because ParaView's reader for series of files bypasses the
+    // pipeline.
     bool holds = pipeline && std::max(pipeline->GetPipelineMTime(), this->Filter->GetMTime()) < time;
     for (int port = 0; holds && port < this->Filter->GetNumberOfInputPorts(); ++port)
     {
@@ -114,7 +115,7 @@ private:
   vtkInformation* Facts;
 };
 
-/// Reports a filter's progress, a fraction from 0 to 1, unless an abort was requested: then nothing more is reported.
+/// Reports a filter's progress, a fraction from 0 to 1. Does nothing after an abort was requested.
 void ReportProgress(vtkAlgorithm* filter, const char* text, double fractionDone)
 {
   if (filter->GetAbortExecute() == 0)

@@ -30,8 +30,8 @@ Monitor MonitorOf(vtkAlgorithm* filter);
 ///   would run the filter again, without effect, on every update
 int Guarded(vtkAlgorithm* filter, vtkInformationVector* outputs, const std::function<void()>& work);
 
-/// Runs the work of a filter's RequestData, as the function above does, for a filter that needs all of its inputs,
-/// whatever piece of the output is requested.
+/// Runs the work of a filter's RequestData, with the handling of errors and aborts of Guarded(filter, outputs, work),
+/// for a filter that needs its complete inputs, whatever piece of the output is requested.
 ///
 /// If ranks run the filter together (Ranks.h), an error on one rank becomes the same error on all, and the outputs of
 /// all ranks are empty, as after an abort. A rank that does not arrive causes an error after a timeout
@@ -44,10 +44,10 @@ int Guarded(vtkAlgorithm* filter, vtkInformation* request, vtkInformationVector*
 /// Work of a filter on an image that may be distributed in pieces among ranks. The same function `work` is called for
 /// every number of ranks.
 ///
-/// If a rank wants pieces, and the pieces make up one grid, each rank works on its subdomain. Otherwise the inputs are
-/// gathered on the first rank, which works on them and distributes the outputs: each rank receives the part of each
-/// image that is requested from it, with field data, and the tables at ports above 0; other data stay on the first
-/// rank.
+/// If wantsPieces returns true on a rank, and the pieces make up one grid, each rank works on its subdomain. Otherwise
+/// the inputs are gathered on the first rank, which works on them and distributes the outputs: each rank receives the
+/// part of each image that is requested from it, with field data, and the tables at ports above 0; other data stay on
+/// the first rank.
 struct WorkOnSubdomains
 {
   int port = 0;                 ///< port of the image that is decomposed; inputs at other ports are gathered

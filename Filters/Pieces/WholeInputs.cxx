@@ -349,8 +349,8 @@ void RequireAll(vtkAlgorithm* filter, vtkInformationVector** given)
   }
 }
 
-/// Smallest extent that contains all points of an image which are not duplicates, according to point flags or else cell
-/// flags.
+/// Smallest extent that contains all points of an image that are no duplicates, by the flags vtkGhostType of points or,
+/// without these, of cells.
 Extent OwnPointsOf(vtkImageData* image)
 {
   Extent extent;

@@ -94,7 +94,7 @@ public:
     LINEAR = 1,   ///< source linear between voxel centres: accurate for voxels of any optical thickness
     /// LINEAR if source iteration is accelerated, OCTANTS if many voxels are optically thick, else CONSTANT
     AUTOMATIC_SOURCE = 2,
-    /// One source per octant of directions in optically thick voxels, accurate if they absorb much; LINEAR if source
+    /// One source per octant of directions in optically thick voxels, accurate for strong absorption; LINEAR if source
     /// iteration is accelerated.
     OCTANTS = 3
   };
@@ -151,8 +151,8 @@ public:
   ///@{
   /// Relative error, in each voxel, of the uncollided flux of localised emission, which is computed along exact rays
   /// (conservative scheme, no periodic axis). Default 0.02, valid [0, infinity); 0.005 takes five to ten times as long,
-  /// smaller values do not reduce the error. With 0, and whenever other light has more power, localised emission is
-  /// swept like other sources.
+  /// smaller values do not reduce the error. Localised emission is swept like other sources if EmissionError is 0, or
+  /// if other light has more power.
   tyndallRangeMacro(EmissionError, double, 0.0, tyndall::AnyHigh);
   ///@}
 

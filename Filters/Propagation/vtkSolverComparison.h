@@ -104,7 +104,8 @@ public:
   vtkTable* GetOutput();
 
   ///@{
-  /// Reference (vtkImageData) by connection or as data; null: a converged or Monte Carlo run (MonteCarloReference).
+  /// Reference (vtkImageData) by connection or as data; null: the filter computes the reference, by a converged solve
+  /// or by Monte Carlo (MonteCarloReference).
   tyndallInputMacro(Reference, REFERENCE);
   ///@}
 
@@ -114,9 +115,10 @@ public:
   ///@}
 
   ///@{
-  /// Methods that are compared: light propagation maps with their default settings (default on); with a constant source
-  /// and no acceleration (on); as published, on the device (on) and sequentially on the host (off: slow); discrete
-  /// ordinates (off); photons with reconstruction (on), with an importance map (off), and as published (off).
+  /// Methods that are compared, each with its default in parentheses. Light propagation maps: with default settings
+  /// (on), with a constant source and no acceleration (on), as published on the device (on), as published sequentially
+  /// on the host (off: slow). Discrete ordinates (off). Photons: with reconstruction (on), with an importance map
+  /// (off), as published (off).
   tyndallFlagMacro(LightPropagationMaps);
   tyndallFlagMacro(ConstantSource);
   tyndallFlagMacro(AsPublished);
@@ -262,8 +264,8 @@ public:
   ///@}
 
   ///@{
-  /// Results of the last update: description of the reference, the recommended row in words and its filters, run time
-  /// in seconds, the device's name, and the methods and settings that were not compared, one per line.
+  /// Results of the last update: descriptions of the reference and of the recommended row, the filters of this row, run
+  /// time in seconds, the device's name, and the methods and settings that were not compared, one per line.
   vtkGetCharFromStdStringMacro(ReferenceText);
   vtkGetCharFromStdStringMacro(Recommended);
   vtkGetCharFromStdStringMacro(RecommendedFilters);

@@ -104,9 +104,9 @@ double LongestEdge(const tyndall::Grid& grid)
   return std::max({ grid.Length(0), grid.Length(1), grid.Length(2) });
 }
 
-/// Scattering coefficients outside the meshes, 1/length: OutsideScattering or, if that is below 0, coefficients with
-/// which the longest edge of the box has a scattering optical thickness of 0.5, so that rays of light are visible but
-/// little attenuated.
+/// Scattering coefficients outside the meshes, 1/length: OutsideScattering or, if that is below 0, coefficients for
+/// which the box's longest edge has a scattering optical thickness of 0.5. Rays of light are then visible, but little
+/// attenuated.
 Rgb OutsideScattering(const double asked[3], const tyndall::Grid& grid)
 {
   const bool automatic = std::all_of(asked, asked + 3, [](double value) { return value < 0.0; });

@@ -84,7 +84,7 @@ bool FitTogether(const BlocksOfRanks& blocks, bool able, std::vector<double> pro
   properties.insert(properties.end(), { able ? 1.0 : 0.0, blocks.HasOwn() ? 1.0 : 0.0, arrays });
   const std::vector<double> said = SaidByAll(blocks.Over().Comm(), properties);
   const auto count = static_cast<std::ptrdiff_t>(properties.size());
-  std::optional<double> first; // hash of the arrays of the first rank with a block; no value before that rank
+  std::optional<double> first; // hash of the arrays of the first rank with a block
   bool fit = blocks.MakeUpTheWhole();
   for (auto rank = said.begin(); rank != said.end(); rank += count)
   {

@@ -55,7 +55,7 @@ struct ViewedInputs
   SolvedLight Light() const;
 };
 
-/// Reads the input of the ray caster from an image.
+/// Reads the medium and the light that the ray caster renders from an image.
 /// @param whole  grid of the domain, of which the image is a block; field data on light at faces are for the whole grid
 /// @throws InvalidInput if an array has the wrong shape, or the medium is invalid
 ViewedInputs ReadViewed(vtkMediumRayCaster* filter, vtkImageData* image, const Grid& whole);

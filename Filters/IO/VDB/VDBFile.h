@@ -37,8 +37,8 @@ struct VDBGrid
   VDBPlace Place;
 };
 
-/// Whether the metadata of this name describe how a file stores a grid (in 16 bits, in how many bytes) rather than the
-/// grid itself. OpenVDB computes these metadata when it writes a file.
+/// Whether metadata of this name describe how a file stores a grid (16-bit numbers, number of bytes), not the grid
+/// itself. OpenVDB computes these metadata when it writes a file.
 bool DescribesTheFile(const std::string& key);
 
 /// Reads a list of metadata of types known to OpenVDB; skips other types, and metadata that describe the file.

@@ -11,10 +11,10 @@ class vtkImageData;
 
 /// Converts between the geometry of VTK images and the transforms of OpenVDB grids.
 ///
-/// A voxel has the index of its cell: voxel i is the cell that covers [i - 1/2, i + 1/2] in index space. The metadata
-/// of a grid made from an image record properties that the grid itself does not express: the extent of points (border
-/// voxels may be background) with the number of cells, and origin and spacing to the last bit (OpenVDB computes the
-/// scale of a transform as the difference of two positions).
+/// A voxel has the index of its cell: voxel i is the cell that covers [i - 1/2, i + 1/2] in index space. Metadata of a
+/// grid made from an image record what the grid itself does not express. The extent of points and the number of cells
+/// are recorded because border voxels may be background. Origin and spacing are recorded to the last bit, because
+/// OpenVDB computes the scale of a transform as the difference of two positions.
 namespace tyndall
 {
 /// Whether metadata of this name record the geometry of the image from which the grid was made.
@@ -43,7 +43,7 @@ double CellsOf(const std::array<std::int64_t, 6>& extent);
 std::array<std::int64_t, 6> ExtentOf(const VDBGrid& grid);
 
 /// Whether a grid's metadata record that the grid was made from an image of this extent, and also record the number of
-/// cells of this extent. If so, a large extent with few active voxels is not taken for the sign of a corrupt file.
+/// cells of this extent. A large extent with few active voxels is then no sign of a corrupt file.
 bool NotesExtent(const VDBGrid& grid, const std::array<std::int64_t, 6>& extent);
 
 /// Whether the voxels of two grids coincide, up to rounding of their transforms.
