@@ -81,8 +81,7 @@ FloatField ReadCells(vtkImageData* image, const std::string& name, Need need, Co
 FloatField ReadChosenCells(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise,
   Need need, Components components = { 1, 3 });
 
-/// Returns the array that ReadChosenCells would read; null if there is none. Type and shape of the array are not
-/// checked.
+/// Returns the array that is selected as for ReadChosenCells; null if there is none. Type and shape are not checked.
 vtkDataArray* ChosenArray(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& otherwise);
 
 /// Names of the arrays that a filter reads from an image, among those that the image has.
@@ -107,12 +106,12 @@ using Quantities = std::vector<std::pair<int, std::string>>;
 /// @param input  the filter's input; its arrays are also in the output
 void NoteChoices(vtkAlgorithm* filter, const Quantities& quantities, vtkImageData* input, vtkImageData* output);
 
-/// Removes the records of NoteChoices that the output has from its input, for a filter that computes the medium's
-/// arrays itself.
+/// Removes records of NoteChoices, which the output has inherited from the input. For filters that compute the medium's
+/// arrays themselves.
 void ForgetChoices(vtkImageData* output);
 
-/// Whether the array that ReadChosenCells would read exists and differs from the value `usual` in a cell that is not
-/// hidden. Filters that ignore this array warn if it is so. Type and shape are not checked.
+/// Whether an array selected as for ReadChosenCells exists and differs from the value `usual` in a cell that is not
+/// hidden. Filters that ignore this array then warn. Type and shape are not checked.
 bool IsUnusual(vtkAlgorithm* filter, int index, vtkImageData* image, const std::string& name, float usual);
 
 /// Reads one number from field data `name`; returns `missing` if there is no such field data.

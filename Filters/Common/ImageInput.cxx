@@ -150,6 +150,7 @@ std::string NameOfInput(int port)
   return "The input" + (port > 0 ? " " + std::to_string(port) : std::string());
 }
 
+/// Advice for data that are no image.
 /// @return a sentence naming filters of ParaView that convert data of this type to an image
 std::string HowToMakeAnImage(vtkDataObject* data)
 {
@@ -294,6 +295,7 @@ void RequireImages(vtkAlgorithm* filter)
 
 namespace
 {
+/// Checks the lengths of arrays.
 /// @throws InvalidInput if an array does not have one tuple for each of `count` points, cells or rows
 void RequireAsLong(vtkDataSetAttributes* arrays, vtkIdType count, const std::string& elements, const std::string& input)
 {

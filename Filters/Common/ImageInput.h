@@ -105,6 +105,7 @@ std::vector<unsigned char> HiddenCells(vtkImageData* image);
 /// Indices of the points that are neither hidden nor duplicates, ascending.
 std::vector<long long> PointsThatCount(vtkPolyData* data);
 
+/// Checks that streaming in pieces counts no cell twice.
 /// @throws InvalidInput if an input image has duplicate cells and several pieces of the output are requested, unless
 ///   the filter works cell by cell
 void CheckDuplicates(vtkAlgorithm* filter, vtkInformationVector* outputs);

@@ -41,7 +41,7 @@ enum PointDataKind
   AverageToCells = 1,
 };
 
-/// Implements the setter of tyndallPointDataMacro.
+/// Implements SetPointData of tyndallPointDataMacro: stores `kind` in `held`, the filter's member.
 /// @return whether the property has changed
 TYNDALL_EXPORT bool SetPointData(vtkAlgorithm* filter, int& held, int kind);
 

@@ -193,6 +193,7 @@ public:
   {
   }
 
+  /// Decodes the next row.
   /// @param rgbe  receives the row: red, green, blue and exponent of each of Columns pixels
   void Next(std::vector<unsigned char>& rgbe)
   {

@@ -114,6 +114,7 @@ struct Overlaps
   std::vector<std::size_t> First;
   std::vector<std::vector<double>> Weights;
 
+  /// Computes the weights.
   /// @param measure  increasing function on [0, 1]; an interval [a, b] has the weight measure(b) - measure(a)
   template <typename Measure>
   Overlaps(int from, int to, Measure&& measure)

@@ -134,7 +134,8 @@ int vtkPhotonImportance::RequestUpdateExtent(
 {
   this->Kept->ForgetIfRan(this, { MEDIUM });
   const int done = this->Superclass::RequestUpdateExtent(request, inputs, outputs);
-  // The requested piece of the medium does not depend on the requested extent of the map.
+  // The superclass requests the complete medium; this rank needs only its piece, whatever extent of the map is
+  // requested.
   tyndall::AskForPiece(request, inputs[MEDIUM], outputs);
   return done;
 }

@@ -46,6 +46,7 @@ namespace
 /// little beyond the grid. Each rank builds the trees of the roots whose first voxel is in its block.
 struct OctreeRoots
 {
+  /// Chooses the size of the root cells.
   /// @param whole  the grid of the domain
   /// @param topLevel  level of the cube that contains the grid
   /// @param largest  largest level of all nodes
@@ -124,7 +125,7 @@ public:
   {
   }
 
-  /// Describes the tree of a root cell.
+  /// Makes the description (Tree) of the octree in one root cell.
   /// @param root  the lowest voxel of the root cell
   Tree Describe(const Voxel& root, int rootLevel) const
   {

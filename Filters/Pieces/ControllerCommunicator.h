@@ -49,6 +49,7 @@ std::unique_ptr<Communicator> CommunicatorAtEnd(vtkMultiProcessController* ranks
 class ControllerCommunicator : public Communicator
 {
 public:
+  /// Makes a communicator for all ranks of a controller.
   /// @param controller    must outlive the communicator
   /// @param patience      timeout of a receive, seconds
   /// @param conversation  number >= 0, the same on all ranks, that selects the range of message tags

@@ -39,6 +39,7 @@ struct PieceValues
 class PieceLayout
 {
 public:
+  /// Assigns the values of the complete image `whole` to the pieces.
   /// @param duplicate, hidden  bits of vtkGhostType that flag a value as duplicate, or as hidden
   PieceLayout(const ValueBox& whole, std::vector<PieceValues> pieces, unsigned char duplicate, unsigned char hidden);
 

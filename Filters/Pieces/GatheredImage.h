@@ -37,6 +37,7 @@ public:
 
   using Arrays = std::vector<vtkSmartPointer<vtkDataArray>>;
 
+  /// Gathers geometry, field data and flags; CellArray and PointArray gather the arrays. Collective.
   /// @param controller  null: there is one rank
   /// @param piece       may be null or without cells
   /// @param cells, points  arrays of the piece, one tuple for each cell or point, in any order

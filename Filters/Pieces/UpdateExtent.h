@@ -96,8 +96,8 @@ vtkInformation* AskingPort(vtkInformation* request, vtkInformationVector* output
 /// that the request came from; the requests of other ports may not be set yet. Called in RequestData.
 bool IsFirstPiece(vtkInformation* request, vtkInformationVector* outputs);
 
-/// Records which part of an output each rank is asked for, if the parts are not the pieces of VTK's extent translator
-/// but those that each rank's source announces. Called in RequestData.
+/// Records which part of an output is requested from each rank, if the parts are not the pieces of VTK's extent
+/// translator, but pieces that the ranks' sources announce. Called in RequestData.
 /// @param parts  one extent for each rank; empty: the translator's pieces
 /// @param rank   this rank
 void NotePartsOfRanks(vtkInformation* information, const std::vector<std::array<int, 6>>& parts, int rank);
@@ -131,7 +131,8 @@ bool Covers(const int* extent, const int* other);
 /// step. A filter downstream may not know the current whole extent: VTK announces extents before it requests a time
 /// step.
 bool AsksForAll(vtkInformation* information);
-/// Records the announced whole extent of an output for AsksForAll. Called in RequestData. KeepWhatIsAskedFor calls it.
+/// Records the announced whole extent of an output, so that AsksForAll recognises it in later requests. Called in
+/// RequestData, also by KeepWhatIsAskedFor.
 void NoteExtentTold(vtkInformation* information);
 
 /// Saves and restores an update request, which VTK resets if a source announces a new extent. A request for the

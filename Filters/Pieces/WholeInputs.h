@@ -34,6 +34,7 @@ class WholeInputs
 public:
   static constexpr int NoPort = -1;
 
+  /// Gathers the inputs, except those that stay in pieces. Collective.
   /// @param ranks  null: this process is alone
   /// @param given  the filter's inputs by port
   /// @param outputs  information objects that receive the part which each rank is asked for, for KeepWhatIsAskedFor

@@ -149,8 +149,8 @@ public:
   ///@}
 
   ///@{
-  /// Result of the last update: number of steps, or of iterations of the steady-state solve. BalanceError of
-  /// vtkScatteringSolver includes the left-over power here.
+  /// Result of the last update: number of steps, or of iterations of the steady-state solve. With this solver the
+  /// property BalanceError includes the left-over power.
   vtkGetMacro(Steps, int);
   ///@}
 

@@ -165,7 +165,8 @@ int vtkScatteringSolver::RequestData(
   }
   else if (!this->HasSolved && vtkImageData::GetData(outputs, 0)->GetNumberOfCells() > 0)
   {
-    // Caches this rank's piece of the first rank's solution, for RestoreLightBefore.
+    // Caches this rank's piece of the solution of the first rank, to be shown if a later solve is aborted
+    // (RestoreLightBefore).
     this->Solved->Keep({}, {}, outputs);
     this->SolvedInPieces = true;
   }

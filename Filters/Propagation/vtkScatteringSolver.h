@@ -209,9 +209,9 @@ protected:
 
   /// Properties and inputs that rule out a decomposition, as text for an error message; empty if there are none.
   virtual std::string NotByBlocks(vtkInformationVector** inputs) const;
-  /// Why the serial solver would be more accurate or much faster for a scene that can be decomposed, as text that
-  /// follows "the first rank solved the whole, for"; empty if it would not. Not called for previews. Collective, the
-  /// same on all ranks.
+  /// Why the serial solver would be more accurate or much faster for a scene that can be decomposed; empty if it would
+  /// not. The text continues the sentence "the first rank solved the whole, for". Not called for previews. Collective,
+  /// the same on all ranks.
   virtual std::string ReasonNotToDecompose(const tyndall::SolverScene& scene);
 
   /// Input port of photons that are distributed over ranks (SolverScene::share); -1 if there is none.

@@ -383,7 +383,8 @@ void vtkSolverComparison::Compare(vtkInformationVector** inputs, vtkInformationV
   }
 }
 
-/// Gives the scene the camera of its pictures, unless position and focal point are the same.
+/// Sets the camera of the compared pictures from the filter's properties. If position and focal point are the same,
+/// there is no camera, and no pictures are compared.
 void vtkSolverComparison::TakeCamera(tyndall::ComparedScene& scene)
 {
   const tyndall::Camera camera = tyndall::CameraSetOn(this);

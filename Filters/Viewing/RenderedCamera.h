@@ -16,6 +16,7 @@ constexpr float Endless = 1e30f; ///< value of EndsOf for a ray that meets no op
 class RenderedCamera
 {
 public:
+  /// Transforms the camera of a renderer to the coordinates of a volume.
   /// @param place  transformation from the volume's coordinates to the world's: rotation, translation, uniform scaling
   /// @throws InvalidInput for any other transformation, or an invalid camera
   RenderedCamera(vtkRenderer* renderer, vtkMatrix4x4* place);

@@ -53,7 +53,7 @@ public:
   vtkTypeMacro(vtkLitVolumeMapper, vtkVolumeMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Filter that casts the rays: lights and environment are its inputs, and its properties control rendering.
+  /// Filter that casts the rays. Connect lights and environment to its inputs, and set properties of rendering on it.
   vtkMediumRayCaster* GetRayCaster();
 
   ///@{

@@ -12,5 +12,5 @@ int PreparedSceneCount();
 /// @return whether the scene was prepared without an error of a filter
 bool PrepareScene(int number);
 
-/// Identifies the build of the filters' library.
+/// Text that identifies the build of the filters' library.
 std::string LibraryVersion();

@@ -97,8 +97,8 @@ int vtkLitVolumeRepresentation::RequestUpdateExtent(
   return done;
 }
 
-/// Lets the mapper exchange the pixels of all ranks' pieces before a frame. Called when all ranks have the frame's
-/// camera: vtkSynchronizedRenderers has handled the same event before.
+/// Before a frame, lets the mapper exchange the pixels of all ranks' pieces. All ranks have the frame's camera then:
+/// vtkSynchronizedRenderers handles the same event first.
 void vtkLitVolumeRepresentation::BeforeFrame(vtkObject* renderer, unsigned long, void*)
 {
   if (this->GetVisibility())

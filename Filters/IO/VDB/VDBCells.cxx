@@ -122,7 +122,7 @@ template <typename Number>
 class Numbers
 {
 public:
-  /// @param first  index of the component that is the first number of a voxel's value
+  /// A voxel's value consists of the components number `first` and higher of the array.
   Numbers(vtkDataArray* array, int first)
     : Values(array->GetVoidPointer(0))
     , Components(array->GetNumberOfComponents())

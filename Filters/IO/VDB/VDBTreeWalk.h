@@ -37,6 +37,7 @@ const VDBValueType* FindValueType(const std::string& name);
 class VDBValues
 {
 public:
+  /// Prepares the check of values of a type, as they are stored in a file.
   /// @param half         whether real numbers are stored in 16 bits
   /// @param compression  OpenVDB's compression flags
   VDBValues(const VDBValueType& type, bool half, std::uint32_t compression);
@@ -65,7 +66,7 @@ class VDBBytes;
 /// Lowest voxel index of a node; 64 bits hold any corner that a file can specify.
 using VoxelCorner = std::array<std::int64_t, 3>;
 
-/// A box of voxels of any size, with inclusive bounds. The kernels' VoxelBox, in contrast, is part of a grid.
+/// A box of voxels with inclusive bounds, anywhere in index space. (The kernels' VoxelBox lies within a grid.)
 struct VDBBox
 {
   VoxelCorner Min = { INT64_MAX, INT64_MAX, INT64_MAX };
@@ -115,6 +116,7 @@ public:
   /// Called with the corner and the active mask of each leaf, in the order in which leaves are stored.
   using OnLeaf = std::function<void(const VoxelCorner&, const VDBLeafMask&)>;
 
+  /// Prepares the walk through one tree of a file.
   /// @param topology  positioned at the start of the tree in the file
   /// @param values    checks the values of inner nodes
   VDBTreeWalk(VDBBytes& topology, const VDBValueType& type, VDBValues& values, OnLeaf onLeaf = {});
