@@ -94,16 +94,16 @@ void SetNumbers(vtkSMProxy* proxy, const std::string& property, const std::vecto
   }
 }
 
-/// Current values of a camera property of the view, including changes by mouse; properties that the mouse does not
-/// change have no "Info" property.
+/// Current values of a camera property of the view. Changes by mouse are only in the corresponding "Info" property,
+/// which a property has if the mouse can change it.
 std::vector<double> OfView(vtkSMProxy* view, const std::string& property)
 {
   const bool moves = view->GetProperty((property + "Info").c_str());
   return Numbers(view, moves ? property + "Info" : property);
 }
 
-/// Values of the view's camera for one property of the source, which a <Property> element of the source's hint
-/// describes.
+/// Values for one property of the source, from the view's camera.
+/// @param property  <Property> element of the source's hint (ViewCameras.h)
 std::vector<double> Asked(vtkSMProxy* view, vtkPVXMLElement* property)
 {
   std::vector<double> numbers = OfView(view, property->GetAttributeOrEmpty("of"));

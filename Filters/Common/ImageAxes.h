@@ -85,7 +85,7 @@ vtkSmartPointer<vtkImageData> InOwnAxes(vtkImageData* image, const OwnAxes& axes
 /// @param given  the filter's input in scene axes; its arrays replace their rotated copies in the output; may be null
 void PutIntoScene(vtkImageData* output, const OwnAxes& axes, vtkImageData* given);
 
-/// Transforms all outputs of a filter to the scene axes. Excluded are pictures, and photons, which are written in scene
+/// Transforms all outputs of a filter to the scene axes, except pictures and photons. Filters write photons in scene
 /// axes.
 void PutIntoScene(vtkAlgorithm* filter, const OwnAxes& axes, vtkInformationVector* outputs, vtkImageData* given);
 }

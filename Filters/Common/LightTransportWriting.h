@@ -49,15 +49,15 @@ void AddFact(vtkDataObject* data, const char* name, const std::vector<std::strin
 void AddFact(vtkDataObject* data, const char* name, const std::vector<std::array<double, 3>>& vectors);
 
 /// Name of field data: radiance that leaves optically thick voxels at the domain's faces (LightField::surfaceRadiance);
-/// one tuple for each face of a boundary voxel, ordered by face of the domain, -x to +z, and within it with the lower
-/// axis fastest.
+/// one tuple for each face of a boundary voxel; ordered by face of the domain, -x to +z, and within a face with the
+/// lower axis fastest.
 constexpr const char* SurfaceRadianceFact = "surface_radiance";
 /// Name of field data with one text for each array of the medium that the solver ignores: the array, and filters that
 /// use it.
 constexpr const char* IgnoredFact = "ignored";
 /// Names of field data. FacePowerFact: outgoing partial current LightField::facePower, W / length^2, one tuple for each
-/// face of a boundary voxel, ordered by face of the domain, -x to +z, and within it with the lower axis fastest.
-/// FaceAlbedoFact: fraction of that current which a face of the domain reflects, red, green, blue for each face, -x to
+/// face of a boundary voxel; ordered by face of the domain, -x to +z, and within a face with the lower axis fastest.
+/// FaceAlbedoFact: fraction of the current that a face of the domain reflects; red, green, blue for each face, -x to
 /// +z.
 constexpr const char* FacePowerFact = "face_power";
 constexpr const char* FaceAlbedoFact = "face_albedo";

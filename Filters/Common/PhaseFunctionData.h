@@ -49,7 +49,7 @@ struct PhaseDescription
 };
 
 /// Reads the phase function of a medium from field data.
-/// @throws InvalidInput if field data have another type or shape than the table above says
+/// @throws InvalidInput if field data have another type or shape than documented in this header
 PhaseDescription ReadPhaseDescription(vtkDataObject* medium);
 
 /// Summary of the field data about the phase function, for messages and comparisons: their names and numbers; of a

@@ -31,8 +31,8 @@ std::string DoubtOfBox(vtkPolyData* photons, const Grid& medium);
 /// @throws InvalidInput if an array is missing or has another shape, or a batch is not a whole number from 0 to 63
 std::vector<Photon> ReadPhotons(vtkPolyData* photons, const OwnAxes& axes);
 
-/// Reads this rank's share of the photons: all of its input if inputs differ between ranks, else a contiguous range of
-/// the input that all ranks have. Collective.
+/// Reads this rank's share of the photons: all of its input if inputs differ between ranks; if all ranks have the same
+/// input, a contiguous range of it. Collective.
 /// @param axes  axes to whose coordinates the photons are transformed
 /// @throws InvalidInput as ReadPhotons, on all ranks if on any
 std::vector<Photon> ShareOfPhotons(Communicator& communicator, vtkPolyData* given, const OwnAxes& axes);

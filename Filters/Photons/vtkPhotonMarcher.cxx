@@ -489,7 +489,8 @@ void vtkPhotonMarcher::Warn(const tyndall::PhotonLight& light, std::size_t photo
   const tyndall::EnergyBalance& balance = light.light.balance;
   const double trapped =
     tyndall::Sum(balance.entered) > 0.0 ? tyndall::Sum(balance.leftOver) / tyndall::Sum(balance.entered) : 0.0;
-  // If MaximumOrders is above 1, the power left over is that of the scattering orders above it.
+  // If MaximumOrders is above 1, the left-over power is due to the scattering orders above MaximumOrders, and needs no
+  // warning.
   if (trapped > 0.01 && this->MaximumOrders < 2)
   {
     vtkWarningMacro(

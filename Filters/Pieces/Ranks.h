@@ -24,8 +24,8 @@ namespace tyndall
 {
 class Communicator;
 
-/// Informs filters upstream of a port, in RequestUpdateExtent, whether all ranks make this request together, even
-/// though each requests the complete input.
+/// In RequestUpdateExtent: informs filters upstream of a port whether all ranks make this request together. (Ranks that
+/// each request the complete input could also be independent.)
 void AskTogether(vtkInformation* request, vtkInformationVector* outputs, vtkInformationVector* inputs);
 
 /// Determines in RequestData whether ranks run the filter together.
@@ -145,7 +145,7 @@ void TakeFromFirstRank(Communicator& ranks, Values&... values)
   ((values = static_cast<Values>(OfFirstRank(ranks, values))), ...);
 }
 
-/// Whether the filter's work has ended early on another rank. For use within WorkOnAllRanks.
+/// Whether another rank has ended the filter's work early. To be called within WorkOnAllRanks.
 bool IsStoppedByOthers(vtkAlgorithm* filter);
 
 /// A rank that did not reach the barrier of FindMissingRank.

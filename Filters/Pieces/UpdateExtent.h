@@ -76,7 +76,8 @@ void FlagDuplicates(vtkDataSetAttributes* attributes, const ValueBox& box, unsig
 /// Requests the complete image, or all pieces of polydata, from the inputs of a port. Called in RequestUpdateExtent.
 /// @param request, outputs  parameters of RequestUpdateExtent
 void AskForAll(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
-/// Requests from the inputs of a port the part that is requested from the output, as the pipeline does by default.
+/// Requests from the inputs of a port the same part that is requested from the output, as VTK's pipeline does by
+/// default.
 void AskForSame(vtkInformation* request, vtkInformationVector* inputs, vtkInformationVector* outputs);
 /// Calls AskForSame for one or a few input ports, and AskForAll for all others.
 /// @param ports    number of input ports

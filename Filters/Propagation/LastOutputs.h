@@ -63,7 +63,7 @@ public:
   void Keep(Key key, const OwnAxes& axes, vtkInformationVector* outputs);
 
   /// Copies the outputs of the last complete solve to `outputs` after an aborted solve, if the whole extent of the
-  /// image is unchanged. The copies are marked as aborted, and field data `left_out` reports it (LightOfBefore).
+  /// image is unchanged. The copies are marked as aborted, with the entry LightOfBefore in field data `left_out`.
   /// @param axes  set to the axes of the copied outputs' grids
   /// @return whether outputs were copied
   bool GiveBefore(vtkInformationVector* outputs, OwnAxes& axes) const;

@@ -189,7 +189,7 @@ tyndall::InputsKey vtkMediumRayCaster::KeyOf(vtkInformationVector** inputs, cons
   }
   if (!source.Over().IsSerial())
   {
-    // The width of the halo of a block depends on the step size if surfaces reflect.
+    // If surfaces reflect, the halo of a block depends on the step size, which is then part of the cache key.
     const bool reflects = source.settings.surfaceReflection != tyndall::SurfaceReflection::None;
     key.Add({ reflects ? source.settings.stepSize : 0.0 });
   }

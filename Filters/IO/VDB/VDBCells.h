@@ -15,9 +15,9 @@ class vtkImageData;
 
 /// Converts the voxels of an OpenVDB grid to cells of a VTK image, and cells to voxels.
 ///
-/// No other code depends on the types of OpenVDB's trees. Trees are created by OpenVDB's registry
-/// (GridBase::createGrid): calling a constructor would instantiate every virtual function of the tree, 8 s of
-/// compilation per type.
+/// Only these functions depend on the types of OpenVDB's trees. OpenVDB's registry (GridBase::createGrid) creates the
+/// trees: a constructor call would instantiate every virtual function of the tree, which takes 8 s of compilation per
+/// type.
 namespace tyndall
 {
 /// Adds the voxels of a box to an image as a cell array, and the grid's `background` and `type` as field data (see

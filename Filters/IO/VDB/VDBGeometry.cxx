@@ -67,8 +67,8 @@ std::array<std::int64_t, 6> ExtentOfAll(const std::vector<const VDBGrid*>& grids
   return all.Extent;
 }
 
-/// Sets origin and spacing of an image to the values recorded in the grid's metadata, exact to the last bit, unless the
-/// grid's transform has changed since.
+/// Sets origin and spacing of an image to the exact values in the grid's metadata, unless the grid's transform has
+/// changed since these were recorded.
 void ApplyNotes(VDBGeometry& geometry, const VDBGrid& grid, bool aligned)
 {
   const auto* origin = NoteOf<openvdb::Vec3d>(grid, OriginKey);

@@ -91,7 +91,7 @@ void VDBValues::CheckBlock(VDBBytes& bytes, std::uint64_t count, bool decompress
   }
   if (this->Compression & COMPRESS_BLOSC)
   {
-    // Header of a Blosc block: Blosc trusts the sizes in it, so they are checked here.
+    // Checks the sizes in the header of a Blosc block, which Blosc trusts.
     std::array<std::uint32_t, 4> header = {};
     if (length >= static_cast<std::int64_t>(sizeof(header)))
     {
