@@ -26,7 +26,7 @@ inline float sum8(float8 values)
   return (four.x + four.y) + (four.z + four.w);
 }
 
-// Whether a block of eight voxels lies beside the box with light, which is given along x and y.
+// Whether a block of eight voxels lies outside the box that contains all light; the box is limited along x and y only.
 inline bool is_beside(ScatteringVoxels at, ulong first)
 {
   if (at.width == 0)
@@ -145,7 +145,8 @@ inline void pass_empty(const __global float* radiance, __global float* source, c
   EACH_VOXEL(KEEP_LIGHT)
 }
 
-// Adds the light of eight voxels without medium, of which the sweep has kept sums over the directions of each group.
+// Adds the light of eight voxels without medium. For these voxels the sweep has stored, instead of the radiance along
+// each direction, its sums over the directions of each group.
 inline void take_sums(const __global float* radiance, ScatteringVoxels at, ulong first, __global float* order,
   __global float* fluence, __global float* flux)
 {
@@ -166,8 +167,8 @@ inline void take_sums(const __global float* radiance, ScatteringVoxels at, ulong
 }
 
 // Computes the angular moments of eight voxels, and adds their light to fluence and net flux, with the arguments of
-// scatter_terms. Returns whether they scatter: the source of voxels that do not is set to 0, and voxels beside the box
-// with light are left as they are.
+// scatter_terms. Returns whether the source remains to be computed from the moments; if the voxels do not scatter, it
+// is set to 0 here. Voxels outside the box with light are not changed.
 inline bool take_light(const __global float* radiance, __global float* source, __global float* moments,
   const __global float* weights, const __global float* angles, const __global float* sigma_s, __global float* order,
   __global float* fluence, __global float* flux, const __global uchar* empty, ScatteringVoxels at, ulong first)

@@ -81,9 +81,10 @@ void AngularScattering::LoadTables(const OrdinateGroups& groups, const Separable
   this->LoadPhase(groups, phase);
 }
 
-/// Loads the factors of the scattering sum into each outgoing direction, which has a group and a lane, its place among
-/// the eight directions of the group. PairSums::Terms: factors of the terms, [group][term][lane]; PairSums::Matrix: the
-/// matrix, [group][incident direction][lane]; PairSums::Passes: the rows of the matrix, one array each.
+/// Copies to the device the factors of the sums that yield the scattering source along each direction. The lane of a
+/// direction is its place among the eight directions of its group. PairSums::Terms: factors of the terms,
+/// [group][term][lane]; PairSums::Matrix: the matrix, [group][incident direction][lane]; PairSums::Passes: the rows of
+/// the matrix, one array each.
 void AngularScattering::LoadPhase(const OrdinateGroups& groups, const SeparablePhaseFunction& phase)
 {
   const auto ofMatrix = [&](int to, std::size_t from) {
@@ -126,7 +127,8 @@ cl::Kernel AngularScattering::Kernel(const char* name) const
       Define("ROWS", this->Rows) + Define("FLUX", this->NetFlux) + Define("POSITIVE", this->Positive));
 }
 
-/// Voxels from `voxel` on; with `lit`, only blocks of voxels that meet this box.
+/// Range of voxels of a launch that begins at index `voxel`. If `lit` is not null, blocks of voxels outside this box
+/// are skipped.
 ScatteringVoxels AngularScattering::VoxelsFrom(std::size_t voxel, const Grid* grid, const VoxelBox* lit) const
 {
   ScatteringVoxels at = {};

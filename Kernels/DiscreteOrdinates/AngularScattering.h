@@ -38,7 +38,7 @@ public:
 
   /// @param positive  true: negative sources, which N terms can produce, are set to 0, and the positive ones of the
   ///   voxel are scaled to conserve power (Eq. (D8)); false: sources are not changed
-  /// @param skips  whether Scatter() skips voxels that do not scatter, VoxelsAtATime together
+  /// @param skips  whether Scatter() skips blocks of VoxelsAtATime voxels none of which scatters
   AngularScattering(Device& device, const OrdinateGroups& groups, const SeparablePhaseFunction& phase, PairSums sums,
     bool positive, bool netFlux, std::size_t voxels, bool skips = false);
 
@@ -53,9 +53,11 @@ public:
   /// Adds fluence and net flux of `radiance` to `light`, and writes the scattering source.
   /// @param source  W / (length^3 sr), to be multiplied by `scale`
   /// @param scale  factor by voxel for the sources of all directions; written if `positive`
-  /// @param empty  blocks of voxels of which `radiance` holds only sums (OrdinateArrays::empty); null: none
-  /// @param lit  outside of this box of the grid the radiance is 0 and stays so; null: no such box. Only with
-  ///   WorksInPlace(). The fluence of the last order, OrdinatesLight::order, is then undefined outside of it
+  /// @param empty  for each block of voxels, whether `radiance` holds only sums over directions there
+  ///   (OrdinateArrays::empty); null: nowhere
+  /// @param lit  box of the grid that contains all light: outside of it the radiance is 0 before and after scattering;
+  ///   null: the whole grid. Only with WorksInPlace(). The fluence of the last order, OrdinatesLight::order, is then
+  ///   undefined outside of it
   void Scatter(const Buffer<float>& radiance, const Buffer<float>& sigma_s, const Buffer<float>& source,
     const Buffer<float>& scale, const OrdinatesLight& light, const Monitor& monitor,
     const Buffer<cl_uchar>* empty = nullptr, const Grid* grid = nullptr, const VoxelBox* lit = nullptr) const;
@@ -75,7 +77,7 @@ private:
   bool Positive, NetFlux, Skips;
   int GroupCount, TermCount, Width, Rows;
   std::size_t Voxels;
-  /// By direction: its group, and its place among the eight directions of the group.
+  /// For each direction, the index of its group and its place among the eight directions of the group.
   std::vector<std::array<int, 2>> Lanes;
   Buffer<float> Moments, Weights, Spread, Angles;
   /// Rows of the phase function's matrix, one per outgoing direction; only for PairSums::Passes.

@@ -47,10 +47,10 @@ ChannelArrays::ChannelArrays(Device& device, const OrdinatesScene& scene, const 
   }
 }
 
-/// Emission of a voxel by one of the two methods of transport, W / (length^3 sr).
-/// @param emptyVoxels  true: the emission that is transported along the separate quadrature OfVacuum, i.e. that of
-///   empty voxels if OfVacuum is set; false: all other emission. 0 if the voxel's emission is transported by the other
-///   method
+/// Emission of a voxel that is transported by one of two methods, W / (length^3 sr); 0 if the other method transports
+/// it.
+/// @param emptyVoxels  true: emission transported along the separate quadrature OfVacuum, which is that of empty voxels
+///   if OfVacuum is set; false: all other emission
 float ChannelArrays::EmissionOf(std::size_t voxel, bool emptyVoxels) const
 {
   const double sigma_t = static_cast<double>(this->Absorption[voxel]) + this->Scattering[voxel];

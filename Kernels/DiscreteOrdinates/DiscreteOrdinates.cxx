@@ -31,7 +31,7 @@ struct SolvedScene
   const Illumination& shining;
   int channels;
   int directionsPerFace;
-  bool muchThinner; ///< along one axis (IsMuchThinnerAlongOneAxis)
+  bool muchThinner; ///< whether the grid is much thinner along one axis (IsMuchThinnerAlongOneAxis)
 };
 
 std::vector<std::string> Words(

@@ -120,8 +120,9 @@ __kernel void scatter_from_place(__global float* source, const __global float* s
   const float sum = sum8(sums);
   const float mean = sum8(firsts) / sum, square = sum8(seconds) / sum;
   const float lacking = lamp.meanCosine - mean, slope = square - lamp.meanCosine * mean;
-  // If the whole peak lies within one direction, no t in the factor 1 + t cosine can change its mean cosine, and t is
-  // set to its limit. |t| < 1 keeps the factor positive, so that terms of the sum over directions do not cancel.
+  // If the phase function's forward peak lies within the solid angle of one direction, no t in the factor 1 + t cosine
+  // can change its mean cosine, and t is set to its limit. |t| < 1 keeps the factor positive, so that terms of the sum
+  // over directions do not cancel.
   const float tilt = slope > 1e-6f ? clamp(lacking / slope, -MOST_TILT, MOST_TILT) : copysign(MOST_TILT, lacking);
   float power = path[i] * lamp.perVolume * sigma_s[i] / (sum * (1.0f + tilt * mean));
   power *= directed;

@@ -17,15 +17,15 @@ namespace tyndall
 namespace
 {
 constexpr int FewestSpiralDirections = 16;
-/// Most directions per cube face that a target error chooses; with singular values or the full matrix of the phase
-/// function, whose cost rises with the square of their number.
+/// Largest number of directions per cube face that the search for a target error tries. The second limit holds for
+/// singular values and for the full matrix of the phase function, whose cost rises with the square of this number.
 constexpr int MostDirections = 400, MostWithMatrix = 144;
 
 /// Measured orders of convergence of solves that are not accelerated (numerics.md, section 10 b).
 constexpr double OrderInSpace = 1.0, OrderInDirections = 0.4;
 
-/// Settings with which a scene is solved on other grids with the same spatial scheme, and its orders of convergence: an
-/// accelerated solve has those of light propagation maps.
+/// Settings that make solves on other grids use the spatial scheme that is used on the scene's own grid, and the orders
+/// of convergence of that scheme. Accelerated solves have the orders of convergence of light propagation maps.
 struct SpatialScheme
 {
   /// Collective.
@@ -43,9 +43,9 @@ struct SpatialScheme
   ErrorOrders orders;
 };
 
-/// Number of terms for another number of directions: in proportion to the directions, a square number, as spherical
-/// harmonics have it, and at most the number of directions.
-/// @param mayRise  whether there may be more than the given number
+/// Number of terms of the phase function for another number of directions: proportional to the number of directions and
+/// at most equal to it. It is a square number, as is the number of spherical harmonics up to a degree.
+/// @param mayRise  whether the result may exceed the number of terms in `given`
 int TermsFor(const OrdinatesSettings& given, int directionsPerFace, bool mayRise)
 {
   const double ratio = static_cast<double>(directionsPerFace) / given.directionsPerFace;
@@ -59,7 +59,7 @@ int TermsFor(const OrdinatesSettings& given, int directionsPerFace, bool mayRise
 }
 
 /// Settings with the resolution and tolerance that an error estimate chooses in `how`.
-/// @param choosesTerms  whether more directions have more terms, too
+/// @param choosesTerms  whether the number of terms is chosen in proportion to the directions
 OrdinatesSettings With(const OrdinatesSettings& given, const PropagationSettings& how, bool choosesTerms)
 {
   OrdinatesSettings settings = given;

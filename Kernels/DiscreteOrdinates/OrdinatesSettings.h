@@ -41,7 +41,8 @@ struct OrdinatesSettings
   /// Number of directions on a spiral over the unit sphere, at least 16, which replace those of directionsPerFace; 0:
   /// directions of the cube.
   int spiralDirections = 0;
-  /// as PropagationSettings::uncollidedDirections, but of light of faces alone, which has at least directionsPerFace
+  /// as PropagationSettings::uncollidedDirections, but only for light of the box's faces, and at least
+  /// directionsPerFace
   int uncollidedDirections = -1;
   int terms = 25;          ///< number of terms of the phase function, at most the number of directions
   int maximumOrders = 0;   ///< limit on scattering orders (published scheme: steps); 0: iterate to the tolerance

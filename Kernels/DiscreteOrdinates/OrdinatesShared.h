@@ -19,7 +19,8 @@ typedef struct
   float meanCosine; ///< mean cosine of the phase function
   float perVolume;  ///< 1 / volume of a voxel, 1 / length^3
 } LampInRays;
-/// Parts of the grid that sweep_upwind can sweep: all voxels; those of a box; those downwind of the box, without it.
+/// Part of the grid that a launch of sweep_upwind sweeps: all voxels, the voxels of a box, or the voxels downwind of
+/// the box.
 enum
 {
   SweepsAll = 0,
@@ -48,8 +49,8 @@ typedef struct
   ulong stride; ///< number of voxels from the radiance of one group of directions to that of the next (OrdinateStride)
   ulong begin;  ///< first voxel of the launch
   int width, height;     ///< number of voxels of the grid along x and y
-  int first[2], last[2]; ///< along x and y: range of the voxels with light; blocks of voxels beside it are left out
-  int skips;             ///< 1: voxels that do not scatter are not scattered from
+  int first[2], last[2]; ///< range of the voxels with light along x and y; blocks of voxels outside it are skipped
+  int skips;             ///< 1: blocks of voxels that do not scatter are skipped
   int hasSums;           ///< 1: of blocks without medium, the radiance holds sums over directions (UpwindSweep.cl)
 } ScatteringVoxels;
 SHARED_END

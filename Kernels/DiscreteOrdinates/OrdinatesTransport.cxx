@@ -30,12 +30,12 @@ namespace
 /// left, but at most MostLaps times.
 constexpr double WrappedLeft = 1e-6;
 constexpr int MostLaps = 500;
-/// Number of scattering orders up to which anisotropic scattering is not accelerated: scattering between directions and
-/// the first scattering of lamps are more accurate than angular moments.
+/// Number of scattering orders up to which anisotropic scattering is not accelerated. Acceleration represents
+/// scattering by angular moments, which are less accurate than scattering between directions.
 constexpr double FewOrders = 100.0;
 
-/// Directions of a quadrature that are swept: one of each class whose directions carry the same light
-/// (SweptDirections), with the solid angle of the class.
+/// Directions of a quadrature that are swept. If a symmetry makes several directions carry the same light
+/// (SweptDirections), one of them is swept, with the solid angle of all.
 struct SweptOrdinates
 {
   explicit SweptOrdinates(const SweptDirections& of)
@@ -90,8 +90,8 @@ public:
   }
 
   SweepTally Apply(const Buffer<float>* source, const SweepBoundary& boundary, const Monitor& monitor) override;
-  /// Does nothing: of the light that wraps around periodic axes, a sweep that follows it (SweepRequest::mostPlanes)
-  /// leaves at most WrappedLeft, except after MostLaps.
+  /// Does nothing: a sweep continues light that wraps around periodic axes (SweepRequest::mostPlanes) until at most the
+  /// fraction WrappedLeft is in transit, or for MostLaps laps.
   void Forget() override {}
 
 private:
@@ -105,14 +105,14 @@ private:
   void LoadFunctions(const AngularValues& angular);
   FacePowers SweepChannel(
     int channel, const Buffer<float>* source, const IncomingRadiance& incoming, bool onlyWraps, const Monitor& monitor);
-  /// Whether voxels or faces may shine on any direction of a sweep, in addition to its boundary source.
+  /// Whether voxels or faces may emit light along any direction of a sweep, in addition to its boundary source.
   bool ShinesEverywhere(const Buffer<float>* source) const
   {
     return source || this->Request.faceIn || this->Parts.Problem.Settings().IsPeriodic();
   }
   void Spread(int channel, const Buffer<float>* source);
-  /// Array of the deposit for light through the voxels' faces, and its number of parts by voxel: partial currents, 6;
-  /// or net flux, 3, unless that is among the angular moments; or none, 0.
+  /// Array of the deposit that receives the light through the faces of voxels, and its number of values per voxel: 6
+  /// partial currents; or 3 components of net flux, unless the angular moments contain it; or 0.
   std::pair<const Buffer<float>*, int> Through() const
   {
     const Deposit& deposit = this->Request.deposit;
@@ -138,8 +138,8 @@ private:
   Buffer<float> Sums;     ///< SweptSums::values
   Buffer<float> Nothing;  ///< isotropic source of 0
   Buffer<float> Radiance; ///< of all directions; empty if scattering is isotropic
-  /// Values of the angular functions and of the beams in the directions, and the former times solid angle, as
-  /// UpwindSweep.cl reads them.
+  /// In the layout of UpwindSweep.cl: values of the angular functions and of the beams along each direction (Values),
+  /// and values of the angular functions times the direction's solid angle (Weights).
   Buffer<float> Values, Weights;
   Buffer<cl_int> Up;
   std::vector<std::unique_ptr<Channel>> Channels;
@@ -295,8 +295,9 @@ SweepTally OrdinatesTransport::Apply(const Buffer<float>* source, const SweepBou
   return tally;
 }
 
-/// Model of the sweeps of discrete ordinates: every face of a voxel is crossed by the same power. Weighted diamond
-/// differences are exact for light that varies along one axis only, Eq. (D15).
+/// Model of how sweeps of discrete ordinates carry light between voxels, for the diffusion solver. At uniform radiance,
+/// all voxel faces normal to an axis are crossed by the same power. Weighted diamond differences are exact for light
+/// that varies along one axis only (numerics.md, Eq. (D15)).
 SweepModel ModelOfOrdinates(const TransportParts& parts)
 {
   const Grid& grid = parts.Problem.Whole();
@@ -310,7 +311,7 @@ SweepModel ModelOfOrdinates(const TransportParts& parts)
       model.pattern.first[2 * axis + (along == across.u ? 0 : 1)] = static_cast<int>(model.pattern.values.size());
       model.pattern.values.insert(model.pattern.values.end(), grid.size[along], along == across.u ? 1.0f : 0.0f);
     }
-    std::map<float, double> weights; // by cosine: directions that are alike are one node
+    std::map<float, double> weights; // by cosine: directions of equal cosine form one node
     for (const Direction& direction : parts.Usual.Set().directions)
     {
       const double cosine = direction.omega[axis];

@@ -149,7 +149,7 @@ template <class Visit>
 void PipelinedSweep::ForFace(
   const Octant& octant, const BlockContact& contact, const VoxelBox& cells, const Visit& visit) const
 {
-  // u: axis along which the voxels of a row of the face follow each other; v: axis along which rows do
+  // u: axis along the rows of voxels of the face; v: axis along which the rows follow each other
   const int axis = AxisOf(contact.kind), u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
   const VoxelBox& block = this->TheDomain.Own();
   const std::size_t rows = block.size[v], row = block.size[u];

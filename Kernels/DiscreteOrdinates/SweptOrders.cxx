@@ -98,7 +98,7 @@ private:
       PaysToOmitEmptySlabs(this->Scene.filled, this->Scene.medium.grid, AsPropagation(this->Settings));
   }
 
-  /// Finds the voxels of which sweeps after the first keep only sums over directions.
+  /// Finds the blocks of voxels for which sweeps after the first store only sums over directions.
   /// @param part  fraction of the voxels that do not scatter
   void FindEmptyBlocks(double part)
   {
@@ -132,8 +132,8 @@ private:
 
   const Buffer<float>& Out() const { return this->Source.Size() > 0 ? this->Source : this->Radiance; }
 
-  /// Computes uncollided light, by a sweep for incident light and emission, and along separate rays for lamps, and its
-  /// first-collision source.
+  /// Computes uncollided light and its first-collision source. Incident light and emission are swept; light of lamps is
+  /// computed along separate rays.
   void FirstOrder(const Monitor& monitor)
   {
     const bool swept = this->Scene.incoming || this->Arrays.Emits() || !this->Settings.leaveOut;

@@ -47,8 +47,8 @@ inline real cross_voxel(real tau, real in, real gain, real* mean)
   return multiply_add(in, transmitted, gain * p1);
 }
 
-// Voxels along an axis in the order in which a direction crosses them: x the first one, y the step to the next, z the
-// number of those in the box [first, last], w that of all of the part.
+// Voxels along an axis in the order in which a direction crosses them. Returns x: index of the first one; y: step to
+// the next; z: number of voxels in the box [first, last]; w: number of voxels in the swept part of the grid.
 inline int4 swept_range(int up, int beyond, int first, int last, int size)
 {
   const int in_box = last - first + 1;
@@ -75,14 +75,14 @@ inline real reciprocal_weight(real x)
   return above / below;
 }
 
-// Radiance of a voxel and behind it, by weighted diamond differences (numerics.md, Eq. (D15)).
+// Mean and outgoing radiance of a voxel, by weighted diamond differences (numerics.md, Eq. (D15)).
 //   tau    optical length of the mean chord, >= 0
 //   share  weight of the face normal to each axis in the power that enters; their sum is 1
 //   weight reciprocal_weight() along each axis
 //   gain   source times length of the mean chord
 //   in     radiance that enters through each face;  out: receives the radiance that leaves
-// Returns the mean radiance. Where light would be negative behind a face, nothing leaves through that face. At most two
-// faces of a voxel are like that, and power is conserved.
+// Returns the mean radiance. If the radiance that leaves through a face would be negative, it is set to 0. This happens
+// at no more than two faces of a voxel, and power is conserved.
 inline real cross_by_diamonds(real tau, const real* share, const real* weight, real gain, const real* in, real* out)
 {
   real flows[3], kept[3];
@@ -128,7 +128,7 @@ inline real cross_by_diamonds(real tau, const real* share, const real* weight, r
   return mean;
 }
 
-// Where a sweep reads its source and writes its result, and its scheme: sums of these values.
+// Bits of the mode of a sweep: where it reads its source, what it writes, and its spatial scheme.
 enum
 {
   ByDirection = 1, // source by direction, replaced by mean radiance; else an isotropic source
@@ -163,9 +163,9 @@ static inline void keep_sums(__global float* block, int voxel, real mean, real a
   }
 }
 
-// Sweeps a range of layers along z, of all voxels, of a box, or of the voxels downwind of the box. One work-item per
-// group of directions, or per direction. Downwind of a box: x, y, z hold the radiance that left the box, and its voxels
-// are set to 0.
+// Sweeps a range of layers along z of all voxels, of a box, or of the voxels downwind of a box. One work-item per group
+// of directions, or per direction. In a sweep downwind of a box, x, y and z hold on entry the radiance that left the
+// box, and the light of voxels in the box is set to 0.
 //   light     source, W / (length^3 sr); with ByDirection by direction, replaced by the mean radiance
 //   scale     factor by voxel for all sources, without InSums
 //   shares    [group][x, y, z, chord][8]: weight of the radiance from each upwind neighbour in the incident radiance;
@@ -175,8 +175,8 @@ static inline void keep_sums(__global float* block, int voxel, real mean, real a
 //   up        [group][3]: whether the directions of the group are positive along each axis
 //   x, y, z   radiance through the faces, [group][z][y][8], [group][z][x][8], [group][y][x][8]: incident before the
 //             sweep, outgoing after it
-//   sums      [group][voxel]: power through faces normal to x, y, z, W, of the light that enters the voxel, or, if
-//             layers->ofMean, of its mean radiance; fluence
+//   sums      [group][voxel]: three powers through the voxel faces normal to x, y, z, W, then fluence. The powers are
+//             those of the light that enters the voxel or, if layers->ofMean, of its mean radiance
 //   mode      ByDirection ... ByDiamonds, a compile-time constant
 // With SweptLayers::skips, voxels of blocks without medium have no source, and of their radiance only sums are kept.
 static inline __attribute__((always_inline)) void sweep_layers(
@@ -272,7 +272,7 @@ static inline __attribute__((always_inline)) void sweep_layers(
   }
 }
 
-// Adds the radiance that leaves a box to that of earlier sweeps.
+// Adds the radiance that leaves a face of a box in this sweep to the sum over earlier sweeps.
 __kernel void add_face(__global float* sum, const __global float* face)
 {
   const ulong i = get_global_id(0);
@@ -303,11 +303,10 @@ SWEEP_IN_SUMS(sweep_moments_by_diamonds, ByDirection | ByDiamonds)
 
 // Adds the sums over the directions of each group to path integrals, and to partial currents or net flux.
 //   sums      [group][voxel], as sweep_layers() writes them
-//   volume    of a voxel
-//   path      W length, [channel][voxel]
+//   volume    volume of a voxel path W length, [channel][voxel]
 //   through   [channel][part][voxel]: 6 parts: power that enters each voxel through its faces -x, +x, ... +z, W; 3: net
 //             flux along x, y, z, W length; 0 parts: not computed
-//   edges     of a voxel
+//   edges     edges of a voxel
 //   stride    values of a channel;  first: index of the channel's first value in path
 __kernel void gather_sums(const __global float4* sums, const __global int* up, int groups, ulong groupStride,
   float volume, __global float* path, __global float* through, int parts, float4 edges, ulong stride, ulong first)
@@ -353,7 +352,8 @@ __kernel void spread_moments(MomentPlaces places, int channel, int beams, ulong 
   ((__global float8*)radiance)[group * groupStride + i] = sum;
 }
 
-// Adds the angular moments of the radiance, except the first (gather_sums), to those of path integrals.
+// Adds the angular moments of the radiance to those of the path integrals, except for the first moment, which
+// gather_sums adds.
 //   weights  [group][function][8]: values of the angular functions times solid angle, sr
 __kernel void gather_moments(MomentPlaces places, int channel, int groups, float volume, const __global float* radiance,
   const __global float* weights, __global float* path, ulong groupStride)

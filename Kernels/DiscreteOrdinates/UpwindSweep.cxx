@@ -72,7 +72,8 @@ UpwindSweep::UpwindSweep(Device& device, const Grid& grid, const OrdinateGroups&
 std::size_t UpwindSweep::Bytes(const Grid& grid, const OrdinateGroups& groups)
 {
   const std::size_t faces = FaceVoxels(grid, 0) + FaceVoxels(grid, 1) + FaceVoxels(grid, 2);
-  return 2 * sizeof(float) * groups.Lanes() * faces; // twice, with the radiance that leaves the box of ApplyWithin()
+  // the factor 2 includes the radiance that leaves the box of ApplyWithin()
+  return 2 * sizeof(float) * groups.Lanes() * faces;
 }
 
 std::array<int, 2> UpwindSweep::FaceSize(int axis) const
@@ -130,7 +131,7 @@ cl::Kernel UpwindSweep::Kernel(const char* name, int width) const
   return this->TheDevice.Kernel(name, kernel_source::UpwindSweep, Define("REAL_WIDTH", width));
 }
 
-/// Groups with a direction along which light is incident through any face.
+/// For each group of directions, whether light is incident along any of them through a face of the box.
 std::vector<bool> UpwindSweep::LitGroups(const IncomingRadiance& incoming) const
 {
   std::vector<bool> lit;

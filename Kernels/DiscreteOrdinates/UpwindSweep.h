@@ -45,7 +45,7 @@ struct OrdinateArrays
   const Buffer<float>& sigma_t;    ///< extinction, 1/length
   const Buffer<float>& scale;      ///< factor of the source, by voxel; not used with sums
   const SweptSums* sums = nullptr; ///< null: no sums
-  /// Whether only light that wraps around periodic axes is incident: faces do not reflect.
+  /// Whether only light that wraps around periodic axes is incident, and no reflected light.
   bool onlyWraps = false;
   /// Whether each block of OrdinateBlock consecutive voxels has neither medium nor source: its source is then not read,
   /// and `radiance` receives sums over directions alone, for AngularScattering. Null: no such block

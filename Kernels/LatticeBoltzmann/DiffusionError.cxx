@@ -86,7 +86,8 @@ void EstimateDiffusionError(Device& device, const SceneBlock& scene, const Latti
       lattice = std::move(other);
     }
   }
-  // the complete difference is the error: none of it is that of voxels, whose order is infinite
+  // The complete difference between the two solves is the error; an infinite order of convergence in the voxel size
+  // attributes no part of it to the voxels.
   WriteErrorEstimate(light, blocks, maps, lattice, 1.0, std::numeric_limits<double>::infinity());
 }
 

@@ -12,8 +12,8 @@ namespace tyndall
 /// relativeError from solves on a grid of half the voxels per axis, one by light propagation maps with few directions
 /// and, if the coarse voxels are cubes, one by the lattice (numerics.md, Eq. (L17)). The estimate does not include the
 /// noise of photons. Collective.
-/// @param scene  the scene that was solved. If it has a refractive index, which light propagation maps do not know, the
-///   coarse solves leave it out: the estimate is then that of the same medium without refraction
+/// @param scene  the scene that was solved. If it has a refractive index, which light propagation maps do not support,
+///   the coarse solves ignore it: the estimate is then that of the same medium without refraction
 /// @param ofPhotons  whether the uncollided light is that of photons: taken from light.fluenceDirect
 /// @param light  light of the conservative scheme
 /// @throws InvalidInput  if there is a refractive index and the coarse voxels are no cubes

@@ -39,7 +39,8 @@ double NearerBy(double k)
 }
 
 /// Solves exp(-k) MeanOf(ratio k) / MeanOf(k) = passes for k in [0, most], by bisection (numerics.md, Eq. (L14)): the
-/// next voxel downstream is `ratio` times as thick as this one, and has the fraction `passes` of its fluence.
+/// optical thickness of the next voxel downstream is `ratio` times that of this voxel, and its fluence `passes` times
+/// that of this voxel.
 double FallOff(double passes, double ratio, double most)
 {
   double low = 0.0, high = most;

@@ -11,9 +11,9 @@ namespace tyndall
 {
 constexpr auto Outside = static_cast<std::size_t>(-1); ///< index that stands for no voxel
 
-/// Own voxels of a lattice within its known voxels. Own voxels are those that this rank solves; known voxels, whose
-/// coefficients it has, are the whole grid on one rank, else the block and its ghost voxels, which wrap around periodic
-/// axes.
+/// Box of the voxels that this rank solves (own voxels) within those whose coefficients it has (known voxels). On one
+/// rank all voxels are own voxels. On several ranks the known voxels are the rank's block and its ghost voxels, which
+/// wrap around periodic axes.
 struct LatticeBox
 {
   /// Box of a serial lattice: own and known voxels are the whole grid.

@@ -218,7 +218,7 @@ double LatticeAccount::CountFaces(LightField& light) const
   const double area = this->Edge() * this->Edge();
   const std::vector<float> through = this->Photons.Leaving();
   const std::vector<float> inwards =
-    // by reciprocity, also the light that enters each voxel from outside if the fluence there is 1
+    // By reciprocity, this is also the light that enters each voxel from outside if the fluence outside is 1.
     this->Photons.LeavingOfOne();
   double entered = 0.0;
   for (std::size_t face = 0; face < 6; ++face)
@@ -269,8 +269,8 @@ void LatticeAccount::AddFlux(LightField& light) const
 }
 
 /// Net flux in a voxel due to first-collision source that LatticeVoxels::crossing moves across a face to the neighbour
-/// (Eq. (L13)): it counts as light that travels from the mean collision position to the face in the voxel of first
-/// scattering, and from the face to the centre in the neighbour.
+/// (Eq. (L13)): this source counts as light that travels from the mean position of collisions to the face, and from the
+/// face to the neighbour's centre.
 double LatticeAccount::FluxOfCrossing(std::size_t known, std::size_t face) const
 {
   const std::size_t beyond = this->Box.Beyond(known, face);

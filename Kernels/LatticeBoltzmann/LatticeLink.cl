@@ -50,9 +50,10 @@ __constant char Ways[18][3] = LATTICE_WAYS;
     return PLAIN ? sent : part * sent + (1.0f - returns) * back;                                                   \
   }
 
-// Total weight of the open directions of a voxel, along which it emits isotropic light. The others are those of endless
-// lines, which close around periodic axes and have almost no extinction (LatticeVoxels::endless). DEFINE_SENT: weight
-// of direction i in isotropic light, relative to the open directions.
+// Total weight of the open directions of a voxel, along which it emits isotropic light. All other directions are
+// closed: along them the voxel lies on an endless line of links, which closes around periodic axes and has almost no
+// extinction (LatticeVoxels::endless). DEFINE_SENT: weight of direction i in isotropic light, relative to the open
+// directions.
 //   closed  bit mask of the direction pairs whose line is endless
 #define DEFINE_OPEN(name, type, whole)                                                    \
   static type name(whole closed)                                                          \

@@ -18,7 +18,7 @@ SHARED_BEGIN
 enum
 {
   LatticeFirst = 16, ///< index of a row's first voxel, chosen so that rows are aligned for vector loads
-  /// stands for the number (0 to 5) of a face of the grid where another block lies beyond the voxel instead
+  /// replaces the number (0 to 5) of a face of the grid if the voxel's neighbour is in another block
   OtherBlock = 6
 };
 
@@ -41,7 +41,7 @@ typedef struct
 /// (LatticeLines.cl).
 typedef struct
 {
-  /// layout of the lattice, with the incident light at its faces; that is 0 in a sweep of collided light alone
+  /// layout of the lattice, and the light incident at its faces, which is 0 in sweeps that carry collided light alone
   LatticeInfo lattice;
   int pair;   ///< directions 2 pair and 2 pair + 1
   int writes; ///< 1: the sweep also writes densities, in the layout of `lattice`

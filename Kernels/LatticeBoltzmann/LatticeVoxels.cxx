@@ -63,7 +63,7 @@ public:
     return this->Close ? this->Across * (this->IsDiagonal ? static_cast<std::size_t>(this->Common) : 1) : 0;
   }
 
-  /// Index of the closed line through a voxel, whose indices may lie beyond the grid's periodic ends.
+  /// Index of the closed line through a voxel. The voxel's indices may lie outside the grid along periodic axes.
   std::size_t Through(const std::array<int, 3>& voxel) const
   {
     std::size_t line = 0;
@@ -131,8 +131,8 @@ void LatticeVoxels::Load(const LatticeSettings& settings)
   const Field& ior = this->Problem.Index();
   const double edge = medium.grid.spacing[0];
   const bool published = settings.scheme == LatticeScheme::Published;
-  // Optical thickness up to which links transmit all light, and at which a collision makes all of the density isotropic
-  // (Eqs. (L2), (L3)).
+  // Optical thickness of a voxel up to which links transmit all light. At this thickness a collision makes all of the
+  // density isotropic (Eqs. (L2), (L3)).
   const double most = 2.0 / (3.0 * LatticeSquares(settings.directions));
   for (std::size_t i = 0; i < medium.grid.VoxelCount(); ++i)
   {
@@ -310,8 +310,8 @@ void LatticeVoxels::CrossFaces(const Uncollided& direct, std::vector<double>& be
   }
 }
 
-/// Resistance from a voxel's centre to its face, relative to that from its centre to the next voxel's centre or out of
-/// the box.
+/// Diffusive resistance from a voxel's centre to its face, divided by the resistance to the neighbour's centre or, at a
+/// face of the box, to the outside of the box.
 double LatticeVoxels::PartWithin(std::size_t voxel, std::size_t face) const
 {
   const std::size_t beyond = this->Problem.Box().Beyond(voxel, face);

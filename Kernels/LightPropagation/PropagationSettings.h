@@ -34,8 +34,8 @@ struct PropagationSettings
   /// scattering is anisotropic.
   int polarNodes = 0;
   /// Directions per cube face, a square number, for uncollided light of boundary sources, sky and environment
-  /// (BoundaryLight.h); 0: as many as for scattered light; -1: as many as are predicted to make the solve at most half
-  /// as long again, where they reduce the error (LightSources.h).
+  /// (BoundaryLight.h); 0: as many as for scattered light; -1: as many as increase the predicted time of the solve by
+  /// at most half, if they reduce the error (LightSources.h).
   int uncollidedDirections = -1;
   /// Whether light is swept along rays; false: scattered light and that of the sky are swept by discrete ordinates
   /// (OrdinatesTransport.h), light of faces along rays, because ordinates would smear its edges.

@@ -15,8 +15,8 @@ namespace
 {
 /// number of pairs of opposite directions that are swept concurrently, if lines are cut at the faces of blocks
 constexpr int PairsAtOnce = 3;
-/// Numbers of values per piece in the arrays `sent` (PieceValues) and `joined` (JoinedValues) of LatticeLines.cl. Of
-/// those in `sent`, the first SweepValues change from sweep to sweep, and are sent in every sweep.
+/// Numbers of values per piece in the arrays `sent` (PieceValues) and `joined` (JoinedValues) of LatticeLines.cl. The
+/// first SweepValues values per piece in `sent` change from sweep to sweep, and are sent to other ranks in every sweep.
 constexpr std::size_t PieceValues = 8, JoinedValues = 3, SweepValues = 2;
 
 /// Extracts the values of own voxels from those of known voxels (own and ghost voxels).
@@ -113,8 +113,8 @@ void LinesOfLinks::LoadCutLines()
   }
 }
 
-/// Finds, for a pair of opposite directions, the lines whose pieces (segments in one block each) this rank joins (those
-/// that begin in its block), and the pieces that it exchanges with other ranks.
+/// Finds, for a pair of opposite directions, the lines that begin in this rank's block, whose pieces (one segment per
+/// block) this rank joins, and the pieces that it exchanges with other ranks.
 LinesOfLinks::Pair LinesOfLinks::LinesFrom(const PiecesOfLines& pieces) const
 {
   const int self = this->TheDomain.Rank();

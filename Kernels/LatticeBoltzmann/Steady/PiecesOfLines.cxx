@@ -188,8 +188,8 @@ struct WayUp
   /// last voxel
   Linear Add(const PieceOfLine& piece, const SentByPiece& sent)
   {
-    // Factor from light sent up by the last piece so far to light that comes down to it again: the light transmitted
-    // into `piece` that it gives back, plus the fraction that the link reflects.
+    // Fraction of the light sent up by the last joined piece that returns to it: light that the link transmits into
+    // `piece` and `piece` sends back, plus light that the link reflects.
     const double again = piece.down * piece.givesBack + 1.0 - piece.up;
     const double inverse = Inverse(1.0 - this->sends.ofAhead * again);
     const Linear down = { piece.down * sent.down, 0.0, piece.down * piece.comesDown };

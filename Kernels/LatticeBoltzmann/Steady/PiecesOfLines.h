@@ -47,7 +47,8 @@ public:
 
 private:
   using Voxel = std::array<int, 3>;
-  /// Index of the plane of voxels through which lines enter a box, along an axis along which they move.
+  /// Index along `axis` of the plane of voxels at which lines enter a box. The lines' direction has a component along
+  /// `axis`.
   int Entry(const VoxelBox& box, int axis) const
   {
     return this->Way[axis] > 0 ? box.first[axis] : EndOf(box, axis) - 1;

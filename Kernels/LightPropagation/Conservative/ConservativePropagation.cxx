@@ -271,9 +271,10 @@ struct ChannelProblem
   const IterationScheme how;
 };
 
-/// The channels of a scene if any of them, solved alone, has another iteration scheme or degree of angular moments than
-/// all together: both change the light of optically thick voxels, which must not depend on the other channels. With
-/// isotropic scattering the difference is within the tolerance. Empty: all channels are solved together. Collective.
+/// The channels of a scene, to be solved one by one, if the iteration scheme or the degree of angular moments chosen
+/// for a single channel differs from that chosen for all together. Both change the light of optically thick voxels, and
+/// the light of a channel must not depend on the other channels. With isotropic scattering the difference is within the
+/// tolerance. Empty: all channels are solved together. Collective.
 std::vector<std::unique_ptr<ChannelProblem>> UnlikeChannels(Device& device, const PropagationProblem& all,
   IterationScheme how, const Medium& medium, const Illumination& illumination, const PropagationSettings& settings,
   const Domain& domain)
@@ -401,8 +402,8 @@ std::string ReasonNotToDecompose(Device& device, const Domain& domain, const Med
   const Illumination& illumination, const PropagationSettings& settings)
 {
   const PropagationProblem problem(domain, medium, illumination, settings, MemoryOf(device));
-  // If blocks differ, each of them may consist of plane-parallel layers although the domain does not; a serial solve
-  // would then use voxels, too.
+  // Each block may consist of plane-parallel layers although the domain does not, if the layers differ between blocks.
+  // The domain is then solved in voxels, as in a serial solve.
   const bool varies = !domain.IsEmpty() && !IsPlaneParallel(medium, illumination, settings);
   if (problem.IsSlab() || !domain.Any(varies))
   {

@@ -34,8 +34,9 @@ public:
   /// Replaces the unaccounted power: still in flight, or in sources that no sweep has carried.
   void SetUnaccounted(int channel, double watts) { this->Sums.leftOver[channel] = watts; }
 
-  /// Scales absorbed and escaped powers, of which a part is predicted, so that no unaccounted power is below 0: they
-  /// exceed the incoming power by the error of the prediction. Leaves a channel unchanged if that error is too large.
+  /// Scales absorbed and escaped powers down if their sum exceeds the incoming power, so that no unaccounted power is
+  /// below 0. The excess is the error of the predicted part of these powers. Leaves a channel unchanged if this error
+  /// is too large.
   /// @param error  largest error, relative to the absorbed and escaped power
   void SettleOvercount(double error);
 

@@ -12,8 +12,8 @@ namespace tyndall
 {
 namespace
 {
-/// Power that radiance 1 carries sideways into the box, W, by face and by plane of voxels along the marching axis; all
-/// cells of a face in one plane have the same value.
+/// Power that radiance 1 carries into the box through faces parallel to the marching axis, W, by face and by plane of
+/// voxels along the marching axis. All cells of a face in one plane have the same value.
 using ByPlane = std::array<std::vector<double>, 6>;
 
 /// Axes perpendicular to the marching axis of rays, and the planes of voxels that the rays cross.

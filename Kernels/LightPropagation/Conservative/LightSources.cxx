@@ -215,8 +215,8 @@ void LightSources::FindBoundaryLight()
 }
 
 /// Sets FineBoundary, the boundary source along the finer quadrature. If the medium emits, a uniform boundary source
-/// stays with the quadrature of scattered light, so that the light in a furnace stays uniform. So does all boundary
-/// light in DSA with reflecting faces, because faces reflect only along the directions of sweeps.
+/// stays with the quadrature of scattered light, so that the light in a furnace stays uniform. In DSA with reflecting
+/// faces, all boundary light stays with that quadrature, because faces reflect only along the directions of sweeps.
 void LightSources::FindFineBoundary()
 {
   const PropagationSettings& settings = this->Problem.Settings();

@@ -32,11 +32,11 @@ struct UncollidedDirections
 };
 
 /// Chooses the directions for uncollided boundary light: settings.uncollidedDirections or, if that is -1, the largest
-/// of 36, 49, 64 and 100 directions per cube face, for light of faces, with which a solve with one emitting face is
-/// predicted to take at most half as long again. The automatic choice is 0 if a face reflects; with coarse-mesh DSA
-/// (more directions gain nothing without the escape correction, which would change the light of lamps as well); and,
-/// for memory, with DSA and angular moments. Discrete ordinates (settings.alongRays is false) have light of faces alone
-/// along at least as many directions as scattered light; with DSA their sweeps carry it, too.
+/// of 36, 49, 64 and 100 directions per cube face, with which a solve with one emitting face is predicted to take at
+/// most half as long again. The automatic choice is 0 if a face reflects; with DSA and angular moments, to save memory;
+/// and with coarse-mesh DSA, where more directions would need the escape correction, which would change the light of
+/// lamps as well. With discrete ordinates (settings.alongRays is false), only light of faces uses the chosen
+/// directions, at least as many as scattered light; with DSA, sweeps also carry this light.
 /// @param usual  quadrature of scattered light; unless it is fitted (DirectionSet::orbits), the automatic choice is 0
 /// Collective.
 UncollidedDirections UncollidedDirectionsFor(

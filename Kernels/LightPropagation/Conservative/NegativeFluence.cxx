@@ -16,7 +16,8 @@ namespace
 /// from neighbouring voxels. Power that a pass cannot subtract from the direct neighbours of a voxel is passed one
 /// voxel farther by the next one.
 constexpr int MostTurns = 50;
-/// Fluence below its uncollided part by at most this fraction of it is raised without subtracting power elsewhere.
+/// A fluence that is below its uncollided part by at most this fraction of that part is raised without subtracting
+/// power elsewhere.
 constexpr float Rounding = 1e-6f;
 
 /// One channel of fluence on this rank, in which negative values are raised. A raised voxel absorbs additional power;
@@ -43,9 +44,9 @@ public:
     return std::any_of(this->Owed.begin(), this->Owed.end(), [](double owed) { return owed > 0.0; });
   }
 
-  /// Subtracts the owed power, which voxels absorb in addition since their fluence was raised, from the neighbouring
-  /// voxels. Where these absorb less than that, each of them owes an equal share in the next call, as does a neighbour
-  /// whose fluence becomes negative. Collective.
+  /// Subtracts the owed power, which raised voxels absorb in addition, from the power that their neighbours absorb. If
+  /// the neighbours of a voxel absorb less than it owes, each of them owes an equal share of it in the next call. A
+  /// neighbour whose fluence becomes negative is raised, and owes the difference. Collective.
   void Collect()
   {
     std::vector<float> own(this->Owed.size());

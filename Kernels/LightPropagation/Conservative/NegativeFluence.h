@@ -32,8 +32,9 @@ void MakeFluence(Communicator& communicator, const Halo& around, const VolumeLay
 void CutOffNegative(Communicator& communicator, const Halo& around, const VolumeLayout& layout, const Field& sigma_a,
   const std::vector<float>& uncollided, Buffer<float>& fluence);
 
-/// Scales the net flux down to the fluence where its magnitude exceeds it, which radiance cannot: sums over rays of
-/// thick voxels are inexact, and in absorbing voxels the mean of the powers through opposite faces exceeds the flux.
+/// Scales the net flux down where its magnitude exceeds the fluence, which no radiance can cause. The reasons are that
+/// sums over rays are inexact in thick voxels, and that in absorbing voxels the mean of the powers through opposite
+/// faces exceeds the flux.
 /// @param fluence  W / length^2, [channel][voxel]
 /// @param ofLight  net flux times the voxel's volume, [channel][x, y, z][voxel]; changed
 void LimitFlux(const VolumeLayout& layout, const std::vector<float>& fluence, Buffer<float>& ofLight);

@@ -113,7 +113,7 @@ void OrderSweeps::MakeLitSweep(const Deposit& deposit)
     SweepRequest request = { deposit, ways };
     request.angular = this->Parts.UsualValues();
     request.skipsEmpty = !deposit.flux && !deposit.partialCurrents;
-    if (this->Parts.Problem.Settings().alongRays) // else Whole omits dark directions
+    if (this->Parts.Problem.Settings().alongRays) // discrete ordinates: the operator Whole omits dark directions
     {
       this->Lit = this->Parts.Transport.MakeSweep(request);
     }

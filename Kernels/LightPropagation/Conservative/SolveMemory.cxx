@@ -115,7 +115,7 @@ std::size_t BytesOf(const Device& device, const SolveExtent& solve)
   return sizeof(float) * layout.Values() * (ArraysOfLight(solve) + ArraysOfOrders(solve)) + BytesOfSweep(device, solve);
 }
 
-/// Memory budget of a device, whatever the solve needs.
+/// Memory budget of a device, without regard to the memory that the solve needs.
 /// @param asked  settings.memoryBudget, bytes; 0: nine tenths of the free memory, or no limit if the device shares the
 ///   host's memory
 MemoryBudget BudgetAskedFor(const Device& device, std::size_t asked)

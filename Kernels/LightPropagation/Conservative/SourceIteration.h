@@ -30,7 +30,8 @@ struct OrdersToCome
   /// Updates `residual` with the estimated sum of the orders to come of a channel; the caller sets `residual` to 0
   /// before the first channel.
   /// @param now  power that the next order carries, or its magnitude if it may be negative, W
-  /// @param reflected  part of it that faces reflect: its light is not in the fluence yet, whereas what scatters is
+  /// @param reflected  part of `now` that faces reflect; its light, unlike that of the scattered part, is not in the
+  ///   fluence yet
   void Expect(int channel, double now, double reflected = 0.0)
   {
     const double all = this->allScattered[channel];

@@ -12,8 +12,8 @@ namespace tyndall
 {
 namespace
 {
-/// Where rays start. Thick voxels, with sources by octant, need two rays, since light enters and leaves them at their
-/// edges.
+/// Starting positions of rays. Thick voxels have sources by octant and need two rays each, because light enters and
+/// leaves such voxels at their edges.
 RayStarts StartsOf(const PropagationSettings& settings, bool byOctant)
 {
   return settings.staggeredRays ? RayStarts::Staggered : byOctant ? RayStarts::Pairs : RayStarts::Middle;
@@ -25,8 +25,8 @@ VolumeLayout LayoutOf(const PropagationProblem& problem)
   return { problem.TheGrid(), problem.Channels(), shared };
 }
 
-/// Which arrays of the medium the device needs. It needs no separate sigma_s if the medium does not absorb, where
-/// sigma_s equals sigma_t, or does not scatter.
+/// Arrays of the medium that the device needs. A separate array of sigma_s is not needed if the medium does not absorb
+/// (sigma_s then equals sigma_t) or does not scatter.
 MediumOnDevice::Needs NeedsOf(const PropagationProblem& problem, const VolumeLayout& layout, bool byBalance)
 {
   const MediumTraits& traits = problem.Traits();

@@ -28,7 +28,7 @@ namespace tyndall
 struct ScatteredTransport
 {
   SweepMaker make;                   ///< makes sweeps; collective
-  std::function<SweepModel()> model; ///< what the diffusion system must know of these sweeps
+  std::function<SweepModel()> model; ///< properties of these sweeps that the diffusion system uses
 };
 
 /// Objects and arrays that all iterations share: this rank's block of the medium on its device, the quadrature of

@@ -205,8 +205,8 @@ static real skin_of(const DiffusionLayout* layout, const real* sigma_t)
 }
 
 // Marks the rows that contain voxels with a nonzero skin_of().
-//   skins  [z][y], 1: marked; 2: such a voxel is opaque, over 100 mean free paths; 3: over 1e9, where rounding in its
-//          balance is most of its fluence; initially 0
+//   skins  [z][y], 1: marked; 2: such a voxel is opaque, over 100 mean free paths; 3: over 1e9, where most of its
+//          fluence is rounding error; initially 0
 __kernel void diffusion_skins(DiffusionLayout layout, const __global float* extinction, __global int* skins)
 {
   FOR_ROWS(layout.rows)
@@ -273,7 +273,8 @@ __kernel void diffusion_model(DiffusionLayout layout, const __global float* exti
         real source_of_fluence = load_real(here + x, source);
         if (layout.passing)
         {
-          // The lamps' source is subtracted, because the solved fluence does not include it either.
+          // The solved fluence does not include light of the lamps' first-collision source, so that source is
+          // subtracted.
           source_of_fluence -= load_real(here + x, of_lamps);
         }
         const real shining =

@@ -35,7 +35,8 @@ CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, con
 /// Factor by which the diffusion solve after each sweep reduces the residual of the diffusion system; a stronger
 /// reduction would hardly save sweeps.
 constexpr double Reduction = 3e-3;
-/// The same where opaque voxels are beside thin ones, whose errors the norm of the residual hardly weighs.
+/// This factor if opaque voxels lie next to thin ones: errors of the thin voxels then have little weight in the norm of
+/// the residual.
 constexpr double ReductionBesideThin = 3e-4;
 /// Factor by which the diffusion solves from the 13th sweep on reduce the residual: if the iteration converges slowly,
 /// the residuals of successive solves add up.
@@ -167,8 +168,8 @@ void DiffusionSolver::Refine(double unit)
         this->Solver->Right().CopyFrom(this->Balance, 0, this->Balance.Size());
       }
     });
-    // A residual of its own in each round: what rounding leaves of the large powers between thin voxels would hide the
-    // small ones between opaque voxels.
+    // With opaque voxels next to thin ones, each round computes the residual anew. Otherwise rounding errors of the
+    // large powers between thin voxels would hide the small powers between opaque voxels.
     this->OpaqueBesideThin ? this->Solver->Solve(values, unit, RefinedBy, RefinedTo)
                            : this->Solver->GoOn(values, unit, RefinedBy, RefinedTo);
     this->TheDomain.Collective([&] {

@@ -84,7 +84,8 @@ __kernel void pass_lamp_light(DiffusionLayout layout, const __global float* sigm
   passed += 6 * (ulong)layout.first;
   const float length = path[layout.first + i];
   const float k = sigma_t[i] > 0.0f ? sqrt(3.0f * fmin(sigma_a[i] / sigma_t[i], 1.0f)) : 0.0f;
-  // part that scatters evenly: 1 - 3 g, with the mean cosine g of scattering in the sweeps, 1 - sigma_t / swept
+  // isotropic part of the scattered light: 1 - 3 g, with the mean cosine g = 1 - sigma_t / swept of scattering in
+  // sweeps
   const float even = swept[i] > 0.0f ? 1.0f - 3.0f * (1.0f - fmin(sigma_t[i] / swept[i], 1.0f)) : 1.0f;
   float part[6], sum = 0.0f;
   for (int d = 0; d < 6; ++d)

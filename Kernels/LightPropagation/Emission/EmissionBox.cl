@@ -144,7 +144,7 @@ typedef struct
 } box_ray;
 
 // Sets `crossed` to the axes whose next plane of voxel faces lies at or before position `end` on the ray, and advances
-// `next` beyond these planes. Sets it to no axis if the ray ends at `end`, i.e. `end` is at least `way_ends`.
+// `next` beyond these planes. `crossed` is set to no axis if the ray ends at `end`, i.e. `end` is at least `way_ends`.
 static void cross_planes(box_ray* ray, real end, real way_ends, integer* crossed)
 {
   for (int a = 0; a < 3; ++a)

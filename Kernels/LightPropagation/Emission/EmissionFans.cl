@@ -10,8 +10,8 @@
 
 #include "LightPropagation/Emission/EmissionBox.cl"
 
-// Half of the fans is compared with the other half: bound on the difference of their light, relative to
-// EmissionInfo::uneven times their sum. Above 1, since the sum is more accurate than the difference of the halves
+// Largest acceptable difference between the light of the first and of the second half of the fans, divided by
+// EmissionInfo::uneven times their sum. It is above 1, since the sum is more accurate than the difference of the halves
 // suggests.
 #define OF_HALVES 3.0f
 // If the light of all fans is less than this fraction of their light without extinction, the difference of the halves

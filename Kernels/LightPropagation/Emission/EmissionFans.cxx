@@ -329,8 +329,9 @@ private:
     return fan;
   }
 
-  /// Whether all voxels of a fan's part of space are mirror images of others, so that the fan is not traced. Not if the
-  /// grid has an odd number of voxels along the mirrored axis: then the fan also lights the voxels in the middle.
+  /// Whether all voxels of a fan's part of space are mirror images of others, so that the fan is not traced. False if
+  /// the grid has an odd number of voxels along the mirrored axis, because the fan then also lights the voxels in the
+  /// middle.
   bool IsImage(const FanInfo& fan) const
   {
     int even = 0;

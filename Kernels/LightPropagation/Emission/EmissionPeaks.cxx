@@ -495,7 +495,7 @@ SplitEmission SplitOfDomain(const PropagationProblem& problem, const Rgb& comesI
     to = ValuesOfGrid(domain.Comm(), domain.Partition(), ofBlock, channels);
     return Field{ to.data(), channels };
   };
-  Medium all; // isotropic, with the transport coefficients of the medium, from which alone Split() decides
+  Medium all; // isotropic medium with the transport coefficients, the only ones that Split() uses
   all.grid = problem.Whole();
   all.sigma_a = gather(values[0], [&](std::size_t i, int c) { return own.sigma_a.At(i, c); });
   all.sigma_s = gather(values[1], [&](std::size_t i, int c) { return own.TransportSigmaS(i, c); });

@@ -334,8 +334,9 @@ static bool is_close(const EmissionInfo* s, const lit_voxel* voxel)
   return close;
 }
 
-// Gathers light in a voxel or through a face with as many rays as the accepted error requires, in each transformation
-// of the scene: half of a lattice in two transformations is less accurate than the complete lattice in one.
+// Gathers light in a voxel or through a face with as many rays as the accepted error requires. All these rays are
+// traced in each transformation of the scene, since half of a lattice in two transformations is less accurate than the
+// complete lattice in one.
 static void gather(const EmissionInfo* s, lit_voxel* voxel, const __global float* points, const __global float* sigma,
   const __global float* emission, float* sums)
 {

@@ -123,7 +123,7 @@ SweepTally UncollidedEmission::PutOnRanks(const UncollidedVolume& volume, const 
   const std::vector<float> extinction = WholeExtinction(volume, whole);
   SweepTally tally;
   volume.domain.Collective([&] {
-    // Ranks without voxels trace the rays, too: all know the light at the box's faces.
+    // Ranks without voxels also trace the rays, because every rank holds the light at the faces of the whole domain.
     const Buffer<float> sigma_t(volume.device, extinction, "sigma_t of the whole domain");
     Buffer<float> path(volume.device, whole.Floats(), "the light of what shines");
     Buffer<float> flux(volume.device, volume.deposit.flux ? whole.Floats(3) : 0, "its net flux");

@@ -34,8 +34,8 @@ private:
 class VacuumEmission : public UncollidedSource
 {
 public:
-  /// Whether emission from empty voxels is swept separately: not if emissionError is 0, nor in grids so large that the
-  /// additional rays would cost more time than their accuracy is worth.
+  /// Whether emission from empty voxels is swept separately. False if emissionError is 0, and in grids so large that
+  /// the additional rays would cost more time than their accuracy is worth.
   static bool IsApart(const Grid& whole, const PropagationSettings& settings);
   /// Whether a voxel counts as empty: the optical thickness along its longest edge is at most 1e-4.
   /// @param sigma_t  extinction, 1/length

@@ -16,8 +16,8 @@ namespace
 /// (weighted by thickness), is above this ratio.
 constexpr double Uneven = 1.5;
 
-/// Residual at which the number of orders is estimated: the default tolerance rather than the user's, so that the
-/// choice of a scheme does not depend on the latter.
+/// Residual at which the number of orders is estimated: the default tolerance. The choice of a scheme must not depend
+/// on the user's tolerance.
 const double UsualTolerance = PropagationSettings().tolerance;
 /// Extrapolation distance: distance beyond a face at which the diffuse flux extrapolates to zero, mean free paths
 /// (numerics.md, Eq. (86)).

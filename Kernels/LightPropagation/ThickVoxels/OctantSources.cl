@@ -45,8 +45,8 @@ __kernel void take_incoming(OctantSourceInfo info, __global float* restrict curr
   const int axis = d / 2;
   const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
   const float area = info.perRadiance * info.spacing[u] * info.spacing[v];
-  // The crossing pattern of a face is the sum of a term that depends on its position along u and one that depends on
-  // that along v. The latter is constant in the row, as is the former for faces normal to x.
+  // The crossing pattern of a face is the sum of two terms: one for its position along u, one for its position along v.
+  // The second is constant within the row; for faces normal to x, so is the first.
   const __global float* along = pattern + info.pattern[2 * axis];
   const float ofRow = pattern[info.pattern[2 * axis + 1] + (v == 1 ? y : z)];
   const ulong row = 6 * info.first + d * info.stride + ((ulong)z * info.size[1] + y) * info.size[0];
@@ -143,8 +143,8 @@ static void find_of_voxel(const OctantSourceInfo* info, const int* at, ulong i, 
 //   of_lamps  source by face (e of numerics.md, Eq. (46e)) of light first scattered from lamps, W / (length^3 sr),
 //             used if `lamps` is 1; set to 0
 //   sources   W / (length^3 sr), [octant][voxel] from index 8 `first` on, in addition to the uniform source: on entry
-//             that of the sweep, replaced. May be negative in the first scattering orders, for light that leaves the
-//             voxel only in later orders
+//             the sources of the sweep, which are replaced. May be negative in the first scattering orders, for light
+//             that leaves the voxel only in later orders
 __kernel void find_octant_sources(OctantSourceInfo info, const __global float* sigma_t, const __global float* sigma_s,
   const __global float* source, const __global float* values, const __global float* incoming,
   const __global float* beyond, __global float* of_lamps, int lamps, __global float* sources, ulong channel)

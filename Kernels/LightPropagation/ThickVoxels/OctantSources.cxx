@@ -24,7 +24,7 @@ constexpr double LeastAbsorbed = 1e-5; ///< smallest tabulated value of 1 - albe
 constexpr double MostAlike = 1.0;
 
 /// Response of a layer to incident power 1 at its top: power that leaves through the top, power that leaves through the
-/// bottom, uncollided power among the latter, and number of collisions per unit of power.
+/// bottom (`straight`: its uncollided part), and number of collisions per unit of power.
 struct Response
 {
   double reflected, transmitted, straight, collisions;

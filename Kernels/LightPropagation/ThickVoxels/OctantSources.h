@@ -62,7 +62,7 @@ public:
   /// LampPath() to `allPath`, and sets LampPath() and LampMoments() to 0.
   void TakeLamp(const Buffer<float>& allPath);
   /// Mean incident radiance at voxels' faces, W / (length^2 sr), [channel][face][voxel], summed over the calls of
-  /// TakeIncoming() since the last Find(). Find() needs that of the ghost cells around a subdomain.
+  /// TakeIncoming() since the last Find(). Find() needs these values for the ghost cells around a subdomain, too.
   const Buffer<float>& CameInThroughFaces() const { return this->Incoming; }
   /// Computes Sources() for the light scattered from all light of TakeIncoming() and TakeLamp() since the last call.
   /// @param source  uniform source of the last sweep whose light was taken, W / (length^3 sr)

@@ -466,8 +466,8 @@ void DiffusionAcceleration::WriteFluenceOfSystems()
   CutOffNegative(this->TheDomain.Comm(), around, layout, sigma_a, this->Result.fluenceDirect, this->Parts.Fluence);
 }
 
-/// Adds the net flux of scattered light: from the diffusion systems or, with angular moments, from the moments of
-/// degree 1 of the sweep, in which the uneven pattern of rays is weaker.
+/// Adds the net flux of scattered light: from the diffusion systems or, with angular moments, from the sweep's moments
+/// of degree 1, which are less disturbed by the uneven pattern of rays.
 void DiffusionAcceleration::WriteFlux()
 {
   TransportParts& parts = this->Parts;

@@ -18,8 +18,8 @@ EscapeCorrection::EscapeCorrection(Device& device, const VolumeLayout& layout, c
 {
   const Grid& grid = layout.grid;
   const double thinnest = *std::min_element(grid.spacing.begin(), grid.spacing.end());
-  // Of the power that a source of 1 emits in a voxel, about half the optical thickness of the voxel, as a fraction,
-  // collides in the same voxel. The correction is limited to half of that colliding power.
+  // The fraction of a voxel's emitted power that collides in the same voxel is about half the optical thickness of the
+  // voxel. The correction is limited to half of the power that collides there.
   const double whole = 0.25 * 4.0 * Pi * grid.VoxelVolume();
   const auto extra = [&](std::size_t i, int c) {
     const std::size_t at = c * layout.Stride() + i;

@@ -23,7 +23,7 @@ public:
     const Buffer<float>& sigma_t, const std::vector<float>& fine, const std::vector<float>& usual);
 
   /// Subtracts the additional escaped power of scattered light from the path integrals of a sweep. Emission is not
-  /// corrected, because it may be in voxels too thin to subtract from.
+  /// corrected, because emitting voxels may be so thin that the correction exceeds their path integral.
   /// @param path  path integrals of the sweep, W length; changed
   /// @param source  scattering source of the sweep, W / (length^3 sr)
   /// @return the additional escaped power by channel, W

@@ -75,8 +75,8 @@ private:
 class FaceBalance
 {
 public:
-  /// Takes the outgoing power in `faces` as that of uncollided light. Uncollided light is not swept; its reflected
-  /// power is incident in every sweep.
+  /// The outgoing power in `faces` must be that of uncollided light, which is not swept. Its reflected power is
+  /// incident in every sweep.
   /// @param device, faces, block  must outlive this object
   FaceBalance(Device& device, FaceLight& faces, const BlockWithGhosts& block);
 
@@ -85,15 +85,16 @@ public:
   /// Reads the outgoing power of the last sweep, and writes it, with the reflected powers, to Rows().
   void TakeSwept();
   /// Power in one channel by cell of the faces of the block with ghost cells, W, [FaceCame ... FaceLeaves][cell]
-  /// (DiffusionShared.h): reflected into the last sweep, reflected uncollided, outgoing in the sweep, and outgoing in
-  /// the diffusion solution. 0 at ghost cells.
+  /// (DiffusionShared.h): power reflected into the last sweep, reflected power of uncollided light, outgoing power of
+  /// the sweep, and outgoing power of the diffusion solution. 0 at ghost cells.
   const Buffer<float>& Rows(int channel) const { return this->OfBlock[channel]; }
   /// Reads the outgoing power of the diffusion solution, which the diffusion systems wrote to Rows().
   /// @param lit  by channel: whether its diffusion system was solved; equal on all ranks
   void TakeLeaving(const std::vector<bool>& lit);
 
   /// Sets the reflected light incident in the next sweep from the outgoing power of the diffusion solution.
-  /// @param given  emitted, first-scattered, reflected uncollided and incident boundary power, W by channel
+  /// @param given  sum of the emitted and first-scattered power, the reflected power of uncollided light and the
+  ///   incident boundary power, W by channel
   /// @return change of the reflected power since the last sweep, relative to `given` plus the reflected power; largest
   ///   over channels
   double Reflect(int iteration, const Rgb& given);

@@ -34,8 +34,8 @@ public:
   /// @param guess  path integrals of all later orders, W length, used instead of the coarse solution; null: solve
   Powers ScatterOrder(EnergyLedger& ledger, const Rgb& onTheWay, const Buffer<float>* guess);
 
-  /// Whether the coarse solution includes power in flight around periodic axes: if all axes are periodic, so that this
-  /// power can only be absorbed.
+  /// Whether the coarse solution includes power in flight around periodic axes. True if all axes are periodic, because
+  /// this power then cannot escape.
   bool ForeseeWay() const { return this->Closed; }
 
   /// Copy of `ledger` plus the predicted escaped power of all later orders.
