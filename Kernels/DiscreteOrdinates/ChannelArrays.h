@@ -35,8 +35,8 @@ public:
   /// Bytes of device memory that an instance needs.
   static std::size_t Bytes(const Grid& grid, bool netFlux);
 
-  /// Adds the uncollided light of all lamps, of empty voxels and of another solver to fluence and powers, and its
-  /// first-collision source to `source`. Collective.
+  /// Adds uncollided light to fluence and powers, and its first-collision source to `source`: light of all lamps, light
+  /// emitted by empty voxels, and light given by another solver. Collective.
   /// @param source  source of all directions, W / (length^3 sr). On entry a voxel's source is its value here times
   ///   Scale; on return, if light was added, it is the value itself, and Scale is 1
   void AddLamps(
@@ -58,7 +58,7 @@ public:
   void EmitEvenly(const Buffer<float>& source, EnergyLedger& ledger) const;
   bool Emits() const { return this->AnyEmission; }
   bool Scatters() const { return this->AnyScattering; }
-  /// Fraction of this rank's voxels in groups that do not scatter, which AngularScattering can skip.
+  /// Fraction of this rank's voxels that lie in blocks of voxels without scattering, which AngularScattering can skip.
   double PartWithoutScattering() const;
   /// Whether each block of OrdinateBlock consecutive voxels lies in the box `within` of this rank's grid and has no
   /// medium.

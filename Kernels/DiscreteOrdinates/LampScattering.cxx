@@ -70,9 +70,9 @@ LampScattering::LampScattering(
   this->Table = Buffer<float>(device, this->ByAngle, "the phase function");
 }
 
-/// Phase function between a ray and each direction, 1/sr, [group][direction of the group], corrected so that its
-/// integral over the directions is 1 and its mean cosine is exact, as far as that keeps all values positive (part_i of
-/// numerics.md, Eq. (D12)).
+/// Phase function between a ray and each direction, 1/sr, [group][direction of the group] (part_i of numerics.md, Eq.
+/// (D12)). It is corrected so that its integral over the directions is 1 and, as far as all values remain positive, its
+/// mean cosine is exact.
 std::vector<float> LampScattering::PartsAlong(const std::array<double, 3>& ray) const
 {
   const auto cosine = [&](int g, int lane) {

@@ -11,9 +11,9 @@ namespace tyndall
 {
 constexpr int OrdinateLanes = 8; ///< number of directions in a group, which kernels process as one vector
 
-/// Number of voxels from the radiance of one group of directions to that of the next: at least the number of voxels of
-/// the grid, and such that the same voxel of different groups does not map to the same few cache lines (a power of two
-/// is ten times slower).
+/// Distance in memory, in voxels, from the radiance of one group of directions to that of the next. It is at least the
+/// number of voxels of the grid, and such that the same voxel of different groups does not map to the same few cache
+/// lines (a power of two is ten times slower).
 constexpr std::size_t OrdinateStride(std::size_t voxels)
 {
   return (voxels + 127) / 128 * 128 + 8;
@@ -29,8 +29,8 @@ struct OrdinateGroup
 };
 
 /// Directions sorted into groups, which define the memory layout of radiance: [group][voxel, x fastest, padded to
-/// OrdinateStride][direction of the group], so that the radiance of a voxel and a group is one vector, and a row of
-/// voxels is contiguous.
+/// OrdinateStride][direction of the group]. The radiance of a voxel and a group is one vector, and the vectors of a row
+/// of voxels are contiguous.
 class OrdinateGroups
 {
 public:

@@ -10,9 +10,9 @@
 namespace tyndall
 {
 /// Solves a scene by discrete ordinates and estimates the error of its fluence, as SolveWithErrorEstimate
-/// (ErrorEstimate.h): from two more solves on a grid of half the voxels per axis, of which the second has fewer
-/// directions and, in the same proportion, fewer terms of the phase function. The error of replacing a mean cosine that
-/// varies by voxel by its mean is not included. Collective.
+/// (ErrorEstimate.h). The estimate needs two more solves, on a grid of half the voxels per axis. The second of these
+/// has fewer directions and, in the same proportion, fewer terms of the phase function. The error of replacing a mean
+/// cosine that varies by voxel by its mean is not included. Collective.
 /// @param kept  light of the previous solve on the scene's grid, as for SolveDiscreteOrdinates; null: none
 /// @throws InvalidInput  for the published scheme, which has no estimate
 /// @throws the exceptions of SolveDiscreteOrdinates

@@ -64,9 +64,9 @@ struct OrdinatesResult
   std::vector<std::string> leftOut; ///< what the sweeps of this channel omitted (LeftOut.h)
 };
 
-/// Makes the arrays of outgoing and reflected light by cell of the box faces for the directions of a solve: the albedo
-/// times the outgoing power of a cell is incident in the next sweep, as equal radiance along all incident directions
-/// (numerics.md, Eq. (D14)). Null if no face reflects.
+/// Makes the arrays of outgoing and reflected light by cell of the box faces for the directions of a solve
+/// (numerics.md, Eq. (D14)). The outgoing power of a cell, times the albedo, is incident in the next sweep as equal
+/// radiance along all incident directions. Null if no face reflects.
 std::unique_ptr<FaceLight> FaceLightOf(Device& device, const OrdinatesScene& scene, const OrdinateGroups& groups);
 
 /// Arrays of `faces` that a sweep adds to and reads; none if `faces` is null.

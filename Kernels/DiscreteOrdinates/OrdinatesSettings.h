@@ -50,7 +50,7 @@ struct OrdinatesSettings
   /// Number of orders after which the sum of all later orders is extrapolated as a geometric series (conservative
   /// scheme); 0: no extrapolation.
   int seriesAfter = 0;
-  /// Conservative scheme, if neither maximumOrders nor seriesAfter is set.
+  /// Acceleration of the conservative scheme; used only if neither maximumOrders nor seriesAfter is set.
   PropagationAcceleration acceleration = PropagationAcceleration::Automatic;
   std::array<bool, 3> periodic = { false, false, false }; ///< light wraps around these axes
   bool netFlux = false;                                   ///< whether to compute net_flux
@@ -75,8 +75,8 @@ PropagationSettings AsPropagation(const OrdinatesSettings& settings);
 OrdinatesSettings AtQuality(
   const Domain& domain, Quality quality, OrdinatesSettings settings, const Medium& medium, const DeviceMemory& memory);
 
-/// Largest number of directions per cube face, a square number of at least 9 and at most `most`, with which one channel
-/// of radiance on the whole grid takes at most half of the smallest memory of all ranks. Collective.
+/// Largest number of directions per cube face with which one channel of radiance on the whole grid takes at most half
+/// of the smallest memory of all ranks. A square number, at least 9 and at most `most`. Collective.
 /// @param memory  of this rank's device
 int DirectionsThatFit(const Domain& domain, int most, const DeviceMemory& memory);
 

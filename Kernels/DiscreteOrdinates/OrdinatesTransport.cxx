@@ -26,8 +26,8 @@ namespace tyndall
 {
 namespace
 {
-/// Light that wraps around periodic axes is swept until this fraction of the power that the first sweep lets wrap is
-/// left, but at most MostLaps times.
+/// Light that wraps around periodic axes is swept again until its power has fallen to this fraction of the power that
+/// wraps in the first sweep, but at most MostLaps times.
 constexpr double WrappedLeft = 1e-6;
 constexpr int MostLaps = 500;
 /// Number of scattering orders up to which anisotropic scattering is not accelerated. Acceleration represents

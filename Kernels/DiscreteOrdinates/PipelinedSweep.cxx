@@ -143,8 +143,9 @@ SweptFaces PipelinedSweep::FacesOfBlock(const SweptFaces& ofWhole)
   return faces;
 }
 
-/// Calls visit(place) for each group of directions of an octant and each voxel of a contact with another block. `place`
-/// is the index of the radiance among the values of ReadFace() for the octant. The order is the same on both ranks.
+/// Calls visit(place) for each group of directions of an octant and each voxel face in the area of contact with another
+/// block. `place` is the index of the face's radiance among the values of ReadFace() for the octant. The order is the
+/// same on both ranks.
 template <class Visit>
 void PipelinedSweep::ForFace(
   const Octant& octant, const BlockContact& contact, const VoxelBox& cells, const Visit& visit) const

@@ -69,8 +69,8 @@ private:
     ParallelBundles way;
     int first = 0, groups = 0;
     std::vector<BlockContact> senders, receivers;
-    /// Faces shared with other blocks across the ends of periodic axes: blocks from which radiance wraps around, and to
-    /// which.
+    /// Contacts with other blocks across the ends of periodic axes: blocks from which radiance wraps around to this
+    /// block, and blocks to which radiance of this block wraps around.
     std::vector<BlockContact> aroundFrom, aroundTo;
     /// By element of aroundFrom: radiance received from that block, incident in the next sweep; empty: none.
     std::vector<std::vector<float>> waiting;

@@ -89,8 +89,8 @@ public:
   }
 
 private:
-  /// Whether orders after the first are swept in the box of the medium alone, and the light that leaves this box in one
-  /// final sweep.
+  /// Whether orders after the first are swept only in the bounding box of the medium. The light that leaves this box is
+  /// then carried on in one final sweep.
   bool MayOmitEmptySlabs() const
   {
     return this->Scene.domain.IsSerial() && this->Scattering.WorksInPlace() && this->Arrays.Scatters() &&
@@ -252,8 +252,9 @@ private:
     }
     this->Scene.domain.Collective([&] {
       this->Scattering.Gather(this->Radiance, this->Arrays.Light, monitor);
-      // no scattering: the radiance that the next sweep reads as its source is 0; it carries only light that wraps
-      // around periodic axes or was reflected, and without such light there is no next sweep
+      // Without scattering, the source of the next sweep, which is stored in the array of the radiance, is 0. The next
+      // sweep carries only light that wraps around periodic axes or was reflected; without such light there is no next
+      // sweep.
       if (this->OnTheWay > 0.0 || this->Arrays.Faces)
       {
         this->Radiance.Fill(0.0f);

@@ -56,8 +56,9 @@ inline int4 swept_range(int up, int beyond, int first, int last, int size)
   return (int4)(up ? first : last, up ? 1 : -1, in_box, in_box + outside);
 }
 
-// Reciprocal weight of the outgoing radiance in weighted diamond differences: the weight is 1 / (1 - T) - 1 / x with
-// T = exp(-x), here 1 / (1 + x + ... + x^6 / 720) (numerics.md, Eq. (D15)). 2 in vacuum, 1 in opaque voxels.
+// Reciprocal weight of the outgoing radiance in weighted diamond differences: the weight is 1 / (1 - T) - 1 / x with T
+// = exp(-x), approximated here by 1 / (1 + x + ... + x^6 / 720) (numerics.md, Eq. (D15)). 2 in vacuum, 1 in opaque
+// voxels.
 //   x  optical length of the voxel along the direction, between faces normal to an axis, >= 0
 inline real reciprocal_weight(real x)
 {
@@ -149,8 +150,8 @@ typedef struct
   const __global uchar* empty; // whether each block of OrdinateBlock voxels has no medium, if SweptLayers::skips
 } ordinate_arrays;
 
-// Stores the sums, over the directions of a group, of fluence and net flux of voxel `voxel` of a block without medium:
-// [fluence, flux along x, y, z][voxel], in place of the radiance of the block's first voxels.
+// Stores the sums of fluence and net flux over the directions of a group, for voxel `voxel` of a block without medium,
+// [fluence, flux along x, y, z][voxel]. They replace the radiance of the block's first voxels.
 //   across  power that a radiance of 1 carries through the faces normal to x, y, z, W;  up: signs of the directions
 static inline void keep_sums(__global float* block, int voxel, real mean, real angle, const real* across,
   const SweptLayers* layers, const __global int* up)
@@ -303,7 +304,8 @@ SWEEP_IN_SUMS(sweep_moments_by_diamonds, ByDirection | ByDiamonds)
 
 // Adds the sums over the directions of each group to path integrals, and to partial currents or net flux.
 //   sums      [group][voxel], as sweep_layers() writes them
-//   volume    volume of a voxel path W length, [channel][voxel]
+//   volume    volume of a voxel
+//   path      W length, [channel][voxel]
 //   through   [channel][part][voxel]: 6 parts: power that enters each voxel through its faces -x, +x, ... +z, W; 3: net
 //             flux along x, y, z, W length; 0 parts: not computed
 //   edges     edges of a voxel

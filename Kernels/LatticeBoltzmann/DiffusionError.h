@@ -14,7 +14,7 @@ namespace tyndall
 /// noise of photons. Collective.
 /// @param scene  the scene that was solved. If it has a refractive index, which light propagation maps do not support,
 ///   the coarse solves ignore it: the estimate is then that of the same medium without refraction
-/// @param ofPhotons  whether the uncollided light is that of photons: taken from light.fluenceDirect
+/// @param ofPhotons  whether the uncollided light is that of photons, which is taken from light.fluenceDirect
 /// @param light  light of the conservative scheme
 /// @throws InvalidInput  if there is a refractive index and the coarse voxels are no cubes
 /// @throws the exceptions of SolveConservative and SolveLatticeBoltzmann

@@ -13,10 +13,10 @@ namespace tyndall
 namespace
 {
 /// Decrease of fluence along an axis is attributed to attenuation only if light travels along that axis, since light
-/// also decreases at shadow edges: the estimated first moment of collisions along the axis (their mean distance from
-/// the voxel's centre) is multiplied by a weight that depends on the component of the mean direction along it. The
-/// weight is 0 up to a component of SaysNothing, and grows linearly to 1 at SaysAll, so that rounding errors cannot
-/// switch it on or off.
+/// also decreases at shadow edges. Therefore the estimated first moment of collisions along the axis (their mean
+/// distance from the voxel's centre) is multiplied by a weight that depends on the component of the mean direction
+/// along it. The weight is 0 up to a component of SaysNothing, and grows linearly to 1 at SaysAll, so that rounding
+/// errors cannot switch it on or off.
 constexpr double SaysNothing = 0.15, SaysAll = 0.25;
 
 /// Mean of exp(-k x) over x from 0 to 1.
@@ -115,9 +115,9 @@ private:
   int Channel;
 };
 
-/// Estimates the first moments of collisions (LightField::firstMoments) of uncollided light that is known by voxel
-/// only: along its mean direction the light decays as exp(-k x), with k from the fluence of the next voxel downstream
-/// (numerics.md, Eq. (L14)). Empty if the image has no mean directions.
+/// Estimates the first moments of collisions (LightField::firstMoments) of uncollided light that is given by voxel
+/// (numerics.md, Eq. (L14)). The light is assumed to decay as exp(-k x) along its mean direction; k follows from the
+/// fluence of the next voxel downstream. Empty if the image has no mean directions.
 std::vector<float> EstimatedFirstMoments(const UncollidedImage& image, const Medium& medium, const LatticeBox& box)
 {
   if (!image.meanDirection.values)

@@ -36,7 +36,7 @@ double NearerOfNormalBeam(const Medium& medium, std::size_t voxel, int channel);
 
 /// Computes the uncollided light in each known voxel (own or ghost voxel of this rank): the light given by another
 /// solver, if there is any, else that of lamps and environment by light propagation maps. Diffuse light of sky and
-/// faces is excluded, since it is incident on the lattice. Collective.
+/// faces is excluded, since it enters the lattice directly. Collective.
 Uncollided FindUncollided(
   Device& device, const LatticeProblem& problem, const LatticeSettings& settings, const Monitor& monitor);
 

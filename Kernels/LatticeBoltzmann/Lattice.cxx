@@ -43,8 +43,8 @@ Lattice::Lattice(Device& device, const LatticeBox& box, const LatticeSettings& s
 void Lattice::LayOut(const LatticeVoxels& voxels)
 {
   std::copy(this->Size.begin(), this->Size.end(), this->TheInfo.size);
-  // Rows have LatticeFirst unused values at their beginning, so that the ghost value after the end of a row can be
-  // stored in those of the next row.
+  // Rows begin with LatticeFirst unused values. The ghost value after the end of a row is stored in the unused values
+  // of the next row.
   this->TheInfo.row = RoundUp(this->Size[0], Width) + LatticeFirst;
   this->TheInfo.layer = this->TheInfo.row * (this->Size[1] + 2);
   for (int i = 0; i < 18; ++i)

@@ -23,7 +23,7 @@ namespace tyndall
 /// Conservative scheme: collisions are scaled so that densities are positive and power is conserved for any optical
 /// thickness of a voxel; in voxels above 4/3 mean free paths (with 18 links), links reflect a fraction of the light.
 /// Light that crosses into a lower refractive index is partly returned, according to total internal reflection, so that
-/// fluence / n^2 diffuses, and is uniform in thermal equilibrium; light of sky and faces is incident with its radiance
+/// fluence / n^2 diffuses, and is uniform in thermal equilibrium. Light of sky and faces is incident with its radiance
 /// times n^2. The steady state is solved for directly (SteadyLattice.h), unless steps are asked for. Published scheme:
 /// the explicit collisions of the paper, without refraction. Densities oscillate and grow where sigma_t h is above 1; a
 /// warning says so.

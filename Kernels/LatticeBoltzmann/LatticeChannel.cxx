@@ -253,8 +253,8 @@ void LatticeAccount::AddFlux(LightField& light) const
   {
     const std::size_t known = this->Box.Known(i);
     const double tau = this->Edge() * this->TheMedium.sigma_a.At(known, static_cast<int>(this->Channel));
-    // The densities yield the net flux at the end of a step; multiplied by this factor, it is the mean over the step,
-    // as is the fluence.
+    // The densities yield the net flux at the end of a step. This factor converts it to the mean over the step, for
+    // which the fluence is computed, too.
     const double mean = tau > 1e-6 ? this->Voxels.lost[known] / tau : 1.0;
     for (std::size_t a = 0; a < 3; ++a)
     {

@@ -31,8 +31,8 @@ struct LatticeSettings
   int stepsPerExchange = 8;
   int maximumSteps = 0;    ///< number of steps; 0: step until the tolerance is met
   double tolerance = 1e-4; ///< estimated relative error of the fluence at which to stop
-  /// Solve for the steady state, if the scheme is conservative, there are no blocks and maximumSteps is 0; false: step
-  /// until the tolerance is met.
+  /// Whether to solve directly for the steady state, if the scheme is conservative and blockSize and maximumSteps are
+  /// 0; false: step until the tolerance is met.
   bool solvesSteady = true;
   /// Number of evenly spread voxels at which the change of fluence is measured; 0: all voxels. Reading all costs about
   /// one step.

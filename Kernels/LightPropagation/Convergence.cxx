@@ -26,8 +26,8 @@ constexpr double NextToAll = 1e-3;
 
 constexpr double ImbalanceAtMost = 1e-2; ///< imbalance, as fraction of the power, above which the solve fails
 constexpr double ImbalanceUnsaid = 1e-4; ///< imbalance, as fraction of the power, up to which there is no warning
-/// An imbalance is relative to the incoming power of its channel, or to this fraction of that of the brightest channel
-/// if the latter is larger.
+/// An imbalance is relative to the incoming power of its channel or, if that is smaller than this fraction of the
+/// incoming power of the brightest channel, relative to this fraction.
 constexpr double FaintChannel = 1e-3;
 constexpr double OpaqueVoxel = 100.0; ///< approximate optical thickness beyond which floats lose light in a voxel
 

@@ -70,8 +70,9 @@ double GoesOnToItsEnd(int maximumOrders, double before, double onTheWay, double 
 /// @param others  power of the last order that the acceleration did not predict, W
 double GoesOnAsForeseen(double before, double onTheWay, double others);
 
-/// Progress of a solve, in [0, 1]: completed orders relative to settings.maximumOrders; without such a limit the
-/// logarithm of the residual relative to that of the tolerance, and at least a small increase with each iteration.
+/// Progress of a solve, in [0, 1]. If settings.maximumOrders is set, it is the fraction of completed orders. Otherwise
+/// it is the logarithm of the residual divided by the logarithm of the tolerance, or a function that slowly increases
+/// with the iterations, whichever is larger.
 /// @param residual  residual of the last iteration; 1 before the first one
 /// @param iterations  completed iterations, including the fraction of the current one
 double ProgressOf(const PropagationSettings& settings, double residual, double iterations);

@@ -37,8 +37,8 @@ struct PropagationSettings
   /// (BoundaryLight.h); 0: as many as for scattered light; -1: as many as increase the predicted time of the solve by
   /// at most half, if they reduce the error (LightSources.h).
   int uncollidedDirections = -1;
-  /// Whether light is swept along rays; false: scattered light and that of the sky are swept by discrete ordinates
-  /// (OrdinatesTransport.h), light of faces along rays, because ordinates would smear its edges.
+  /// Whether light is swept along rays; false: scattered light and light of the sky are swept by discrete ordinates
+  /// (OrdinatesTransport.h), but light of faces along rays, because ordinates would smear its edges.
   bool alongRays = true;
   /// Whether rays of each direction start at a different position within a voxel (RayBundles.h). With more than 100
   /// uncollidedDirections uncollided light always does so, unless the solve is accelerated. With at least 144

@@ -33,8 +33,8 @@ public:
   Values Solve(const Values& residual, double unit);
 
 private:
-  /// Diffusion matrix, in arrays over the block's voxels and their ghost voxels: conductances, by axis, of the low
-  /// faces of the block's voxels and of the ghosts above them, and losses of the block's voxels.
+  /// Diffusion matrix, in arrays over the block's voxels and their ghost voxels. Conductances, by axis, are those of
+  /// the low faces of the block's voxels and of the ghost voxels above them; losses are those of the block's voxels.
   struct Matrix
   {
     std::array<std::vector<float>, 3> conductance;

@@ -151,8 +151,8 @@ static bool begin_line(LatticeInfo lattice, int i, Place* place, bool* closed)
   return u < size_a ? !round_b : !round_a && (round_b || u - size_a != first_b);
 }
 
-// Light that a voxel sends up, from itself and all voxels below it: U (sends), if no light arrives from above, and R
-// (returns), the fraction of light arriving from above that is sent up again.
+// Light that a voxel sends up, including the light of all voxels below it. sends: U, the light sent up if none arrives
+// from above. returns: R, the fraction of light arriving from above that is sent up again.
 typedef struct
 {
   exact sends, returns;
@@ -176,14 +176,14 @@ static Behind cross_up(Link link, Behind here)
 }
 
 // Light at a link: `up_arrives` arrives in the voxel above the link, `lower` arrives in the voxel below it, and `up` is
-// what the voxel below sends up.
+// the light that the voxel below sends up.
 typedef struct
 {
   exact up_arrives, lower, up;
 } Crossed;
 
-// Computes the light at a link from `down`, the light that the voxel above sends down, and `below`: what the voxel
-// below sends up if none arrives from above, and the fraction of arriving light that it returns.
+// Computes the light at a link from `down`, the light that the voxel above sends down, and `below`: the light that the
+// voxel below sends up if none arrives from above, and the fraction of light arriving from above that it sends back up.
 static Crossed cross_down(Link link, Behind below, exact down)
 {
   const exact up = (below.sends + below.returns * link.down * down) / (1 - below.returns * (1 - link.up));
@@ -191,9 +191,10 @@ static Crossed cross_down(Link link, Behind below, exact down)
   return crossed;
 }
 
-// Lower end of a line, or of the piece of a line in one block: light that arrives in the first voxel from below;
-// fraction of the light sent down by the first voxel that returns to it; and, if the line is cut there because it is
-// closed or comes from another block, the fraction of the light sent up the cut that the link transmits.
+// Lower end of a line, or of the piece of a line in one block. arrived: light that arrives in the first voxel from
+// below. back: fraction of the light sent down by the first voxel that returns to it. part: fraction of the light sent
+// up the cut that the link transmits, if the line is cut at this end because it is closed or comes from another block;
+// else 0.
 typedef struct
 {
   exact arrived, back, part;
@@ -220,9 +221,9 @@ typedef struct
   exact sent, round, gives_back;
 } Cut;
 
-// State of the upward pass at the last voxel that it has reached: place and index of the voxel, number of voxels so
-// far, the fraction of the light sent up the cut below the first voxel that this voxel sends up (part), and the light
-// that the first voxel sends down to that cut (cut).
+// State of the upward pass at the last voxel that it has reached: place and index of this voxel, and number of voxels
+// so far. If the line is cut below its first voxel, part is the fraction of the light sent up the cut that this voxel
+// sends up, and cut is the light that the first voxel sends down to the cut.
 typedef struct
 {
   Place place;

@@ -347,8 +347,8 @@ void LinesOfLinks::SweepWhole(int pair)
     this->Densities->Densities(), this->Endless);
 }
 
-/// Sweeps the lines of the pairs of directions from `begin` to before `end` concurrently, if lines are cut at the faces
-/// of blocks: a rank computes one pair while it waits for messages of another.
+/// Sweeps the lines of the pairs of directions [begin, end) concurrently, if lines are cut at the faces of blocks. A
+/// rank computes one pair while it waits for messages of another.
 void LinesOfLinks::SweepCut(int begin, int end)
 {
   for (int pair = begin; pair < end; ++pair)

@@ -173,8 +173,8 @@ double Inverse(double rest)
   return rest > 0.0 ? 1.0 / rest : 0.0;
 }
 
-/// Response of the pieces of a line that have been joined so far: light that the last piece sends up (sends) and light
-/// that the first piece sends down (cut), as linear functions of the light sent down to the last piece and, for a
+/// Response of the pieces of a line that have been joined so far. sends: light that the last piece sends up; cut: light
+/// that the first piece sends down. Both are linear functions of the light sent down to the last piece and, for a
 /// closed line, of the light that wraps around it.
 struct WayUp
 {
@@ -205,7 +205,8 @@ struct WayUp
 };
 
 /// Light of a closed line at the link between its last and its first piece.
-/// @return `up`: what the last piece sends into the link; `down`: what arrives at the last piece from the link
+/// @return `up`: light that the last piece sends into the link; `down`: light that arrives at the last piece from the
+///   link
 SentByPiece RoundOf(const WayUp& way, const PieceOfLine& first)
 {
   const double inverse = Inverse(1.0 - first.down * way.cut.ofAhead);

@@ -35,8 +35,8 @@ public:
   /// @param partition  must outlive this
   PiecesOfLines(const BlockPartition& partition, const std::array<bool, 3>& periodic, int pair);
 
-  /// Calls visit(rank, line) for each line of links that has several pieces (crosses faces of blocks) or is closed,
-  /// with the rank in whose block the line begins; in the same order on all ranks.
+  /// Calls visit(rank, line) for each line of links that is closed or has several pieces, i.e. crosses faces of blocks.
+  /// The line begins in the block of `rank`. The order is the same on all ranks.
   void ForLines(const std::function<void(int rank, const Line& line)>& visit) const;
 
   /// Two-dimensional range of work-items, one for each possible piece of a line in a rank's block.

@@ -235,7 +235,7 @@ inline between find_between(const CoarseCells* box, int axis, int voxel)
 //   found    solution, W / length^2, by cell
 //   path     path integrals, W length; replaced
 //   fluence  W / length^2; the light is added to it
-//   tally    [row] power absorbed from all light that is added, and from that of the solution alone
+//   tally    [row] absorbed power of all light that is added, and of the solution alone
 __kernel void add_found(CoarseCells box, const __global exact* found, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,
   float volume, __global float8* tally)
@@ -293,8 +293,8 @@ __kernel void add_found(CoarseCells box, const __global exact* found, __global f
   tally[r] = (float8)(absorbed, of_found, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
 }
 
-// Adds the path integrals of a sweep to the fluence, and those of an initial guess of the later orders, as add_found()
-// does for the cells' solution. The guess is given by voxel.
+// Adds the path integrals of a sweep, and of an initial guess of all later orders, to the fluence. Like add_found(),
+// but with a guess by voxel instead of the cells' solution.
 //   guess  path integrals of all later orders, W length
 __kernel void add_guess(CoarseCells box, const __global float* restrict guess, __global float* restrict path,
   __global float* restrict fluence, const __global float* restrict sigma_t, const __global float* restrict sigma_s,

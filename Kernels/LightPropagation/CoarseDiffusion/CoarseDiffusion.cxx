@@ -14,7 +14,8 @@ namespace tyndall
 {
 namespace
 {
-/// Factor by which a solve reduces the residual; a sweep reduces the error by less.
+/// Factor by which a diffusion solve reduces its residual. A smaller factor would not save sweeps, because a sweep
+/// reduces the error of the light by less than this.
 constexpr double Reduction = 0.02;
 constexpr const char* Contents = "diffusion on cells";
 

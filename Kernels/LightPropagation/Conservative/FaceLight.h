@@ -85,7 +85,7 @@ public:
   /// Reflected radiance, W / (length^2 sr), [channel][cell], incident in the next sweep (SweepRequest::faceIn).
   const Buffer<float>& In() const { return this->Entering; }
 
-  /// Moves the power in Out() to the uncollided light, which did not leave along the rays of sweeps, and clears Out().
+  /// Counts the power in Out() as uncollided light, which did not leave along the rays of sweeps, and clears Out().
   void TakeUncollided() { this->Uncollided = this->TakeOut(); }
   /// Reflects the power in Out() and the power moved by TakeUncollided(): sets In() to the reflected radiance, and
   /// clears Out().

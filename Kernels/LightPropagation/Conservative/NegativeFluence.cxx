@@ -21,7 +21,7 @@ constexpr int MostTurns = 50;
 constexpr float Rounding = 1e-6f;
 
 /// One channel of fluence on this rank, in which negative values are raised. A raised voxel absorbs additional power;
-/// it owes this power until the power has been subtracted from what its neighbours absorb.
+/// it owes this power until it has been subtracted from the power that its neighbours absorb.
 class OwedPower
 {
 public:

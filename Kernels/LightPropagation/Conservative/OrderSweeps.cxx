@@ -138,8 +138,7 @@ std::array<std::size_t, 2> OrderSweeps::Values(int order) const
     RoundUp(layer * (filled.first[2] + filled.size[2]), SweepPadding) };
 }
 
-/// The source of the final sweep is that of all orders minus the unswept source of the last order (numerics.md, Eq.
-/// (44)).
+/// The source of the final sweep is the sum of the sources of all orders that were swept (numerics.md, Eq. (44)).
 void OrderSweeps::SweepEmptySlabs(EnergyLedger& ledger, const Monitor& monitor)
 {
   if (!this->Filled)

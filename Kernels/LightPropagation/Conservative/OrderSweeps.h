@@ -10,14 +10,14 @@
 
 namespace tyndall
 {
-/// Whether it saves time to sweep orders after the first in the box `filled` of the medium alone, and the empty voxels
-/// around it in one additional sweep: the medium leaves much of the grid empty, and several orders follow. False if
-/// leaveOut is off, or with periodic axes, around which light returns.
+/// Whether it saves time to sweep orders after the first only in the bounding box `filled` of the medium, and the empty
+/// voxels around it in one additional sweep. True if the medium leaves much of the grid empty and several orders
+/// follow. False if leaveOut is off, or with periodic axes, around which light returns.
 bool PaysToOmitEmptySlabs(const VoxelBox& filled, const Grid& grid, const PropagationSettings& settings);
 
 /// Sweeps of source iteration, one per scattering order. An order sweeps all rays through the whole grid, with two
 /// exceptions: the first order omits directions without incident light, and later orders omit the empty voxels around
-/// the medium, whose light of all later orders is computed in one final sweep. Construct and call collectively.
+/// the medium. One final sweep computes the light of all later orders in these voxels. Construct and call collectively.
 class OrderSweeps
 {
 public:

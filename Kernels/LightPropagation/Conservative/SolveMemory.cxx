@@ -22,8 +22,8 @@ struct SolveExtent
   IterationScheme how = IterationScheme::SourceIteration;
   bool byOctant = false; ///< uses sources by octant (OctantSources)
   bool byCells = false;  ///< stores light by cell of the box faces
-  /// Solves on several ranks, where a rank sweeps its block one bundle of rays (directions with equal segments) at a
-  /// time.
+  /// Whether several ranks solve. Each rank then sweeps its block one bundle of rays (directions with equal segments)
+  /// at a time.
   bool ofBlock = false;
 };
 SolveExtent ExtentOf(const PropagationProblem& problem, IterationScheme how)

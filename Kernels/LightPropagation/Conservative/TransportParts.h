@@ -118,7 +118,8 @@ public:
   /// Arrays to which sweeps add light: Path, Flux if requested, and the outgoing power of Faces.
   Deposit WholeDeposit() const;
   std::vector<AxisBundles> AllRays() const; ///< all rays of the quadrature of scattered light
-  /// Angular functions in the directions of scattered light, for SweepRequest::angular; null: scattering is isotropic.
+  /// Values of the angular functions along the directions of the sweeps, for SweepRequest::angular; null: scattering is
+  /// isotropic.
   const AngularValues* UsualValues() const { return this->Angular ? &this->Angular->Values() : nullptr; }
   void DarkenBeams(); ///< sets the first-collision sources of beams in Source to 0
   /// Object that moves the beams' first-collision sources out of Source for the sweep in which beams are traced, and

@@ -226,9 +226,9 @@ void UncollidedLight::FindScatteredInVoxels()
   this->MomentsOfLamp = {};
 }
 
-/// Weight, in a voxel, of the difference between boundary light along the finer quadrature and along that of scattered
-/// light (numerics.md, Eqs. (55), (76)). It is small in optically thick voxels: the depth of first collisions matters
-/// there, and the diffusion system takes it into account only for light in sweeps.
+/// Weight, in a voxel, of the difference between boundary light along the finer quadrature and along the quadrature of
+/// scattered light (numerics.md, Eqs. (55), (76)). It is small in optically thick voxels: the depth of first collisions
+/// matters there, and the diffusion system takes it into account only for light in sweeps.
 double UncollidedLight::PartOfDifference(std::size_t voxel, int channel) const
 {
   const std::array<double, 3>& h = this->TheMedium.grid.spacing;

@@ -39,8 +39,9 @@ static bool is_border(const DiffusionLayout* layout, const int* at, int d)
   return !layout->periodic[axis] && at[axis] == (d & 1 ? layout->size[axis] - 1 : 0);
 }
 
-// Finds the voxel of a cell of the box's faces (numbered as in Medium/BoxFaces.h). @return true for the first cell of
-// each voxel; false for its other cells, and if the axis is periodic
+// Finds the voxel of a cell of the box's faces (numbered as in Medium/BoxFaces.h). Voxels at edges and corners of the
+// box have several cells. @return whether the cell is the first one of its voxel and lies on a face that is not
+// periodic
 static bool find_border_voxel(const DiffusionLayout* layout, int cell, int* at)
 {
   const int* n = layout->size;

@@ -110,14 +110,14 @@ inline real weight_of_transport(const DiffusionLayout* layout, real tau, real ab
 }
 
 // Factor by which the power that diffusion predicts through a face between voxels of optical length tau is multiplied
-// before it is compared with the sweep's: rays cross some faces more often than others (`pattern` of numerics.md, Eq.
-// (65)).
+// before it is compared with the power of the sweep (`pattern` of numerics.md, Eq. (65)). It is needed because rays
+// cross some faces more often than others.
 //   crossing  crossing pattern of the face (SweepModel.h), relative to the mean over the grid: the factor if the
 //             voxels are thick
 inline real pattern_of(real crossing, real tau)
 {
   // In thin voxels the factor is 1: there diffusion starts from the sweep's fluence, which already varies from plane to
-  // plane like the power of the rays that cross.
+  // plane like the power of the rays that cross the faces.
   const real thick = 1.0f - 1.0f / (1.0f + tau * tau);
   return 1.0f + thick * (crossing - 1.0f);
 }
@@ -140,8 +140,8 @@ typedef struct
 } inner_face;
 
 // Transport correction of the power through the face from voxel 0 to 1, W: the power of the sweep minus that of
-// diffusion, times weight_of_transport(), which is reduced further between a thick voxel and a thinner one (remainder R
-// of numerics.md, Eq. (54)).
+// diffusion, times weight_of_transport() (remainder R of numerics.md, Eq. (54)). Between a thick voxel and a thinner
+// one, the weight is reduced further.
 inline real remainder_of(const DiffusionLayout* layout, int axis, const inner_face* face)
 {
   const float h = layout->spacing[axis];

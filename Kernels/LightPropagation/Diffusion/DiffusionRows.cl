@@ -110,8 +110,9 @@ static real conductance_of(
 }
 
 // Computes the matrix of the diffusion system, without the loss through the box's faces.
-//   conductance  of each voxel's low face, length^2, in rows, [axis]; 0 on the box's boundary
-//   loss         absorbed power per fluence, length^2, in rows
+//   conductance  of each voxel's low face, length^2, [axis] in the row layout of MultigridLevel; 0 on the box's
+//                boundary
+//   loss         absorbed power per fluence, length^2, in the row layout
 __kernel void diffusion_conductance(DiffusionLayout layout, const __global float* sigma_t,
   const __global float* sigma_a, const __global float* flat_source, __global float* conductance, __global float* loss)
 {
@@ -242,9 +243,9 @@ static real load_rounded(const __global exact* row, int x, int size)
   return *(real*)values;
 }
 
-// Computes the fluence from which diffusion's power through each face is computed, to be compared with the sweep's
-// power (m of numerics.md, Eq. (56)): in thin voxels the fluence of the sweep, in optically thick ones the fluence from
-// which its source was computed.
+// Computes the fluence m of numerics.md, Eq. (56). Diffusion's power through each face is computed from it, and
+// compared with the sweep's power. In thin voxels m is the fluence of the sweep, in optically thick ones the fluence
+// from which the sweep's source was computed.
 //   extinction  sigma_t, in rows as diffusion_extinction writes it; if DiffusionLayout::skin is 0, [voxel]
 //   swept       extinction that sweeps use, 1/length
 //   of_lamps    first-collision source of lamps, W / (length^3 sr); read only if DiffusionLayout::passing is 1
@@ -330,8 +331,8 @@ static real power_of_faces(
   return power;
 }
 
-// Computes power_of_faces() for the voxels' low faces: powers_x, powers_y, powers_z, W, in rows; 0 at the box's
-// boundary.
+// Computes power_of_faces() for the voxels' low faces: powers_x, powers_y, powers_z, W, in the row layout of
+// MultigridLevel; 0 at the box's boundary.
 //   currents  power that entered voxels in the sweep, W, [-x, +x, -y, +y, -z, +z][voxel]
 //   passed    power of lamps' first-scattered light that leaves through each face, W, in the layout of `currents`; read
 //             only if DiffusionLayout::passing is 1
@@ -384,8 +385,8 @@ __kernel void diffusion_face_powers(DiffusionLayout layout, const __global float
   }
 }
 
-// Computes the right-hand side of the diffusion system, numerics.md, Eq. (53): W, in rows, without the power through
-// the box's faces.
+// Computes the right-hand side of the diffusion system, numerics.md, Eq. (53): W, in the row layout of MultigridLevel,
+// without the power through the box's faces.
 //   given    emission and first-collision source, W / (length^3 sr)
 //   powers_  results of diffusion_face_powers
 __kernel void diffusion_balance(DiffusionLayout layout, const __global float* given, const __global float* powers_x,

@@ -35,8 +35,8 @@ CrossingPattern PatternOf(const CrossingPattern& whole, const VoxelBox& box, con
 /// Factor by which the diffusion solve after each sweep reduces the residual of the diffusion system; a stronger
 /// reduction would hardly save sweeps.
 constexpr double Reduction = 3e-3;
-/// This factor if opaque voxels lie next to thin ones: errors of the thin voxels then have little weight in the norm of
-/// the residual.
+/// Factor by which the diffusion solve reduces the residual if opaque voxels lie next to thin ones. Errors of the thin
+/// voxels have little weight in the norm of the residual.
 constexpr double ReductionBesideThin = 3e-4;
 /// Factor by which the diffusion solves from the 13th sweep on reduce the residual: if the iteration converges slowly,
 /// the residuals of successive solves add up.

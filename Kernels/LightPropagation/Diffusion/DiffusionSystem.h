@@ -122,8 +122,8 @@ public:
   /// Changes the next sweep's source in optically thick voxels next to thinner ones, such that the sweep emits the
   /// outgoing partial current of diffusion there (numerics.md, Eqs. (63), (64)).
   void ShapeSource();
-  /// Optical thickness of the thickest voxel next to a thinner one: 3: over 1e9 mean free paths; 2: over 100; less: at
-  /// most 100.
+  /// Class of the optical thickness of the thickest voxel that lies next to a thinner one: 3 if over 1e9 mean free
+  /// paths, 2 if over 100, less otherwise.
   int MostOpaqueSkin() const { return this->MostOpaque; }
 
   // Steps of DiffusionSolver::Correct(), in order. The system of a rank's block includes ghost voxels, which have

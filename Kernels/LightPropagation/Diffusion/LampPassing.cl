@@ -8,8 +8,8 @@
 // Fraction of a voxel's first-scattered light that returns to the face through which lamp light enters (`back` of
 // numerics.md, Eq. (69)), if the density of first collisions decreases as exp(-b t) with the optical depth t < tau
 // behind that face, and light is attenuated by exp(-k t) on its way back. The constant b follows from r = 1 - 2 t_mean
-// / tau, where t_mean is the mean optical depth of first collisions: r is 0 if it is that of the voxel's centre, 1 if
-// it is that of the face.
+// / tau, where t_mean is the mean optical depth of first collisions: r is 0 if t_mean lies at the voxel's centre, 1 if
+// it lies at the face.
 static float comes_back(float tau, float r, float k)
 {
   const float x = fall_of(fmin(r, 0.999999f)), y = x + k * tau;

@@ -11,9 +11,10 @@
 
 namespace tyndall
 {
-/// Communication of a multigrid solver on several ranks (MultigridSolver.h): ghost voxels of the finest level, and
-/// cells of the second level, which the first rank holds for the whole grid and every rank for its own voxels
-/// ("touched" cells). All functions are collective, except for those that return layouts.
+/// Communication of a multigrid solver on several ranks (MultigridSolver.h): exchange of ghost voxels of the finest
+/// level, and of cells of the second level. The first rank holds these cells for the whole grid; every rank holds the
+/// cells that contain its own voxels ("touched" cells). All functions are collective, except for those that return
+/// layouts.
 class MultigridExchange
 {
 public:

@@ -64,9 +64,9 @@ static void begin_line(const turned_scene* s, const float* point, const real* wa
   }
 }
 
-// Power per solid angle that a ray of a fan carries where it leaves the emitting box, W / sr: radiance there, divided
-// by the density, along the ray's line, of the points from which fans start. These points are distributed in proportion
-// to emission, so that this power is equal for all lines if the box does not attenuate.
+// Power per solid angle that a ray of a fan carries where it leaves the emitting box, W / sr: the radiance there,
+// divided by the density of the fans' origins along the line of the ray. Origins are distributed in proportion to
+// emission, so that this power is equal for all rays if the box does not attenuate.
 static real weigh_line(const turned_scene* s, const float* point, const real* way, float emitted,
   const __global float* sigma, const __global float* emission)
 {
@@ -300,8 +300,9 @@ static void add_fan(const turned_scene* s, const FanInfo* fan, int p, int layer,
 }
 
 // Space is divided into 24 parts, one for each cyclic permutation and each reflection of the axes. Returns the number
-// of parts that contain a voxel: more than 1 if it lies on a border between parts; 0 if it is not in the permuted
-// scene's own part, in which no distance is negative and the one along the first axis is the largest.
+// of parts that contain a voxel; it is more than 1 if the voxel lies on a border between parts. Returns 0 if the voxel
+// is not in the part whose fans are traced, in which no distance is negative and the distance along the first axis is
+// the largest.
 //   distance  from the centre of the emitting box along each axis, half voxels
 static int parts_of_space(const int* distance)
 {

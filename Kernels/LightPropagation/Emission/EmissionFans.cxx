@@ -264,7 +264,8 @@ private:
         Define("NET_FLUX", this->Scene.volume.deposit.flux != nullptr));
   }
 
-  /// Fills Outside with a copy of sigma_t, in the order of axes that `fan` and all fans with the same first axis read.
+  /// Fills Outside with a copy of sigma_t whose axes are permuted for `fan` and all other fans with the same first
+  /// axis.
   void LayOut(const FanInfo& fan)
   {
     const SweepVolume& volume = this->Scene.volume;
@@ -318,7 +319,7 @@ private:
     const auto cover = [&](int k, float& first, int& count) {
       const double low = std::min(0.0, (fan.first[k] - box.First[k] - box.Size[k]) / nearest);
       const double high = std::min(away + 0.5 * box.Size[k] + 0.5, ends[k] - box.First[k] + 0.0) / nearest;
-      // Lower by the difference of adjacent tangents, since each fan adds an offset of at most that to its tangents.
+      // The lowest tangent is reduced by `spacing`, since each fan adds an offset of at most `spacing` to its tangents.
       first = static_cast<float>(low) - fan.spacing;
       count = static_cast<int>(std::ceil((high - low) / fan.spacing)) + 3;
     };

@@ -19,7 +19,7 @@ constexpr std::size_t MostPeaks = 16;
 constexpr double Widest = 0.125; ///< maximum width of a peak, relative to the box's longest edge
 constexpr double Hidden = 4.6;   ///< optical length beyond which a peak is not visible (transmittance 1%)
 constexpr double Opaque = 3e4;   ///< optical thickness of a voxel above which its emission is swept, not a peak
-/// Distance from a peak, in widths of the peak, over which its surroundings must be clear.
+/// Distance from a peak, in widths of the peak, over which the surrounding medium must be transparent.
 constexpr double Clear = 1.5;
 
 using Voxel = std::array<int, 3>;
@@ -414,8 +414,8 @@ public:
     this->Sums = domain.Sum(this->Sums);
   }
 
-  /// Whether the excess of the brightest `most` voxels over all others may be half of the power. Conservative: if a
-  /// voxel of a bin is among the brightest, all voxels of that bin count.
+  /// Whether the brightest `most` voxels may carry half of the emitted power by emission above the limit that Split()
+  /// uses. An upper bound: if one voxel of a bin is among the brightest, all voxels of that bin count.
   bool IsDominatedByFewVoxels(double most) const
   {
     double all = 0.0, bright = 0.0, counted = 0.0, voxels = 0.0;

@@ -186,9 +186,9 @@ static real aim_at_side(
 }
 
 // Gathers light along rays to the emitting box. A lattice provides points in the voxel and directions that are uniform
-// over the solid angles of the box's sides: its first coordinate selects the side, in proportion to its solid angle;
-// the remainder of that coordinate and the second one, (u, v) from 0 to 1, parametrise the angles by tan(x / 2) and sin
-// (aim_at_side).
+// over the solid angles of the box's sides: its first coordinate selects the side, in proportion to its solid angle.
+// The remainder of the first coordinate (u, 0 to 1) and the second coordinate (v) parametrise the angles by tan(x / 2)
+// and sin (aim_at_side).
 //   from, end  range of rays, a multiple of REAL_WIDTH
 //   points     lattice, [u, v, x, y, z][MOST]
 //   sums       mean over the rays, W / length^2, [channel][fluence, net flux along x, y, z]

@@ -28,9 +28,8 @@ constexpr double AllRays = 0x1p22;
 constexpr double CloseRays = 0x1p20; ///< initial number of rays in all voxels in the emitting box and next to it
 const double UsualError = PropagationSettings().emissionError;
 
-/// Generating vector of a rank-1 lattice in five dimensions, found component by component for 32 to 2048 points; with
-/// 4096 the largest error at the points of Kobayashi's benchmark at 20^3 fell from 0.5% to 0.3%. For each n the first
-/// 2^n points, in bit-reversed order, are a lattice, too.
+/// Generating vector of a rank-1 lattice in five dimensions, found component by component for 32 to 2048 points. For
+/// each n the first 2^n points, in bit-reversed order, are a lattice, too.
 constexpr std::array<std::uint32_t, 5> LatticeVector = { 1, 807, 303, 119, 445 };
 
 /// Lattice points, [dimension][MostRays], coordinates between 0 and 1.

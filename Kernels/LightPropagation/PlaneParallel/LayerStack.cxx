@@ -14,7 +14,7 @@ namespace tyndall
 {
 namespace
 {
-/// Cache of the modes of each kind of layer (StackLayer::kind) and of the operators of each layer.
+/// Cache of the eigenmodes (LayerModes) of each kind of layer, and of the operators (LayerOperator) of each layer.
 class Library
 {
 public:

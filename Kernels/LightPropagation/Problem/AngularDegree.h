@@ -38,9 +38,9 @@ struct AngularDetail
 AngularDetail AngularDetailOf(const Medium& medium, int channels);
 
 /// Degree of the angular moments with which a medium is solved: that of the settings or, if they leave it open, the
-/// highest degree whose phase-function moment exceeds the tolerance, up to 3 (9 in slabs, 6 in thin, forward-scattering
-/// media), limited by memory and by the degree that the quadrature resolves. 0 if scattering is isotropic, or so nearly
-/// isotropic that the similarity relation suffices.
+/// highest degree whose phase-function moment exceeds the tolerance. It is at most 3 (9 in slabs; 6 in thin,
+/// forward-scattering media), and limited by memory and by the degree that the quadrature resolves. It is 0 if
+/// scattering is isotropic, or so nearly isotropic that the similarity relation suffices.
 /// @param grid    grid of the domain
 /// @param slab    whether the medium is a plane-parallel slab, where more moments cost little
 /// @param voxels  number of voxels that must fit in memory
@@ -48,8 +48,9 @@ int AngularDegreeFor(const AngularDetail& detail, const Grid& grid, const Propag
   std::size_t voxels, const DeviceMemory& memory);
 
 /// Whether the box is optically thin along one axis and several times thicker along another (numerics.md, Eq. (8c)).
-/// Scattered light then concentrates in few directions along the long axis, where a source that is negative in some
-/// directions (as truncated moments of a peaked phase function are) is not compensated by light of other directions.
+/// Scattered light then concentrates in few directions along the long axis. A source that is negative in some
+/// directions, as from truncated moments of a peaked phase function, is then not compensated by light of other
+/// directions.
 bool IsMuchThinnerAlongOneAxis(
   const AngularDetail& detail, const Grid& grid, int channels, const std::array<bool, 3>& periodic);
 }

@@ -65,8 +65,8 @@ private:
 /// Number of directions per cube face with which a scene is solved: that of the settings, with these exceptions:
 ///  - in a slab at least 144 (cheap, since mirror images are merged), with an even number of rows;
 ///  - with one or two periodic axes an even number of rows: with an odd number, some directions are parallel to these
-///    axes, and their light never enters or leaves (tau 0.01: reflectance 11% too low, 122 sweeps instead of 4; vacuum
-///    under a sky: fluence 1.4% too low).
+///    axes, and their light never enters or leaves. For an optical thickness of 0.01, the reflectance would be 11% too
+///    low.
 /// No exceptions if adaptDirections is false.
 int DirectionsPerFaceFor(const PropagationSettings& settings, const UnvaryingAxes& unvarying);
 }

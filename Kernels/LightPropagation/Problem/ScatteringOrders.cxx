@@ -24,8 +24,8 @@ const double UsualTolerance = PropagationSettings().tolerance;
 constexpr double Extrapolation = 1.42 / 2.0;
 /// Optical thickness along a voxel's longest edge above which sweeps with moments need more expensive corrections.
 constexpr double ThickVoxel = 10.0;
-/// Optical thickness along two edges of a voxel, and albedo, above which orders with sources by octant may grow: they
-/// do above 8 mean free paths and an albedo of 0.55 (numerics.md, section 6.5).
+/// Optical thickness along two edges of a voxel, and albedo, above which successive scattering orders may grow if
+/// sources by octant are used. They grow above 8 mean free paths and an albedo of 0.55 (numerics.md, section 6.5).
 constexpr double GrowingThickness = 6.0, GrowingAlbedo = 0.5;
 
 /// Ratio of a voxel's longest to its shortest edge above which DSA may not converge, and number of orders up to which
@@ -225,7 +225,8 @@ double AlbedoOf(const PropagationProblem& problem, int channel)
 double Leak(const ScatteringOfScene& scene, int channel)
 {
   const std::array<double, 3>& longest = scene.channels[channel].diffusing.along;
-  // Light diffuses according to the transport extinction but is scattered more often, so each order contributes less.
+  // With angular moments, light diffuses according to the transport extinction, but collides according to the larger
+  // extinction of the sweeps. The leakage in each scattering order is therefore smaller.
   const bool inMoments = scene.degree > 0;
   const std::array<double, 3>& scattered = scene.channels[channel].swept.along;
   double leak = 0.0;

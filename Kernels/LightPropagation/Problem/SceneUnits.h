@@ -59,7 +59,8 @@ double LengthUnitOf(const Grid& grid);
 /// A grid converted to `unit` of length.
 Grid InUnit(Grid grid, double unit);
 
-/// A scene converted to `unit` of length. Powers in W result divided by the square of the unit (see MultiplyPowers).
+/// A scene converted to `unit` of length. Powers of the converted scene are those of the original one divided by the
+/// square of the unit (see MultiplyPowers).
 struct SceneInLengths
 {
   SceneInLengths(const Medium& medium, const Illumination& illumination, double unit);

@@ -31,9 +31,9 @@ private:
   std::vector<float> Parts; ///< contribution of a moment of 1 to the phase function, [pair of directions][degree]
 };
 
-/// Removes negative values of a truncated phase function on a quadrature (numerics.md, Eq. (8d)): returns `truncated`
-/// unchanged if there are none, else with moments of degree l multiplied by exp(-s l (l + 1)), with the smallest s that
-/// suffices; the unscattered fraction is adjusted so that the mean cosine is unchanged.
+/// Removes negative values of a truncated phase function on a quadrature (numerics.md, Eq. (8d)). Returns `truncated`
+/// unchanged if it has none. Otherwise its moments of degree l are multiplied by exp(-s l (l + 1)), with the smallest s
+/// that suffices, and the unscattered fraction is adjusted so that the mean cosine does not change.
 DeltaM WithoutNegatives(const DeltaM& truncated, const DirectionKernel& kernel);
 
 /// Delta-M scattering of a medium, as used by sweeps (PhaseFunction.h): in each voxel the forward peak is treated as

@@ -32,7 +32,8 @@ double PartAbove(const PhaseFunction& function, double level)
   return sum;
 }
 
-/// Value of a phase function above which its integral over the forward hemisphere, PartAbove(), is `part`.
+/// Level at which PartAbove(function, level) is `part`: the integral, over the forward hemisphere, of the excess of the
+/// phase function over this level.
 double LevelOf(const PhaseFunction& function, double part)
 {
   double low = 0.0, high = std::max(function.Value(1.0), 1e-30);

@@ -48,8 +48,8 @@ public:
   /// Moves the sources of the beams from the source array to a buffer of this object. Call before the sweep of the
   /// order during which the beams are traced.
   void Hold();
-  /// Moves the sources of the beams back to the source array for the next sweep; sets them to 0 if they are already
-  /// there. Call after each sweep.
+  /// Call after each sweep. Moves the sources of the beams back to the source array if Hold() has removed them;
+  /// otherwise the sweep has emitted them, and they are set to 0.
   void GoOn();
 
 private:

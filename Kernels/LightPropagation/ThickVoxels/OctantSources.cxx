@@ -92,9 +92,10 @@ double AmongOthers(double depth)
   return 1.0 - 0.45 * std::exp(-2.0 * depth);
 }
 
-/// Response of a uniform layer to light incident on one side: the exact outgoing light of the layer, compared with that
-/// of a layer in which each order's scattering source is uniform over the depth, as tables of the coefficients alpha
-/// and beta of numerics.md, Eqs. (46g), (46h). Layout as in OctantSourcesShared.h, [albedo][depth][value].
+/// Response of a uniform layer to light incident on one side, as tables of the coefficients alpha and beta of
+/// numerics.md, Eqs. (46g), (46h). The exact outgoing light of the layer is compared with that of a layer in which the
+/// scattering source of each order is uniform over the depth. Layout as in OctantSourcesShared.h,
+/// [albedo][depth][value].
 struct VoxelResponse
 {
   VoxelResponse();
@@ -150,7 +151,7 @@ constexpr double Thick = 0.2;
 /// thinner voxels scatter up to 2% too little light back; with them, an order takes two to three times as long.
 constexpr double ThickUnasked = 0.25;
 /// Minimum fraction of thick voxels among the scattering ones, if the settings leave the choice open: if fewer are
-/// thick, they are walls, and computing sources for all voxels costs too much.
+/// thick, for example walls in a thin medium, computing sources for all voxels costs too much.
 constexpr double Many = 0.25;
 /// Optical thickness above which a voxel is opaque: the light that escapes from it is too small, compared with the
 /// light scattered in it, for single precision.

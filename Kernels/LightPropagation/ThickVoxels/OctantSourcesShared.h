@@ -27,9 +27,9 @@ typedef struct
   int periodic[3];
   /// 1 for axes along which light does not vary, because the domain has one voxel and is periodic
   int leftOut[3];
-  /// Indices of the crossing pattern (power of the rays across each voxel face relative to its mean,
-  /// SweepModel.h) of the faces normal to axis a: pattern[2 a] is that of the term that depends on the position
-  /// along the first of the other two axes, pattern[2 a + 1] that of the term that depends on the second
+  /// Indices of the crossing pattern (power of the rays across each voxel face relative to its mean, SweepModel.h) of
+  /// the faces normal to axis a: pattern[2 a] is the index of the terms for positions along the first of the other two
+  /// axes, pattern[2 a + 1] of the terms for positions along the second
   int pattern[6];
   /// Index of this channel's first value in sigma_t, and in other arrays over voxels; number of values per channel.
   ulong firstT, first, stride;

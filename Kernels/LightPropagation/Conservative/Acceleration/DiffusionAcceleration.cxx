@@ -334,9 +334,9 @@ void DiffusionAcceleration::CountLight()
 bool DiffusionAcceleration::Done(int iterations) const
 {
   const int most = this->Settings.maximumOrders > 0 ? this->Settings.maximumOrders : MostSweeps;
-  // Least number of sweeps, after which the rate of convergence is known: 2 after a warm start, which uses the rate of
-  // the previous solve; 3 otherwise, and always with angular moments, since the measured change of the light does not
-  // include that of moments.
+  // Least number of sweeps after which the rate of convergence is known. It is 2 after a warm start, which uses the
+  // rate of the previous solve, else 3. With angular moments it is always 3, because the measured change of the light
+  // does not include the change of moments.
   const int least = this->Warm.Begins() && !this->HasMoments() ? 2 : 3;
   return iterations >= most || this->Residual == 0.0 ||
     (iterations >= least && MeetsTolerance(this->Settings, this->Residual));

@@ -9,10 +9,10 @@
 
 namespace tyndall
 {
-/// Corrects the escaped power after each sweep of scattered light: adds, for each voxel, the power that escapes along
-/// the finer quadrature of the boundary light minus that along the usual quadrature (numerics.md, Eq. (46)). A uniform
-/// radiance field then stays uniform, although boundary light enters along the finer quadrature and is swept along the
-/// usual one.
+/// Corrects the escaped power after each sweep of scattered light (numerics.md, Eq. (46)). For each voxel it adds the
+/// power that would escape along the finer quadrature of the boundary light, and subtracts the power that escapes along
+/// the usual quadrature. A uniform radiance field then stays uniform, although boundary light enters along the finer
+/// quadrature and is swept along the usual one.
 class EscapeCorrection
 {
 public:

@@ -90,8 +90,8 @@ private:
   const BlockWithGhosts TheBlock;
   const GhostedMedium Coefficients;
   MomentsWithGhosts OfPath;
-  /// Arrays of the block without ghost cells: emission and first-collision source, W / (length^3 sr); its net flux over
-  /// 4 pi, if there are angular moments; partial currents of the sweep, W.
+  /// Arrays of the block without ghost cells: emission and first-collision source, W / (length^3 sr); net flux of this
+  /// source over 4 pi, if there are angular moments; partial currents of the sweep, W.
   Buffer<float> TheGiven, GivenFlux, TheCurrents;
   GhostedBuffer GivenWithGhosts, GivenFluxWithGhosts, SourceWithGhosts, CurrentsWithGhosts;
 };
