@@ -21,9 +21,10 @@ namespace tyndall
 /// exactly in angle. It is of first order in the voxel edges for oblique directions. The published scheme is explicit,
 /// and unstable if sigma_t times a voxel edge is above 1; `doubts` then says so.
 ///
-/// Source iteration, with the radiance of all directions in memory; or, for media that scatter light many times, the
-/// acceleration of light propagation maps with sweeps by weighted diamond differences (OrdinatesTransport.h). Without
-/// acceleration, a mean cosine that varies by voxel is replaced by its mean weighted by sigma_s; `doubts` says so.
+/// The iteration is source iteration, with the radiance of all directions in memory. For media that scatter light many
+/// times it is the accelerated iteration of light propagation maps, with sweeps by weighted diamond differences
+/// (OrdinatesTransport.h). Without acceleration, a mean cosine that varies by voxel is replaced by its mean weighted by
+/// sigma_s; `doubts` says so.
 ///
 /// Channels are solved in sequence; a row of `convergence` is the sum over channels.
 ///

@@ -58,7 +58,7 @@ int TermsFor(const OrdinatesSettings& given, int directionsPerFace, bool mayRise
   return rows * rows;
 }
 
-/// Settings with the resolution and tolerance that an error estimate chooses in `how`.
+/// Copy of `given` with the resolution and tolerance of `how`, which an error estimate has chosen.
 /// @param choosesTerms  whether the number of terms is chosen in proportion to the directions
 OrdinatesSettings With(const OrdinatesSettings& given, const PropagationSettings& how, bool choosesTerms)
 {

@@ -251,7 +251,7 @@ FacePowers OrdinatesTransport::SweepChannel(
     this->Spread(c, source);
     if (!everywhere)
     {
-      this->Sums.Fill(0.0f); // dark directions are not swept
+      this->Sums.Fill(0.0f); // directions without light are not swept
     }
   });
   const SweptSums sums = { this->Sums,

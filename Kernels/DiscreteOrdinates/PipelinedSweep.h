@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// Outgoing power and reflected radiance by cell of the faces of this rank's block, exchanged with those by cell of the
-/// faces of the whole grid, which all ranks hold.
+/// Outgoing power and reflected radiance in each cell of the faces of this rank's block. The values are exchanged with
+/// arrays for the faces of the whole grid, which every rank holds.
 class CellsOfBlock
 {
 public:

@@ -291,7 +291,7 @@ __kernel void sweep_upwind(__global float* radiance, const __global float* sigma
   sweep_layers(&arrays, &layers, ByDirection);
 }
 
-// Sweeps with sums, with a whole group per work-item.
+// Sweeps that store sums over the directions of each group (InSums). One work-item per group.
 #define SWEEP_IN_SUMS(name, mode)                                                                            \
   __kernel void name(__global float* light, const __global float* sigma_t, __global float4* sums, ORDINATES) \
   {                                                                                                          \
@@ -309,7 +309,7 @@ SWEEP_IN_SUMS(sweep_moments_by_diamonds, ByDirection | ByDiamonds)
 //   through   [channel][part][voxel]: 6 parts: power that enters each voxel through its faces -x, +x, ... +z, W; 3: net
 //             flux along x, y, z, W length; 0 parts: not computed
 //   edges     edges of a voxel
-//   stride    values of a channel;  first: index of the channel's first value in path
+//   stride    number of values per channel; first: index of the channel's first value in path
 __kernel void gather_sums(const __global float4* sums, const __global int* up, int groups, ulong groupStride,
   float volume, __global float* path, __global float* through, int parts, float4 edges, ulong stride, ulong first)
 {
@@ -332,7 +332,7 @@ __kernel void gather_sums(const __global float4* sums, const __global int* up, i
   }
 }
 
-// Computes the source along each direction from its angular moments and its beams.
+// Computes the source along each direction from its angular moments and the sources of beams (BeamScattering.h).
 //   source  moments, W / (length^3 sr) (MomentPlacesShared.h)
 //   values  [group][function, then beam][8]: values of the angular functions and of the beams' distributions
 //   radiance  receives the source, [group][voxel][8]

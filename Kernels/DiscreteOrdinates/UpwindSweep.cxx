@@ -26,7 +26,7 @@ double FaceArea(const Grid& grid, int axis)
   return grid.VoxelVolume() / grid.spacing[axis];
 }
 
-/// All layers of a part of the grid.
+/// Parameters of a sweep through all layers of a part of the grid (SweepsAll, SweepsBox or SweepsBeyondBox).
 SweptLayers PartOf(const Grid& grid, const VoxelBox& box, int part)
 {
   SweptLayers layers = {};

@@ -129,7 +129,7 @@ public:
   void LeaveByCells() const; ///< adds outgoing power by cell to SweptFaces::reflecting, if faces reflect
 
   /// Radiance through the faces perpendicular to an axis, [group][row][voxel of the row][8]: incident before the group
-  /// is swept, outgoing afterwards. Rows are numbered by z, of faces perpendicular to z by y.
+  /// is swept, outgoing afterwards. Rows are numbered by z or, in faces perpendicular to z, by y.
   std::vector<float> ReadFace(int axis, int firstGroup, int groups) const;
   void WriteFace(int axis, int firstGroup, const std::vector<float>& values);
 

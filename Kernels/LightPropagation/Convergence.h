@@ -81,7 +81,7 @@ double ProgressOf(const PropagationSettings& settings, double residual, double i
 constexpr double UncollidedPart = 0.5;
 
 /// Adds a warning to `light.doubts` if faces reflect and uncollided light is given as input: the cells through which
-/// given light leaves are not known, so it is not reflected.
+/// that light leaves are not known, so it is not reflected.
 void WarnAboutInputLight(const Domain& domain, const Illumination& illumination, LightField& light);
 
 /// Checks the energy balance, for all conservative solvers: all power must be absorbed, escape or be left over. A

@@ -229,9 +229,9 @@ inline between find_between(const CoarseCells* box, int axis, int voxel)
   return found;
 }
 
-// Adds the path integrals of a sweep, and the cells' solution interpolated to voxels, to the fluence. Sets the path
-// integrals to minus those of the solution: the next sweep also transports the light scattered from the solution, and
-// so computes the predicted light once more (numerics.md, Eq. (76e)). One work-item per row of voxels.
+// Adds the path integrals of a sweep, and the diffusion solution on the cells interpolated to voxels, to the fluence.
+// Sets the path integrals to minus those of the solution: the next sweep also transports the light scattered from the
+// solution, and so computes the predicted light once more (numerics.md, Eq. (76e)). One work-item per row of voxels.
 //   found    solution, W / length^2, by cell
 //   path     path integrals, W length; replaced
 //   fluence  W / length^2; the light is added to it

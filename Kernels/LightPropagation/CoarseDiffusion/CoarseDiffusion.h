@@ -68,9 +68,9 @@ public:
     std::array<double, 6> out = {}; ///< escaped power through each face of the box, according to the solution
   };
 
-  /// Computes the next source from a sweep's path integrals. Adds the path integrals, and the cells' solution for all
-  /// later orders, to `fluence`. Sets the path integrals to minus those of the solution, to which the next sweep adds.
-  /// All arrays are [channel][voxel].
+  /// Computes the next source from a sweep's path integrals. Adds the path integrals, and the diffusion solution on the
+  /// cells for all later orders, to `fluence`. Sets the path integrals to minus those of the solution, to which the
+  /// next sweep adds. All arrays are [channel][voxel].
   /// @param source  W / (length^3 sr), replaced
   /// @param onTheWay  power in flight around periodic axes, W by channel; added to the right-hand side, uniformly over
   ///   the box

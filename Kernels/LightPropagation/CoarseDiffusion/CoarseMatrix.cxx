@@ -82,8 +82,8 @@ double EdgeOfMeanFreePath(double edge, double thin, double wide, double thick)
 }
 
 /// Extinction of each cell in the diffusion coefficient, 1/length: max(sigma_t, 1 / W), with W the edge of the box
-/// around the cell that is one mean free path thick (numerics.md, Eq. (76h)). With 1 / (3 sigma_t) of thin cells light
-/// would diffuse too fast over distances below a mean free path.
+/// around the cell that is one mean free path thick (numerics.md, Eq. (76h)). With a diffusion coefficient of 1 / (3
+/// sigma_t), light would diffuse too fast in thin cells over distances below a mean free path.
 std::vector<double> Diffusing(const Level& level)
 {
   if (level.sigmaT.size() == 1)

@@ -13,8 +13,8 @@ namespace tyndall
 namespace
 {
 constexpr double More = 0.5; ///< acceptable increase of the solve's time by finer directions, as a fraction
-/// Time of a solve outside its sweeps, in units of the time of one scattering order along all usual directions;
-/// measured: 0.8 in 100^3 voxels, 2 in 40^3.
+/// Time of a solve outside its sweeps, in units of the time of one scattering order along all directions of scattered
+/// light; measured: 0.8 in 100^3 voxels, 2 in 40^3.
 constexpr double SetUp = 0.8;
 /// Time of a solve with DSA, in units of the time of one scattering order: set-up, and five sweeps with their
 /// corrections.

@@ -233,8 +233,9 @@ void SourceIteration::ShowLamps()
   });
 }
 
-/// Adds the uncollided light of a lamp, or light given by another solver. If there are sources by octant, they receive
-/// its path integrals and first moments in their own arrays; they are not used together with angular moments.
+/// Adds the uncollided light of a lamp, or light given by another solver. If there are sources by octant, path
+/// integrals and first moments of this light are stored in arrays of OctantSources. Sources by octant are not used
+/// together with angular moments.
 SweepTally SourceIteration::AddLamp(
   const UncollidedSource& lamp, const Buffer<float>& firstMoments, const Monitor& monitor)
 {

@@ -20,7 +20,7 @@ namespace tyndall
 ///
 /// @param medium  with g other than 0, isotropic scattering of sigma_s (1 - g) is used
 /// @param faces  which faces of the grid are faces of the box; the radiance of all other faces is 0
-/// @param powers  power through the cells, by channel; a channel whose `net` is empty is dark
+/// @param powers  power through the cells, by channel; a channel whose `net` is empty has no light
 std::vector<float> SurfaceRadiance(const Medium& medium, const std::array<bool, 6>& faces,
   const std::vector<Light>& lamps, const std::vector<SurfacePowers>& powers);
 

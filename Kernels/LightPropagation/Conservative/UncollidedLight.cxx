@@ -72,8 +72,8 @@ UncollidedLight::UncollidedLight(
   this->CountAbsorbed();
 }
 
-/// Whether first moments of lamps' and given light are needed: in optically thick voxels the position of first
-/// collisions matters.
+/// Whether first moments are needed, of the light of lamps or of uncollided light given by another solver: in optically
+/// thick voxels the position of first collisions matters.
 bool UncollidedLight::NeedsFirstMoments() const
 {
   return this->LinearSource && (!this->Parts.Lights.Lamps.empty() || this->Parts.Lights.Given) &&
@@ -98,7 +98,8 @@ void UncollidedLight::MakePassing()
   this->PassedWithGhosts = { device, this->Block, this->ThroughFaces, 6 * channels, what };
 }
 
-/// Adds the uncollided light of lamps, of localised emission, of given light and of the emission of empty voxels.
+/// Adds the uncollided light of lamps, of localised emission and of the emission of empty voxels, and uncollided light
+/// given by another solver.
 void UncollidedLight::AddSources(const Monitor& monitor)
 {
   TransportParts& parts = this->Parts;
@@ -195,8 +196,8 @@ void UncollidedLight::PassFaces()
   }
 }
 
-/// Computes OfLamps(): the first-collision source of lamps and given light minus the power that leaves its voxel
-/// without another collision.
+/// Computes OfLamps(): the first-collision source of lamps and of light given by another solver, minus the power that
+/// leaves its voxel without another collision.
 void UncollidedLight::FindScatteredInVoxels()
 {
   const VolumeLayout& layout = this->Parts.Layout;

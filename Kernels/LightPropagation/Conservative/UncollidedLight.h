@@ -38,8 +38,8 @@ public:
   /// Path integrals of the light of lamps alone, W length, [channel][voxel]; empty if there are no lamps.
   const std::vector<float>& PathOfLamps() const { return this->LengthsOfLamps; }
   /// Whether the first-scattered light of lamps that leaves its voxel without another collision enters the diffusion
-  /// systems as power through voxel faces (LampPassing). True if voxels are optically thick, there are lamps or given
-  /// light, and the source is linear.
+  /// systems as power through voxel faces (LampPassing). True if voxels are optically thick, there are lamps or light
+  /// given by another solver, and the source is linear.
   bool Passes() const { return this->ThroughFaces.Size() > 0; }
   /// If Passes(): power of first-scattered lamp light through voxel faces, W, and the remaining first-collision source
   /// of lamps, W / (length^3 sr); DiffusionSystem::Arrays::passed and ofLamps.
@@ -74,8 +74,8 @@ private:
   Buffer<float> ThroughFaces, ScatteredInVoxels;
   GhostedBuffer PathWithGhosts, MomentsWithGhosts, AllPathWithGhosts, PassedWithGhosts, OfLampsWithGhosts;
   EnergyLedger Counted;
-  /// Incident and escaped power of lamps, localised emission and given light; onTheWay is light that wraps around
-  /// periodic axes without end.
+  /// Incident and escaped power of lamps, localised emission and light given by another solver; onTheWay is light that
+  /// wraps around periodic axes without end.
   SweepTally OfSources;
 };
 }

@@ -35,7 +35,7 @@ public:
   const std::vector<float>& Guessed() const { return this->Scaled; } ///< Guess() in host memory
   /// Power scattered from the initial guess, W by channel, summed over ranks.
   const Rgb& GuessedPower() const { return this->Power; }
-  /// Ratio of the last two changes of the previous solve's iteration; 0: unknown, because the channel was dark.
+  /// Ratio of the last two changes of the previous solve's iteration; 0: unknown, because the channel had no light.
   double Rate(int channel) const { return this->Kept->rate[channel]; }
 
   /// Adds the scattering source of the initial guess to `source`; TakeGuessFrom() subtracts it, and frees the guess.

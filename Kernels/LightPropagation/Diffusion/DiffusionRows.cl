@@ -246,7 +246,7 @@ static real load_rounded(const __global exact* row, int x, int size)
 // Computes the fluence m of numerics.md, Eq. (56). Diffusion's power through each face is computed from it, and
 // compared with the sweep's power. In thin voxels m is the fluence of the sweep, in optically thick ones the fluence
 // from which the sweep's source was computed.
-//   extinction  sigma_t, in rows as diffusion_extinction writes it; if DiffusionLayout::skin is 0, [voxel]
+//   extinction  sigma_t, in the row layout as diffusion_extinction writes it or, if DiffusionLayout::skin is 0, [voxel]
 //   swept       extinction that sweeps use, 1/length
 //   of_lamps    first-collision source of lamps, W / (length^3 sr); read only if DiffusionLayout::passing is 1
 //   model       W / length^2, [voxel]

@@ -52,7 +52,7 @@ constexpr double RefinedChange = 1e-5;
 constexpr int MostRounds = 8;
 
 /// Escaped power through each of the box's faces in the last solution, W; 0 on periodic axes. Rounding may make it
-/// negative at dark faces.
+/// negative at faces through which no light leaves.
 /// @param sums  over all ranks
 /// @param entered  incident power of the sweep, W
 /// @param ofSweep  escaped power of the sweep through each face, W; determines how the power of voxels with several

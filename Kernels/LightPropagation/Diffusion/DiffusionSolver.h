@@ -71,7 +71,7 @@ private:
   std::unique_ptr<DiffusionSystem> System; ///< system of the block with ghosts; null on a rank without voxels
   ExactValues NoVoxels;                    ///< empty; passed to the linear solver on a rank without voxels
   ExactValues OwnNext;                     ///< result of NextFluence(); empty if the block has no ghosts
-  /// Whether any voxel beside a thinner one has over 100 mean free paths, but none over 1e9.
+  /// Whether any voxel next to a thinner one has over 100 mean free paths, but none over 1e9.
   bool OpaqueBesideThin = false;
   Buffer<float> Balance; ///< right-hand side of the last system, if OpaqueBesideThin; else empty
   int Corrections = 0;

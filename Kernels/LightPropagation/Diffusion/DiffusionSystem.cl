@@ -253,7 +253,8 @@ static float remainder_of_borders(const DiffusionLayout* layout, const diffusion
   }
   *transport_weight = weight_of_transport(layout, longest * arrays->sigma_t[i], longest * arrays->sigma_a[i]);
   *transport_weight = *transport_weight > 1e-12f ? *transport_weight : 0.0f;
-  // In an optically thick voxel the net power is a small difference of large powers, within their rounding error.
+  // In an optically thick voxel the net power may be a difference of large powers that is below their rounding error.
+  // Then the sum of the estimates is used instead.
   const float rounding = 1e-6f * arrays->sigma_t[i] * volume_of(layout) * fmax(arrays->model[i], 0.0f);
   const float whole = rounding < 0.01f * sum || sum <= 0.0f ? left + in : sum;
   for (int d = 0; d < 6; ++d)

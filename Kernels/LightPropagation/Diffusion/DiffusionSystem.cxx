@@ -54,7 +54,7 @@ DiffusionSystem::DiffusionSystem(Device& device, MultigridSolver& solver, const 
   this->Model = Buffer<float>(device, this->Count + RowVector, what);
   this->Next = ExactValues(device, this->Values(), what);
   this->Solution = ExactValues(device, this->Values(), what);
-  this->Solution.Fill(0.0); // stays 0 for a dark channel, which is not solved
+  this->Solution.Fill(0.0); // stays 0 for a channel without light, which is not solved
   this->Borders = ExactValues(device, BorderValues * this->BorderCells, what);
 
   this->FindFlatSource(model);

@@ -28,8 +28,8 @@ public:
   /// Layout of the cells of the multigrid's second level that contain voxels of this rank's block.
   const MultigridLevel& Touched() const { return this->OfTouched; }
 
-  /// Copies the values of ghost voxels from the ranks that own them, in an array of the finest level in rows
-  /// (MultigridLevel).
+  /// Copies the values of ghost voxels from the ranks that own them, in an array in the row layout (MultigridLevel) of
+  /// the finest level.
   void FillGhosts(Buffer<float>& rows) const;
   /// Copies the values of ghost voxels from the ranks that own them, in an array with one value per voxel of the block
   /// with its ghosts, x fastest.

@@ -50,18 +50,18 @@ public:
   const MultigridLevel& Rows() const { return this->Levels.front().layout; }
 
   /// Conductances, length^2, of the low faces of the block's voxels and of the ghost voxels above them: for each axis
-  /// one array in rows (MultigridLevel); 0 at the low end of the box with ghosts, unless the block spans a periodic
-  /// axis from end to end.
+  /// one array in the row layout of MultigridLevel; 0 at the low end of the box with ghosts, unless the block spans a
+  /// periodic axis from end to end.
   Buffer<float>& Conductance() { return this->Levels.front().conductance; }
   Buffer<float>& Loss() { return this->Levels.front().loss; }
   /// Computes the matrices of the coarser levels. To be called after Conductance() and Loss() have been written.
   /// Collective.
   void Coarsen();
 
-  /// Right-hand side b, in rows (MultigridLevel), 0 in their padding. To be written before each Solve(), which
+  /// Right-hand side b, in the row layout of MultigridLevel; 0 in the padding. To be written before each Solve(), which
   /// overwrites it.
   Buffer<float>& Right() { return this->Levels.front().right; }
-  /// Three scratch arrays in rows that callers may use between solves; every solve overwrites them.
+  /// Three scratch arrays of the finest level that callers may use between solves; every solve overwrites them.
   std::array<const Buffer<float>*, 3> Scratch() const;
 
   // Solve() and GoOn() are collective. `values` holds one value per voxel of the block with its ghost voxels, x
@@ -85,8 +85,8 @@ private:
   struct Level
   {
     MultigridLevel layout = {};
-    /// Arrays in rows. `inverse`: damping / diagonal. `guess`, `better`: solution before and after a Jacobi step.
-    /// `kept`: correction of the first of two visits; empty if the level is visited once.
+    /// Arrays in the row layout of MultigridLevel. `inverse`: damping / diagonal. `guess`, `better`: solution before
+    /// and after a Jacobi step. `kept`: correction of the first of two visits; empty if the level is visited once.
     Buffer<float> conductance, loss, inverse, right, guess, better, kept;
   };
 

@@ -199,7 +199,7 @@ private:
   const Medium& TheMedium;
 };
 
-/// Whether a peak has clear surroundings in at least one direction and channel.
+/// Whether the medium around a peak is transparent in at least one direction and channel.
 bool IsSeen(const Medium& medium, const EmissionPeak& peak)
 {
   const Grid& grid = medium.grid;

@@ -41,7 +41,7 @@ struct SplitEmission
 };
 
 /// Finds localised emission: connected groups of voxels among the brightest 64th whose emission exceeds four times the
-/// mean of the remaining voxels. Groups must be small (at most an eighth of the box's longest edge), in clear
+/// mean of the remaining voxels. Groups must be small (at most an eighth of the box's longest edge), in transparent
 /// surroundings and not opaque, and together carry half of the power; otherwise there are no peaks (a luminous cloud, a
 /// flame). A dark solid that emits hardly more than it absorbs of the incident light is no peak either: its shadow is
 /// swept, and its emission must be swept along the same directions for both to be accurate together. Limits:

@@ -444,7 +444,7 @@ __kernel void add_gathered(
   values[first + i] += gathered[from + i] * factor;
 }
 
-// Copies the light that fans of rays (EmissionFans.cl) brought: values[first + i * stride] = factor * brought[i]
+// Copies the light computed by fans of rays (EmissionFans.cl): values[first + i * stride] = factor * brought[i]
 __kernel void take_fans(const __global float* brought, __global float* values, ulong first, ulong stride, float factor)
 {
   const ulong i = get_global_id(0);

@@ -79,7 +79,8 @@ std::vector<float> WholeExtinction(const UncollidedVolume& volume, const VolumeL
   return all;
 }
 
-/// Adds `parts` values per channel and voxel, of this rank's voxels of the domain, to an array of its block.
+/// Adds the values of this rank's voxels in an array over the whole domain to an array over its block. Each channel and
+/// voxel has `parts` values.
 void AddOwn(const UncollidedVolume& volume, const VolumeLayout& whole, int parts, const Buffer<float>& from,
   const Buffer<float>& to)
 {

@@ -140,7 +140,7 @@ private:
       light.fluence[i] = static_cast<float>(std::max(column.fluence[layer], 0.0));
       light.fluenceDirect[i] = static_cast<float>(column.direct[layer]);
       // Computed from the fluence, in which negative values are set to 0: values around 1e-16 of the incident light are
-      // differences of larger numbers.
+      // differences of larger numbers, and may be negative.
       light.scatteredRadiance[i] = light.fluence[i] / (4.0f * static_cast<float>(Pi));
       for (int a = 0; a < 3 && this->Settings.netFlux; ++a)
       {

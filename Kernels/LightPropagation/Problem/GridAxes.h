@@ -9,9 +9,9 @@
 namespace tyndall
 {
 /// Permutes the axes of a plane-parallel slab so that its layers are stacked along x. Rows of voxels are then as long
-/// as the slab; rows of one voxel would use only a tenth of each SIMD operation, and a slab of 1024 layers along z
-/// takes twenty times as long. Axes are permuted cyclically, so arrays over the voxels, and over the cells of one face,
-/// stay unchanged in memory.
+/// as the slab; rows of one voxel would use only a tenth of each SIMD operation, and a slab of 1024 layers would take
+/// twenty times as long. Axes are permuted cyclically, so arrays over the voxels, and over the cells of one face, stay
+/// unchanged in memory.
 class AxisPermutation
 {
 public:

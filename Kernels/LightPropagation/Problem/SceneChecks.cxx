@@ -17,8 +17,8 @@ constexpr int MomentsLookedAt = 8; ///< highest degree of phase-function moments
 struct LightEnds
 {
   std::array<bool, 3> absorbs = {}; ///< whether any voxel absorbs
-  /// Whether any voxel emits, or scatters light of lamps with a position or given uncollided light; evaluated only in
-  /// channels without absorption.
+  /// Whether any voxel emits, or scatters light of lamps with a position or uncollided light given as input; evaluated
+  /// only in channels without absorption.
   std::array<bool, 3> begins = {};
 };
 

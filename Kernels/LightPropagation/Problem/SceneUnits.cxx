@@ -49,7 +49,7 @@ void Divide(Rgb& values, double unit)
   }
 }
 
-/// Replaces a field by change(value) of each value that it has for any channel, stored in `values`.
+/// Replaces each value of a field by change(value). The new values are stored in `values`.
 template <class Change>
 void Copy(Field& field, std::size_t voxels, std::vector<float>& values, const Change& change)
 {
@@ -129,7 +129,7 @@ AllThatShines ShiningOn(const Grid& grid, const Medium& medium, const Illuminati
       all.power += PowerLost(illumination.uncollided, medium, c);
       for (const Rgb& escaped : illumination.uncollided.escaped)
       {
-        all.power += escaped[c]; // a medium that takes next to nothing does not make the light faint
+        all.power += escaped[c]; // light is not faint if the medium absorbs almost none of it
       }
     }
   }

@@ -26,7 +26,7 @@ std::vector<double> BeyondMoments(const PhaseFunction& function, const DeltaM& t
 /// Like BeyondMoments(), for moments that are smoothed so that the source is nowhere negative (WithoutNegatives,
 /// numerics.md, section 2.3): the complete first-collision source of the beam minus its smoothed moments. The source
 /// along each direction then follows the phase function, with the mean cosine of the smoothed moments; its higher
-/// moments differ from these.
+/// moments differ from the smoothed ones.
 std::vector<double> BeyondSmoothMoments(const PhaseFunction& function, const DeltaM& truncated, const DirectionSet& set,
   const AngularBasis& basis, const std::array<double, 3>& beam);
 

@@ -253,7 +253,8 @@ void DiffusionAcceleration::MakeSystems()
   }
 }
 
-/// Mean emitted and incident power per voxel, W: the unit of power in the diffusion solver. 0 for a dark channel.
+/// Mean emitted and incident power per voxel, W: the unit of power in the diffusion solver. 0 for a channel without
+/// light.
 double DiffusionAcceleration::VoxelPower(int c) const
 {
   return (this->GivenPower[c] + this->PowerIn[c]) / static_cast<double>(this->TheDomain.Whole().VoxelCount());
@@ -313,7 +314,7 @@ void DiffusionAcceleration::CountLight()
     }
     if (!(this->VoxelPower(c) > 0.0))
     {
-      continue; // a dark channel is not solved
+      continue; // a channel without light is not solved
     }
     lit[c] = true;
     this->Result.ledger.Absorb(c, this->Systems[c]->Absorbed());

@@ -70,8 +70,8 @@ private:
   RestOfChanges Rest;
   double Residual = 1.0;
   WarmStart Warm;
-  /// Fluence and angular moments of the first iteration, which the next solve computes anew, so that they are
-  /// subtracted from the light kept for it; empty if no light is kept.
+  /// Fluence and angular moments of the first iteration; empty if no light is kept for the next solve. That solve
+  /// computes them anew, so they are subtracted from the light that is kept.
   std::vector<float> First, FirstMoments;
 
   IterationResult Result;

@@ -166,7 +166,7 @@ void FaceBalance::Count(EnergyLedger& ledger) const
   {
     for (int c = 0; c < this->Faces.Channels(); ++c)
     {
-      // The diffusion solution's outgoing power may be slightly negative in the dark.
+      // The diffusion solution's outgoing power may be slightly negative where there is almost no light.
       ledger.Escape(c, face, std::max(all[face][c], 0.0) - uncollided[face][c]);
     }
   }

@@ -23,8 +23,8 @@ public:
   /// Layout of the moments in arrays with ghost cells.
   const MomentPlaces& Places() const { return this->Held; }
 
-  /// Allocates the array with ghost cells, if the block has any; if not, the systems read the block's own array.
-  /// Collective, as are Spread() and TakeFirstDegree().
+  /// Allocates the array with ghost cells, if the block has any; if not, the diffusion systems read the block's own
+  /// array. Collective, as are Spread() and TakeFirstDegree().
   void Allocate(Device& device, const char* what);
   const Buffer<float>& Values(const Buffer<float>& own) const { return this->Array.Size() > 0 ? this->Array : own; }
   /// Copies the moments of the block to the array with ghost cells, and sets ghost cells to 0.
