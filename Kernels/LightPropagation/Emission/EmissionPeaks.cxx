@@ -234,9 +234,9 @@ bool IsSeen(const Medium& medium, const EmissionPeak& peak)
   return clearest <= Hidden;
 }
 
-/// Whether a voxel around a peak scatters and is optically thick. Exact rays from the peak scatter close to the side
-/// through which they enter such a voxel, and much of that light returns through the same side. Exact rays spread their
-/// scattered light over the voxel; sweeps account for the side.
+/// Whether a voxel around a peak scatters and is optically thick. Light of the peak is scattered close to the side
+/// through which it enters such a voxel, and much of it returns through that side. If the light is traced along exact
+/// rays (EmissionRays.h), its scattered light starts uniformly in the voxel instead; sweeps account for the side.
 bool IsBesideThickScatterer(const Medium& medium, const EmissionPeak& peak)
 {
   const Grid& grid = medium.grid;

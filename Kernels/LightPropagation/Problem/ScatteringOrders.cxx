@@ -22,7 +22,8 @@ const double UsualTolerance = PropagationSettings().tolerance;
 /// Extrapolation distance: distance beyond a face at which the diffuse flux extrapolates to zero, mean free paths
 /// (numerics.md, Eq. (86)).
 constexpr double Extrapolation = 1.42 / 2.0;
-/// Optical thickness along a voxel's longest edge above which sweeps with moments need more expensive corrections.
+/// Optical thickness along a voxel's longest edge above which accelerated solves with angular moments take longer
+/// (InMomentsOfThickVoxels).
 constexpr double ThickVoxel = 10.0;
 /// Optical thickness along two edges of a voxel, and albedo, above which successive scattering orders may grow if
 /// sources by octant are used. They grow above 8 mean free paths and an albedo of 0.55 (numerics.md, section 6.5).

@@ -138,7 +138,7 @@ TruncatedScattering::TruncatedScattering(
   {
     this->OfChannel[c] = TruncationsOf(medium.phase.OfChannel(c), degree, nowhereNegative);
   }
-  // The shortest edge determines the degree: angular detail is resolved along it first.
+  // Each voxel has the highest degree at which it is not optically thick along its shortest edge.
   const double shortest = *std::min_element(medium.grid.spacing.begin(), medium.grid.spacing.end());
   this->Degrees.resize(medium.grid.VoxelCount() * channels);
   this->MostDegree = 0;

@@ -65,7 +65,7 @@ private:
   /// Power through each cell of the box faces; unset unless faces reflect or face power is requested.
   std::optional<FaceBalance> Box;
   SweepTally Tally; ///< incident and escaped power of the last sweep
-  /// Power emitted or first scattered, and power incident through the box faces, W by channel.
+  /// Emitted plus first-scattered power, and power incident through the box faces, W by channel.
   Rgb GivenPower = {}, PowerIn = {};
   RestOfChanges Rest;
   double Residual = 1.0;
