@@ -72,7 +72,7 @@ void AxisSweep::Start(const SweepVolume& volume, const SweepBoundary& boundary, 
   {
     return;
   }
-  // The power of rays in transit along a periodic axis is still in the maps from the previous sweep.
+  // On a periodic axis the maps still hold the power of rays in transit from the previous sweep.
   const bool mapsEmpty = !lit && !this->IsPeriodic() && !byCells;
   const double launches = this->Plan.laps == 1 ? this->Plan.launches : static_cast<double>(this->Plan.units.size());
   this->Cross(volume, { volume.source != nullptr, lit, volume.faceIn != nullptr, mapsEmpty }, this->FirstCrossings,
@@ -147,8 +147,8 @@ void AxisSweep::GoRound(const SweepVolume& volume, int mostPlanes, const Monitor
   CountSideways(this->Plan, this->Kernel.Sideways(), this->Tally);
   if (!this->Kernel.IsBorderClear() || volume.faceIn)
   {
-    // The columns beside the maps' rows hold power that has already entered through the sides; it must not enter again
-    // when rays wrap around.
+    // The columns at both ends of the maps' rows hold the power of light incident through the faces normal to u. That
+    // power has already entered and must not enter again when rays wrap around.
     this->RunOnMaps("darken_beside", nullptr, false, this->RowsOfMaps());
   }
   this->Kernel.ClearBorder();
@@ -173,8 +173,8 @@ void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffe
 {
   const SweepPlan& plan = this->Plan;
   const Deposit& to = volume.deposit;
-  // With angular moments, or with light per cell of the faces, the rays of a bundle always cross one plane at a time.
-  // One program, compiled for periodic boxes, then serves open boxes, too.
+  // With angular moments, or with light given or summed per cell of the faces, a bundle never crosses several planes
+  // together. One program, compiled for periodic boxes, then serves both periodic and open boxes.
   const bool faces = to.faceOut || entry.byCells, alone = plan.angular || faces;
   cl::Kernel kernel =
     this->Kernel.Make(faces, alone || plan.periodic[plan.axes.u] || plan.periodic[plan.axes.v], false);
@@ -209,7 +209,7 @@ void AxisSweep::Cross(const SweepVolume& volume, const Entry& entry, const Buffe
   }
 }
 
-/// Memory layout of the cells of the four faces parallel to the marching axis.
+/// Memory layout of the cells of the box's four faces parallel to the marching axis.
 FaceInfo AxisSweep::Faces(std::size_t firstChannel, const Deposit& to) const
 {
   const PlaneAxes& axes = this->Plan.axes;
@@ -231,7 +231,7 @@ FaceInfo AxisSweep::Faces(std::size_t firstChannel, const Deposit& to) const
 }
 
 /// Runs a kernel of SweepMaps.cl.
-/// @param volume  determines the cells of the faces normal to the marching axis; null: the kernel uses no cells
+/// @param volume  selects the channels whose face cells the kernel reads or adds to; null: the kernel uses no cells
 /// @param ofFarFaces  whether the cells are on the faces where rays end; false: on those where rays start
 template <class... Arguments>
 void AxisSweep::RunOnMaps(

@@ -25,7 +25,7 @@ namespace tyndall
 class AxisSweep
 {
 public:
-  /// @param volume  only its grid, its channels and whether it has a net flux are used
+  /// @param volume  describes the grid, the channels and the kind of the deposit; its arrays are not accessed
   /// @param workspace  must outlive this object; enlarged as needed
   /// @param sameBoundary  whether the boundary source is the same in every sweep of a volume
   AxisSweep(Device& device, const SweepVolume& volume, const AxisBundles& rays, const std::array<bool, 3>& periodic,
@@ -88,8 +88,8 @@ private:
   Buffer<CrossingInfo> FirstCrossings;
   /// Copies slices of a volume in host memory to the device; null: the volume is in device memory
   std::unique_ptr<SliceStream> Stream;
-  /// Ranges of planes that work-items cross in each launch of the kernel: while rays start, and while rays wrap around
-  /// the periodic axis
+  /// Ranges of planes that work-items cross in each launch of the kernel: `First` in the laps in which rays start,
+  /// `Rounds` in further laps around a periodic axis
   SliceStream::Schedule First, Rounds;
 
   /// Cached incident light of each group of channels that are swept together; key: index of the group's first value in

@@ -51,10 +51,10 @@ SweepBorder::SweepBorder(const SweepPlan& plan, const SweepBoundary& boundary, H
   }
 }
 
-/// Writes the incident power of all rays of one bundle member (direction). Rays enter at the face where they start, and
-/// on the sides in place of rays that left there: one ray per row for each move along u, one ray per column for each
-/// move along v. If rays move along u and v at once, half of the power that enters at the corner of a plane comes
-/// through the face normal to u and half through the face normal to v.
+/// Writes the incident power of all rays of one bundle member (direction). Rays enter at the face where they start.
+/// They also enter through the faces parallel to the marching axis, as many as leave there: one ray per row of voxels
+/// for each move along u, one ray per column for each move along v. If rays move along u and v at once, half of the
+/// power that enters at the corner of a plane comes through the face normal to u and half through the face normal to v.
 void SweepBorder::EnterMember(
   const SweepBoundary& boundary, std::size_t b, int way, int m, const std::array<double, 2>& moves)
 {
@@ -118,8 +118,8 @@ void SweepBorder::Write(std::size_t b, int way, int slot, float fromU, float fro
     std::fill(map, map + this->Plan.plane.sizeU, fromP);
     std::fill(map + this->Plan.plane.sizeU, map + width, fromU);
   }
-  // The columns before and after the row hold the rays that enter at the next move along u. They are also read by rays
-  // that move along u and v at once, through the corner of the plane.
+  // The columns before and after the row hold the rays that enter at the next move along u, and those that enter
+  // through the corner of the plane in a move along u and v at once.
   const bool periodicU = this->Plan.periodic[this->Plan.axes.u];
   const float beside = periodicU ? fromV : fromU;
   float* beyond = this->outside.data() + way * this->Plan.eachWay.outside + bundle.outside + inBlock;

@@ -33,9 +33,9 @@ struct Deposit
   /// Escaped power per cell of the box's faces, W, [channel][cell] (BoxFaces.h); null: not computed. Requires a sweep
   /// of the whole domain.
   const Buffer<float>* faceOut = nullptr;
-  /// Whether the power of a ray nearly parallel to a face, which meets that face only every few cells, is spread over
-  /// the cells between such crossings. False: all its power leaves through the cell that it meets, as for incident
-  /// light.
+  /// Whether escaped power is spread along a face. A ray nearly parallel to a face meets it only every few cells; its
+  /// power is then spread over the cells between two such crossings. False: all of its power leaves through the cell
+  /// that it meets, as for incident light.
   bool spreadsAside = false;
 };
 
@@ -127,7 +127,8 @@ inline SweepBoundary OfGroup(const SweepBoundary& boundary, int first)
 
 /// Default of the maximum number of planes that a ray crosses along a periodic axis in one sweep.
 constexpr int MostPlanesAround = 8192;
-/// Rays stop wrapping around a periodic axis once their power has fallen to this fraction of that after the first lap.
+/// Rays stop wrapping around a periodic axis once their total power has fallen to this fraction of their power after
+/// the first lap.
 constexpr double NothingLeft = 1e-7;
 
 /// Bundles of rays that march along one axis (0, 1, 2: x, y, z).
@@ -157,12 +158,11 @@ struct SweepRequest
   const Buffer<float>* faceIn = nullptr;
   /// Additional source per octant of directions, W / (length^3 sr), [channel][octant][voxel], added to the source for
   /// light that leaves the voxel. Bits 0, 1, 2 of an octant's index are set if its directions are positive along x, y,
-  /// z. The power that this source adds to rays is subtracted from the voxel's own path integral, so the total power
-  /// is that of the source alone. Not with angular moments. Must outlive the sweep; null: the source is the same in
-  /// all octants.
+  /// z. The power that this source adds to rays is taken from the power that the voxel removes from rays, so it adds no
+  /// power in total. Not with angular moments. Must outlive the sweep; null: the source is the same in all octants.
   const Buffer<float>* octantSource = nullptr;
-  /// Whether angular moments of the path integrals, except the first, may be left out in voxels without medium; the net
-  /// flux is among them
+  /// Whether the sweep may omit, in voxels without medium, all angular moments of the path integrals except the first;
+  /// the omitted moments include the net flux
   bool skipsEmpty = false;
 };
 

@@ -44,7 +44,8 @@ int RowFloats(int width, int vector)
   return (vectors + 1) * vector;
 }
 
-/// Splits bundles of rays such that each has 1, 2, 4 or 8 members (directions), for which the kernels are compiled.
+/// Splits bundles of rays into bundles of 1, 2, 4 or 8 members (directions), the numbers for which the kernels are
+/// compiled.
 std::vector<Bundle> InPowersOfTwo(const std::vector<Bundle>& bundles)
 {
   std::vector<Bundle> parts;
@@ -165,7 +166,8 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.stepP = step[this->axes.axis];
   this->plane.width = width;
   this->plane.currents = this->partialCurrents;
-  // Per channel: source, path integral and beams; also net flux, partial currents and sources by octant if used.
+  // Number of quantities per channel: source, path integral and beams; also net flux, partial currents and octant
+  // sources if used.
   const int ofChannel = 2 + (this->angular ? this->angular->Beams() : 0) + (this->netFlux ? 3 : 0) +
     (this->partialCurrents ? CurrentFaces : 0) + (this->octantSource ? WaysAside : 0);
   this->plane.quantities = PlaneSource + ofChannel * this->channels;
@@ -173,8 +175,8 @@ void SweepPlan::LayPlane(const Device& device)
   this->plane.chained = this->PlanesChained(device);
   this->plane.tile = this->plane.chained > 1 ? RowsOfChain : 0;
   this->plane.together = std::max(this->plane.block, this->plane.chained);
-  // If all bundles take their turns on a tile of rows in one call (at most BundlesTogether bundles), rows can be
-  // packed (copied to scratch) just before bundles cross them, and are then still in the cache.
+  // At most BundlesTogether bundles cross a tile of rows in one call. If these are all bundles, rows are packed (copied
+  // to scratch) just before bundles cross them, and are then still in the cache.
   const bool inOneTurn = this->plane.tile > 0 && this->bundles.size() <= BundlesTogether;
   this->rowsKept = inOneTurn && this->plane.block == 1 && this->plane.sizeV > RowsOfChainKept ? RowsOfChainKept : 0;
   this->plane.vacuum = static_cast<float>(std::max(1e-30 / LongestWay(this->bundles), 1e-37));
@@ -391,9 +393,9 @@ int SweepPlan::CrossingPlanes() const
 
 std::size_t SweepPlan::ScratchFloats() const
 {
-  // Scratch of the bundles: with angular moments the data kept from one tile of rows to the next, else the ring
-  // buffers of rows between the stages of crossing a plane. In addition, one row of rays, for fractional moves, in
-  // which only a fraction of a ray's power moves.
+  // Scratch of the bundles. With angular moments: the data kept from one tile of rows to the next. Otherwise: the ring
+  // buffers of rows between the stages of crossing a plane. In addition, one row of rays for fractional moves, in which
+  // only a fraction of a ray's power moves.
   const std::size_t raysOfRow = static_cast<std::size_t>(MaxMembers) * this->channels * this->row;
   const std::size_t together = std::min<std::size_t>(this->bundles.size(), BundlesTogether);
   const std::size_t kept = this->angular
@@ -402,7 +404,8 @@ std::size_t SweepPlan::ScratchFloats() const
   // With incident radiance per cell of the faces, one more row holds the rays that enter through the faces normal to v.
   const std::size_t ring = kept + (this->faceIn ? 2 : 1) * (raysOfRow + this->vector);
   const std::size_t rows = static_cast<std::size_t>(this->plane.together) * this->plane.sizeV;
-  // All rows of a plane, even if rowsKept is set: kernels compiled for light per cell of the faces do not use rowsKept.
+  // Scratch is reserved for all rows of a plane even if rowsKept is set, because kernels compiled for light per cell of
+  // the faces ignore rowsKept.
   const std::size_t planes = this->plane.quantities * rows * this->row;
   // Rows of the moments of the source and of the path integral that are packed (copied to scratch)
   const std::size_t packed = this->momentsInPlace ? 0 : 2 * rows * this->momentRow;
@@ -559,9 +562,9 @@ std::vector<OwnLightInfo> SweepPlan::OwnLight(int lapPlanes) const
   return rows;
 }
 
-/// Path integral, per unit of source, of light within its voxel of origin (numerics.md, Eq. (26)): the sum over
-/// segments of power (l - p1) / sigma_t, where l is the segment's length and p1 its mean transmitted length. For thin
-/// voxels each term is -power l^2 (MeanLength[0] + sigma_t l (MeanLength[1] + ...)), a polynomial in sigma_t /
+/// Path integral that a unit source in a voxel causes within that voxel (numerics.md, Eq. (26)): the sum over segments
+/// of power (l - p1) / sigma_t, where l is the segment's length and p1 its mean transmitted length. For thin voxels
+/// each term is -power l^2 (MeanLength[0] + sigma_t l (MeanLength[1] + ...)), a polynomial in sigma_t /
 /// PlaneInfo::thin.
 OwnLightInfo SweepPlan::OwnLightOf(const UnitInfo& unit, int ofPlane) const
 {

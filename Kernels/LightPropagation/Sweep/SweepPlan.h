@@ -12,7 +12,7 @@
 
 namespace tyndall
 {
-/// On CPUs, rows of fewer voxels have as much memory as rows of this number, so that one program sweeps them all.
+/// On CPUs, a row of voxels has memory for at least this number of voxels, so that one program sweeps all shorter rows.
 constexpr int ShortestRow = 64;
 
 /// Properties of a sweep along one axis on which its SweepPlan depends.
@@ -93,8 +93,7 @@ struct SweepPlan : SweepDescription
   /// Sideways moves and segment lengths of rays in each plane, [plane][bundle].
   /// @param firstPlane  first plane, counted from the plane where rays start
   std::vector<CrossingInfo> Crossings(int firstPlane, int planes) const;
-  /// Path integral, per unit of source, of emitted and scattered light within its voxel of origin, [unit of
-  /// work][plane].
+  /// Path integral that a unit source in a voxel causes within that voxel, [unit of work][plane].
   /// @param lapPlanes  number of planes that the rays have crossed at the start of this lap around a periodic axis
   std::vector<OwnLightInfo> OwnLight(int lapPlanes = 0) const;
   /// Offset of the values of each angular function within a group of moments (those of MomentGroup voxels along x,
@@ -103,8 +102,9 @@ struct SweepPlan : SweepDescription
   std::vector<cl_int> FunctionPlaces() const;
   /// Arguments of the kernel `sweep` that the plan determines.
   SweepInfo Info() const;
-  /// Lowers the extinction below which a voxel counts as thin (PlaneInfo::thin), for rays that continue around a
-  /// periodic axis beyond the planes of their pattern, where their segments may be longer. Call before OwnLight().
+  /// Lowers PlaneInfo::thin, the extinction below which a voxel counts as thin. Needed for rays that continue around a
+  /// periodic axis beyond the planes of their pattern, because their segments may be longer there. Call before
+  /// OwnLight().
   void LetRaysGoOn();
 
 private:

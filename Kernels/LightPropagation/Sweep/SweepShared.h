@@ -36,8 +36,8 @@ enum
   /// rows before it is crossed
   RowsAhead = 2,
   FloatsOfLine = 16, ///< number of floats in a cache line
-  /// Lowest row at which the first stage of crossing a plane begins: if v is periodic, that stage also crosses up to
-  /// two rows before row 0, ghost rows of the other end of the plane
+  /// Lowest row at which the first stage of crossing a plane begins. If v is periodic, this stage also crosses two
+  /// ghost rows before row 0, copies of the rows at the other end of the plane
   FirstRow = -2
 };
 
@@ -47,8 +47,8 @@ enum
 {
   PlaneSigma = 0,
   PlaneInverse = 1,
-  /// Sum over rays of power times mean transmitted length; subtracted from the sum of power times length to obtain the
-  /// path integral of light in its voxel of origin (numerics.md, Eq. (26))
+  /// Sum over rays of power times mean transmitted length. The sum of power times length, less this sum, is sigma_t
+  /// times the path integral that a unit source causes within its own voxel (numerics.md, Eq. (26))
   PlaneTaken = 2,
   PlaneSource = 3
 };
@@ -155,8 +155,8 @@ typedef struct
   float meanLength[MeanLengthTerms];
 } PlaneInfo;
 
-/// Path integral, per unit of source, of emitted and scattered light within its voxel of origin: sum over segments of
-/// power (l - p1) / sigma_t, where l is the length and p1 the mean transmitted length (numerics.md, Eq. (26)).
+/// Path integral that a unit source in a voxel causes within that voxel: sum over segments of power (l - p1) / sigma_t,
+/// where l is the length and p1 the mean transmitted length (numerics.md, Eq. (26)).
 typedef struct
 {
   float length; ///< sum over segments of power times length l
@@ -172,12 +172,12 @@ typedef struct
   int first[4], plane[4], along[4];
   /// Index of the first channel's first cell; number of cells from one channel to the next
   ulong firstChannel, stride;
-  /// If `spread`: number of cells in the copy of all cells' values that each unit of work (rays carried by one
-  /// work-item) has for itself, because units of work run concurrently
+  /// If `spread`: number of values in the private copy of all cells that each unit of work (rays carried by one
+  /// work-item) has, because units of work run concurrently
   ulong unit;
   int out; ///< 1: the power that leaves through each cell of the box's faces is summed
-  /// Whether (1) the escaped power of a ray is spread over all cells of the face through which light represented by
-  /// the ray leaves; used if `out`
+  /// 1: the escaped power of a ray is spread over all face cells through which light represented by the ray leaves;
+  /// used if `out` is 1
   int spread;
   /// 1: incident radiance is given per cell of the box's faces, in addition to the radiance that is uniform over each
   /// face

@@ -14,8 +14,8 @@ namespace tyndall
 struct SweepVolume
 {
   Grid grid;
-  /// Region of the grid that is swept; rays start at its faces, at the same positions as rays that have crossed the
-  /// grid up to there; empty: the whole grid
+  /// Region of the grid that is swept; empty: the whole grid. Rays start at the region's faces, at the positions where
+  /// rays that start at the grid's faces would arrive
   VoxelBox box;
   int channels = 1; ///< number of channels that share one sigma_t: 1 or 3
   std::size_t stride = 0;

@@ -4,8 +4,8 @@ namespace tyndall
 {
 namespace
 {
-/// Number of voxels that are interleaved at a time: so few that a cache line of the result stays in the cache until the
-/// values of all channels and components have been written to it
+/// Number of voxels that are interleaved at a time: small enough that a cache line of the result stays in the cache
+/// until all channels and components have been written to it
 constexpr std::size_t AtOnce = 512;
 }
 

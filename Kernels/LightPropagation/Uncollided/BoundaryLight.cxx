@@ -14,9 +14,9 @@ namespace tyndall
 namespace
 {
 constexpr double Rounding = 1e-6; ///< relative difference of radiances that are taken as equal
-/// Largest relative difference between the incident power and the power that rays carry in if each ray moves as a
-/// whole, without fractional moves (moves of only a part of its power; numerics.md, Eq. (21)). In a box of one voxel
-/// such rays miss up to a fifth of the power through one face.
+/// Largest accepted relative difference between the incident power and the power that rays carry into the box without
+/// fractional moves, i.e. moves of only a part of a ray's power (numerics.md, Eq. (21)). In a box of one voxel, rays
+/// without fractional moves miss up to a fifth of the power through one face.
 constexpr double MissedAtMost = 0.3;
 
 int FaceOf(const Direction& direction, int axis)
@@ -29,7 +29,7 @@ bool Enough(double exact, double whole)
   return std::abs(whole - exact) <= MissedAtMost * exact;
 }
 
-/// Incident power, W: `exact`, and `whole`, the power that rays carry in without fractional moves.
+/// Incident power, W: its exact value, and `whole`, the power that rays carry into the box without fractional moves.
 struct EnteringRays
 {
   Rgb exact = {}, whole = {};
@@ -124,8 +124,8 @@ std::array<Rgb, 6> BoundaryLight::IncomingPower() const
   return power;
 }
 
-/// Incident power through all faces, W: exact, and as carried in by rays without fractional moves (of a part of their
-/// power).
+/// Incident power through all faces, W: its exact value, and the power that rays carry into the box without fractional
+/// moves (moves of only a part of a ray's power).
 std::pair<Rgb, Rgb> BoundaryLight::EnteringPower() const
 {
   EnteringRays entering;
@@ -202,9 +202,9 @@ namespace
 /// Maximum number of rays whose powers are stored during a sweep, for one sense of marching: 128 MiB of floats.
 constexpr std::size_t MostRays = std::size_t(1) << 25;
 
-/// Lets each ray move as a whole, along a straight line. Fractional moves, of a part of a ray's power, serve to admit
-/// exactly the power of boundary sources; in an emitting medium they would change path lengths in the outermost
-/// emitting voxels.
+/// Removes fractional moves (moves of only a part of a ray's power), so that all power of a ray follows a straight
+/// line. Fractional moves make the incident power of boundary sources exact, but in an emitting medium they would
+/// change path lengths in the outermost emitting voxels.
 void MoveAsLines(std::vector<Bundle>& bundles)
 {
   for (Bundle& bundle : bundles)
@@ -219,8 +219,8 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor)
 {
-  // A boundary source that is 0, rather than none: with none, the maps (ray powers) of the opposite sense of marching
-  // would not be cleared.
+  // Boundary source of radiance 0. Without a boundary source, the sweep would not clear the maps (ray powers) of the
+  // opposite sense of marching.
   const SweepBoundary dark = [](int, int) { return Rgb{}; };
   const Grid& grid = volume.domain.Whole();
   const int channels = volume.layout.Groups().front().count; // number of channels that are swept together

@@ -34,9 +34,9 @@ public:
   /// Incident power per area through each of the box's faces, W / length^2; 0 where the axis is periodic.
   std::array<Rgb, 6> IncomingPower() const;
 
-  /// Checks that a sweep without fractional moves (moves of a part of a ray's power) would carry enough of the incident
-  /// power. Few rays enter through the faces parallel to their marching axis if the box has few planes of voxels across
-  /// that axis.
+  /// Checks that a sweep without fractional moves (moves of only a part of a ray's power) would carry enough of the
+  /// incident power. If the box has few planes of voxels along a marching axis, few rays enter through the faces
+  /// parallel to that axis.
   /// @param channels  number of channels to check
   /// @throws InvalidInput if rays without fractional moves would miss more than 30% of the power that enters through
   /// the emitting faces
@@ -55,14 +55,15 @@ private:
   int MapResolution;
   const SweptDirections& Directions;
   std::array<Rgb, 6> Faces;
-  /// Radiance of sky and environment per direction, averaged over the directions that it represents, W / (length^2 sr).
+  /// Radiance of sky and environment along each direction of the quadrature, W / (length^2 sr): the mean over all
+  /// directions that this direction represents.
   std::vector<Rgb> FromFarAway;
   bool AnyLight = false;
   bool AllAlike = true;
 };
 
-/// Sweeps once along a quadrature other than that of the scattered light, in batches whose rays fit into memory. Adds
-/// to the volume's deposit. Collective if the domain is divided into blocks.
+/// Sweeps once along a quadrature that may differ from that of the scattered light, in batches of directions whose rays
+/// fit into memory. Adds to the volume's deposit. Collective if the domain is divided into blocks.
 /// @param isLit  whether a direction carries any light
 /// @param source  W / (length^3 sr), as for SweepOperator, with its angular moments in the volume's basis if there is
 ///   one; null: no emission
@@ -71,8 +72,9 @@ SweepTally SweepAlong(const UncollidedVolume& volume, const SweptDirections& alo
   const std::function<bool(int)>& isLit, const Buffer<float>* source, const SweepBoundary& incoming,
   const Monitor& monitor);
 
-/// Uncollided flux of emitting faces, sky and environment, from one sweep along its own, finer quadrature. Shadow edges
-/// need many directions; scattered light, which is swept every order, is smooth and needs few.
+/// Uncollided flux of emitting faces, sky and environment, from one sweep along a finer quadrature than that of
+/// scattered light. Uncollided light has shadow edges, which need many directions. Scattered light is smooth and needs
+/// few directions, but is swept in every iteration.
 class UncollidedBoundary : public UncollidedSource
 {
 public:

@@ -10,7 +10,8 @@ namespace tyndall
 {
 namespace
 {
-/// Fraction of the solid angle of a cell (all that is nearest to one quadrature direction) in which peaks are sought
+/// Peaks are sought among the brightest pixels of each cell (the pixels nearest to one quadrature direction), in this
+/// fraction of the cell's solid angle
 constexpr double BrightPart = 0.05;
 /// A peak's radiance exceeds this multiple of the mean radiance in the rest of its cell (the pixels nearest to one
 /// quadrature direction)
@@ -28,7 +29,7 @@ struct Pixel
 
 struct Peak
 {
-  /// Index of a pixel, and the fraction of its radiance that remains in the environment.
+  /// For each pixel of the peak: index of the pixel, and the fraction of its radiance that stays in the environment.
   std::vector<std::pair<std::size_t, double>> kept;
   std::array<double, 3> towards = {}; ///< sum of the directions towards the pixels, weighted by power
   Rgb irradiance = {};
@@ -53,8 +54,9 @@ double SolidAngle(const Environment& environment, std::size_t pixel)
   return (std::cos(top) - std::cos(bottom)) * 2.0 * Pi / environment.width;
 }
 
-/// Peak of the environment in a cell (the pixels nearest to one quadrature direction): in the brightest part of its
-/// solid angle, the radiance in excess of Outshines times the mean of the rest.
+/// Finds the peak of the environment in a cell (the pixels nearest to one quadrature direction). In the cell's
+/// brightest pixels, which cover the fraction BrightPart of its solid angle, the peak is the radiance above Outshines
+/// times the mean radiance of the other pixels.
 Peak FindPeak(const Environment& environment, std::vector<Pixel>& cell)
 {
   std::sort(cell.begin(), cell.end(), [](const Pixel& a, const Pixel& b) {

@@ -20,7 +20,7 @@ void AddFirst(Device& device, const std::vector<float>& values, const Buffer<flo
   device.Queue().enqueueWriteBuffer(to.Handle(), CL_TRUE, 0, sum.size() * sizeof(float), sum.data());
 }
 
-/// Scalar in each voxel times the mean direction there, [channel][x, y, z][voxel].
+/// Scalar times the mean direction of light in each voxel, [channel][x, y, z][voxel].
 std::vector<float> Along(const VolumeLayout& layout, const std::vector<float>& scalar, const Field& direction)
 {
   std::vector<float> flux(layout.Floats(3), 0.0f);
@@ -37,8 +37,8 @@ std::vector<float> Along(const VolumeLayout& layout, const std::vector<float>& s
   return flux;
 }
 
-/// Mean place of the first collisions behind a face of light that falls as exp(-depth) over a voxel of this optical
-/// length: 1 at the face, 0 in the middle.
+/// Mean position of the first collisions in a voxel of optical thickness tau, for light that enters through one face
+/// and decays exponentially: 1 at that face, 0 in the middle of the voxel.
 double NearnessToFace(double tau)
 {
   return tau < 0.05 ? tau / 6.0 : 1.0 - 2.0 * (1.0 / tau - 1.0 / std::expm1(tau));

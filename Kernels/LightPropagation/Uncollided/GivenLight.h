@@ -9,9 +9,9 @@ namespace tyndall
 {
 /// Uncollided flux that another solver computed for each voxel (UncollidedImage.h, numerics.md, section 5.7).
 ///
-/// The image is attenuated by the untruncated extinction of the medium, whereas sweeps treat the forward peak of
-/// scattering as unscattered light. The light of the image that scatters into the forward peak is therefore a separate
-/// source, AddStraightOn().
+/// The other solver attenuates the light by the full extinction of the medium. Sweeps use a truncated extinction: they
+/// treat light that is scattered into the forward peak of the phase function as unscattered. Such light is therefore
+/// added as a separate source, by AddStraightOn().
 class GivenLight : public UncollidedSource
 {
 public:
@@ -22,15 +22,16 @@ public:
   SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const override;
   bool TalliesOwnVoxels() const override { return true; }
 
-  /// Adds the light scattered into the forward peak to `source`, W / (length^3 sr), with its angular moments if `basis`
-  /// is not null.
+  /// Adds the light that is scattered into the forward peak of the phase function to `source`, W / (length^3 sr), with
+  /// angular moments if `basis` is not null.
   /// @return whether any light scatters into the forward peak
   bool AddStraightOn(
     Device& device, const VolumeLayout& layout, const AngularBasis* basis, const Buffer<float>& source) const;
 
 private:
-  /// First moments (Deposit::firstMoments) of light that entered each voxel through the faces upstream of its mean
-  /// direction, or, as far as it has none, through all faces alike (numerics.md, Eq. (41f)).
+  /// First moments (Deposit::firstMoments) of the light (numerics.md, Eq. (41f)). In each voxel, a fraction of the
+  /// light equal to the length of the mean direction is taken to enter through the faces upstream of that direction,
+  /// the remainder through all faces in proportion to their areas.
   /// @param path  path integrals, W length, [channel][voxel]
   std::vector<float> FirstMoments(const VolumeLayout& layout, const std::vector<float>& path) const;
 
@@ -40,12 +41,12 @@ private:
 };
 
 /// Energy balance of the image's light: power that the medium removes and power that escapes, for `channels` channels
-/// from `first` on, W. The faces through which the light entered are unknown: all of it is counted as incident on the
-/// first face.
+/// from `first` on, W. The faces through which the light entered are unknown, so all light is counted as incident on
+/// face 0 (-x).
 SweepTally TallyOf(const UncollidedImage& image, const Medium& medium, int first, int channels);
 
-/// Value of the argument `peak` of AddNarrowMoments() that reduces the moments of a peak of light about one direction
-/// just enough that it is nowhere negative: exp(-2 s) for the smallest s at which the peak with moments exp(-s l (l +
-/// 1)), l up to `degree`, is nowhere negative.
+/// Value of the argument `peak` of AddNarrowMoments() that reduces the moments of light along one direction just enough
+/// that the truncated series is nowhere negative. The value is exp(-2 s) for the smallest s at which the series with
+/// moments exp(-s l (l + 1)), l up to `degree`, is nowhere negative.
 double SmoothPeak(int degree);
 }

@@ -34,8 +34,8 @@ __kernel void add_narrow_moments(MomentPlaces places, const __global float* basi
   }
   float harmonics[MOMENTS];
   find_harmonics(flow / size, harmonics);
-  // Directions spread diffusively about their mean: the moment of degree l is spread^(l (l + 1) / 2), with spread =
-  // |flux| / path.
+  // Light is taken to be spread diffusively about its mean direction, so its moment of degree l is spread^(l (l + 1) /
+  // 2), with spread = |flux| / path.
   const float spread = fmin(size / power, 1.0f) * peak;
   float whole = 1.0f / peak, step = spread;
   for (int l = 1; l <= DEGREE; ++l)

@@ -4,9 +4,9 @@
 
 namespace tyndall
 {
-/// Collector of the light, such as that of lamps, that has a single direction, or nearly one, in each voxel: path
-/// integrals, and optionally net flux, separate from the light of other sources. Afterwards they are added to a deposit
-/// with angular moments.
+/// Collects light that has a single direction, or nearly one, in each voxel, such as the light of lamps. Its path
+/// integrals, and optionally its net flux, are first summed separately from other light, and then added with their
+/// angular moments to a deposit.
 class NarrowLight
 {
 public:
@@ -14,8 +14,8 @@ public:
   /// @param withFlux  whether to collect net flux too, for light whose direction varies from voxel to voxel
   NarrowLight(const UncollidedVolume& volume, bool withFlux);
 
-  /// Deposit that receives the light to be collected; its first moments are those of the volume's deposit, if that has
-  /// them.
+  /// Deposit that receives the light to be collected. Its array of first moments is that of the volume's deposit, if
+  /// there is one.
   Deposit To() const;
   /// Adds the collected light, of direction `omega` in all voxels, to the volume's deposit.
   void AddAlong(const std::array<double, 3>& omega) const;

@@ -4,16 +4,16 @@
 #include "LightPropagation/Sweep/BeyondFacesShared.h"
 #include "LightPropagation/Uncollided/ParallelBeamShared.h"
 
-// Mean distance of the place of loss from a voxel's centre towards the entry face, in voxels, for light that enters
-// through one face and is attenuated exponentially over the optical length tau.
+// Mean distance of collisions from the voxel's centre towards the entry face, in voxels, for light that enters through
+// one face and is attenuated exponentially over the optical length tau.
 static float distance_to_face(float tau)
 {
   return tau < 0.05f ? tau / 12.0f : 0.5f - 1.0f / tau + (tau < 80.0f ? 1.0f / expm1(tau) : 0.0f);
 }
 
 // Adds the beam's path, and its first moments computed from the powers through the faces (numerics.md, Eq. (39)), to
-// the deposit. The first moments are exact if as much power enters as leaves through the lateral faces, and never
-// exceed those of light that all enters through one face.
+// the deposit. The first moments are exact if as much power leaves through the lateral faces as enters there. They
+// never exceed the first moments of light that enters through one face only.
 // path, currents           path integral, W length, and partial currents, W, of the beam (Deposit,
 //                          Sweep/SweepOperator.h)
 // beyond                   power that enters voxels beyond a block's faces, W

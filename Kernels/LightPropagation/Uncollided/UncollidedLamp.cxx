@@ -21,7 +21,7 @@ namespace
 /// @return incident power, escaped power, and power in transit along periodic axes, W
 SweepTally DepositBeam(const UncollidedVolume& volume, const Light& light, const Monitor& monitor);
 
-// The two steps of DepositBeam(), for arrays that cover only a block of the grid that the rays cross.
+// DepositBeam() consists of the two steps below. They also work on arrays that cover only a block of the grid.
 
 /// Sweeps along the beam of a directional light.
 /// @param volume  its deposit is not used
@@ -40,8 +40,8 @@ void AddWithFirstMoments(
 namespace
 {
 constexpr int RaysPerEdge = 2; ///< rays per edge of a voxel's face
-/// Rays per edge of a voxel's face if first moments are computed: with few rays an oblique beam enters some voxels
-/// through one face and their neighbours through another, and each voxel seems to be lit from one side only.
+/// Rays per edge of a voxel's face if first moments are computed. With few rays of an oblique beam, all rays of a voxel
+/// may enter through the same face, and the voxel would seem to be lit from one side only.
 constexpr int RaysPerThickEdge = 8;
 
 }

@@ -42,12 +42,12 @@ public:
   virtual ~UncollidedSource() = default;
 
   /// Adds the path integrals of this source, and net flux and first moments if the deposit has arrays for them, to the
-  /// deposit. Collective: failures on one rank become errors on all before the last collective step; errors after it
-  /// may occur on one rank alone.
+  /// deposit. Collective. An error on one rank becomes an error on all ranks, except after the last collective step,
+  /// where it may occur on one rank alone.
   /// @return incident power, escaped power, and power in transit along periodic axes, W
   virtual SweepTally AddTo(const UncollidedVolume& volume, const Monitor& monitor) const = 0;
 
-  /// Whether AddTo() returns the energy balance of this rank's own voxels; false: that of the whole domain.
+  /// Whether AddTo() returns the energy balance of this rank's own voxels; false: it returns that of the whole domain.
   virtual bool TalliesOwnVoxels() const { return false; }
 };
 

@@ -9,7 +9,7 @@
 #include "LightPropagation/Sweep/OnCpu/SweepPartialCurrents.cl"
 #include "LightPropagation/Sweep/OnCpu/SweepSides.cl"
 
-// Makes plane k of a chain (planes that a bundle crosses together) the one that the work-item crosses.
+// Makes plane k of a chain (planes that a bundle crosses together) the current plane of the work-item.
 static void go_to_plane(sweep_state* state, int k)
 {
   const struct plane_place* place = state->places + k;
@@ -24,8 +24,8 @@ static void go_to_plane(sweep_state* state, int k)
 }
 
 #if OCTANT_SOURCE
-// The combinations of senses along u and v (WaysAside) to which a direction (member) of a bundle belongs: two if it has
-// no component along u or v, else the same one twice.
+// Returns the quadrants of the (u, v) plane (WaysAside) that contain a direction (member) of a bundle. A direction with
+// no component along u or v is on the border of two quadrants; for others both results are equal.
 static inline int2 ways_aside(const __global BundleInfo* bundle, int m)
 {
   const float2 signs = signs_of(bundle, m);
@@ -93,8 +93,7 @@ typedef struct
   __global float* planes;
   __global int* words; // words of rows (IS_THIN, IS_FILLED), [plane][row]
   int first, count;
-  // Path integral, within its voxel of origin, of the light that a source of 1 emits; one element per plane, in
-  // marching order
+  // Path integral that a unit source in a voxel causes within that voxel; one element per plane, in marching order
   const __global OwnLightInfo* own;
 } packed_planes;
 
@@ -126,8 +125,8 @@ static BY_ROW void find_words(const SweepInfo* info, const __global float* plane
   }
 }
 
-// Copies rows [rows.x, rows.y) of planes to scratch memory, to be crossed by rays, and sets to 0 what rays add to in
-// these rows: path integrals, net flux and partial currents.
+// Copies rows [rows.x, rows.y) of planes to scratch memory, where rays cross them. Sets the path integrals, net flux
+// and partial currents of these rows to 0.
 static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -176,10 +175,10 @@ static BY_ROW void begin_rows(const swept_volume* volume, const packed_planes* p
 }
 
 #if !ANGULAR
-// Adds the path integral of emitted and scattered light within its voxel of origin to a row (numerics.md, Eq. (26)):
-// source times (length - taken) / sigma_t, where `length` and `taken` are sums over rays of power times path length and
-// of power times mean transmitted length. In thin voxels, where the difference would cancel and `taken` is not stored,
-// a polynomial replaces it.
+// Adds to a row the path integral of emitted and scattered light within the voxel where it starts (numerics.md, Eq.
+// (26)): source times (length - taken) / sigma_t, where `length` and `taken` are sums over rays of power times path
+// length and of power times mean transmitted length. In optically thin voxels, where the subtraction would lose all
+// digits and `taken` is not stored, a polynomial is used instead.
 static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, const __global OwnLightInfo* light)
 {
   for (int at = 0; at < layout->width; at += REAL_WIDTH)
@@ -204,8 +203,8 @@ static BY_ROW void add_own_light(const PlaneInfo* layout, __global float* row, c
 }
 #endif
 
-// Adds what rays have added to rows [rows.x, rows.y) of packed planes (path integrals, net flux, partial currents) to
-// the arrays of the volume.
+// Adds the path integrals, net flux and partial currents of rows [rows.x, rows.y) of packed planes to the arrays of the
+// volume.
 static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* packed, int2 rows)
 {
   const SweepInfo* info = volume->info;
@@ -249,7 +248,7 @@ static BY_ROW void end_rows(const swept_volume* volume, const packed_planes* pac
   }
 }
 
-// Carries the rays of bundle `b` through a chain of planes, which it crosses together, row by row.
+// Carries the rays of bundle `b` row by row through a chain, i.e. planes that it crosses together.
 // @param crossings  sideways moves and segment lengths of all bundles, from the chain's first plane on
 static void cross_planes(sweep_state* state, int planes, const swept_rays* rays, int b,
   const __global CrossingInfo* crossings, int first_row, int end_row)
@@ -271,9 +270,9 @@ static void cross_planes(sweep_state* state, int planes, const swept_rays* rays,
 #undef CROSS
 }
 
-// Carries the rays of `count` bundles, from bundle `first` on, through a chain of planes, which each bundle crosses
-// together, row by row. If the planes hold much data (moments, or large chained planes), all bundles cross one tile (a
-// block of rows) before they cross the next, so that the tile stays in the cache.
+// Carries the rays of `count` bundles, from bundle `first` on, through a chain, i.e. planes that each bundle crosses
+// together, row by row. If the planes hold moments, or are large, all bundles cross one tile (a block of rows) before
+// any bundle crosses the next tile, so that the tile stays in the cache.
 // @param planes  number of planes; 1 if CHAINED is 0
 // @param packed  the planes; if KEPT_ROWS is not 0, this function packs their rows tile by tile, and `count` must be
 //   the number of all bundles
@@ -358,7 +357,7 @@ static void go_to_channel(swept_volume* volume)
   volume->octants += 8 * info->first;
 }
 
-// Sets those values of sweep_state that are the same for all planes, except for pointers.
+// Sets the members of sweep_state that are the same for all planes, except the pointers.
 static void begin_state(sweep_state* state, const SweepInfo* info)
 {
   const PlaneInfo* layout = &info->planes;
@@ -449,8 +448,8 @@ static void begin_planes(const swept_volume* volume, const packed_planes* packed
 #endif
 }
 
-// Adds what rays have added to the packed planes (path integrals, net flux, partial currents, moments) to the arrays of
-// the volume. If KEPT_ROWS is not 0, cross_bundles() has already done this.
+// Adds the path integrals, net flux, partial currents and moments of the packed planes to the arrays of the volume. If
+// KEPT_ROWS is not 0, cross_bundles() has already done this.
 static void end_planes(const swept_volume* volume, const packed_planes* packed, const unit_scratch* scratch)
 {
   if (!KEPT_ROWS)
@@ -530,9 +529,9 @@ static packed_planes part_of(const packed_planes* packed, const swept_volume* vo
   return part;
 }
 
-// Number of planes to pack (copy to scratch memory) together, from plane `begin` on, counted from where rays start; at
-// most up to plane `end`, and to the end of the lap (passage through all planes of a periodic axis) that began at plane
-// `lap`.
+// Number of planes, from plane `begin` on, to pack (copy to scratch memory) together. They end before plane `end` and
+// before the end of the lap (passage through all planes of a periodic axis) that began at plane `lap`. Planes are
+// counted from where rays start.
 static int planes_to_pack(const SweepInfo* info, int begin, int end, int lap, int backward)
 {
   const PlaneInfo* layout = &info->planes;
@@ -556,8 +555,8 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
   for (int i = 0, chained; i < packed->count; i += chained)
   {
     const int k = begin + i;
-    // Chains (planes that a bundle crosses together) begin at the same planes whatever range a launch crosses, so that
-    // rows and sums are processed in the same order.
+    // Chains (planes that a bundle crosses together) begin at the same planes however the planes are divided among
+    // launches, so that the order of summation is always the same.
     state->chained_before = CHAINED ? (unit->planesBefore + k) % info->planes.chained : 0;
     chained = CHAINED ? min(info->planes.chained - state->chained_before, packed->count - i) : 1;
     state->places = places + i;
@@ -583,9 +582,9 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
 // sigma     extinction, 1/length, [voxel]
 // source    W / (length^3 sr), with its angular moments and beams (MomentPlacesShared.h)
 // octants   additional source per octant of directions, W / (length^3 sr), [channel][octant][voxel]
-// path      path integrals, W length, with their angular moments, added to
+// path      path integrals, W length, with their angular moments; the kernel adds to them
 // lost      rounding errors of path in this sweep (compensated summation), if rays wrap around the marching axis
-// flux      net flux, W length, [channel][x, y, z][voxel], added to
+// flux      net flux, W length, [channel][x, y, z][voxel]; the kernel adds to it
 // currents  power that enters the voxel through each face, W, [channel][-x, +x, -y, +y, -z, +z][voxel], added to
 // maps      power of each ray, W, for both senses of marching (or for the only one)
 // border    power of incident rays, W: rows that enter through the faces normal to v, for both senses of marching; then
@@ -593,7 +592,7 @@ static void cross_chains(sweep_state* state, const swept_volume* volume, const s
 // coefficients  values of the angular functions in the directions of the bundles (BundleInfo::coefficients), for both
 //               senses
 // crossings  sideways moves and segment lengths, [plane of the ray pattern][bundle]
-// own       path integrals, within the voxel of origin, of the light that a source of 1 emits, [unit][plane,
+// own       path integrals that a unit source in a voxel causes within that voxel, [unit][plane,
 //           counted from where rays start]
 // schedule  first plane and end, counted from where rays start, [launch][unit]; planes beyond the last plane wrap
 //           around; if streamed [launch][planes, slots][unit], where slots are those of go_to_slot()

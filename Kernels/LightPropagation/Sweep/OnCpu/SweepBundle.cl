@@ -1,10 +1,9 @@
 // Functions that carry the rays of one bundle through one plane. A bundle is a set of directions (members) that are
 // mirror images of each other. Compiled once for each number of MEMBERS.
 //
-// A plane is crossed in up to three stages, one per segment. A stage reads every ray where the previous stage left it:
-// the whole map moves by one voxel or none, which costs only an offset in the load. The stages process rows one after
-// another, each stage LAG rows behind the previous stage, so that intermediate rows stay in the cache; the last stage
-// writes the map in place.
+// A plane is crossed in up to three stages, one per segment. Between two stages all rays of the map move by one voxel
+// or none. The move costs only an offset in the load. The stages process rows one after another, each stage LAG rows
+// behind the previous stage, so that intermediate rows stay in the cache; the last stage writes the map in place.
 
 #define NAME_OF(a, b) TYNDALL_JOIN(a, b)
 #define CROSS_VOXELS NAME_OF(cross_voxels_, MEMBERS)
@@ -45,7 +44,7 @@
   }
 #else
 
-// Rows of the plane's quantities that rays read and add to in one segment (their path through one voxel).
+// Rows of the plane's quantities that rays read or add to while they cross one segment (path through one voxel).
 typedef struct
 {
   const __global float *inverse, *source, *octants;
@@ -66,8 +65,8 @@ typedef struct
 
 // For one channel and a vector of voxels, carries the rays of all directions (members) of a bundle through one segment,
 // i.e. through one voxel each.
-// own_path  path integral, within its voxel of origin, of the light that a source of 1 emits, times the cosine between
-// rays and axis
+// own_path  path integral that a unit source in a voxel causes within that voxel, times the cosine between rays and
+// axis
 static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_ROWS* rows, const MEMBER_WAYS* ways,
   int x, int c, const real_crossing* crossing, real own_path, const __global float** in, __global float* out)
 {
@@ -123,7 +122,8 @@ static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_RO
 // conservative form). With P the power of a ray before the segment, P' behind it, p1 the mean transmitted length, q the
 // source, and `power` the power of a ray at radiance 1:
 //   path += p1 P,  P' = P - sigma p1 P + power q p1
-// The path integral of the source's light within its own voxel does not depend on P; add_own_light in Sweep.cl adds it.
+// Light of the source also has a path within the voxel where it starts. That path does not depend on P and is added by
+// add_own_light in Sweep.cl.
 // @param entered  rows of the power that enters the plane's voxels, W, [channel][CurrentFaces]; null if not computed
 static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* state, int y, bool deposit, bool thin,
   const __global float** in, __global float* out, float length, const __global BundleInfo* bundle,
@@ -157,9 +157,9 @@ static inline __attribute__((always_inline)) void CROSS_VOXELS(sweep_state* stat
       const real taken = multiply_add(crossing.meanLength, (real)(rows.power * MEMBERS), load_real(x, taken_row));
       store_real(taken, x, taken_row);
     }
-    // Path integral, within its voxel of origin, of the light that a source of 1 emits, (length - mean_length) / sigma,
-    // times the cosine. Across the axis the contributions of mirror images to the net flux cancel; along the axis they
-    // do not, as a ray and its opposite may cross the voxel in different segments.
+    // Path integral that a unit source in a voxel causes within that voxel, (length - mean_length) / sigma, times the
+    // cosine. In the net flux, contributions of mirror-image directions cancel normal to the marching axis. Along the
+    // axis they do not cancel, because a ray and its mirror image may cross the voxel in different segments.
     const real own_path =
       NET_FLUX ? own_path_of(x, &crossing, inverse_row, length) * (rows.power * MEMBERS * rows.cosine) : (real)0.0f;
 #pragma unroll
@@ -202,10 +202,10 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
   }
 }
 
-// Adds the power of the rays that leave the box from row y of `row` in a move of (du, dv), of which the fraction `part`
-// moves, to the escaped power. Rays that move along u and v at once are taken to cross u first and v first in equal
-// parts. At the box's edge, half of their power leaves through either face, and half of the light that enters next to
-// the edge passes straight through.
+// Adds the power of the rays that leave the box from row y in a move of (du, dv) to the escaped power. `row` holds the
+// rays; the fraction `part` of their power moves. Of rays that move along u and v at once, half cross along u first and
+// half along v first. At the box's edge, half of their power therefore leaves through either face, and half of the
+// light incident next to the edge leaves again without crossing a voxel.
 // across_u, across_v  power of the rays that enter through the faces normal to u and v, W, without light given per
 //                     cell: across_u is [member][channel], across_v a row of rays
 static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv,
@@ -265,8 +265,8 @@ static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, 
   }
 }
 
-// Mixes the rays of a row of which only the fraction `part` moves (numerics.md, Eq. (22)): `in` are the rays that
-// arrive, `own` those that stay.
+// Mixes the rays of a row in a move that only the fraction `part` of each ray's power makes (numerics.md, Eq. (22)):
+// `in` points to the rays that arrive, `own` to the rays that stay.
 static BY_ROW void MOVE_PART(sweep_state* state, float part, const __global float* own, const __global float** in)
 {
   for (int m = 0; m < MEMBERS; ++m)
@@ -347,7 +347,7 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
           row[size] = row[0];
           continue;
         }
-        // At the edge of the box, half of the light enters through either face.
+        // At an edge of the box, half of the light enters through each of the two faces.
         const int corner = dv > 0 ? 0 : state->sizeV - 1;
         const int column = du > 0 ? 0 : size - 1;
         const float half_light = du == 0
@@ -361,8 +361,8 @@ static BY_ROW void FILL_OUTSIDE(sweep_state* state, const __global float* outsid
 }
 #endif
 
-// Adds the power that enters row y, by face, to the partial currents (SweepPartialCurrents.cl); the rays through one
-// face are added together.
+// Adds the power that enters the voxels of row y through each face to the partial currents (SweepPartialCurrents.cl).
+// Rays of all directions that enter through the same face are summed first.
 // @param own  rays of row y before the move
 static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, int s, const __global float** in,
   const __global float* own, const __global BundleInfo* bundle, const __global CrossingInfo* crossing)
@@ -405,8 +405,9 @@ static BY_ROW void COUNT_CURRENTS(sweep_state* state, int y, int s, const __glob
   }
 }
 
-// Sets `in` to the row from which a stage reads the rays of each member. Tallies the rays that leave the box.
-// @param own  row y as the previous stage left it; null: rays are read from the map and do not move
+// Points `in` to the row from which a stage reads the rays of each member. Tallies the rays that leave the box.
+// @param own  row y after the previous stage; null: this is the first stage, which reads rays from the map and does not
+// move them
 static void TAKE_ROW(sweep_state* state, int y, bool inside, int s, const __global float* map,
   const __global float* ring, const __global float* own, const __global float* beside, const __global float* outside,
   const __global float* radiance, const __global BundleInfo* bundle, const __global CrossingInfo* crossing,
@@ -491,8 +492,8 @@ static const __global float* BEGIN_CHAIN(sweep_state* state, int planes, __globa
     }
   }
   go_to_plane(state, 0);
-  // Along a periodic v, rows beyond the plane are the rows of its opposite side and are recomputed there. Copies the
-  // first rows, which are needed after they have been overwritten.
+  // If v is periodic, the first rows are crossed again as ghost rows beyond the last row. Their rays are copied there,
+  // because the originals will have been overwritten by then.
   for (int i = 0; PERIODIC_V && begins && i < (chain->stages - 1) * BLOCK; ++i)
   {
     map[state->sizeV * BLOCK + i] = map[(i / BLOCK % state->sizeV) * BLOCK + i % BLOCK];

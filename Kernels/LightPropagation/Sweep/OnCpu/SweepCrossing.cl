@@ -6,8 +6,8 @@
 #include "Numerics/Prefetch.cl"
 
 // Effect of a segment on rays of power P with a source q: path += p1 P, P' = P - sigma p1 P + power q p1, with the mean
-// transmitted length p1 = (1 - exp(-tau)) / sigma (numerics.md, Eqs. (23), (24)). P' = P keep + P change + power q p1:
-// for small tau P minus the loss, for large tau P times the transmittance, to avoid cancellation.
+// transmitted length p1 = (1 - exp(-tau)) / sigma (numerics.md, Eqs. (23), (24)). It is computed as P' = P keep + P
+// change + power q p1, without cancellation: for small tau P minus the loss, for large tau P times the transmittance.
 typedef struct
 {
   real tau;
@@ -50,8 +50,8 @@ static inline __attribute__((always_inline)) real_crossing cross_length(const sw
   return crossing;
 }
 
-// Path integral, within its voxel of origin, of the light that a source of 1 emits, divided by a ray's power at
-// radiance 1: (length - p1) / sigma (numerics.md, Eq. (24)).
+// Path integral that a unit source in a voxel causes within that voxel, divided by a ray's power at radiance 1: (length
+// - p1) / sigma (numerics.md, Eq. (24)).
 static inline __attribute__((always_inline)) real own_path_of(
   int x, const real_crossing* crossing, const __global float* inverse_row, float length)
 {
@@ -66,9 +66,8 @@ static inline float2 signs_of(const __global BundleInfo* bundle, int m)
   return (float2)(bundle->move[m][0] + bundle->move[m][1], bundle->move[m][2] + bundle->move[m][3]);
 }
 
-// Prefetches the next cache lines of the map of chained planes, which is in main memory, into the second-level cache.
-// This is done a few cache lines at each vector of voxels, because prefetching a whole row at once would stall the
-// core.
+// Prefetches the next cache lines of the map of ray powers from main memory into the second-level cache: a few lines at
+// each vector of voxels, because prefetching a whole row at once would stall the core.
 static inline __attribute__((always_inline)) void ask_for_lines(sweep_state* state)
 {
   for (int i = 0; i < state->asks; ++i)

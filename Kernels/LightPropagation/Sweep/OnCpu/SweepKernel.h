@@ -19,7 +19,7 @@ public:
   void SetBorder(const std::vector<float>& outside, const std::vector<float>& radiance);
   void ClearBorder();
   bool IsBorderClear() const { return this->BorderIsClear; }
-  /// Sets the path integrals, within the voxel of origin, of the light that a source of 1 emits (SweepPlan::OwnLight).
+  /// Sets the path integrals that a unit source in a voxel causes within that voxel (SweepPlan::OwnLight).
   void SetOwnLight(const std::vector<OwnLightInfo>& own);
 
   /// Arguments of one or several launches of the kernel.
@@ -57,7 +57,7 @@ public:
 private:
   Device& TheDevice;
   const SweepPlan& Plan;
-  /// Incident power, W: of SetBorder()'s `outside` for both senses of marching, then of `radiance` for both
+  /// Incident power, W: the values `outside` of SetBorder() for both senses of marching, then its values `radiance`
   Buffer<float> Border;
   bool BorderIsClear = false;
   Buffer<float> Left, Coefficients;

@@ -11,11 +11,11 @@
 //             FaceInfo tells which
 //   ROWS_KEPT  number of rows that are kept in scratch memory of chained planes, i.e. planes that a bundle crosses
 //              together; a power of two; 0: all rows
-//   SIDES     1: the box is a block of a larger domain (SweepSides.cl)
-// Options whose run-time test is nearly free are in SweepInfo instead: sweeps of incident light and of scattered light
-// thus share one program, which takes seconds to compile.
+//   SIDES     1: the box is a block of a larger domain (SweepSides.cl) A program takes seconds to compile. Options
+// whose test at run time costs little are therefore members of SweepInfo, so that sweeps of incident light and of
+// scattered light share one program.
 //
-// Rays carry power (W), so escaped power needs no further factor at any face. A row of a map holds the power of the
+// Rays carry power (W), so escaped power is a plain sum over rays at every face. A row of a map holds the power of the
 // rays, at the voxels that they enter, for all directions (members) of a bundle and all channels: float
 // [member][channel][row].
 
@@ -25,8 +25,8 @@
 #include "Numerics/Numerics.cl"
 
 #define PAD REAL_WIDTH
-// Number of rows by which a stage (the crossing of one of a plane's up to three segments) lags behind the previous
-// stage.
+// Number of rows by which a stage lags behind the previous one. A stage takes each ray through one voxel; a plane has
+// at most three stages.
 #define LAG 2
 // Maximum number of planes that are copied to scratch memory together
 #define PLANES_TOGETHER (REAL_WIDTH > MostChained ? REAL_WIDTH : MostChained)
@@ -42,8 +42,8 @@
 #define PLANE_CURRENTS (PLANE_OCTANTS + (OCTANT_SOURCE ? WaysAside : 0) * CHANNELS)
 #define RAYS_OF_ROW (MaxMembers * CHANNELS * ROW)
 
-// Whether a bundle may cross up to PLANES_CHAINED planes together, row by row, as a chain. Not possible if the rays
-// that enter or leave sideways are stored by plane, or if rows wrap around.
+// Whether a bundle may cross up to PLANES_CHAINED planes together, row by row, as a chain. This is impossible if rays
+// that enter or leave sideways are stored for each plane, or if rows wrap around a periodic axis.
 #define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
 // Attribute BY_ROW of functions that are called at most once per row. Inlining them in unrolled loops makes compilation
 // a third slower; where planes may be chained, however, calls cost 10% of a sweep with 64 voxels per row.
@@ -121,8 +121,8 @@ static int segment_bits(int width)
   return bits;
 }
 
-// Compile-time check: the rows kept must hold a tile (the block of rows that all bundles cross in turn) and the rows by
-// which its last stage lags behind the first.
+// Compile-time check: the kept rows must hold one tile (block of rows that all bundles cross in turn) and the rows by
+// which the last stage of crossing lags behind the first stage.
 typedef char kept_rows_suffice[!KEPT_ROWS || KEPT_ROWS >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 
 // A plane that is being crossed: its packed quantities, words of rows and escaped power.
@@ -160,7 +160,7 @@ typedef struct
   // Sources in the directions (members) of a bundle, W / (length^3 sr), MomentRows rows of RAYS_OF_ROW floats
   __global float* sources;
   __global float* paths; // path integrals of the bundle's directions, W length, laid out as sources
-  // Path integral, within its voxel of origin, of the light that a source of 1 emits, MomentRows rows.
+  // Path integral that a unit source in a voxel causes within that voxel, MomentRows rows.
   __global float* ownPath;
   // Moments, from the second function on, of the plane's source and of its path integral; number of floats from one row
   // to the next, and from one channel to the next.

@@ -42,8 +42,9 @@ __kernel void map_power(
   }
 }
 
-// Clears the columns beside a row's voxels, which hold the power of rays that enter through the faces normal to u: no
-// light is incident once rays wrap around a periodic axis. One work-item per row of a bundle and sense of marching.
+// Clears the columns at both ends of a row, which hold the power of rays that enter through the faces normal to u. No
+// light is incident any more once rays wrap around a periodic axis. One work-item per row of a bundle and sense of
+// marching.
 __kernel void darken_beside(MapsInfo info, __global float* maps, const __global BundleInfo* bundles)
 {
   const __global BundleInfo* bundle = bundles + get_global_id(1);

@@ -3,18 +3,18 @@
 // SweepBundle.cl.
 //
 // Members (directions) of a frame differ only in the signs of their components along u and v, so the values of an
-// angular function in their directions differ only in sign. Functions are therefore summed by parity along u and v,
-// which gives four sums for up to four members, instead of one sum per member. A bundle has one frame or two; each
-// value of a moment is read once for both.
+// angular function in their directions differ only in sign. Sums over functions are therefore formed once per parity
+// along u and v. Four such sums, with signs, give the results of up to four members. A bundle has one frame or two;
+// each value of a moment is read once for both.
 
 #define MOST_OF_FRAME (MEMBERS < 4 ? MEMBERS : 4)
 // Index of the first direction (member) of frame f of a bundle. A frame is a set of members that differ only in signs;
 // eight members are two frames of four.
 #define BEGIN_OF_FRAME(f) (MEMBERS == 8 ? 4 * (f) : bundle->firstOfFrame[f])
 
-// OF_ALL_PARITIES(MACRO) runs MACRO(parity) for the angular functions k, from the second on, parity by parity; it skips
-// parities whose functions are zero in all of the bundle's directions. BEGIN_PARITIES loads the values needed into
-// registers.
+// OF_ALL_PARITIES(MACRO) runs MACRO(parity) for all angular functions from the second on, one parity after another. It
+// skips parities whose functions are zero in all of the bundle's directions. BEGIN_PARITIES loads the values needed
+// into registers.
 #define BEGIN_PARITIES                                                  \
   const int functions = state->functions, parities = bundle->parities;  \
   const int end_0 = state->parityEnds[0], end_1 = state->parityEnds[1]; \
@@ -42,8 +42,8 @@
   }
 
 // Computes the source of the voxels of row y in each direction (member) of the bundle (numerics.md, Eq. (29b)), and
-// stores it as row number `slot` of state->sources. Rows have the layout of the ring buffers, whose last row ends with
-// the padding that precedes the first row of the sources.
+// stores it as row number `slot` of state->sources. Rows have the layout of the ring buffers of rays; the padding after
+// the last row of these buffers precedes the first row of sources.
 // @param frames  number of frames (sets of members that differ only in signs) of the bundle, 1 or 2, a compile-time
 //   constant
 static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* state, int y, int slot,
@@ -106,8 +106,8 @@ static inline __attribute__((always_inline)) void FIND_SOURCES(sweep_state* stat
   }
 }
 
-// Carries the rays of a vector of empty voxels through one segment each. Of their path integrals only the first moment
-// is computed, if `deposit`.
+// Carries the rays of a vector of empty voxels through one segment each. If `deposit`, adds only moment 0 of their path
+// integrals.
 static inline __attribute__((always_inline)) void PASS_EMPTY(
   sweep_state* state, int y, int x, bool deposit, const __global float** in, __global float* out, float length)
 {

@@ -1,11 +1,11 @@
-// Functions that sum partial currents: the power that enters voxels through their faces from their neighbours
-// (numerics.md, Eq. (29)), for the balance of a diffusion system.
+// Functions that sum partial currents, i.e. the power that enters each voxel through each of its faces (numerics.md,
+// Eq. (29)). The diffusion system of the acceleration needs them.
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
 
-// Adds the fraction `part` of several rays of row y that enter through `face` to the partial currents. `count` must be
-// a compile-time constant.
+// Adds the fraction `part` of `count` rows of rays, which enter row y of voxels through `face`, to the partial
+// currents. `count` must be a compile-time constant.
 inline __attribute__((always_inline)) void add_currents(
   sweep_state* state, int y, int face, const __global float** rays, int count, float part)
 {
@@ -29,9 +29,9 @@ static BY_ROW void add_current(sweep_state* state, int y, int face, const __glob
   add_currents(state, y, face, &rays, 1, part);
 }
 
-// Adds the fraction `part` of row y's diagonal rays to the partial currents through `face` of the voxels that the rays
-// cross on their way: a ray that arrives at column x passes through column x - du, which it enters through the face
-// normal to v. It then enters column x through the face normal to u, or leaves the box.
+// Adds the fraction `part` of the diagonal rays of row y to the partial currents of the voxels through which they pass
+// on their way. A ray that arrives at column x passes through column x - du of row y, which it enters through `face`, a
+// face normal to v. It then enters column x through the face normal to u, or leaves the box.
 static BY_ROW void add_beside(sweep_state* state, int y, int du, int face, const __global float* rays, float part)
 {
   const int size = state->sizeU;

@@ -6,9 +6,10 @@
 //          which
 //
 // Memory layout of the power of rays exchanged with neighbours: [plane][ray][SIDE_FLOATS], for each ray at the voxel
-// from which it moves. The rays that cross the face normal to v are first, one per column; then those that cross the
-// face normal to u, one per row; last the ray that crosses both faces at once. The voxels of incoming rays are next to
-// the box, those of outgoing rays are its last columns and rows. Rays are in the order [bundle][member][channel].
+// from which it moves. First come the rays that cross the face normal to v, one per column, then the rays that cross
+// the face normal to u, one per row, and last the ray that crosses both faces at once. Incoming rays move from voxels
+// just outside the box, outgoing rays from its outermost columns and rows. Rays are in the order
+// [bundle][member][channel].
 
 #pragma once
 #include "LightPropagation/Sweep/OnCpu/SweepLayout.cl"
@@ -89,8 +90,8 @@ static BY_ROW void go_to_faces(sweep_state* state, int plane)
   }
 }
 
-// Range of planes through whose cells a ray leaves. Rays nearly parallel to a face meet it only every few planes; if
-// FaceInfo::spread, a ray leaves through all cells between it and the next ray.
+// Range of planes through whose cells a ray leaves. Rays nearly parallel to a face meet it only every few planes. If
+// FaceInfo::spread, the power of a ray leaves through all cells between this ray and the next one.
 typedef struct
 {
   float begin, end;
@@ -153,8 +154,8 @@ static float light_of_cell(const sweep_state* state, int side, int i, int c)
   return state->faceIn[FACE_CELL(state, side, i, c)];
 }
 
-// Mean incident radiance of cell i and, if it is on the face, cell i + move: half of the rays that move along u and v
-// at once pass through each cell.
+// Mean incident radiance of cells i and i + move, or of cell i alone if the other one is not on the face. Half of the
+// rays that move along u and v at once pass through each cell.
 static BY_ROW float light_of_cells(const sweep_state* state, int side, int i, int move, int c)
 {
   const int size = side < 2 ? state->sizeV : state->sizeU;

@@ -31,9 +31,10 @@ struct LaneBatch
   bool around = false;      ///< whether the marching axis is periodic, so that rays wrap around
   std::size_t plan = 0;     ///< index of the sweep plan of the lanes' axis, if rays wrap around
   std::size_t maps = 0;     ///< number of floats in the batch's maps, which hold the power of each ray
-  /// Number of floats for the rays at the sides of the batch's planes, if light is given or summed per cell of faces
+  /// Number of floats for the rays that enter or leave the batch's planes sideways, which are stored if light is given
+  /// or summed per cell of the faces
   std::size_t sides = 0;
-  /// Whether each lane has path integrals, fluxes and currents of its own, which are summed afterwards.
+  /// Whether each lane has its own output arrays (path integrals, fluxes and currents), which are summed afterwards.
   bool hasArrays = false;
 };
 
@@ -55,10 +56,10 @@ struct GpuLanes
   std::vector<CrossingInfo> crossings;
   /// Values of the angular functions in each ray's direction, [ray][function, then beam]; empty without angular moments
   std::vector<float> functions;
-  /// For each lane: index of its first sum among the sums of LanePowers over the rows of rays at the far ends of axes,
+  /// Per lane: index at which LanePowers stores the lane's sums over rows of rays behind the last plane,
   /// [ray][channel][v]
   std::vector<std::size_t> ends;
-  /// For each lane: index of its first sum among the sums of LanePowers over the power that escapes sideways,
+  /// Per lane: index at which LanePowers stores the lane's sums of the power that escapes sideways,
   /// [plane][side][channel]
   std::vector<std::size_t> sides;
   std::size_t endRows = 0, sideRows = 0;
@@ -70,10 +71,11 @@ struct GpuLanes
   /// Number of floats of the largest maps (power of each ray) of any batch: among batches of open axes, and of periodic
   /// axes
   std::size_t mostMapsOpen = 0, mostMapsAround = 0;
-  /// Maximum number of lanes in any batch whose lanes have arrays of their own, and in any batch on a periodic axis
+  /// Maximum number of lanes of any batch: among batches whose lanes have their own output arrays, and among batches on
+  /// a periodic axis
   int mostWithArrays = 0, mostAround = 0;
 
-  /// Number of floats of the arrays that lanes have of their own, so that they can run concurrently.
+  /// Number of floats of the lanes' own output arrays, which lanes need to run concurrently.
   /// @param stride  floats per channel
   std::size_t ArrayFloats(std::size_t stride) const;
   std::string Options() const; ///< build options for LaneSums.cl

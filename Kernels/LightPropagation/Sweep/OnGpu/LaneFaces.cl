@@ -7,8 +7,8 @@
 #include "LightPropagation/Sweep/OnGpu/LanePlane.cl"
 #include "Numerics/Numerics.cl"
 
-// Cells of the box's faces, for one channel, that adjoin a plane, for a lane (the rays that march in one sense along an
-// axis).
+// Cells of the box's faces that adjoin one plane of a lane (the rays that march in one sense along an axis), for one
+// channel.
 typedef struct
 {
   const __global SweepLane* lane;
@@ -41,8 +41,8 @@ static float light_of_cell(const cells_beside* cells, int side, int i)
   return cells->light[faces->first[side] + cells->plane * faces->plane[side] + i * faces->along[side]];
 }
 
-// Incident power of a ray, W: the mean of the radiance of cell i of a side and of cell i + move, if that is on the
-// face, times `power`, the power of a ray at radiance 1.
+// Incident power of a ray, W: `power`, the power of a ray at radiance 1, times the mean radiance of the cells i and i +
+// move of a side (of cell i alone if the other one is not on the face).
 static float light_of_cells(const cells_beside* cells, float power, int side, int i, int move)
 {
   if (!cells->faces->in)
@@ -116,8 +116,8 @@ static float part_through(const __global SweepLane* lane, int spread, int plane,
   return part / (end - begin);
 }
 
-// Power of a ray that leaves through cell `i` of a side in a plane, W; at an edge of the plane, half of the power of
-// rays that move along u and v at once.
+// Power of a ray that leaves through cell `i` of a side in a plane, W. At an edge of the plane, half of the power of
+// rays that move along u and v at once leaves through each of the two sides.
 // @param in, out  power of the rays at the sides, for this ray and plane (LanePlane.cl)
 static float power_through(const __global SweepLane* lane, const ray_in_plane* ray, int side, int i,
   const __global float* in, const __global float* out)
@@ -169,11 +169,11 @@ __kernel void leave_sides(int number, const __global SweepLane* lanes, const __g
   {
     const int2 of = rays[lane->firstRay + r];
     const __global BundleInfo* bundle = bundles + of.x;
-    // whether a move across this side of the box is one along the first axis, u, of the bundle
+    // whether the ray crosses this side of the box when it moves along the bundle's own axis u, not v
     const bool ofU = bundle->move[of.y][side < 2 ? 0 : 2] != 0;
     const float planes = ofU ? bundle->planesU : bundle->planesV;
-    // Number of planes before and behind this one in which the ray may move so that power leaves through this plane's
-    // cells.
+    // A ray that moves sideways in a plane at most this number of planes away may have power that leaves through this
+    // plane's cells.
     const int reach = lane->around ? lane->patternPlanes : of_lane->spread ? (int)ceil(0.5f * planes) : 0;
     for (int k = max(at - reach, 0); k < min(at + reach + 1, lane->patternPlanes); ++k)
     {

@@ -39,8 +39,8 @@ public:
   void EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
   /// Writes the light incident per cell to the sides of the planes, before these are crossed.
   void EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t first);
-  /// Adds the power that left, from the sides of the planes that were crossed and from the maps at the ends of open
-  /// axes, to faceOut. Adds one lane after another, so that the order of summation does not depend on which lanes run
+  /// Adds to faceOut the power of the rays that left sideways from the planes just crossed and, on open axes, behind
+  /// the last plane. Adds one lane after another, so that the order of summation does not depend on which lanes run
   /// concurrently.
   /// @param maps  power of the rays before planes with even index, counted from where rays start, and before those with
   /// odd index

@@ -7,10 +7,10 @@
 
 namespace tyndall
 {
-/// Deposits (path integrals, net flux, partial currents) of lanes (each the rays of one sense along an axis) that run
-/// concurrently or wrap around an axis, each lane in its own arrays: [lane], then as in Deposit. AddUp() adds them to
-/// the deposit in the order of the lanes, so that results are identical, bit for bit, to those of lanes that add to the
-/// deposit directly.
+/// Output arrays (path integrals, net flux, partial currents) of lanes that run concurrently or wrap around an axis; a
+/// lane is the rays of one sense along an axis. The layout is [lane], then as in Deposit. AddUp() adds the lanes'
+/// arrays to the deposit in the order of the lanes, so results are identical, bit for bit, to those of lanes that add
+/// to the deposit one after another.
 class LaneArrays
 {
 public:

@@ -39,7 +39,7 @@ static void put_path(const plane_state* state, __global float* path, __global fl
 }
 
 #if ANGULAR
-// Adds the path integral of the last computed ray, sums->path, to the angular moments, and resets it for the next ray.
+// Adds sums->path, the path integral of the last computed ray, to the angular moments, and clears it for the next ray.
 // @param functions  values of the angular functions in the ray's direction
 static void gather_moments(
   voxel_sums* sums, const member_state* member, const __global float* functions, int shines, ulong plane, ulong here)

@@ -187,9 +187,9 @@ void SweepOnGpu::CrossOnce(const LaneBatch& batch, const SweepVolume& volume, Sw
   this->Powers.CountEnds(batch, tally);
 }
 
-/// Carries the rays of both senses along a periodic axis (a batch), and those in transit from the previous sweep,
-/// through all laps in which rays start, and then around the axis until almost no power is in transit (numerics.md,
-/// section 4.6).
+/// Carries the rays of both senses along a periodic axis (a batch), including rays in transit from the previous sweep.
+/// They cross all laps in which rays start and then wrap around the axis until almost no power is in transit
+/// (numerics.md, section 4.6).
 void SweepOnGpu::GoRound(const LaneBatch& batch, const SweepVolume& volume, SweepTally& tally, const Monitor& monitor)
 {
   this->BeginLost(batch);
@@ -219,8 +219,8 @@ void SweepOnGpu::GoRound(const LaneBatch& batch, const SweepVolume& volume, Swee
   }
 }
 
-/// Sets to 0, before a sweep around a periodic axis, the path integrals, fluxes and currents that lanes have of their
-/// own or, if they have none, the rounding errors of the path integrals.
+/// Clears arrays before a sweep around a periodic axis: the lanes' own path integrals, fluxes and currents or, if lanes
+/// have no arrays of their own, the rounding errors of the path integrals.
 void SweepOnGpu::BeginLost(const LaneBatch& batch)
 {
   if (batch.hasArrays)

@@ -57,7 +57,8 @@ private:
     bool shines; ///< whether the medium has a source
     /// Power of each incident ray, W, in the layout of the buffer Entering
     const Buffer<cl_float4>* entering;
-    /// Sideways moves of the rays in a lap around a periodic axis; null: the rays start, with the moves in Crossings
+    /// Sideways moves of the rays in a further lap around a periodic axis; null: a lap in which rays start, whose moves
+    /// are in the member Crossings
     const Buffer<CrossingInfo>* round = nullptr;
   };
   /// Rays in transit along a periodic axis between sweeps, for both senses along the axis and a group of channels.

@@ -64,11 +64,10 @@ typedef struct
   ulong slotValues;
   int slotPlane; ///< index in the box of the slot's first plane; 0 if the volume is not streamed
   int plane;     ///< index of the plane that is crossed, counted from where rays start
-  /// Index of the lane that work-items with get_global_id(2) = 0 carry; the following lanes are carried at the same
-  /// time
+  /// Index of the lane whose rays the work-items with get_global_id(2) = 0 carry; larger ids carry the following lanes
   int firstLane;
-  /// 1: the array of crossings begins with those of this launch's lanes, for a lap around a periodic axis; 0: at
-  /// SweepLane::crossings
+  /// 1: a further lap around a periodic axis, for which the array of crossings begins with this launch's lanes; 0: a
+  /// lane's crossings begin at index SweepLane::crossings
   int ofRound;
   int firstChannel;
   int shines; ///< 1: the medium has a source (emission or scattered light)

@@ -14,8 +14,8 @@
 #endif
 
 // Effect of a segment (path through one voxel) on rays of power P with a source q: path += meanLength P, P' = P keep +
-// P change + power q meanLength, with `power` the power of a ray at radiance 1. own: path integral, within the voxel,
-// of the light that a source of 1 in it emits, divided by `power`.
+// P change + power q meanLength, with `power` the power of a ray at radiance 1. own: path integral that a unit source
+// in the voxel causes within the voxel, divided by `power`.
 typedef struct
 {
   float meanLength, keep, change, own;
@@ -245,20 +245,20 @@ static colours behind_second(const plane_state* state, const member_state* membe
 typedef struct
 {
   float path[CHANNELS]; // path integral, W length; if ANGULAR, of one ray
-  // Path integral, within the voxel, of the light that a source of 1 in it emits; if ANGULAR, of one ray.
+  // Path integral that a unit source in the voxel causes within the voxel; if ANGULAR, of one ray.
   float own;
 #if ANGULAR
   float moments[CHANNELS][FUNCTIONS];
 #endif
   float flux[CHANNELS][3]; // net flux along u, v and the marching axis, W length
-  // Mean over the voxel of the net flux along the marching axis that a source of 1 in this voxel causes.
+  // Mean over the voxel of the net flux along the marching axis that a unit source in this voxel causes.
   float ownFlux;
   float currents[CHANNELS][CurrentFaces];
   float escaped[4][CHANNELS]; // power that escapes through -u, +u, -v, +v, W
 } voxel_sums;
 
-// Adds the path integral, and net flux, of a segment to the sums.
-// @param not_lost  power that is subtracted from each ray's before it is added to the path integral, W (not_lost_of())
+// Adds the path integral and net flux of one segment to the sums.
+// @param not_lost  power, W, that is subtracted from each ray's power in the path integral (not_lost_of())
 static void put_down(voxel_sums* sums, colours rays, colours not_lost, float meanLength, float3 along)
 {
   for (int c = 0; c < CHANNELS; ++c)
@@ -274,8 +274,8 @@ static void put_down(voxel_sums* sums, colours rays, colours not_lost, float mea
 }
 
 // Adds the power of the rays that leave the box from voxel (u, v) in the move before segment s to the sums. At the
-// box's edge, half of the power of rays that move along u and v at once leaves through either face, and half of the
-// light that enters next to the edge passes straight through.
+// box's edge, half of the power of rays that move along u and v at once leaves through each of the two faces, and half
+// of the light incident next to the edge leaves again without crossing a voxel.
 static void count_escaped(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours rays)
 {
@@ -322,8 +322,9 @@ static void add_current(voxel_sums* sums, int face, colours rays, float part)
   }
 }
 
-// Adds the power that enters voxel (u, v) through its faces in the move before segment s to the partial currents. Half
-// of the rays that cross the edge between four voxels, from and to neighbours, pass through voxel (u, v).
+// Adds the power that enters voxel (u, v) through its faces in the move before segment s to the partial currents.
+// Diagonal rays cross an edge between four voxels. Half of those that move from one neighbour of voxel (u, v) to
+// another pass through voxel (u, v).
 // @param come  power of the rays that arrive from the voxel where the move starts
 static void count_currents(
   const plane_state* state, voxel_sums* sums, const member_state* member, int s, int u, int v, colours come)
@@ -344,8 +345,8 @@ static void count_currents(
 }
 #endif
 
-// Power that is subtracted from each ray in the path integral, W, so that power is conserved: what the voxel's octant
-// source adds to the rays is missing from the voxel's path integral.
+// Power that is subtracted from each ray's power in the path integral, W. It lowers the power that the voxel takes from
+// the rays by the power that the voxel's octant source adds to them, so that total power is conserved.
 static colours not_lost_of(const plane_state* state, const member_state* member, long voxel)
 {
   colours more = { { 0.0f } };

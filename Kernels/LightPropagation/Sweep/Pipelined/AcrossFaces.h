@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// Values of the voxels that touch a block's faces from outside, each at the face that it shares with the block; from
-/// an array with one value per voxel and face, such as Deposit::partialCurrents.
+/// Values of an array with one value per voxel and face, such as Deposit::partialCurrents, for the voxels that touch a
+/// block's faces from outside: each voxel's value at the face that it shares with the block.
 struct BeyondFaces
 {
   /// Values [channel][face][cell of the face, its lower axis fastest]; null: the block is the whole domain

@@ -102,8 +102,8 @@ BlockSweep::Light BlockSweep::LightOf(const SweepBoundary& boundary, std::size_t
   return { through(axes.u), through(axes.v), through(axes.axis) };
 }
 
-/// Calls act(incident power, bundle, [member][channel] index in the bundle, channel) for each direction (member) of
-/// each bundle and each channel; not at all if no light is incident.
+/// Calls act(incident power, bundle, index [member][channel] within the bundle, channel) for each direction (member) of
+/// each bundle and each channel. Does nothing if no light is incident.
 template <class Act>
 void BlockSweep::ForRaysFrom(const SweepBoundary& boundary, const Act& act) const
 {
@@ -144,8 +144,8 @@ RaysAtFaces BlockSweep::FromOutside(const SweepBoundary& boundary, const LightBy
   return rays;
 }
 
-/// Writes the power of rays incident from outside the domain to the block's sides. At an edge of the domain, half of a
-/// ray that moves along u and v at once enters through either face.
+/// Writes the power of rays incident from outside the domain to the block's sides. At an edge of the domain, half of
+/// the power of a ray that moves along u and v at once enters through each of the two faces.
 void BlockSweep::FillSides(const Light& light, std::size_t ray, int c, RaysAtFaces& rays) const
 {
   const bool outerU = this->IsOuter(this->Plan.axes.u, true), outerV = this->IsOuter(this->Plan.axes.v, true);
@@ -248,9 +248,9 @@ void BlockSweep::CountLeft(const std::vector<float>& aside, const RaysAtFaces& o
   }
 }
 
-/// Calls visit(inSides, place) for each ray that crosses a contact (the voxel faces shared by two blocks): place is an
-/// index into the sides if inSides, else into the maps. The order is that of the cells in the whole domain, so that
-/// sender and receiver agree.
+/// Calls visit(inSides, place) for each ray that crosses a contact (the voxel faces shared by two blocks). `place` is
+/// an index into RaysAtFaces::sides if inSides, else into RaysAtFaces::maps. Sender and receiver use the same order,
+/// that of the cells in the whole domain.
 /// @param out  true: indices of outgoing rays; false: of incoming rays
 template <class Visit>
 void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit& visit) const
@@ -290,8 +290,8 @@ void BlockSweep::ForEachPlace(const BlockContact& contact, bool out, const Visit
   }
 }
 
-/// Calls visit(false, place) for each ray that crosses a contact (the voxel faces shared by two blocks) of the kind
-/// Along, i.e. behind the last plane of a block: place is an index into the maps, the power of each ray.
+/// Calls visit(false, place) for each ray that crosses a contact of the kind Along, i.e. the voxel faces behind the
+/// last plane of a block. `place` is an index into RaysAtFaces::maps, the powers of the rays.
 template <class Visit>
 void BlockSweep::ForEachPlaceAlong(const BlockContact& contact, const Visit& visit) const
 {

@@ -206,8 +206,8 @@ std::size_t SweepInBlocks::FirstCell(const SweepVolume& volume) const
 }
 
 /// Sweeps one lap, in which rays cross the domain once along their marching axes. The first pass includes sources and
-/// incident light if rays still start in this lap; each further pass carries only the rays that wrapped around a
-/// periodic axis transverse to their marching axis, until there are none. Collective.
+/// incident light if rays still start in this lap. Each further pass carries only the rays that wrapped around a
+/// periodic axis transverse to their marching axis; passes end when there are no such rays. Collective.
 /// @return false if an error occurred on any rank
 bool SweepInBlocks::SweepLap(Sweeping& sweeping, const Monitor& monitor)
 {

@@ -24,9 +24,9 @@ void AddOverRanks(Device& device, Communicator& communicator, const std::vector<
 /// order of summation.
 ///
 /// Rays that leave the domain at the end of a periodic axis enter at its other end after all blocks have been swept.
-/// Rays that wrap around an axis transverse to their marching axis enter the same planes in another pass with only
-/// these rays, repeated until none are left. Rays that wrap around their marching axis enter in the next lap (crossing
-/// of the domain), as in AxisSweep.
+/// Rays that wrap around an axis transverse to their marching axis enter the same planes again, in further passes with
+/// only such rays, until none are left. Rays that wrap around their marching axis enter in the next lap (crossing of
+/// the domain), as in AxisSweep.
 ///
 /// Construction and Apply() are collective, with the same rays on all ranks. Light per cell of the faces
 /// (SweepRequest::faceIn, Deposit::faceOut) refers to the whole domain and is identical on all ranks.
@@ -123,8 +123,7 @@ private:
   BlockWorkspace& Workspace;
   std::vector<ParallelBundles> Parts;
   SweepSchedule TheSchedule;
-  /// Tasks of this rank (sweeps of its block along one set of bundles each), one per element of Parts, which holds
-  /// these sets
+  /// Tasks of this rank: sweeps of its block, each along one set of bundles; Tasks[i] belongs to the set Parts[i]
   std::vector<Task> Tasks;
 
   // State of the sweep in progress.

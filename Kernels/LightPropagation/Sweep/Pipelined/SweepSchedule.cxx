@@ -162,9 +162,9 @@ struct TaskGraph
   std::vector<int> behind;
 };
 
-/// Number of rays that cross a contact (set of shared voxel faces) between two blocks, per channel. Through faces
-/// parallel to the marching axis a ray passes only in some planes, so there it counts as the mean number of voxels
-/// that it moves sideways per plane.
+/// Number of rays that cross a contact (set of shared voxel faces) between two blocks, per channel. A ray passes
+/// through faces parallel to the marching axis only in some planes. At such faces it counts as the mean number of
+/// voxels that it moves sideways per plane.
 std::size_t RaysThrough(const ParallelBundles& bundles, const BlockContact& contact)
 {
   const double cells = static_cast<double>(contact.cells.VoxelCount());
@@ -293,7 +293,8 @@ public:
       {
         this->Ready[rank].insert({ -this->Graphs[task].behind[rank], task });
       }
-      // Tasks are started only after all events at this time, since one of these may make a more urgent task ready.
+      // Tasks are started after all events of the current time, because such an event may make a more urgent task
+      // ready.
       if (this->Events.empty() || std::get<0>(this->Events.top()) > now)
       {
         this->StartAll(now);
@@ -348,8 +349,8 @@ private:
   const std::vector<ParallelBundles>& Tasks;
   const SweepCosts& Costs;
   std::vector<TaskGraph> Graphs;
-  /// Per rank: tasks that are ready to run, most urgent first: minus the number of blocks in the longest chain
-  /// downwind that waits for it, and the task
+  /// Per rank: tasks that are ready to run, as pairs (-n, task) in order of urgency, where n is the number of blocks in
+  /// the longest chain downwind that waits for the task
   std::vector<std::set<std::pair<int, int>>> Ready;
   std::vector<bool> Busy;
   std::set<int> Touched;                             ///< ranks with an event at the current time

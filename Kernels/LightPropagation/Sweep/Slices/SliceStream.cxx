@@ -213,7 +213,8 @@ std::size_t SliceStream::SlotFloats(SlotArray array) const
 const Buffer<float>& SliceStream::Slots(SlotArray array) const
 {
   const Buffer<float>& slots = this->Workspace.slots[static_cast<std::size_t>(array)];
-  // This array is not used by the sweep: kernels need an argument but do not access it, so any buffer serves.
+  // The sweep does not use this array. Kernels need an argument in its place but do not access it, so any buffer
+  // serves.
   return slots.Size() > 0 ? slots : this->Workspace.slots[static_cast<std::size_t>(SlotArray::Path)];
 }
 
@@ -283,8 +284,8 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   }
   if (this->Plan.periodic[this->Plan.axes.axis])
   {
-    // The rounding errors kept for compensated summation: in CPU kernels those of the fluence only, in GPU kernels
-    // those of the moments of all angular functions.
+    // Rounding errors for compensated summation. CPU kernels store them for the fluence only, GPU kernels for the
+    // moments of all angular functions.
     arrays.push_back(
       { &this->Workspace.lost, SlotArray::Lost, channels, volume.first, true, this->HasMoments() ? 0 : -1 });
   }
@@ -427,7 +428,7 @@ void SliceStream::Cross(const Schedule& schedule, const SweepVolume& volume, con
     const std::vector<cl::Event> after = { fetched };
     const bool isLast = l + 1 == schedule.pieces.size();
     const bool ahead = !isLast && !Follows(schedule.pieces[l], schedule.pieces[l + 1], this->Aligned());
-    // This transfer is queued before the kernel, since launch() may block until its kernel starts
+    // The transfer of the next planes is queued before the kernel, since launch() may block until its kernel starts
     if (ahead)
     {
       fetch(l + 1);

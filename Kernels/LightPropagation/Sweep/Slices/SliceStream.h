@@ -30,10 +30,11 @@ struct SlicePiece
 class SliceStream
 {
 public:
-  /// Returns null if the volume is not streamed: because it is in device memory, because the kernels work on host
-  /// memory in place, or because planes along x cannot be copied separately. The latter occurs with angular moments,
-  /// stored in groups of neighbouring voxels along x, if only a part of the grid is swept along y or if units of work
-  /// in the same launch would share a group. The sweep then accesses the arrays in place.
+  /// Returns null if the volume is not streamed, so that the sweep accesses its arrays in place. A volume is not
+  /// streamed if it is in device memory, if the kernels work on host memory in place, or if planes along x cannot be
+  /// copied separately. Angular moments are stored in groups of neighbouring voxels along x. They cannot be copied
+  /// plane by plane if only a part of the grid is swept along y, or if units of work in the same launch would share a
+  /// group.
   /// @param plan, workspace  must outlive this object; maps and scratch of the workspace are already allocated
   static std::unique_ptr<SliceStream> Make(Device& device, const SweepPlan& plan, SweepWorkspace& workspace);
 

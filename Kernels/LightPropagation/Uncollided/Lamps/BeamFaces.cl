@@ -7,8 +7,8 @@
 #define BEFORE 1 // the voxel is outside the box, and the beam approaches the box
 #define AFTER 2
 
-// Position of voxel i of an axis relative to the box (INSIDE, BEFORE or AFTER), for a beam with this tangent along the
-// axis; wraps i around on a periodic axis.
+// Returns where the voxel with index i along an axis is, relative to the box: INSIDE, BEFORE or AFTER, as seen by a
+// beam with this tangent along the axis. On a periodic axis, wraps i around.
 static int place(const LampInfo* lamp, int axis, float tangent, int* i)
 {
   const int n = lamp->size[axis];
@@ -57,15 +57,15 @@ static float square_distance(const LampInfo* lamp, const int* voxel, const float
   return sum;
 }
 
-// Whether light that has wrapped around an axis by this many voxels originates from the rectangle or one of its nearest
-// images.
+// Whether light that has wrapped around a periodic axis by `around` voxels comes from the rectangle or from one of its
+// nearest periodic images.
 static bool is_image(const LampInfo* lamp, int axis, int around)
 {
   return abs(around) <= (uint)(lamp->images[axis] * lamp->size[axis]);
 }
 
-// Whether a part of a rectangle illuminates a voxel (coordinates not wrapped). Nearer voxels are illuminated by the
-// smaller parts into which this part is divided, farther ones by the larger part to which it belongs.
+// Whether a part of a rectangular lamp illuminates a voxel (coordinates not wrapped around). Smaller parts, into which
+// this part is divided, illuminate nearer voxels; the larger part that contains this part illuminates farther voxels.
 static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
 {
   return !VACUUM ||
@@ -100,8 +100,8 @@ static void overlap(float2 edges, int* voxel, float* part)
   *part = edges.y > edges.x ? clamp((*voxel + 1 - edges.x) / (edges.y - edges.x), 0.0f, 1.0f) : 1.0f;
 }
 
-// Clips the cross-section along u (k 0) or v (1) at the faces of the box: at the face that the beam approaches and,
-// unless the lamp is outside the box along this axis, also at the opposite face.
+// Clips a beam's cross-section along u (k = 0) or v (k = 1) at faces of the box: at the face that the beam approaches
+// and, unless the lamp is outside the box along this axis, at the opposite face.
 // @param up  set to whether light leaves through the upper face
 // @return fraction of the cross-section between the faces
 static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2* edges, int* up)
@@ -125,14 +125,15 @@ static float cut_at_face(const LampInfo* lamp, const BeamRow* row, int k, float 
     edges->x = fmin(edges->x, edges->y);
   }
   const float inside = edges->y - edges->x;
-  // An empty interval is moved to the middle of the outermost voxel: just below the face at n, the nearest float may be
-  // n itself, which belongs to a voxel outside the box.
+  // An empty interval is moved to the middle of the outermost voxel. At the upper face, rounding could otherwise give
+  // the coordinate n, which belongs to a voxel outside the box.
   *edges = inside > 0.0f ? *edges : (float2)(*up ? n - 0.5f : 0.5f);
   return all > 0.0f ? clamp(inside / all, 0.0f, 1.0f) : 0.0f;
 }
 
-// Tallies the power that left through a lateral face during the last step, until the middle of the current one: half of
-// it where the beam was a quarter of a step ago, half where it was three quarters of a step ago.
+// Tallies the power that left through a lateral face between the middle of the previous step and the middle of the
+// current one. Half of it is tallied where the beam was a quarter of a step ago, half where the beam was three quarters
+// of a step ago.
 //   at    current lateral position, voxels
 //   here  middle of the current step, in layers from the beam's start
 static void leave_aside(const LampInfo* lamp, const BeamRow* row, int face, float2 tangent, float2 at, float here,
@@ -181,7 +182,8 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     goes[k] = within[k] < beam->stays[k] ? 1.0f - within[k] / beam->stays[k] : 0.0f;
     beam->stays[k] = fmin(beam->stays[k], within[k]);
   }
-  // The power left between the previous step and the current one, on average half way between them.
+  // The power left between the middle of the previous step and the middle of the current one, on average half way
+  // between them.
   const float ago = 0.5f * fmin(way.y - way.x, 0.5f * (way.x + way.y));
   for (int k = 0; k < 2; ++k)
   {
@@ -189,7 +191,8 @@ static void leave_sides(const LampInfo* lamp, const BeamRow* row, bool first, fl
     {
       continue;
     }
-    // Power that leaves along both lateral axes, at an edge of the box, is counted half at each of the two faces.
+    // Of the power that leaves at an edge of the box, along both lateral axes, half is counted at each of the two
+    // faces.
     const float power = beam->left * goes[k] * (1.0f - 0.5f * goes[1 - k]);
     const int axis = (row->axis + 1 + k) % 3, other = (row->axis + 2 - k) % 3;
     const float moved = tangents[1 - k] * ago;

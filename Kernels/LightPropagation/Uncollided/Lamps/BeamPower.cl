@@ -3,8 +3,8 @@
 #pragma once
 #include "LightPropagation/Uncollided/Lamps/LampBeamsShared.h"
 
-// Factor b by which the path integral in a voxel is multiplied in fixed point (numerics.md, Eq. (35)), because path
-// lengths in optically thick voxels are small.
+// Factor b by which path integrals are multiplied in fixed point (numerics.md, Eq. (35)): it keeps their precision in
+// optically thick voxels, where they are small.
 static float units_of(float sigma, float diagonal)
 {
   return fmax(sigma * diagonal, 1.0f);
@@ -38,8 +38,9 @@ static float solid_angle_far_away(float a, float b, float width, float height, f
   return 0.25f * sum * width * height * d;
 }
 
-// Solid angle, sr, of a rectangle of this width and height, centred at (a, b), at distance d: in closed form nearby
-// (numerics.md, Eq. (16)), by quadrature far away, where the closed form is a small difference of large angles.
+// Solid angle, sr, of a rectangle of this width and height, centred at (a, b), in a plane at distance d. Near the
+// rectangle a closed form is used (numerics.md, Eq. (16)); far away, where the closed form is a small difference of
+// large angles, numerical quadrature.
 //   far  squared ratio of distance to longer edge from which on quadrature replaces the closed form
 static float solid_angle(float a, float b, float width, float height, float d, float far)
 {
@@ -131,7 +132,7 @@ static float2 part_of_slice(const cone_slice* slice, float2 edges)
   return within ? (float2)(first, second) : edges.xx;
 }
 
-// Solid angle of an interval of x of a slice, divided by the slice's height.
+// Solid angle of the part of a slice in the interval `part` of x, divided by the slice's height along v.
 static float angle_of_slice(const cone_slice* slice, float2 part)
 {
   const float x = slice->u + 0.5f * (part.x + part.y);
@@ -162,9 +163,9 @@ static float part_in_cone(const LampInfo* lamp, const BeamRow* row, float2 middl
   return inside / all;
 }
 
-// Tangents of a beam's centre: relative to the reference tangents of its pyramid (BeamRow::baseU, baseV;
-// tangent_from_base), and relative to the pyramid's axis (tangent_of). begin_of() is the position of the beam's centre
-// at its start, voxels.
+// Tangents of a beam's centre: tangent_from_base() relative to the reference tangents of its pyramid (BeamRow::baseU,
+// baseV), tangent_of() relative to the pyramid's axis. begin_of() is the position of the beam's centre at its start,
+// voxels.
 static float2 tangent_from_base(const BeamRow* row, int beam)
 {
   return (float2)(row->tangentU + beam * row->widthU, row->tangentV);

@@ -15,12 +15,12 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum distance of a rectangle at which the contour integral is accurate in doubles, as a multiple of the geometric
-/// mean of the longest edges of rectangle and box.
+/// Maximum distance between a rectangle and the box at which the contour integral is accurate in double precision, as a
+/// multiple of the geometric mean of the longest edges of rectangle and box.
 constexpr double Farthest = 1e4;
 
-/// Fraction of a point's light that enters the box: 1 for a point inside; from outside, by the solid angles of the
-/// faces that the point sees; on the boundary, the fraction emitted inwards.
+/// Fraction of the light of a point lamp that enters the box. Inside the box: 1. Outside: from the solid angles of the
+/// faces that the lamp sees. On the boundary: the fraction that is emitted inwards.
 double OfPoint(const Grid& grid, const glm::dvec3& place, const std::array<bool, 3>& periodic)
 {
   double angle = 0.0, onFaces = 1.0;
@@ -96,8 +96,8 @@ double AngleInCone(const glm::dvec3& axis, double half, const glm::dvec3& a, con
   return sum;
 }
 
-/// Fraction of a spot's light that enters the box from outside; 0 if unknown: for a lamp that is not outside, or a cone
-/// too narrow for doubles.
+/// Fraction of the light of a spot outside the box that enters the box; 0 if unknown, because the spot is not outside
+/// or its cone is too narrow for double precision.
 double OfSpot(const Grid& grid, const Light& spot, const glm::dvec3& place)
 {
   constexpr double narrow = 1e-6;
@@ -118,7 +118,8 @@ double OfSpot(const Grid& grid, const Light& spot, const glm::dvec3& place)
         AngleInCone(Vector(DirectionOf(spot)), half, glm::normalize(corners[i]), glm::normalize(corners[(i + 1) % 4]));
     }
     seen = face % 2 ? -seen : seen; // solid angle as seen from outside the box
-    // The face encloses the direction opposite to the cone's axis: the cone's solid angle is added
+    // A negative sum means that the face encloses the direction opposite to the cone's axis; the cone's solid angle is
+    // then added
     angle += seen < -1e-9 * all ? seen + all : seen;
   }
   return angle / all;
@@ -215,8 +216,8 @@ double FormFactor(const Polygon& first, const Polygon& second)
   return std::abs(sum) / (2.0 * Pi);
 }
 
-/// Fraction of a rectangle's light that enters the box: all light of the rectangle's part inside the box, and, for each
-/// face, the light that the part beyond this face emits through it.
+/// Fraction of the light of a rectangular lamp that enters the box. The part of the rectangle inside the box
+/// contributes all of its light; the part beyond each face contributes the light that it emits through that face.
 double OfRectangle(const Grid& grid, const RectangleArea& area, const glm::dvec3& normal)
 {
   const glm::dvec3 end = EndOf(grid);

@@ -22,7 +22,7 @@
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Numerics.cl"
 
-#define STEPS 2 // steps per layer: a beam moves laterally by at most half a voxel per step
+#define STEPS 2 // steps per layer: a beam moves laterally by less than a voxel per step
 
 // Adds first moments: the path integral in a voxel times the mean position of the loss relative to the voxel's centre,
 // along the pyramid's axis and laterally (numerics.md, Eqs. (37), (38)).
@@ -59,8 +59,8 @@ static void add_flux(const LampInfo* lamp, const BeamRow* row, float2 tangent, f
   add_units(flux + v * stride, convert_long_sat_rte(layers * tangent.y * lamp->spacing[v]));
 }
 
-// Adds the path integral that there would be in vacuum and, with AROUND, the actual one, of light that originates from
-// the rectangle or one of its nearest images.
+// Adds to `sums` the path integral that light from the rectangle or one of its nearest periodic images would have in
+// vacuum and, if AROUND is 1, the actual path integral of this light.
 //   around   number of voxels by which the light has wrapped around the pyramid's axis, u and v
 //   counted  actual path integral
 static void add_in_vacuum(const LampInfo* lamp, const BeamRow* row, const int* around, float in_vacuum, float counted,
@@ -95,7 +95,7 @@ typedef struct
   float partU, partV;    // fraction of the cross-section in the first voxel
 } cross_section;
 
-// Power of a beam after a step, summed over the parts of its cross-section.
+// Power of a beam after a step, summed over the parts of its cross-section, each of which lies in one voxel.
 typedef struct
 {
   float remaining; // power at the end of the step; the losses `taken` are not subtracted from it
@@ -125,7 +125,7 @@ static step_power cross_part(const LampInfo* lamp, const BeamRow* row, const bea
   const float part =
     (q & 1 ? 1.0f - section->partU : section->partU) * (q & 2 ? 1.0f - section->partV : section->partV);
   const float power = beam->left * part;
-  // With VACUUM, a beam whose power is used up continues, because its deposit in vacuum is summed, too.
+  // If VACUUM is 1, a beam without remaining power continues, because its deposit in vacuum is summed too.
   if ((VACUUM ? part : power) <= 0.0f)
   {
     return after;
@@ -196,7 +196,7 @@ static float step_beam(const LampInfo* lamp, const BeamRow* row, const beam_step
   {
     after = cross_part(lamp, row, step, &section, q, sigma, path, stride, beam, tally, after);
   }
-  // Compensates rounding of small losses, which would accumulate over thousands of steps.
+  // Compensated summation: rounding errors of small losses would otherwise accumulate over thousands of steps.
   const float change = beam->rest - after.taken;
   beam->left = after.remaining + change;
   beam->rest = change - (beam->left - after.remaining);
@@ -220,8 +220,8 @@ static void enter_box(
   leave_sides(lamp, row, true, tangent, (float2)(0.0f), &edges_u, &edges_v, beam, tally);
 }
 
-// Fraction of the cross-section along u (k 0) or v (1) that is inside the box. The cross-section that has already left
-// the box is excluded.
+// Fraction of a beam's cross-section along u (k = 0) or v (k = 1) that is inside the box, relative to the part that has
+// not left the box.
 static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float tangent, float2 edges)
 {
   int up, first;
@@ -234,8 +234,8 @@ static float part_inside(const LampInfo* lamp, const BeamRow* row, int k, float 
     (place(lamp, axis, tangent, &second) == INSIDE ? 1.0f - part : 0.0f);
 }
 
-// Fraction of a beam's cross-section that has not reached the box yet, t layers from the beam's start. The
-// cross-section that has already left the box is excluded.
+// Fraction of a beam's cross-section that has not reached the box yet, t layers from the beam's start, relative to the
+// part that has not left the box.
 static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float t)
 {
   const float2 edges_u = edges_at(start.x, tangent.x, row->openU, row->widthU, t);
@@ -243,9 +243,9 @@ static float part_to_come(const LampInfo* lamp, const BeamRow* row, float2 start
   return 1.0f - part_inside(lamp, row, 0, tangent.x, edges_u) * part_inside(lamp, row, 1, tangent.y, edges_v);
 }
 
-// Removes the part of a beam's power that misses the box. Called where a beam that enters through lateral faces reaches
-// the end of the box: in the last half step a fraction of the waiting power still enters the box, and the remainder
-// never does.
+// Removes the part of a beam's power that misses the box. Called when a beam that enters through lateral faces has
+// reached the layer where the box ends. In its last half step, a fraction of the waiting power still enters the box;
+// the remainder is removed.
 //   waiting  power that had not reached the box in the middle of the last step, at `here`
 static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, float2 tangent, float here, float end,
   float waiting, BeamOnItsWay* beam, lamp_tally* tally)
@@ -260,8 +260,8 @@ static void miss_box(const LampInfo* lamp, const BeamRow* row, float2 start, flo
 #define SHORT_OF 2
 #define AMID 0
 
-// Position of a beam's centre relative to the voxels that its part of the rectangle illuminates: AMID, SHORT_OF or
-// BEYOND.
+// Position of a beam's centre relative to the voxels that the beam illuminates, as it originates from one part of the
+// rectangle: AMID, SHORT_OF or BEYOND these voxels.
 static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float2 middle)
 {
   int voxel[3];
@@ -273,7 +273,7 @@ static int stretch_of(const LampInfo* lamp, const BeamRow* row, int along, float
                                                                  : AMID;
 }
 
-// Attenuates a beam over one step along its centre, where the beam illuminates no voxel.
+// Attenuates a beam over one step through voxels that it does not illuminate, by the extinction at its centre.
 // @return whether the whole cross-section is in the box; if not, nothing is done
 static bool pass_through(
   const LampInfo* lamp, const BeamRow* row, const beam_step* step, const __global float* sigma, BeamOnItsWay* beam)
@@ -380,8 +380,8 @@ static float length_per_layer(const LampInfo* lamp, const BeamRow* row, float2 t
   return sqrt(dot(along, along));
 }
 
-// Tallies the remaining power of a beam that is traced no further: power that misses the box, that is in transit on a
-// periodic axis, or that escapes at the end of an open axis.
+// Tallies the remaining power at the end of a beam: power that misses the box, power in transit on a periodic axis, or
+// power that escapes at the end of an open axis.
 //   here, end  middle of the last step, and end of the last layer, in layers from the beam's start
 //   waiting    power that had not reached the box at `here`
 static void end_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, float2 tangent, const beam_layers* layers,
@@ -442,7 +442,7 @@ static bool follow_beam(const LampInfo* lamp, const BeamRow* row, float2 begin, 
       const float t1 = now + (end - now) * (s + 1) / STEPS;
       here = 0.5f * (t0 + t1);
       const float2 middle = begin + tangent * here;
-      // The rank that received the beam always computes its first step, so that the beam advances even if rounding
+      // A rank that receives a beam always computes the beam's next step, so that the beam advances even if rounding
       // assigns its voxel to another rank.
       if (IN_BLOCK && !is_followed(lamp, row, layer, middle, beam->voxel) && !follows)
       {
@@ -525,7 +525,8 @@ static void follow_in_block(const LampInfo* lamp, const BeamRow* row, BeamOnItsW
     tally.entered = row->skipped > 0 ? 0.0f : shone;
     begin_beam(beam, shone);
   }
-  // The remaining power of a beam that has already crossed other blocks may be negative by rounding.
+  // A beam that has already crossed other blocks is traced whatever its remaining power, which may be negative by
+  // rounding.
   const bool is_there = beam->begun || shone > 0.0f;
   beam->begun = true;
   beam->ended = !is_there ||

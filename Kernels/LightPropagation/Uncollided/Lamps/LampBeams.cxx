@@ -31,7 +31,7 @@ constexpr int RowsPerLaunch = 256;
 /// If rows have fewer than this number of beams, a launch traces proportionally more than RowsPerLaunch rows
 constexpr int BeamsOfRow = 64;
 constexpr std::size_t BeamsPerLaunch = 1 << 14; ///< beams per launch when they are traced in a block
-/// Width of the halo, voxels: a beam may extend one voxel beyond the block, and one more by rounding.
+/// Width of the halo, voxels: a beam traced in a block may extend one voxel beyond it, and by rounding one more.
 constexpr int Reach = 2;
 
 /// Maximum number of passes along periodic axes (LampPyramids.h: each traces a range of layers)
@@ -40,8 +40,7 @@ constexpr int PassesAtMost = 9;
 constexpr int EvenFrom = 3;
 constexpr double LeftAtMost = 5e-5; ///< passes end when at most this fraction of the power is in transit
 
-/// Function that traces the beams of a pass and adds their energy balance to the LampShares that FollowInPasses() is
-/// given.
+/// Function that traces the beams of a pass and adds their energy balance to the argument `shares` of FollowInPasses().
 /// @param factor  multiplies the initial power of the beams
 using FollowPass = std::function<void(const Pass& pass, double factor, const Monitor& monitor)>;
 
@@ -62,7 +61,8 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
     const Monitor ofPass = OfPart(monitor, 1.0 - std::exp2(-done), 1.0 - std::exp2(-done - 1));
     const double wanted = std::exchange(shares.onTheWay, 0.0);
     pass = pass.Next();
-    // Traces the new beams up to the layer where the pass begins, to determine the power that they still carry there.
+    // Traces the new beams only up to the layer where the pass begins, to determine the power that they have left
+    // there.
     follow({ pass.begin, pass.end, true }, 1.0, {});
     const double found = std::exchange(shares.onTheWay, 0.0);
     if (!(found > 0.0))
@@ -75,8 +75,8 @@ double FollowInPasses(const Grid& grid, const std::array<bool, 3>& periodic, Lam
   return endless ? std::exchange(shares.onTheWay, 0.0) : 0.0;
 }
 
-/// Voxel of the grid nearest to a beam's start. An approximation suffices: the rank that owns the voxel computes the
-/// first step.
+/// Voxel of the grid nearest to a beam's start, which decides which rank traces the beam first. An approximation
+/// suffices, because a rank always computes the first step of a beam that it receives.
 std::array<int, 3> FirstVoxel(const BeamRow& row, int beam, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   const double begins[] = { row.startU + static_cast<double>(beam) * row.openU, row.startV };
@@ -321,7 +321,8 @@ void LampBeams::AddToOwners()
 {
   std::vector<cl_long> found, own;
   this->TheDomain.Collective([&] { found = this->Sums->Sums().Read(); });
-  // A rank without voxels may not know which arrays the other ranks' deposits have.
+  // A rank without voxels may have a deposit with fewer arrays than the other ranks; the maximum counts the arrays of
+  // the other ranks.
   const int parts = static_cast<int>(this->TheDomain.Max(LampSums::Parts(this->Lamp, this->Volume.deposit)));
   const std::size_t count = this->Box().VoxelCount();
   for (int part = 0; part < parts; ++part)

@@ -9,24 +9,24 @@
 namespace tyndall
 {
 /// Computes the uncollided flux of one point, spot or rectangle lamp along exact rays. The power that rays lose is
-/// deposited as in a sweep (numerics.md, sections 5.3 to 5.5). A quadrature would represent such a lamp by a few rays
-/// (ray effects of 100% and more).
+/// deposited as in a sweep (numerics.md, sections 5.3 to 5.5). A quadrature would represent such a lamp by few rays,
+/// with ray effects of 100% and more.
 ///
 /// Lamps emit square beams, at most half a voxel wide where they leave the box and at least 16 across a spot's cone,
 /// each with the power of its solid angle, Eq. (33). A rectangle is divided into parts, each of which lights the voxels
 /// that are far enough away from it, with beams one voxel wide or more; each voxel's path is then scaled to be exact in
 /// vacuum, Eq. (34a). Deposits are summed in 64-bit fixed point, Eq. (35), so that the sum does not depend on the order
-/// of the beams. For a lamp inside the box all of its power is traced.
+/// of the beams. If the lamp is inside the box, all of its power is traced.
 ///
 /// On a periodic axis rays wrap around, in at most nine passes with fewer beams at larger distance, until 0.005% of the
 /// power is left (LampPyramids.h). A lamp outside the box then illuminates only the part of the box that it sees
 /// directly, once per period.
 ///
 /// On several ranks, a beam that leaves a block is sent to the rank of the block that it enters (numerics.md, section
-/// 4.9). A beam covers up to four voxels, some of which may belong to another rank: each rank holds sigma_t of its
-/// block and a halo of two voxels, and sends its beams' deposits in the halo to their owners. Deposits agree with those
-/// of a serial run bit for bit, except for the final correction of the power, which is a sum in another order, and,
-/// around periodic axes, except for beams with less than 1e-7 of their initial power, which are dropped.
+/// 4.9). A beam covers up to four voxels, some of which may belong to another rank. Each rank therefore holds sigma_t
+/// of its block and a halo of two voxels, and sends its beams' deposits in the halo to the owners of these voxels.
+/// Deposits agree with those of a serial run bit for bit, with two exceptions: the final correction of the power is a
+/// sum in another order, and around periodic axes beams with less than 1e-7 of their initial power are dropped.
 ///
 /// Collective.
 /// @param volume  this rank's block; the face cells of its deposit are those of the whole domain

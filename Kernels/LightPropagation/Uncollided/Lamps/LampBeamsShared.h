@@ -11,8 +11,8 @@ enum
   LampRowSums = 9
 };
 
-/// Fixed-point units that represent the traced power (the share of a lamp's power that may reach the box): 2^56; a sum
-/// of 64 times that power still fits in 64 bits.
+/// Number of fixed-point units, 2^56, that represents the traced power (the share of a lamp's power that may reach the
+/// box). A sum of 64 times the traced power still fits in 64 bits.
 #define LampPowerUnits 72057594037927936.0f
 
 /// A lamp and the box that its beams cross. Lengths along axis a are in units of `spacing[a]`, unless said otherwise.
@@ -22,8 +22,8 @@ typedef struct
   int first[3], stored[3];         ///< voxels that the arrays cover: all, or a block and its halo
   int followed[3], followedEnd[3]; ///< voxels in which beams are traced
   int periodic[3];
-  /// Number of periodic images of the rectangle to either side, per axis, whose light in vacuum is corrected together
-  /// with its own
+  /// Number of periodic images of a rectangular lamp, on either side along each axis, whose light in vacuum is
+  /// corrected together with that of the lamp itself
   int images[3];
   float spacing[3];
   float direction[3];       ///< axis of a spot's cone or normal of a rectangle, unit vector in space
@@ -45,8 +45,8 @@ typedef struct
   /// Reference tangents of the pyramid, to which tangentU and tangentV are relative: those of the axis of a narrow
   /// cone; else 0
   float baseU, baseV;
-  /// Components along the marching axis, u and v of the cross product of the reference direction (that of the
-  /// reference tangents) and the cone's axis; 0 if these are parallel, as for a narrow cone
+  /// Components along the marching axis, u and v of the cross product of two directions: that of the reference
+  /// tangents, and that of the cone's axis; 0 if the two are parallel, as for a narrow cone
   float crossing[3];
   /// Tangents of the first beam's centre, relative to the reference tangents baseU, baseV; tangentV is that of all
   /// beams
@@ -59,16 +59,17 @@ typedef struct
   float openU, openV;   ///< width of a beam at the start, voxels
   int skipped;          ///< number of layers of voxels that beams cross before they deposit light and are tallied
   int layers;           ///< maximum number of layers of voxels that beams cross
-  /// Bits 1, 2: the lamp is outside the box along u, v, so that beams may enter through the faces normal to u, v
+  /// Bit 0: the lamp is outside the box along u, so that beams may enter through the faces normal to u. Bit 1: the same
+  /// along v
   int beside;
   float share;   ///< fraction of the lamp's power emitted by the point from which the beams originate
   float part[3]; ///< centre of the part of a rectangle that this point represents
-  /// Squared distances from `part`: voxels nearer than the first are not lit from this point, and a beam nearer than
-  /// the second crosses no voxel that is lit from it.
+  /// Squared distances from `part`. partFrom: nearer voxels are not lit by this row's beams. partSeen: a beam whose
+  /// centre is nearer crosses no voxel that it lights.
   float partFrom, partSeen;
   float whole[3]; ///< centre of the larger part of which `part` is a subdivision
-  /// Squared distances from `whole`: voxels beyond the first are not lit from this point, and a beam beyond the second
-  /// crosses no voxel that is lit from it.
+  /// Squared distances from `whole`. wholeFrom: voxels beyond are not lit by this row's beams. wholeSeen: a beam whose
+  /// centre is beyond crosses no voxel that it lights.
   float wholeFrom, wholeSeen;
 } BeamRow;
 
@@ -94,11 +95,12 @@ typedef struct
   float edges[3][3]; ///< unit vectors along the two edges and the normal
   float reach[2];    ///< half the lengths of the two edges
   int size[3];       ///< size of the block, voxels
-  /// Size of the whole grid, voxels, and number of periodic images of the lamp to either side that also emit.
+  /// Size of the whole grid, voxels, and number of periodic images of the lamp on either side along each axis that also
+  /// emit.
   int period[3], images[3];
   float spacing[3];
-  /// Path integral in a voxel in vacuum, per steradian of the rectangle as seen from the voxel, W length, for a lamp of
-  /// 1 W
+  /// Path integral in a voxel in vacuum, for a lamp of 1 W and per steradian that the rectangle subtends at the voxel,
+  /// W length / sr
   float path;
   float scale; ///< fixed-point units per unit of the path integral, length
 } RectangleInfo;

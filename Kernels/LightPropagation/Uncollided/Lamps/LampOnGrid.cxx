@@ -18,15 +18,16 @@ constexpr std::size_t BeamsTogether = 1 << 18;
 /// analytically; fewer in a box that is periodic along all axes, where light never escapes.
 constexpr int ImagesAside = 5, ImagesAsideWithoutFaces = 1;
 
-/// Width of beams where they leave the box, voxels: beams of a point or spot, of a rectangle, and of a rectangle that
+/// Width of beams where they leave the box, voxels: for a point or spot lamp, for a rectangle, and for a rectangle that
 /// is represented by at least ManyPoints points.
 constexpr double BeamWidth = 0.5, BeamWidthOfRectangle = 1.0, BeamWidthOfMany = 1.4;
 constexpr std::size_t ManyPoints = 64;
-/// Number of times that the full power may cross one voxel without overflow in fixed point.
+/// A voxel's fixed-point sum does not overflow as long as the lamp's full power crosses the voxel at most this number
+/// of times.
 constexpr int RoundsAtMost = 64;
 
-/// Moves a rectangle to the opposite end of a periodic axis if it lies on one end and emits out of the box there; at
-/// the opposite end it emits into the box.
+/// Moves a rectangle that lies on a face normal to a periodic axis and emits out of the box to the opposite face, where
+/// it emits into the box.
 Light ShiningIn(Light light, const Grid& grid, const std::array<bool, 3>& periodic)
 {
   if (light.type != LightType::Rectangle)
@@ -66,8 +67,8 @@ LampOnGrid::LampOnGrid(const Light& light, const Grid& grid, const std::array<bo
   }
 }
 
-/// Sets the number of a rectangle's periodic images whose light in vacuum is exact: none unless the rectangle is in the
-/// box.
+/// Sets the number of a rectangle's periodic images whose light in vacuum is integrated analytically; 0 unless the
+/// rectangle is in the box.
 void LampOnGrid::CountImages()
 {
   const glm::dvec3 end = EndOf(this->TheGrid);
@@ -109,8 +110,8 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
   {
     return { in, in, in };
   }
-  // The light of a rectangle's parts does not conserve energy exactly: the power that the medium removes and the power
-  // that escapes are corrected, mostly the larger of the two (numerics.md, Eq. (34b)).
+  // The light of a rectangle's parts does not conserve energy exactly. The power that the medium removes and the power
+  // that escapes are therefore corrected, the larger of the two more (numerics.md, Eq. (34b)).
   const double share = this->Share(), left = share * (shares.Out() + even), kept = share * taken;
   const double square = kept * kept + left * left;
   if (!(square > 0.0))
@@ -121,8 +122,9 @@ LampFactors LampOnGrid::Factors(const LampShares& shares, double taken, double e
   return { in, share * (1.0 + rest * kept), share * (1.0 + rest * left) };
 }
 
-/// The lamp's intensity times the solid angle of the sphere around the box, rounded up to a power of two; for a
-/// rectangle the fraction that enters the box, rounded likewise, if it is known.
+/// The share is the lamp's intensity times the solid angle of the sphere around the box, rounded up to a power of two;
+/// for a rectangle, it is the fraction of its light that enters the box, rounded in the same way, if that fraction is
+/// known.
 double LampOnGrid::Share() const
 {
   if (this->Lamp.type == LightType::Rectangle && this->Entering > 0.0)

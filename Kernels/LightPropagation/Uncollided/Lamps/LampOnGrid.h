@@ -41,15 +41,16 @@ struct LampShares
   /// @param sums  tallies of the row, [LampRowSums]
   void Count(const BeamRow& row, const float* sums)
   {
-    // Counted by marching direction, not by face, since light of a lamp inside the box enters through no face.
+    // Entered power is counted by marching direction, not by face, since light of a lamp inside the box enters through
+    // no face.
     this->in[2 * row.axis + row.up] += sums[0];
     for (int face = 0; face < 6; ++face)
     {
       this->out[face] += sums[1 + face];
     }
     this->onTheWay += sums[7];
-    // Counts only rows of the smallest parts of a rectangle, so that power is not counted again for the larger parts
-    // that they make up.
+    // For a rectangle, only rows of its smallest parts are counted: together they make up the larger parts, whose power
+    // would be counted again.
     this->shone += row.skipped > 0 || row.partFrom > 0.0f ? 0.0 : sums[8];
   }
 
@@ -101,8 +102,8 @@ struct LampShares
 class LampOnGrid
 {
 public:
-  /// Maximum number of layers of voxels crossed in one launch, summed over the launch's beams; keeps it below a tenth
-  /// of a second.
+  /// Maximum number of layers of voxels crossed in one launch, summed over its beams, so that a launch takes less than
+  /// a tenth of a second.
   static constexpr double LayersPerLaunch = 4e6;
 
   /// @param grid  the whole grid; must outlive this object
@@ -124,9 +125,9 @@ public:
   /// @param next  set to the index of the next batch's first point
   std::vector<BeamRow> Rows(const Pass& pass, double factor, std::size_t first, std::size_t& next) const;
 
-  /// Factors that normalise the energy balance of the lamp's beams. If the power that is traced (a lamp inside the
-  /// box, a cone that lies within the box's solid angle) or that enters the box is known exactly, the factors enforce
-  /// it.
+  /// Factors that normalise the energy balance of the lamp's beams. If the traced power is known exactly (for a lamp
+  /// inside the box, or a cone within the solid angle of the box), or the power that enters the box is, the factors
+  /// enforce the exact value.
   /// @param taken  fraction of the traced power that the medium removes, used for a rectangle
   /// @param even  fraction of the traced power that is to be distributed uniformly over the box
   LampFactors Factors(const LampShares& shares, double taken, double even) const;
@@ -140,8 +141,8 @@ public:
   /// @param followed  voxels of `stored` in which beams are traced
   LampInfo Describe(const VoxelBox& stored, const VoxelBox& followed) const;
 
-  /// Number of additional sums per voxel for the deposit of a rectangle in vacuum, 0 for other lamps (numerics.md, Eq.
-  /// (34a)).
+  /// Number of additional sums per voxel for the deposit that a rectangle would have in vacuum (numerics.md, Eq.
+  /// (34a)); 0 for other lamps.
   int SumsOfVacuum() const;
   RectangleInfo DescribeRectangle(const VoxelBox& own) const;
 
@@ -164,7 +165,8 @@ private:
   Light Lamp;
   const Grid& TheGrid;
   std::array<bool, 3> Periodic;
-  /// Number of periodic images of a rectangle to either side, per axis, whose light is exact in vacuum.
+  /// Number of periodic images of a rectangle, on either side along each axis, whose light in vacuum is integrated
+  /// analytically.
   std::array<int, 3> Images = {};
   double Entering = 0.0; ///< fraction of the lamp's power that enters the box; 0: unknown
   std::vector<LampPoint> Points, Centre;

@@ -71,7 +71,7 @@ std::vector<std::pair<glm::dvec3, double>> RectangleArea::Points(int perEdge) co
   constexpr double shares[][most] = { { 1.0 }, { 0.5, 0.5 }, { 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0 },
     { 0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727 } };
   const double longer = std::sqrt(glm::length(this->half[0]) / glm::length(this->half[1]));
-  // 1e-9 keeps rounding from choosing different numbers of points in scenes that differ by a rotation
+  // The 1e-9 makes the number of points independent of rounding, and so the same in scenes that differ by a rotation
   const auto along = [=](double stretch) {
     return perEdge == 1 ? 1 : static_cast<int>(std::clamp(perEdge * stretch + 0.5 + 1e-9, 1.0, most + 0.5));
   };
@@ -88,10 +88,11 @@ std::vector<std::pair<glm::dvec3, double>> RectangleArea::Points(int perEdge) co
 
 namespace
 {
-/// Minimum distance of a voxel from the centre of a rectangle's part that lights it, in radii of the part; for nearer
+/// A part of a rectangle lights voxels whose distance from its centre is at least this many of its radii; for nearer
 /// voxels the part is divided.
 constexpr double PartDistance = 2.0;
-/// Number of Gauss points along each edge of a square: of a part of a rectangle, and of a rectangle that is not divided
+/// Number of Gauss points along each edge of a square: for a part of a rectangle, and for a rectangle that is not
+/// divided
 constexpr int PointsOfPart = 2, PointsOfAll = 3;
 constexpr double FinestPart = 2.0;   ///< longer edge of the smallest parts, voxels
 constexpr double PartsAcross = 64.0; ///< maximum number of smallest parts along the box's longest edge
@@ -146,7 +147,8 @@ private:
     return { least, most };
   }
 
-  /// Whether a part contributes so little to the light in the box that one point represents it.
+  /// Whether a part of the rectangle contributes so little to the light in the box that one point suffices to represent
+  /// it.
   bool IsFaint(const RectangleArea& part) const
   {
     const glm::dvec3 eye = glm::clamp(part.middle, glm::dvec3(0.0), EndOf(this->TheGrid)), way = eye - part.middle;

@@ -24,15 +24,14 @@ struct LampPoint
   glm::dvec3 place;   ///< position, voxels from the grid's corner
   double share = 1.0; ///< fraction of the lamp's power
 
-  /// The point illuminates voxels outside the sphere `part` and inside the sphere `whole`. Beyond `whole`, the larger
-  /// part that was divided into this one illuminates voxels instead.
+  /// The point illuminates voxels outside the sphere `part` and inside the sphere `whole`. Voxels beyond `whole` are
+  /// illuminated by points of a larger part of the rectangle, of which this point's part is a subdivision.
   Sphere part, whole = { glm::dvec3(0.0), std::numeric_limits<double>::infinity() };
   /// Length to which beams from this point are traced; infinite: until they leave the box
   double reach = std::numeric_limits<double>::infinity();
 };
 
-/// Distance from a face, as a fraction of the box's edge, below which a lamp is taken to be on the face, as for
-/// photons.
+/// Distance from a face, as a fraction of the box's edge, below which a lamp is taken to be on the face.
 constexpr double OnBorder = 1e-6;
 
 /// Position of a point in space, voxels from the grid's corner; snapped to a face that is nearer than OnBorder.

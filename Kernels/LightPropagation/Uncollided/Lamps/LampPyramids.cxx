@@ -54,9 +54,9 @@ struct ConeInPlane
   double turn, reach;
 };
 
-/// Weights that define the borders of pyramids: a ray belongs to the axis along which its weighted component, in
-/// voxels, is largest. For a distant lamp the whole box is in one pyramid, since the beams' steps leave uneven gaps
-/// where two pyramids meet.
+/// Weights of the axes, which define the borders of the pyramids: a ray belongs to the axis along which its weighted
+/// component, in voxels, is largest. For a distant lamp the weights are such that the whole box is in one pyramid,
+/// because beams leave uneven gaps where two pyramids meet.
 std::array<double, 3> WeightsOfAxes(const Grid& grid, const glm::dvec3& position)
 {
   // Largest tangent of a widened pyramid: its beams move sideways by 0.75 voxels per step of half a layer, which must
@@ -135,7 +135,7 @@ public:
     if (light.type == LightType::Spot)
     {
       const std::array<double, 2> cone = this->Cone(k, light);
-      // Margin that separates the beams' edges from the cone's
+      // Margin between the outermost edges of the beams and the border of the cone
       const double aroundIt = 0.01 * (cone[1] - cone[0]);
       seen = { std::max(seen[0], cone[0] - aroundIt), std::min(seen[1], cone[1] + aroundIt) };
     }
@@ -233,8 +233,8 @@ private:
     return this->Position[aside] < 0.0 || this->Position[aside] > this->TheGrid.size[aside];
   }
 
-  /// Whether the cone is so narrow, and so far from the plane normal to the pyramid's axis, that the tangents of its
-  /// border differ little from that of its axis.
+  /// Whether the tangents on the cone's border differ little from the tangent of the cone's axis. This requires a
+  /// narrow cone whose axis is far from normal to the pyramid's axis.
   static bool IsNarrow(const ConeInPlane& cone)
   {
     constexpr double narrow = 0.1;
@@ -253,7 +253,8 @@ private:
       std::sin(HalfAngle(spot)) };
   }
 
-  /// Range of tangents to the box within the pyramid; for a lamp on one of the box's faces all inward tangents.
+  /// Range of tangents, within the pyramid, of rays that meet the box; for a lamp on a face of the box, of all inward
+  /// rays.
   std::array<double, 2> Box(int k) const
   {
     const int aside = (this->Axis + k) % 3;
@@ -282,7 +283,8 @@ private:
     {
       return { 1.0, -1.0 };
     }
-    // Relative to the tangent of the cone's axis: tan a - tan b = sin(a - b) / (cos a cos b) keeps its precision
+    // The tangents are relative to that of the cone's axis: tan a - tan b = sin(a - b) / (cos a cos b) is precise for
+    // close angles
     if (this->HasBase)
     {
       const double scale = std::sin(cone.reach) / std::cos(cone.turn) * this->PerLayer(k);

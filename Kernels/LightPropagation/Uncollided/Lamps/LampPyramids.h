@@ -23,12 +23,12 @@ struct Pass
 Pass FirstPass(const Grid& grid); ///< the first pass reaches twice the box's longest edge
 
 /// Beams of a lamp from one point, as rows. Space around the point is divided into six pyramids, one for each sense
-/// along an axis. In each pyramid, beams form a grid of tangents that covers the visible part of the box that is still
-/// inside it where the pass begins.
+/// along an axis. In each pyramid, beams form a grid of tangents. The grid covers the visible part of the box, in later
+/// passes only rays that are still in the box where the pass begins.
 ///
 /// A beam is at most `width` voxels wide where it leaves the box or, in later passes, where the pass begins. Along
-/// periodic axes, where many beams eventually cross every voxel, there are only as many beams as give each voxel
-/// several of them (numerics.md, section 5.3).
+/// periodic axes, where every beam crosses many voxels, the number of beams is only so large that several cross each
+/// voxel (numerics.md, section 5.3).
 ///
 /// @param position  position of the point, voxels from the box's corner
 /// @param reach  maximum length to which beams are traced

@@ -45,7 +45,8 @@ static float3 to_rectangle(const RectangleInfo* rectangle, float x, float y, flo
 }
 
 // Integral of the rectangle's solid angle over a cell, divided by the cell's volume. The cell is divided into columns
-// along the axis nearest to the normal, each cut off at the rectangle's plane, with two Gauss points along each axis.
+// along the axis nearest to the rectangle's normal, each cut off at the rectangle's plane. There are two Gauss points
+// along each axis.
 static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* cell)
 {
   const float gauss = 0.288675135f;
@@ -63,7 +64,8 @@ static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* ce
     offset[(axis + 2) % 3] = (column & 2 ? gauss : -gauss) * cell->edge[(axis + 2) % 3];
     const float middle = cell->middle.z + rectangle->edges[2][0] * offset[0] + rectangle->edges[2][1] * offset[1] +
       rectangle->edges[2][2] * offset[2];
-    // Position where the rectangle's plane intersects the column, as a fraction of its length, from its centre.
+    // Position where the rectangle's plane intersects the column, relative to the column's centre and as a fraction of
+    // its length.
     const float plane = clamp(-middle / slope, -0.5f, 0.5f);
     const float from = slope > 0.0f ? plane : -0.5f, to = slope > 0.0f ? 0.5f : plane;
     for (int i = 0; i < 2; ++i)
@@ -80,8 +82,8 @@ static float mean_over_cell(const RectangleInfo* rectangle, const voxel_cell* ce
   return sum;
 }
 
-// Whether a cell must be halved: the solid angle varies fast near the rectangle's border, and with the inverse square
-// of the distance near a small rectangle.
+// Whether a cell must be halved. The rectangle's solid angle varies fast near the rectangle's border and, for a small
+// rectangle, with the inverse square of the distance.
 //   before  extent of the voxel in front of the rectangle's plane, length
 static bool is_coarse(const RectangleInfo* rectangle, const voxel_cell* cell, int level, float before)
 {
@@ -166,7 +168,8 @@ static float mean_of_images(const RectangleInfo* rectangle, const int* voxel)
 }
 
 // Computes the factor by which each voxel's path from a rectangle's beams is multiplied to be exact in vacuum
-// (numerics.md, Eq. (34a)). In voxels that no beam reaches, the path is that in vacuum, attenuated within the voxel.
+// (numerics.md, Eq. (34a)). In voxels that no beam reaches, the path integral is set to that in vacuum, attenuated
+// within the voxel.
 // fixed_path  fixed-point sums, argument `path` of follow_lamp (LampBeams.cl)
 __kernel void find_gains(RectangleInfo rectangle, __global long* fixed_path, ulong stride, __global float* gains,
   ulong first, const __global float* sigma, ulong sigma_first, float diagonal)

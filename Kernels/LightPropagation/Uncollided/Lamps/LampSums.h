@@ -5,10 +5,11 @@
 
 namespace tyndall
 {
-/// Sums of a lamp's deposits in 64-bit fixed point, as fractions of the traced power (LampOnGrid::Share), so that they
-/// do not depend on the order of their terms (numerics.md, Eq. (35)): path integral, followed by first moments and net
-/// flux if the deposit has them, and for a rectangle its path integral in vacuum, [path, 3 first moments, 3 of flux,
-/// ...][voxel]; and the power that escapes through each cell of the grid's faces, if the deposit has it.
+/// Sums of a lamp's deposits, as fractions of the traced power (LampOnGrid::Share). They are in 64-bit fixed point, so
+/// that they do not depend on the order of their terms (numerics.md, Eq. (35)). Per voxel: the path integral; first
+/// moments and net flux, if the deposit has them; for a rectangle, its path integral in vacuum; [path, 3 first moments,
+/// 3 of flux, ...][voxel]. If the deposit has faceOut, also the power that escapes through each cell of the grid's
+/// faces.
 class LampSums
 {
 public:
@@ -33,7 +34,8 @@ public:
   /// @return fraction of the traced power that these voxels then remove; 0 for other lamps
   double FitToVacuum(const SweepVolume& volume, const LampOnGrid& lamp, const VoxelBox& own);
 
-  /// Adds the sums, which are fractions of the traced power, converted to W, to the arrays of the volume's deposit.
+  /// Converts the sums, which are fractions of the traced power, to W and adds them to the arrays of the volume's
+  /// deposit.
   /// @param volume  its arrays have as many values per channel as the sums
   /// @param factor  LampFactors::taken
   void AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const;
@@ -41,8 +43,8 @@ public:
   /// @param faceFirst  index of the first channel's first cell in faceOut
   void AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, const LampOnGrid& lamp, double factor) const;
 
-  /// Adds light uniformly to the deposit's path: the limit after many wraps around a box that is periodic along all
-  /// axes.
+  /// Adds light uniformly to the deposit's path. This is the limit of light that has wrapped many times around a box
+  /// that is periodic along all axes.
   /// @param share  fraction of the lamp's power
   /// @param extinction  Extinction() of the whole box, 1/length; if it is 0, nothing is added
   void SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const;
