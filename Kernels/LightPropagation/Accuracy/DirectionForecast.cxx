@@ -14,10 +14,11 @@ namespace
 /// largest number of directions per cube face with rays that start in the middle of voxels; with more, rays start at
 /// staggered positions
 constexpr int LargestUnstaggered = 100;
-/// Measured cost of a direction of uncollided light, relative to a direction of a sweep.
+/// Measured cost of one direction for uncollided light, relative to one direction in a sweep of scattered light.
 constexpr double UncollidedWork = 5.0;
 constexpr double LeastSweeps = 3.0;
-/// Angular error on the fine grid relative to that on the coarse grid: measured 0.97 to 1.3.
+/// Upper bound of the ratio of the angular error on the fine grid to that on the coarse grid; measured ratios are 0.97
+/// to 1.3.
 constexpr double OnFinerGrid = 1.3;
 constexpr int Directions[] = { 9, 16, 25, 36, 49, 64, 100, 196, 256, 400 };
 constexpr int UncollidedCounts[] = { 0, 49, 64, 81, 100, 256, 400, 576, 900, 1600 };
@@ -31,8 +32,8 @@ struct Fall
 constexpr Fall Falls[] = { { 1, 8.0 }, { 4, 2.6 }, { 9, 1.0 }, { 16, 0.8 }, { 25, 0.5 }, { 36, 0.38 }, { 49, 0.34 },
   { 64, 0.28 }, { 100, 0.22 }, { 256, 0.14 }, { 400, 0.12 }, { 900, 0.06 }, { 1600, 0.035 }, { 4096, 0.02 } };
 
-/// Error of the fluence with `directions` per cube face relative to that with 9: interpolates the table Falls, linearly
-/// in the logarithms of both quantities.
+/// Error of the fluence with `directions` per cube face, relative to the error with 9 directions. Interpolates the
+/// table Falls linearly in the logarithms of both quantities.
 double FallenTo(int directions)
 {
   const Fall* above = std::begin(Falls) + 1;

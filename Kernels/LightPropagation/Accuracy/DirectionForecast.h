@@ -23,22 +23,22 @@ public:
 
   /// Error of uncollided light relative to the error of all light.
   double UncollidedPart() const;
-  /// Separates the error caused by the directions of uncollided light, including the light scattered from it, from that
-  /// caused by the directions of scattered light. Collective.
+  /// Determines two errors separately: the error caused by the directions of uncollided light, including the light
+  /// scattered from it, and the error caused by the directions of scattered light. Collective.
   /// @param between  solution with few directions for scattered light and more directions for uncollided light
   void Separate(Communicator& communicator, const LightField& few, const LightField& between, const LightField& more);
 
   /// Predicted root-mean-square error of the fluence due to the angular discretisation, relative to the fluence, on a
   /// grid with twice the voxels per axis.
   double Error(const PropagationSettings& settings) const;
-  /// Error(settings) divided by the predicted difference between the solutions with `settings` and with `others` on the
-  /// coarse grid.
+  /// Ratio of Error(settings) to the predicted difference between two solutions on the coarse grid, one with `settings`
+  /// and one with `others`.
   double PartOfDifference(const PropagationSettings& settings, const PropagationSettings& others) const;
   /// Predicted work, in units of the work of one sweep with one direction per cube face.
   double Work(const PropagationSettings& settings) const;
   /// The settings with the least work among those with a predicted error of at most `error`; if there are none, those
-  /// with the least error. Only numbers that have their default values in `settings` are changed. Uncollided light uses
-  /// the same directions as scattered light unless Separate() was called.
+  /// with the least error. Only settings that have their default values are changed. Uncollided light uses the
+  /// directions of scattered light unless Separate() was called.
   /// @param most  largest number of directions per cube face that may be chosen
   PropagationSettings Cheapest(
     const PropagationSettings& settings, double error, int most = std::numeric_limits<int>::max()) const;

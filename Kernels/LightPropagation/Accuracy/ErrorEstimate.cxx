@@ -12,9 +12,9 @@ namespace
 {
 constexpr double FinePart = 0.8; ///< fraction of the progress that is attributed to the solve on the fine grid
 
-/// Number of directions per cube face of the second coarse solve, whose difference from the first one gives the angular
-/// error: fewer than `directionsPerFace`, unless that is 1; an even number of rows of directions if `directionsPerFace`
-/// has one.
+/// Number of directions per cube face of the second coarse solve, whose difference from the first coarse solve gives
+/// the angular error. It is smaller than `directionsPerFace`, unless that is 1. If directions form an even number of
+/// rows on a face, they also do so in the second solve.
 int OtherDirections(int directionsPerFace)
 {
   const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<double>(directionsPerFace))));
@@ -32,8 +32,8 @@ double PartOfDifference(int directions, int others, double order)
   return ratio < 1.0 ? ratio / (1.0 - ratio) : ratio / (ratio - 1.0);
 }
 
-/// Replaces values, [outer][count][inner], by the mean over neighbours along the middle axis: of three values, or of
-/// two at its ends.
+/// Smooths an array [outer][count][inner] along its middle index: replaces each value by the mean of itself and its
+/// neighbours.
 void SmoothAlong(std::vector<double>& values, std::size_t count, std::size_t inner)
 {
   const std::vector<double> rough = values;
@@ -66,7 +66,8 @@ void Smooth(std::vector<double>& values, const Grid& grid, int channels)
   }
 }
 
-/// Whether a solve stopped after its first order before convergence; the remainder cannot be estimated from one order.
+/// Whether a solve stopped after its first order before convergence. The error of the missing orders cannot be
+/// estimated from one order.
 bool IsStoppedTooSoonToTell(const LightField& light)
 {
   return light.convergence.size() == 1 && light.convergence.front().residual > 0.0;
@@ -100,8 +101,8 @@ double SumOf(const std::vector<double>& values)
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Computes the two error components of the fluence of coarse voxels, and its variance, from the fluence of the fine
-/// solve and of two coarse solves.
+/// Computes the two components of the error of the fluence of coarse voxels, and the variance of this fluence, from a
+/// fine solve and two coarse solves.
 struct ErrorOfAverages
 {
   /// factors that convert differences between solves to the errors due to voxel size and due to the number of
@@ -134,9 +135,9 @@ struct VarianceOfAverages
   std::vector<double> variance;       ///< variance of the fluence
 };
 
-/// Sets fluenceError and relativeError of `light`. The squared errors by voxel are smoothed over neighbouring coarse
-/// voxels, and scaled so that their sum does not change. This sum, relative to that of squared fluences, is computed
-/// over coarse voxels and over fine voxels (InVoxels), and the larger result is used: coarse voxels do not resolve the
+/// Sets fluenceError and relativeError of `light`. The squared errors of voxels are smoothed over neighbouring coarse
+/// voxels and then scaled to a given sum. This sum, relative to the sum of squared fluences, is the larger of two
+/// values, computed over coarse voxels and over fine voxels (InVoxels), because coarse voxels do not resolve the
 /// decrease of light next to lamps.
 void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfAverages& own, VarianceOfAverages seen)
 {
@@ -163,8 +164,8 @@ void WriteError(LightField& light, const CoarseBlocks& blocks, const VarianceOfA
   light.relativeError = fluences > 0.0 ? std::sqrt(errors / fluences) : 0.0;
 }
 
-/// Sets the error of a plane-parallel solve, whose only error is due to the angular discretisation: the change of the
-/// fluence with fewer polar cosines.
+/// Sets the error of a plane-parallel solve, which has only an angular error. The error is the difference from the
+/// fluence of a solve with fewer polar cosines.
 void WriteErrorOfCosines(LightField& light, const LightField& few)
 {
   double errors = 0.0, fluences = 0.0;

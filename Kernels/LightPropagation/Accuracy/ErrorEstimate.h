@@ -16,26 +16,28 @@ namespace tyndall
 /// Function that solves a scene on the grid of its domain. Collective.
 using PropagationSolver = std::function<LightField(const SceneBlock&, const PropagationSettings&, const Monitor&)>;
 
-/// How the error of a solver decreases as voxels become smaller and directions more. Any solver with voxels and
-/// directions per cube face has such orders; as a PropagationSolver it reads only those settings that it knows. The
-/// default values are those of light propagation maps, as measured (numerics.md, section 9.2).
+/// Orders of convergence of a solver, in voxel size and in number of directions. Any solver with voxels and directions
+/// per cube face can be used; a PropagationSolver ignores settings that it does not know. The default values were
+/// measured for light propagation maps (numerics.md, section 9.2).
 struct ErrorOrders
 {
   double inSpace = 2.0;      ///< error ~ (voxel edge)^inSpace
   double inDirections = 0.9; ///< error ~ (number of directions)^-inDirections
-  /// Orders in space with which a target error is met: in general, and if lamps have positions.
+  /// Orders of convergence in voxel size assumed by SolveToTargetError(): in general, and if the scene has lamps with a
+  /// position.
   double ofTarget = 1.7, ofTargetBesideLamps = 1.4;
   /// Largest number of directions per cube face that a target error may choose.
   int mostDirections = std::numeric_limits<int>::max();
 };
 
-/// Refuses an estimate or a target for a scheme as published, whose error need not decrease with voxels and directions.
+/// Refuses an error estimate or a target error for a published scheme, whose error need not decrease with voxel size
+/// and number of directions.
 /// @param property  name of the property that asks for it
 /// @throws InvalidInput  if `published`
 void RefuseAsPublished(bool published, const std::string& property);
 
-/// Error components of Eq. (84): the errors due to voxel size and due to the number of directions, as root mean squares
-/// relative to that of fluence, and the residual of the iteration.
+/// Components of the error in Eq. (84): the errors due to voxel size and due to the number of directions, as root mean
+/// squares relative to the root mean square of the fluence, and the residual of the iteration.
 struct ErrorParts
 {
   double inSpace = 0.0, inDirections = 0.0, residual = 0.0;
@@ -52,9 +54,10 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
 
 /// Solves a scene, and estimates the error of its fluence without a reference, from two more solves on a grid of half
 /// the voxels per axis (numerics.md, section 9.2). Components of the error:
-///  - in voxel size, of the order of `orders` (Richardson), Eq. (82);
-///  - in angle, from a solve with 0.6 times as many directions along the edge of a cube face, Eq. (83);
-///  - of scattering orders not computed: the residual.
+///  - due to voxel size, with the order of convergence `orders` (Richardson), Eq. (82);
+///  - due to the number of directions, from a solve with 0.6 times as many directions along the edge of a cube face,
+///    Eq. (83);
+///  - due to scattering orders that were not computed: the residual.
 /// fluenceError is a standard error by voxel, Eq. (84); relativeError is the root mean square over all voxels. The
 /// estimate is too large if the medium has edges as sharp as a voxel (coarsening blurs them), and wrong by up to a
 /// factor of two either way next to a lamp. Measured accuracy: measurements.md.
@@ -67,9 +70,9 @@ ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, con
 ///
 /// On several ranks the coarse grid is that of the domain (CoarseBlocks.h), so that errors do not depend on the
 /// decomposition, except by rounding. Collective; all ranks must have values in the same fields. If the coarse solves
-/// use DSA and UncollidedDirections is left open, boundary light uses the directions of scattered light on the coarse
-/// grid. If boundary light had finer directions on the fine grid, the estimate is then too large by the error of the
-/// coarser ones.
+/// use DSA and UncollidedDirections has its default value, boundary light uses the directions of scattered light on the
+/// coarse grid. If it used more directions on the fine grid, the estimate is too large by the error of the fewer
+/// directions.
 /// @throws the exceptions of `solve`
 LightField SolveWithErrorEstimate(const SceneBlock& scene, const PropagationSettings& settings, const Monitor& monitor,
   const PropagationSolver& solve, const ErrorOrders& orders = {});

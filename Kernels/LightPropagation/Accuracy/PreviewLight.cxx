@@ -15,7 +15,7 @@ namespace tyndall
 namespace
 {
 /// Halves the number of voxels along each axis once, and again while the grid has more than PreviewVoxels voxels.
-/// @param may  may(grid): whether a grid may be halved
+/// @param may  function that returns whether a grid may be halved
 template <class May>
 Grid Halved(Grid grid, const May& may)
 {
@@ -139,7 +139,7 @@ void RequireSame(const SceneBlock& scene, const PropagationSettings& alike)
     { scene.index.values ? 1.0 : 0.0 });
 }
 
-/// Preview shown to the user: the coarse light, interpolated to this rank's fine voxels.
+/// Converts the light of the coarse grid to the preview that users see: interpolates it to this rank's fine voxels.
 LightField Shown(LightField&& found, const CoarseBlocks& blocks)
 {
   LightField light;

@@ -40,8 +40,8 @@ PropagationSettings SettingsOfPreview(PropagationSettings settings);
 ///
 /// A small coarse grid is gathered and solved by the first rank that has voxels, which is faster than on several ranks;
 /// its result equals that of a serial preview for any decomposition. A larger one is decomposed. Collective.
-/// @param alike  settings that must be the same on all ranks, as must the scene
-/// @param coarse  a grid over the box of the domain, nowhere finer than its grid
+/// @param alike  settings that are checked to be the same on all ranks, like the scene
+/// @param coarse  coarse grid, over the same box as the domain's grid and along no axis finer than it
 /// @param small  number of coarse voxels up to which one rank solves
 /// @throws InvalidInput  on every rank, if settings or scenes differ
 /// @throws the exceptions of `solve`

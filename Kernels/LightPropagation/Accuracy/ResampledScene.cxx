@@ -18,7 +18,7 @@ Field Keep(Arrays& arrays, std::vector<float>&& values, int components)
   return { arrays.back().data(), components };
 }
 
-/// Field over all fine voxels that overlap this rank's coarse voxels. Collective.
+/// Gathers the values of a field in all fine voxels that overlap this rank's coarse voxels. Collective.
 /// @param arrays  receives the values
 Field Gather(const CoarseBlocks& blocks, const Field& field, Arrays& arrays)
 {
@@ -108,8 +108,8 @@ void CoarseScene::AverageGivenLight(const Medium& fine, const Coarsening& coarse
   image.fluence = this->AveragedFluence(fine, fluence, coarsening);
 }
 
-/// Means of fluence over coarse voxels, weighted by sigma_t of the fine voxels, so that the medium removes the same
-/// power.
+/// Mean fluence of each coarse voxel, weighted by sigma_t of its fine voxels, so that the medium removes the same power
+/// from the light as on the fine grid.
 Field CoarseScene::AveragedFluence(const Medium& fine, const Field& fluence, const Coarsening& coarsening)
 {
   const int channels = fluence.HasColour() || fine.Channels() == 3 ? 3 : 1;
@@ -133,7 +133,7 @@ Field CoarseScene::AveragedFluence(const Medium& fine, const Field& fluence, con
   return Keep(this->Means, std::move(averages), channels);
 }
 
-/// Means of mean directions over coarse voxels, weighted by fluence.
+/// Mean direction of light in each coarse voxel: the mean over its fine voxels, weighted by fluence.
 Field CoarseScene::AveragedDirections(const Field& mean, const Field& fluence, const Coarsening& coarsening)
 {
   const std::size_t voxels = coarsening.Fine().VoxelCount();

@@ -13,7 +13,7 @@
 
 namespace tyndall
 {
-/// A scene as one rank has it: the domain, and the fields over the voxels of this rank's subdomain. Medium and
+/// One rank's part of a scene: the domain, and the fields over the voxels of this rank's subdomain. Medium and
 /// illumination must outlive this object.
 struct SceneBlock
 {
@@ -24,8 +24,8 @@ struct SceneBlock
 };
 
 /// A scene averaged to a coarser grid over the same box. Coefficients are means over the coarse voxels, g is weighted
-/// by sigma_s. Uncollided light that is given by voxel is averaged so that the power the medium removes from it is
-/// conserved.
+/// by sigma_s. Uncollided light that is given per voxel is averaged such that the medium removes the same power from
+/// it.
 class CoarseScene
 {
 public:

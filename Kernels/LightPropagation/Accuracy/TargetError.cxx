@@ -19,15 +19,17 @@ namespace
 {
 constexpr double Aim = 0.95;          ///< Goal: estimated error at which the search ends, as a fraction of the target
 constexpr double DirectionPart = 0.9; ///< angular error that is allowed, as a fraction of Goal
-/// Smallest angular error that is allowed if the error in voxel size leaves less, as a fraction of Goal, the error at
-/// which the search ends. Voxels are halved only if the error in voxel size exceeds the same limit.
+/// The angular error may always be at least this fraction of Goal (the error at which the search ends), even if the
+/// error due to voxel size leaves less room. Voxels are halved only if the error due to voxel size exceeds the same
+/// fraction of Goal.
 constexpr double LeastRoom = 0.3;
-/// While the voxels' size alone causes an error above this multiple of Goal, more directions do not help. Goal is the
-/// error at which the search ends.
+/// More directions do not help if the error due to voxel size alone is above this multiple of Goal, the error at which
+/// the search ends.
 constexpr double MuchTooCoarse = 1.5;
 constexpr double TolerancePart = 0.3;
 constexpr double LooseTolerance = 1e-2;
-/// One more solve measures the error of uncollided light if that is more than this fraction of the whole angular error.
+/// If the error of uncollided light is above this fraction of the total angular error, one more solve measures it
+/// separately.
 constexpr double MuchUncollided = 0.3;
 constexpr int Few = 9, More = 25;
 constexpr double LeastEmissionError = 0.005;
@@ -38,7 +40,7 @@ struct CoarseLight
   PropagationSettings settings;
   std::vector<float> fluence;
 
-  /// Whether `others` are the settings of this solve, as far as they affect the fluence on the coarse grid.
+  /// Whether a solve with `others` would give the same fluence on the coarse grid as this solve.
   bool Has(const PropagationSettings& others) const
   {
     return others.directionsPerFace == this->settings.directionsPerFace && others.uncollidedDirections == 0 &&
@@ -131,8 +133,8 @@ private:
     }
   }
 
-  /// Whether the error of uncollided light is measured separately: it is large, stems from boundary sources, and the
-  /// target needs more than a few directions.
+  /// Whether to measure the error of uncollided light separately: if it is large, if there are boundary sources, and if
+  /// the target needs many directions.
   bool MayHaveFinerUncollided() const
   {
     return this->Forecast->UncollidedPart() > MuchUncollided && ShinesThroughFaces(this->TheScene.illumination) &&
@@ -162,8 +164,8 @@ private:
       this->Forecast->PartOfDifference(settings, other.settings), order);
   }
 
-  /// Angular error that Goal (the error at which the search ends) allows in addition to an error in voxel size and the
-  /// residual; 0 if it is below the fraction LeastRoom of Goal.
+  /// Angular error that is allowed besides the error `inSpace` due to voxel size and the residual, so that the total is
+  /// Goal (the error at which the search ends); 0 if it would be below the fraction LeastRoom of Goal.
   double RoomBeside(double inSpace) const
   {
     const double others = std::hypot(inSpace, this->Parts.residual);
@@ -171,8 +173,8 @@ private:
     return room < LeastRoom * this->Goal ? 0.0 : room;
   }
 
-  /// Cheapest settings with an angular error of at most `room`; none if the settings in use suffice, or no others are
-  /// better.
+  /// Cheapest settings with an angular error of at most `room`; none if the current settings suffice, or if no settings
+  /// have a smaller error.
   std::optional<PropagationSettings> BetterWithin(double room)
   {
     if (this->Parts.inDirections <= room)
@@ -184,8 +186,9 @@ private:
     return this->Forecast->Error(better) < this->Forecast->Error(this->Used) ? std::optional(better) : std::nullopt;
   }
 
-  /// Solves on the scene's grid again, with more directions, if the angular error is too large. Halving voxels would
-  /// take far longer, and angular errors make errors in voxel size look larger than they are.
+  /// Solves on the scene's grid again, with more directions, if the angular error is too large. This comes before
+  /// halving voxels, which takes far longer; besides, the estimated error due to voxel size is too large while the
+  /// angular error is large.
   void TryBetterDirections()
   {
     const double room = std::max(this->RoomBeside(this->Parts.inSpace), LeastRoom * this->Goal);
@@ -199,14 +202,13 @@ private:
     }
   }
 
-  /// Estimates the error from above without a further solve: counts the complete difference from a coarse solution with
-  /// another number of directions as error in voxel size, and adds the predicted angular error. Sets the error estimate
-  /// of the light to the result.
+  /// Computes an upper estimate of the error without a further solve. Takes the whole difference from a coarse solution
+  /// with another number of directions as error due to voxel size, and adds the predicted angular error. Stores the
+  /// result as error estimate of the light.
   /// @param other  fluence of that coarse solution
   /// @param error  predicted angular error
   /// @param order  order of convergence in voxel size
-  /// @return whether the error is at most Goal, at which the search ends; then the error in voxel size need not be
-  ///   separated
+  /// @return whether the error is at most Goal, so that the search ends without separating the error due to voxel size
   bool IsMetAtMost(const std::vector<float>& other, double error, double order)
   {
     ErrorParts parts = WriteErrorEstimate(this->Light, this->Blocks, other, other, 0.0, order);
@@ -222,10 +224,11 @@ private:
     return all <= this->Goal;
   }
 
-  /// Factor by which the error in voxel size falls with voxels of half the edge length: 4 of light propagation maps.
+  /// Factor by which the error due to voxel size decreases if voxels have half the edge length; 4 for light propagation
+  /// maps.
   double FallInHalves() const { return std::pow(2.0, this->Orders.inSpace); }
 
-  /// Solves with voxels of half the edge length, if the error that is then left of that in voxel size is small enough.
+  /// Solves with voxels of half the edge length, if the error due to voxel size is predicted to be small enough then.
   void TryHalves()
   {
     const double room = this->RoomBeside(this->Parts.inSpace / this->FallInHalves());
@@ -266,8 +269,9 @@ private:
     this->Light = std::move(light);
   }
 
-  /// Sets the error estimate of a solution with halved voxels, from its difference from the solution with the original
-  /// voxels (Richardson), and angular error and residual as before.
+  /// Sets the error estimate of a solution with halved voxels. The error due to voxel size follows from the difference
+  /// from the solution with the original voxels (Richardson); angular error and residual are taken from the previous
+  /// estimate.
   void EstimateOfDivided(LightField& light)
   {
     double errors = 0.0, all = 0.0;

@@ -20,8 +20,8 @@ struct TargetLight
   double seconds = 0.0;         ///< total time of all solves, s
 };
 
-/// The light of a target, with `solves` and `settingsUsed`.
-/// @param settings  "Name = value" of the settings of the final solve, to which the division of voxels is added
+/// The light of a search for a target error, with its members `solves` and `settingsUsed` set.
+/// @param settings  settings of the final solve, as texts "Name = value"; VoxelsDividedBy is appended
 LightField LightOf(TargetLight&& found, std::vector<std::string> settings);
 
 /// Solves a scene such that the estimated relative error of fluence (root mean square relative to that of fluence) is
@@ -34,9 +34,9 @@ LightField LightOf(TargetLight&& found, std::vector<std::string> settings);
 ///     repeat with more directions if there were too few;
 ///  4. if voxels are too coarse, and voxels of half the edge length are predicted to suffice, solve with those (eight
 ///     times the work and memory) and average the result.
-/// Settings that differ from their default values are not changed. The aim is an estimate of 0.95 times the target, of
-/// which 0.9 is allowed for the angular error, because the estimate has an error, too; `met` refers to the estimate.
-/// Collective: all ranks take the same decisions, with coarse and refined subdomains of their own.
+/// Settings that differ from their default values are not changed. Because the estimate itself has an error, the search
+/// aims at an estimate of 0.95 times the target, of which 0.9 is allowed for the angular error. `met` refers to the
+/// estimate. Collective: all ranks take the same decisions, with coarse and refined subdomains of their own.
 /// @param scene  scene with values in the same fields on all ranks
 /// @param target  relative error, in (0, 1)
 /// @throws InvalidInput  if the target or the scene is invalid (SceneChecks.h)

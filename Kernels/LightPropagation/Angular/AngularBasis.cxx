@@ -20,11 +20,12 @@ std::vector<double> Harmonics(int degree, const std::array<double, 3>& omega)
   return values;
 }
 
-/// Smallest fraction of a function's squared norm that must remain after projecting out the previous functions.
+/// A function is accepted if at least this fraction of its squared norm remains after the previous functions have been
+/// projected out.
 constexpr double LeastLeft = 0.3;
 
-/// Rows of coefficients that orthonormalise the spherical harmonics on a quadrature, function by function
-/// (Gram-Schmidt).
+/// Orthonormalises the spherical harmonics on a quadrature, one function after another (Gram-Schmidt). A row has the
+/// coefficients of one orthonormal function.
 /// @return as many rows as are well-conditioned on the quadrature
 std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree)
 {
@@ -52,7 +53,8 @@ std::vector<std::vector<double>> Orthonormal(const DirectionSet& set, int degree
     row[i] = 1.0;
     for (int j = 0; j < i; ++j)
     {
-      // Two passes, to remove the rounding errors of the first. Functions of different parity are exactly orthogonal.
+      // A second pass removes the rounding errors of the first one. Functions of different parity are exactly
+      // orthogonal and are skipped.
       for (int pass = 0; pass < 2 && AngularBasis::IsOdd(i) == AngularBasis::IsOdd(j); ++pass)
       {
         const double part = product(values[i], values[j]);

@@ -8,8 +8,9 @@
 namespace tyndall
 {
 /// Angular basis in which the light of a voxel is expanded and scattered: real spherical harmonics up to a degree,
-/// orthonormalised on a quadrature (numerics.md, section 4.7). Therefore quadrature sums conserve scattered power to
-/// rounding, and the mean cosine of scattered light is that of the phase function, on every quadrature.
+/// orthonormalised on a quadrature (numerics.md, section 4.7). With this basis, on every quadrature, sums over the
+/// quadrature conserve scattered power to rounding, and the mean cosine of scattered light is that of the phase
+/// function.
 ///
 /// Functions of degree l have indices from l^2 to (l + 1)^2 - 1. Function 0 is 1; functions 1, 2, 3 are sqrt(3) times
 /// y, z, x. The square of each function averages to 1 over all directions. Each function is even or odd along each

@@ -16,10 +16,11 @@ namespace
 /// The environment is sampled on a grid of cells on each cube face. This is the minimum number of such cells along a
 /// face's edge, if the cells of the quadrature do not form a grid.
 constexpr int FewestParts = 48;
-/// A point that is equally near to two directions is moved to either side by this relative distance, so that each gets
-/// half of its light.
+/// A point on the border between the cells of two directions is replaced by two points, displaced to either side by
+/// this relative distance, so that each direction gets half of its light.
 constexpr double BorderTolerance = 1e-9;
-/// Smallest eigenvalue of the matrix of KeepFlux() that is inverted, relative to the largest; the others are left out.
+/// In KeepFlux(), eigenvalues of the matrix below this fraction of the largest one are not inverted; their modes are
+/// omitted.
 constexpr double LeastMode = 1e-3;
 
 int CellsPerEdge(int perFace, const std::string& name)
@@ -33,8 +34,8 @@ int CellsPerEdge(int perFace, const std::string& name)
   return n;
 }
 
-/// Coordinate on a cube's face at distance 1 from its centre, -1 to 1, of the point twicePosition / 2 cells along the
-/// face's edge of n cells; exactly odd about the middle.
+/// Tangent (coordinate on a cube's face at distance 1 from the cube's centre, -1 to 1) of the point twicePosition / 2
+/// cells from the lower end of an edge of n cells. An exactly odd function about the middle of the edge.
 double Tangent(bool equiangular, int n, double twicePosition)
 {
   const double fromMiddle = (twicePosition - n) / n; // in [-1, 1]
@@ -54,9 +55,9 @@ double SolidAngle(double s0, double s1, double t0, double t1)
   return CornerSolidAngle(s1, t1) - CornerSolidAngle(s0, t1) - CornerSolidAngle(s1, t0) + CornerSolidAngle(s0, t0);
 }
 
-/// Index, among a face's directions, of the one whose cell contains the point (s, t) of the face, each coordinate from
-/// -1 to 1, for a quadrature whose cells do not form a grid. The set has the face's symmetry, so in each orbit
-/// (directions that are equivalent by symmetry) the nearest direction is the one in the same eighth of the face.
+/// Index, among a face's directions, of the direction whose cell contains the point (s, t) of the face; coordinates are
+/// from -1 to 1. For quadratures whose cells do not form a grid. By symmetry, the nearest direction of each orbit
+/// (directions that are equivalent by symmetry) is in the same eighth of the face as the point.
 int NearestOnFace(const DirectionSet& set, double s, double t)
 {
   const bool exchanged = std::abs(s) > std::abs(t);
@@ -128,14 +129,15 @@ struct Seen
   }
 };
 
-/// Integrates an environment over the cells of a quadrature. Samples it at the centres of sample cells about half a
-/// pixel wide: a pixel spans pi / height, a cell of the quadrature about pi / (2 n). The number of sample cells along
-/// an edge is even, so that no centre is a pole, where the azimuth is undefined.
+/// Integrates an environment over the cells of a quadrature. The environment is sampled at the centres of sample cells
+/// about half a pixel wide; a pixel spans the angle pi / height, a cell of the quadrature about pi / (2 n). The number
+/// of sample cells along an edge is even, so that no centre is at a pole, where the azimuth is undefined.
 Seen LookAround(const DirectionSet& set, const Environment& environment)
 {
   const int n = set.cellsPerEdge;
   const bool grid = set.orbits.empty();
-  // More sample cells if the quadrature's cells do not form a grid, since their borders then cut through sample cells.
+  // More sample cells are used if the quadrature's cells do not form a grid, since their borders then cut through
+  // sample cells.
   const int fewest = grid ? 2 : 2 * ((FewestParts + n) / (2 * n));
   const int parts = std::max(2 * std::clamp((environment.height / n + 1) / 2, 1, 128), fewest);
   const bool equiangular = set.equiangular || !grid;
@@ -171,9 +173,10 @@ Seen LookAround(const DirectionSet& set, const Environment& environment)
   return seen;
 }
 
-/// Scales radiance so that the flux through each face of the cube equals the environment's, up to the quadrature's
-/// half-range error. A direction's factor is 1 + sum over faces of (coefficient of the face) (cosine to its normal);
-/// the coefficients are those with factors nearest to 1 (numerics.md, Eq. (31a)).
+/// Scales the radiance of each direction so that the flux through each face of the cube equals that of the environment,
+/// up to the quadrature's half-range error. The factor of a direction is 1 + sum over faces of (coefficient of the
+/// face) (cosine to its normal), limited to 0.5 to 2. The coefficients are those whose factors are nearest to 1
+/// (numerics.md, Eq. (31a)).
 void KeepFlux(const DirectionSet& set, const Seen& seen, std::vector<Rgb>& radiance)
 {
   for (int c = 0; c < 3; ++c)

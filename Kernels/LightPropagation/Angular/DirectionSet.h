@@ -9,15 +9,15 @@
 
 namespace tyndall
 {
-/// Orbit of a direction under the rotations and reflections of the cube: on each face, the points (tangents) (+-across,
-/// +-along) and (+-along, +-across).
+/// Orbit of a direction, i.e. all its images under the rotations and reflections of the cube. On each face, these
+/// directions pass through the points (+-across, +-along) and (+-along, +-across).
 struct DirectionOrbit
 {
   /// Point of a face through which one direction of the orbit points, 0 <= across <= along < 1.
   double across = 0.0, along = 0.0;
   double weight = 0.0; ///< weight of each direction of the orbit, sr
-  /// Offset that Nearest() adds to the cosine to a direction of this orbit, so that each cell's solid angle equals its
-  /// weight.
+  /// Offset that Nearest() adds to the cosine of the angle to a direction of this orbit, so that the solid angle of
+  /// each cell equals the weight of its direction.
   double reach = 0.0;
 };
 
@@ -30,8 +30,8 @@ struct DirectionSet
   bool equiangular = false;
   std::vector<Direction> directions; ///< 6 n n directions with weights in sr
   /// Orbits (sets of directions that are equivalent by symmetry), in FittedDirections only; otherwise empty. With
-  /// orbits, cells are not a grid: a cell consists of all directions that are nearest to its own direction (see
-  /// Nearest).
+  /// orbits, cells do not form a grid: the cell of a direction of the quadrature consists of all directions nearest to
+  /// it (see Nearest).
   std::vector<DirectionOrbit> orbits = {};
   /// Points (s, t) of a face, -1 to 1, through which its directions point; empty without orbits.
   std::vector<std::array<double, 2>> tangents = {};
@@ -40,8 +40,8 @@ struct DirectionSet
 };
 
 /// The published quadrature (Gruson et al. 2012, section 3.1; Fattal 2009): cells of equal size on the cube's faces,
-/// all directions with the same weight. Its sums do not tend to integrals as n grows: the half-range flux is 1.6% too
-/// large with 25 directions per face, and 3.1% in the limit (numerics.md, section 3).
+/// all directions with the same weight. Its sums do not converge to integrals as n grows: the half-range flux is 1.6%
+/// too large with 25 directions per face, and 3.1% too large in the limit (numerics.md, section 3).
 /// @param perFace  directions per face
 /// @throws InvalidInput if `perFace` is no square number, or above 4096
 DirectionSet PublishedDirections(int perFace);
@@ -66,9 +66,9 @@ DirectionSet EquiangularDirections(int perFace, const std::string& name = "Direc
 DirectionSet FittedDirections(int perFace, const std::string& name = "DirectionsPerFace");
 
 /// FittedDirections(), or EquiangularDirections() for voxels over a hundred times longer along one axis than along
-/// another. In non-absorbing media of such voxels (spacing 1, 1, 1000), sweeps along fitted directions were observed to
-/// end with errors of 50% and a small error estimate; along equiangular directions they do not converge either, but
-/// report it.
+/// another. In non-absorbing media of such voxels (spacing 1, 1, 1000), solves do not converge with either quadrature.
+/// With fitted directions they can end with errors of 50% and a small error estimate; with equiangular directions they
+/// report that they did not converge.
 DirectionSet DirectionsForVoxels(int perFace, const std::array<double, 3>& spacing);
 
 /// Half-range flux of isotropic light through a face of the cube, summed over the quadrature, relative to the exact
@@ -77,14 +77,14 @@ DirectionSet DirectionsForVoxels(int perFace, const std::array<double, 3>& spaci
 double HalfRangeFlux(const DirectionSet& set);
 
 /// Unit vector from the cube's centre through a point of face `face`.
-/// @param s, t  coordinates of the point, -1 to 1: along the axis (cyclically) after the face's normal, and along the
-///   one after that
+/// @param s, t  coordinates of the point, -1 to 1, along the next axis after the face's normal and the next but one
+///   (cyclically)
 std::array<double, 3> DirectionThroughFace(int face, double s, double t);
 
 /// Index of the direction of `set` whose cell contains `omega` (of any length except 0).
 int Nearest(const DirectionSet& set, const std::array<double, 3>& omega);
 
-/// Incident radiance in each direction of `set` from environment and sky, W / (length^2 sr): the mean over the
+/// Incident radiance of environment and sky in each direction of `set`, W / (length^2 sr). It is the mean over the
 /// direction's cell, so that a uniform environment remains uniform.
 std::vector<Rgb> BoundaryRadiance(const DirectionSet& set, const Environment& environment, const Rgb& sky);
 }

@@ -11,8 +11,8 @@ namespace
 /// Distance from a voxel's border, voxels, below which a position counts as on the border, so that rounding does not
 /// decide ties.
 constexpr double OnBorder = 1e-9;
-/// Minimum number of planes of voxels after which the ray pattern along a periodic axis repeats: rays cross shorter
-/// axes several times before it does.
+/// Minimum number of planes of voxels after which the ray pattern along a periodic axis repeats. On a shorter axis it
+/// repeats only after rays have crossed the axis several times.
 constexpr int FewestPlanes = 128;
 /// Smaller node of the Gauss-Legendre rule of two points in (0, 1).
 constexpr double GaussNode = 0.21132486540518712;
@@ -37,8 +37,8 @@ Bundle EmptyBundle(const PlaneAxes& axes, const Grid& grid, const std::array<dou
   return bundle;
 }
 
-/// Index of a direction's mirror image in the plane across `axis`. The set contains it, since quadratures are
-/// symmetric.
+/// Index of the mirror image of a direction in the plane normal to `axis`. Quadratures are symmetric and contain all
+/// mirror images.
 int MirrorImage(const DirectionSet& set, int direction, int axis)
 {
   std::array<double, 3> omega = set.directions[direction].omega;
@@ -84,10 +84,11 @@ void Sort(
   bundles.push_back(fresh);
 }
 
-/// Gives the rays of each bundle (directions whose segments have the same lengths) a starting position of their own
-/// within voxels. If all rays start in the middle, they cross the box's sides in the same pattern, however many
+/// Lets the rays of each bundle (directions whose segments have the same lengths) start at a different position within
+/// their voxels. If all rays started in the middle, errors at the box's sides would have the same pattern however many
 /// directions there are. The positions follow the low-discrepancy sequence of the plastic number, which fills a square
-/// evenly (Roberts 2018), in the order of the bundles' tangents, which is the same along every axis.
+/// evenly (Roberts 2018). Bundles are in the order of their tangents, so that every marching axis gets the same
+/// positions.
 void Stagger(std::vector<Bundle>& bundles)
 {
   std::vector<Bundle*> inOrder;
@@ -116,7 +117,7 @@ bool IsMove(const Move& move)
   return move.depth <= 1.0;
 }
 
-/// A coordinate in voxels, split into an integer number of voxels and a remainder in [0, 1).
+/// A coordinate in voxels, split into an integer and a remainder in [0, 1).
 struct Position
 {
   double voxel, rest;
@@ -136,15 +137,15 @@ Move WholeMove(double start, double tangent, int plane)
   return next.voxel > now.voxel ? Move{ std::min(1.0, (1.0 - now.rest) / tangent), 1.0 } : Move();
 }
 
-/// Index of the plane of voxels that contains a depth, which is counted in planes from the start of the ray; the end of
-/// a plane belongs to it.
+/// Index of the plane of voxels that contains a depth, which is counted in planes from the start of the ray. A depth at
+/// the border of two planes belongs to the first of them.
 int PlaneAt(double depth)
 {
   return std::max(static_cast<int>(std::ceil(depth - OnBorder)) - 1, 0);
 }
 
-/// Adds a sideways move of rays at `depth`, counted in planes of voxels from the start. If the plane already has a
-/// move, that one is shifted to the end of the previous plane.
+/// Adds a sideways move of rays at `depth`, counted in planes of voxels from the start. If its plane already has a
+/// move, the earlier move is shifted to the end of the previous plane.
 void Insert(std::vector<Move>& moves, double depth, double part)
 {
   int plane = std::min(PlaneAt(depth), static_cast<int>(moves.size()) - 1);
@@ -160,7 +161,7 @@ void Insert(std::vector<Move>& moves, double depth, double part)
     moves[plane] = move;
     return;
   }
-  // All previous planes have a move: moves are shifted towards the next plane without one.
+  // If all previous planes have a move, moves are shifted towards the next plane without a move.
   const auto free = std::find_if_not(moves.begin(), moves.end(), IsMove);
   if (free != moves.end())
   {
@@ -184,7 +185,7 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   const double part = std::min(all - whole, 1.0);
   const auto wholeAt = [&](int k, double more) { return (k + more - start) / tangent; };
   const auto partAt = [&](int before) { return (before + part * (1.0 - start)) / tangent; };
-  // The move of only a fraction of the power is placed as late as possible without two moves in one plane.
+  // The fractional move is placed as late as possible, but such that no plane has two moves.
   const auto hasRoom = [&](int before) {
     const int plane = PlaneAt(partAt(before));
     return (before == 0 || PlaneAt(wholeAt(before, 0.0)) < plane) &&
@@ -204,8 +205,8 @@ std::vector<Move> Moves(double start, double tangent, int planes)
   return moves;
 }
 
-/// Adds the sideways moves of its rays along u and v to a bundle, unless both axes are periodic. A bundle's members
-/// (its directions) may exchange these axes, so both have moves if only one axis is periodic.
+/// Adds to a bundle the sideways moves of its rays along u and v, unless both axes are periodic. If only one axis is
+/// periodic, moves along both are needed, because u and v are exchanged for some members (directions) of the bundle.
 void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& periodic, int planes)
 {
   if (!periodic[axes.u] || !periodic[axes.v])
@@ -215,8 +216,8 @@ void AddMoves(Bundle& bundle, const PlaneAxes& axes, const std::array<bool, 3>& 
   }
 }
 
-/// Copies of a bundle of directions for every point of the finer lattice of mapResolution x mapResolution rays in a
-/// voxel.
+/// Copies of a bundle of directions, one for each of the mapResolution x mapResolution positions in a voxel at which
+/// rays start.
 std::vector<Bundle> OnLattice(const Bundle& bundle, int mapResolution)
 {
   std::vector<Bundle> all;
@@ -234,7 +235,7 @@ std::vector<Bundle> OnLattice(const Bundle& bundle, int mapResolution)
   return all;
 }
 
-/// See RayStarts::Pairs.
+/// Two copies of a bundle, for the two rays per voxel of RayStarts::Pairs.
 std::vector<Bundle> InPairs(const Bundle& bundle)
 {
   std::vector<Bundle> pair(2, bundle);
@@ -247,7 +248,8 @@ std::vector<Bundle> InPairs(const Bundle& bundle)
   return pair;
 }
 
-/// The rays of each bundle of directions in a voxel, with their sideways moves.
+/// Copies of each bundle of directions for all positions in a voxel where rays start, with the sideways moves of these
+/// rays.
 std::vector<Bundle> RaysOf(const std::vector<Bundle>& bundles, const PlaneAxes& axes, const Grid& grid,
   const std::array<bool, 3>& periodic, int mapResolution, RayStarts starts)
 {
@@ -272,8 +274,9 @@ bool Bundle::MovesBothWaysAtOnce() const
   return Same(this->tangentU, this->tangentV) && Same(this->startU, this->startV);
 }
 
-/// Moves along u and v are combined if tangents and starts are equal; if they are otherwise at the same depth, the move
-/// along the larger tangent precedes, independently of the bundle's orientation.
+/// Moves along u and v are combined if both tangents and both starting positions are equal. In other cases of moves at
+/// the same depth, the move along the axis with the larger tangent comes first, so that the result does not depend on
+/// the bundle's orientation.
 PlaneCrossing Bundle::Crossing(int plane) const
 {
   const auto moveAt = [plane](const std::vector<Move>& moves, double start, double tangent) {

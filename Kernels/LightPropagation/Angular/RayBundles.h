@@ -13,14 +13,14 @@ namespace tyndall
 /// (numerics.md, section 4.2).
 ///
 /// Rays march along an axis of the grid, plane by plane of voxels. All rays of one direction start at the same position
-/// in their voxels, so they cross each plane in the same pattern of at most three voxels per ray, and the light
-/// propagation map, i.e. the radiance of these rays in a plane, shifts as one. Directions that are mirror images of
-/// each other (and, if voxels are square across the axis, directions with exchanged tangents) have segments of the same
-/// lengths. They form a Bundle, for which transmittance is computed once.
+/// in their voxels. They therefore cross each plane in the same pattern of at most three voxels per ray. The light
+/// propagation map, i.e. the radiance of these rays in a plane, moves sideways as a whole. Directions that are mirror
+/// images of each other (and, if voxels are square across the axis, directions with exchanged tangents) have segments
+/// of the same lengths. They form a Bundle, for which transmittance is computed once.
 ///
-/// Guarantees: every voxel is crossed by every segment, so that a source emits all of its power (Eq. (20)); one
-/// sideways move of the pattern is made by only a fraction of each ray's power, so that exactly the power of a
-/// direction enters through the box's sides (Eqs. (21), (28)).
+/// Power is exact in two respects. Every segment of the pattern crosses every voxel, so that a source emits all of its
+/// power (Eq. (20)). One sideways move of the pattern is made by only a fraction of each ray's power, so that exactly
+/// the incident power of each direction enters through the box's sides (Eqs. (21), (28)).
 
 /// Segment of a ray: its path through one voxel of a plane.
 struct Segment
@@ -39,8 +39,8 @@ struct PlaneCrossing
   std::array<Segment, 3> segments;
 };
 
-/// One direction of a bundle (directions whose segments have the same lengths), its mirror image, and the map from the
-/// bundle's frame to the plane's axes.
+/// One direction of a bundle (directions whose segments have the same lengths), its mirror image, and the signed
+/// permutation that maps the bundle's axes to the plane's axes u and v.
 struct Member
 {
   int direction = 0; ///< index in the direction set of the direction that marches forward along the axis; -1: none
@@ -65,12 +65,12 @@ struct Bundle
   double length = 1.0; ///< path length of a ray within one plane of voxels
   double power = 1.0;  ///< power of a ray at radiance 1: weight |cos| area, length^2 sr (numerics.md, Eq. (19))
   /// Moves along u and v in each plane of the pattern, counted from the plane where rays start. Empty if both axes
-  /// across the marching axis are periodic: no light enters sideways, and each move is made by all of a ray's power.
+  /// normal to the marching axis are periodic: no light then enters sideways, and all of a ray's power makes each move.
   std::vector<Move> movesU, movesV;
   std::vector<Member> members;
 
-  /// Segments in plane `plane`, counted from the plane where rays start. After its last plane the pattern repeats,
-  /// except for rays without partial moves (periodic axes), which continue straight.
+  /// Segments in plane `plane`, counted from the plane where rays start. After its last plane the pattern of moves
+  /// repeats. Rays without fractional moves (movesU and movesV empty) continue straight instead.
   PlaneCrossing Crossing(int plane) const;
   /// Whether rays always move along u and v at once, i.e. both tangents and both starts are equal.
   bool MovesBothWaysAtOnce() const;
@@ -81,23 +81,24 @@ struct Bundle
 int PlanesOfPattern(int size, bool periodic);
 
 /// Marching axes of a direction: the axis whose voxel planes it crosses most often per unit length, so that its rays
-/// never move sideways by more than one voxel per plane; several axes if they are equal in this, each with an equal
+/// never move sideways by more than one voxel per plane. If several axes are equal in this respect, each gets an equal
 /// fraction of the power.
 std::vector<int> MarchingAxes(const Grid& grid, const std::array<double, 3>& omega);
 
-/// Fraction of a direction's power that marches along `axis`: 0 or 1; 1/2 or 1/3 if several axes share it.
+/// Fraction of a direction's power that marches along `axis`: 0 or 1, or 1/2 or 1/3 if several axes share the power.
 double PartMarching(const Grid& grid, const std::array<double, 3>& omega, int axis);
 
-/// Position within a voxel of the first plane (or within a cell of the finer lattice of rays) where the rays of a
-/// bundle start.
+/// Position within a voxel of the first plane where the rays of a bundle start. With mapResolution above 1: position
+/// within each of the mapResolution x mapResolution cells into which the voxel's face is divided.
 enum class RayStarts
 {
   Middle, ///< middle of the voxel, for all bundles
-  /// A different position for each bundle, so that patterns at the box's sides average out over the bundles.
+  /// A different position for each bundle, so that errors at the box's sides average out over the bundles.
   Staggered,
   /// Two rays per voxel (if mapResolution is 1), at the nodes of the two-point Gauss rule across the voxel, in opposite
-  /// order along u and v. A ray in the middle of a thick voxel represents the light that crosses the voxel's edge like
-  /// the midpoint rule, whose error is 1/24 of the square of the optical thickness; theirs is of the fourth order.
+  /// order along u and v. In an optically thick voxel, a single ray in the middle corresponds to the midpoint rule
+  /// across the voxel, with an error of 1/24 of the square of the optical thickness. The error of two rays is of fourth
+  /// order in the optical thickness.
   Pairs
 };
 
@@ -106,9 +107,9 @@ enum class RayStarts
 std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const DirectionSet& set, int mapResolution, RayStarts starts = RayStarts::Middle);
 
-/// Bundles for one collimated beam: one for each of the mapResolution^2 lattices of rays, with one member. Its
-/// `direction` is 0 if the beam marches forward along the axis, else its `opposite` is 0; the other index is -1.
-/// Bundle::power is the power of a ray at an irradiance of 1 W / length^2, divided by it.
+/// Bundles for one collimated beam: one for each of the mapResolution^2 positions in a voxel at which rays start. Each
+/// bundle has one member. If the beam marches forward along the axis, Member::direction is 0 and Member::opposite -1,
+/// otherwise the reverse. Bundle::power is the power of a ray per irradiance of the beam, length^2.
 std::vector<Bundle> BeamAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const std::array<double, 3>& omega, int mapResolution);
 

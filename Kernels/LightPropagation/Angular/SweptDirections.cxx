@@ -9,8 +9,8 @@ namespace tyndall
 {
 namespace
 {
-/// Direction that represents all directions that carry the same light as `omega` (DirectionSymmetry): components along
-/// axes of one periodic voxel (`single`) are made positive and, for equal spacings, sorted in decreasing order.
+/// Returns the representative of the class of directions that carry the same light as `omega` (DirectionSymmetry). Its
+/// components along periodic axes of one voxel (`single`) are positive and, for equal spacings, in decreasing order.
 std::array<double, 3> Standard(std::array<double, 3> omega, const Grid& grid, const std::array<bool, 3>& single)
 {
   for (int a = 0; a < 3; ++a)
@@ -37,8 +37,8 @@ DirectionSymmetry::DirectionSymmetry(const Grid& grid, const std::array<bool, 3>
   {
     single[a] = periodic[a] && grid.size[a] == 1;
   }
-  // By the direction that represents it, to the last bit: index of each class of directions that carry the same light.
-  // Mirror images in a quadrature agree to the last bit.
+  // Index of each class of directions that carry the same light; key: representative of the class. Keys are compared
+  // bit by bit, which suffices because mirror images in a quadrature agree to the last bit.
   std::map<std::array<double, 3>, int> numbers;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
@@ -59,7 +59,8 @@ std::vector<Bundle> DirectionSymmetry::Standing(const std::vector<Bundle>& bundl
   std::vector<Bundle> standing;
   for (const Bundle& bundle : bundles)
   {
-    // members (directions) of the bundle, by the number of directions that carry the same light
+    // Representative members (directions) of the bundle; key: number of directions in their class, which carry the same
+    // light
     std::map<std::size_t, std::vector<Member>> parts;
     for (Member member : bundle.members)
     {

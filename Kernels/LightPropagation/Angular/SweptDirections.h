@@ -13,9 +13,9 @@
 namespace tyndall
 {
 /// Classes of directions that carry the same light because the grid has a periodic axis of one voxel. Nothing varies
-/// along such an axis, so mirror images in it carry the same light; with two such axes of equal spacing, so do
-/// directions with these axes exchanged. Each class is represented by one direction: that whose components along such
-/// axes are positive and decreasing.
+/// along such an axis, so directions that are mirror images along it carry the same light. With two such axes of equal
+/// spacing, directions with these axes exchanged also carry the same light. The representative of a class is the
+/// direction whose components along such axes are positive and in decreasing order.
 class DirectionSymmetry
 {
 public:
@@ -36,7 +36,7 @@ private:
   bool IsRepresentative(int direction) const { return direction >= 0 && this->AllOf(direction).front() == direction; }
 
   std::vector<int> ClassOf; ///< by direction: index of its class, the directions that carry the same light
-  /// By class of directions that carry the same light: their indices, the representative first.
+  /// Indices of the directions of each class, the representative first.
   std::vector<std::vector<int>> Classes;
 };
 
@@ -52,11 +52,11 @@ public:
   /// number of rays, for each direction, that start along one edge of a voxel
   int RaysPerEdge() const { return this->MapResolution; }
   const DirectionSymmetry& Symmetry() const { return this->Mirrors; }
-  /// Whether only one direction of each class, whose directions carry the same light, is swept; not if the net flux is
-  /// requested, which differs between mirror images.
+  /// Whether only one direction of each class of directions that carry the same light is swept. False if the net flux
+  /// is requested, because it differs between mirror images.
   bool MergesMirrors() const { return this->Merges; }
-  /// Values of the basis in the directions; for a representative direction, the mean over its class, the directions
-  /// that carry the same light.
+  /// Values of the basis functions in the directions of the quadrature. If MergesMirrors(), they are means over the
+  /// class of each direction, i.e. all directions that carry the same light.
   AngularValues Values(const AngularBasis& basis) const;
   /// Mean of `values`, one per direction, over the class that `direction` represents.
   double Mean(int direction, const std::vector<double>& values) const;

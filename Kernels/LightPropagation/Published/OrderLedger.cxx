@@ -10,11 +10,11 @@ namespace tyndall
 {
 namespace
 {
-/// Limit on the number of orders; no convergent problem needs more.
+/// Maximum number of orders; no convergent solve needs more.
 constexpr int MostOrders = 10000;
 
-/// The solve ends if the remaining power without light that wraps around periodic axes endlessly is at most this
-/// fraction of all remaining power.
+/// The solve ends when, besides light that wraps around periodic axes without end, at most this fraction of the
+/// remaining power is left.
 constexpr double Negligible = 1e-3;
 constexpr double LargestRatio = 0.9999; ///< largest ratio of successive orders of a convergent series
 }
@@ -75,8 +75,9 @@ void OrderLedger::CloseOrder(const std::vector<float>& fluence)
                                       : MeetsTolerance(this->Settings, residual) || this->Orders() >= MostOrders);
 }
 
-/// Estimated sum of all further orders, relative to the sum of the orders so far (`orderSum` is that of the last
-/// order). Orders are assumed to decrease like a geometric series.
+/// Estimates the sum of the fluence over all further orders, relative to the sum over the orders so far. Orders are
+/// assumed to decrease like a geometric series.
+/// @param orderSum  sum over voxels of the fluence of the last order
 double OrderLedger::EstimateResidual(const Rgb& orderSum) const
 {
   double residual = this->Orders() == 0 ? 1.0 : 0.0;

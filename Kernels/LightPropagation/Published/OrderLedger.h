@@ -9,7 +9,7 @@
 
 namespace tyndall
 {
-/// Energy balance and convergence by scattering order of a solve with the published scheme, and its stopping criterion.
+/// Energy balance and convergence of a solve with the published scheme, order by order, and its stopping criterion.
 class OrderLedger
 {
 public:

@@ -16,12 +16,11 @@ namespace tyndall
 /// temporary buffer T per direction (Eq. 6), which is then collected into U and I (Eq. 4). Interpretation of these
 /// equations: numerics.md, section 3.
 ///
-/// Directions are propagated and collected in batches. The largest batch is one LPM, the p directions of a cube face,
-/// so that T needs p n^3 floats per channel as in the paper's section 5. Batches are smaller if that does not fit the
-/// device, or exceeds `temporaryBytes`. The paper instead streams slices of the volume (section 4.2), which needs one
-/// pass over all slices per face. Batches of directions bound memory equally, and the result is bit-identical, because
-/// collection adds directions one by one in both methods. The medium, U, I and one map per direction stay on the
-/// device.
+/// Directions are propagated and collected in batches. The largest batch is the p directions of a cube face (one light
+/// propagation map, LPM), for which T needs p n^3 floats per channel as in the paper's section 5. Batches are smaller
+/// if T would not fit the device, or would exceed `temporaryBytes`. The paper instead streams slices of the volume
+/// (section 4.2) in one pass per face. Batches of directions limit memory as well, with bit-identical results, because
+/// both methods collect directions one by one. The medium, U, I and one map per direction stay on the device.
 ///
 /// Per order, call Propagate() and Collect() for each batch, then FinishOrder(); RunOrder() does all of this.
 class ParallelPropagation
@@ -57,19 +56,19 @@ public:
 
   /// Temporary buffers T (deposits of the rays) of a batch, divided by sigma_s, so that they exist in vacuum too:
   /// length W / (length^2 sr), one array per direction, x fastest, channels interleaved. T of Eq. (6) is sigma_s times
-  /// this.
+  /// the returned value.
   std::vector<std::vector<float>> Contributions(int batch) const;
   void SetContributions(int batch, const std::vector<std::vector<float>>& contributions);
 
   /// Source U that the next order propagates, W / (length^3 sr): channels * SourceDirections() values per voxel,
   /// channels fastest. Initially the emission of the medium.
   std::vector<float> Source() const { return this->Volumes.ReadSource(); }
-  /// Sets the source U of the next order, as returned by Source(). That order then has no boundary light, as any order
-  /// after the first.
+  /// Sets the source U of the next order, as returned by Source(). The next order then has no boundary light, like
+  /// every order after the first.
   void SetSource(const std::vector<float>& source);
 
   LightField Result() const; ///< light of all orders so far
-  /// What the current order does not compute because the scene does not need it, as LightField::leftOut.
+  /// Descriptions, for LightField::leftOut, of computations that are omitted because the scene does not need them.
   std::vector<std::string> LeftOut() const;
 
 private:

@@ -4,8 +4,8 @@
 //   MOMENTS   number of moments: the fluence, and more if scattering is anisotropic
 //   COLOURED  1 if sigma has CHANNELS channels, 0 if all share one
 //
-// A moment is the sum over directions of a coefficient times T. Directions are added one by one in their order, so that
-// the result does not depend on the batches.
+// A moment is the sum over directions of a coefficient times T. Directions are added one by one in a fixed order, so
+// that the result does not depend on how directions are divided into batches.
 
 #include "LightPropagation/Published/PublishedShared.h"
 #include "Numerics/Numerics.cl"
@@ -39,7 +39,8 @@ __kernel void add_directions(const int volume, const int directions, const int a
   }
 }
 
-// Computes U of the next order (Eq. (4)), and the moments of all orders so far. One work-item per voxel and channel.
+// Computes the source U of the next order (Eq. (4)), and adds the moments of this order to the sums over all orders so
+// far. One work-item per voxel and channel.
 //   moments0, moments1  moments of this order from the directions whose ray maps use memory layout 0, [z][y][x], and
 //                       from those that use layout 1, [x][z][y]; moments0 receives their sum
 //   totals              moments of all orders, [MOMENTS][CHANNELS][voxel in layout 0]; added to

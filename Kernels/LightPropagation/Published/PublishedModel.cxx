@@ -38,8 +38,8 @@ int NearestOf(const std::vector<std::array<double, 3>>& directions, const std::a
   return best;
 }
 
-/// Indices of the directions nearest to a unit vector, one for each of 48 tiny displacements, which are images of each
-/// other under the symmetries of the cube. All 48 are equal unless omega lies on a border between cells.
+/// Indices of the directions nearest to 48 slightly displaced copies of a unit vector. The displacements are images of
+/// each other under the symmetries of the cube. All 48 indices are equal unless omega lies on a border between cells.
 std::vector<int> NearestAround(const DirectionSet& set, const std::array<double, 3>& omega)
 {
   std::array<double, 3> push = { 1e-9, 2e-9, 3e-9 };
@@ -110,9 +110,9 @@ std::vector<Patch> Patches(const std::vector<std::array<double, 3>>& stored)
   return patches;
 }
 
-/// Mean of a phase function over a patch of the sphere, tabulated by the angle between light and patch. The mean is
-/// exact over a ring around the light's direction that is as wide as a round patch of the same area, so a peak narrower
-/// than a patch keeps its power.
+/// Table of the mean of a phase function over a patch of the sphere, by the angle between light and patch. The mean is
+/// taken over a ring around the light's direction, as wide as a round patch of the same area. It is exact on the ring,
+/// so a forward peak narrower than a patch keeps its power.
 class PatchMeans
 {
 public:
@@ -130,7 +130,7 @@ public:
   /// Mean at a cosine between light and patch, 1/sr.
   double At(double cosine) const
   {
-    // Tabulated as a function of sin(angle / 2)
+    // The table is uniform in sin(angle / 2)
     const double place = Rows * std::sqrt(std::max(0.5 * (1.0 - cosine), 0.0));
     const int row = std::min(static_cast<int>(place), static_cast<int>(Rows));
     return this->Means[row] + (place - row) * (this->Means[row + 1] - this->Means[row]);
@@ -142,7 +142,7 @@ private:
 };
 
 /// F^{i,d} / |Omega^d| of Eq. (5), 1/sr, for all stored directions d (rows) and all propagation directions i (columns):
-/// the integral of the phase function over both cells (numerics.md, Eq. (12)).
+/// the integral of the phase function over the cells of both directions (numerics.md, Eq. (12)).
 std::vector<std::vector<double>> ScatteringFactors(
   const PhaseFunction& function, const DirectionSet& set, const std::vector<std::array<double, 3>>& stored)
 {
@@ -163,7 +163,7 @@ std::vector<std::vector<double>> ScatteringFactors(
     }
     for (std::size_t d = 0; d < stored.size(); ++d)
     {
-      // `all` is 1 but for the difference between the rings of PatchMeans and patches; dividing by it conserves power
+      // `all` would be 1 if the rings of PatchMeans were patches; dividing by it conserves power
       factors[d][i] += from.weight * scattered[d] / all;
     }
     cellSize[i] += from.weight;

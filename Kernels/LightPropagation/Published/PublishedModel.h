@@ -51,8 +51,8 @@ public:
   int SourceOf(int direction) const { return this->NearestSource[direction]; }
 
   /// Number of moments. A moment is the sum over directions of a coefficient times the mean radiance of a voxel in that
-  /// direction. Moment 0 is the fluence. Scattered radiance by source direction, and net flux, are further moments if
-  /// they are not multiples of moment 0.
+  /// direction. Moment 0 is the fluence. Further moments are the scattered radiance of each source direction and the
+  /// net flux, unless they are multiples of moment 0.
   int MomentCount() const { return static_cast<int>(this->Coefficients.size()); }
   /// Coefficient of a direction's mean radiance in a moment.
   double Coefficient(int moment, int direction) const { return this->Coefficients[moment][direction]; }
@@ -63,8 +63,9 @@ public:
     int moment = 0;
     double factor = 1.0;
   };
-  /// All moments of light from another solver, with fluence 1 and mean direction `mean`. A fraction |mean| of it is
-  /// assigned to the nearest direction of the set; the remainder is isotropic. The net flux is exact.
+  /// All moments of light of fluence 1 and mean direction `mean`, as another solver computed it. A fraction |mean| of
+  /// this light is assigned to the nearest direction of the quadrature; the remainder is isotropic. The net flux is
+  /// exact.
   std::vector<double> MomentsAlong(const std::array<double, 3>& mean) const;
   /// Source U of a source direction, divided by sigma_s.
   Part Source(int sourceDirection) const;
@@ -85,7 +86,7 @@ private:
   std::vector<std::vector<double>> Coefficients;
 };
 
-/// Why the published scheme cannot solve a scene: its phase function varies between voxels or channels, or faces
+/// Reason why the published scheme cannot solve a scene: the phase function varies between voxels or channels, or faces
 /// reflect. Empty if it can solve the scene.
 std::string WhyNotPublished(const Medium& medium, const Illumination& illumination);
 /// @throws InvalidInput if WhyNotPublished() is not empty; the error's text is that reason
@@ -102,8 +103,8 @@ std::vector<std::string> LeftOutAsPublished(const Illumination& illumination);
 void AddGiven(const PublishedModel& model, const UncollidedImage& image, std::size_t voxels,
   const std::function<void(std::size_t moment, std::size_t voxel, int channel, double value)>& add);
 
-/// Writes to `field` fluence, scattered radiance and, if requested, net flux from the moments of all orders; also
-/// leftOut and converged. field.convergence must be set.
+/// Writes fluence, scattered radiance and, if requested, net flux to `field`, from the moments of all orders. Also sets
+/// its members leftOut and converged. field.convergence must be set before.
 /// @param moment  returns the moment of an index, by voxel with channels interleaved
 void WritePublishedLight(const PublishedModel& model, const Medium& medium, const MediumTraits& traits,
   const Illumination& illumination, const PropagationSettings& settings,
@@ -124,7 +125,8 @@ struct MapGeometry
   double slopeU, slopeV; ///< transverse shift per plane, in voxels
   double length;         ///< path length of a ray in one plane of voxels
   double beamPower;      ///< power of a ray at radiance 1: weight times perpendicular area, length^2 sr
-  /// density_i of Eq. (13): mean radiance of a voxel per radiance and path length of a ray, 1/length
+  /// density_i of Eq. (13), 1/length: factor from a ray's radiance times path length to its contribution to the mean
+  /// radiance of the voxel
   double density;
 
   /// Index along `axis` of the plane of voxels that rays enter after crossing `crossed` planes.
@@ -136,8 +138,8 @@ struct MapGeometry
   /// Transverse position within its voxel, 0 to 1, at which a ray begins order `order` if it began order 0 at `start`.
   /// Differs from `start` if the ray has wrapped around a periodic axis.
   double StartOfOrder(double start, double slope, int order) const;
-  /// Path, in a scattering order, of the rays of one sub-map: those that start at the same one of resolution^2
-  /// positions within their voxels, numbered row by row.
+  /// Path, in a scattering order, of the rays of one sub-map. Rays start at resolution^2 positions within their voxels;
+  /// a sub-map has those that start at the same position. Sub-maps are numbered row by row.
   GridWalk Walk(int resolution, int subMap, int order) const;
 
 private:
@@ -145,9 +147,9 @@ private:
   bool Continues; ///< whether rays wrap around the marching axis after the last plane
 };
 
-/// Traverses the voxels along one ray (Amanatides and Woo 1987), in double. Voxel boundaries that are closer together
-/// than 1e-9 of the path through a plane are crossed at once, so that all rays of a direction treat ties equally.
-/// Crossings that coincide with the end of the path belong to the next order.
+/// Traverses the voxels along one ray (Amanatides and Woo 1987), in double. Voxel boundaries less than 1e-9 of the path
+/// through a plane apart are crossed at once, so that rounding affects all rays of a direction equally. A boundary at
+/// the very end of the path is crossed in the next order.
 class GridWalk
 {
 public:

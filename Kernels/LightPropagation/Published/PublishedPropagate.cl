@@ -4,10 +4,10 @@
 //   COLOURED  1 if sigma has CHANNELS channels, 0 if all share one
 //   SOURCE    1 if U is not zero
 //
-// The paper synchronises the rays of a work-group by __syncthreads. Here a launch is one voxel crossing of all rays of
-// all directions, and the sequence of launches synchronises them. Rays are stored by the voxel they are in: a ray map
-// is [row -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border for light incident through the sides. A
-// work-item processes a row of the map if REAL_WIDTH > 1 (CPU), and one voxel if REAL_WIDTH is 1 (GPU).
+// The paper synchronises the rays of a work-group by __syncthreads. Here all rays of all directions cross one voxel per
+// launch, and the sequence of launches synchronises them. Rays are stored by the voxel they are in: a ray map is [row
+// -1 .. size_v][PAD | column 0 .. size_u - 1 | PAD], with a border for light incident through the sides. A work-item
+// processes a row of the map if REAL_WIDTH > 1 (CPU), and one voxel if REAL_WIDTH is 1 (GPU).
 //
 
 #include "LightPropagation/Published/PublishedShared.h"
@@ -15,8 +15,8 @@
 
 #define PAD REAL_WIDTH
 
-// Number of floats for the outgoing radiance of one direction, W / (length^2 sr), summed over rays: [through u by
-// row][through v][beyond the last plane by row].
+// Number of floats for the outgoing radiance of one direction, W / (length^2 sr), summed over rays: one per row of the
+// map through the face normal to u, one through the face normal to v, one per row beyond the last plane.
 #define ESCAPED(map) (2 * (map).sizeV + 1)
 
 static __global float* ray_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
@@ -25,7 +25,7 @@ static __global float* ray_row(__global float* rays, const PublishedMap* map, in
   return rays + row * map->rayRow + PAD;
 }
 
-// Path length times mean transmittance, (1 - exp(-tau)) / sigma; the length in vacuum. `gone` is 1 - exp(-tau).
+// Path length times mean transmittance, (1 - exp(-tau)) / sigma; in vacuum the path length. `gone` is 1 - exp(-tau).
 inline real depth(real gone, real tau, float length)
 {
   return length * (max(gone, (real)1e-37f) / max(tau, (real)1e-37f));
@@ -111,8 +111,8 @@ inline real deposit(real radiance, real sigma_s, float length)
 }
 
 #if REAL_WIDTH > 1
-// Copies the radiance of row v of a ray map to the border: along u to the ends of the row, along v to the border row
-// next to the opposite side; only on periodic axes. Called after the last write to the row.
+// On periodic axes, copies the radiance of row v of a ray map to the border: along u to the opposite ends of the row,
+// along v to the border row beyond the opposite side. Called after the last write to the row.
 static void wrap_row(__global float* rays, const PublishedMap* map, int parity, int slot, int v)
 {
   __global float* row = ray_row(rays, map, parity, slot, v);

@@ -12,8 +12,8 @@ typedef struct
   int row[2], plane[2], volume[2]; ///< strides of rows, planes and channels in floats, by layout
 } PublishedLayouts;
 
-/// A source U, computed as sigma_s times `factor` times a moment, and where it is stored: in the memory layout `layout`
-/// (0 or 1), at index `slot` among the sources in that layout.
+/// A source U: sigma_s times `factor` times a moment. It is stored in the memory layout `layout` (0 or 1), at index
+/// `slot` among the sources in that layout.
 typedef struct
 {
   int moment;
@@ -30,12 +30,13 @@ typedef struct
   int volume;    ///< floats per volume of one channel
   int rayRow;    ///< floats per row of a ray map
   int periodicU, periodicV;
-  /// Whether rays wrap around the marching axis: they start with their radiance at the end of the previous order.
+  /// Whether rays wrap around the marching axis, i.e. start with the radiance that they had at the end of the previous
+  /// order.
   int periodicW;
   int directions; ///< number of directions in the batch
 } PublishedMap;
 
-/// Path through one voxel that all rays of one direction take in one launch of cross_voxels().
+/// Path through one voxel, the same for all rays of a direction, in one launch of cross_voxels().
 typedef struct
 {
   int direction; ///< index of the direction within the batch

@@ -29,8 +29,9 @@ public:
     bool add; ///< whether deposits are added to those of earlier launches in this plane
   };
 
-  /// Path through the volume of a batch's rays of one sub-map: those that start at the same one of N x N positions
-  /// within their voxels ("divide the LPM into N smaller sub-LPM", section 5 of the paper).
+  /// Path of a batch's rays of one sub-map through the volume. Rays start at N x N positions within their voxels; a
+  /// sub-map has those that start at the same position ("divide the LPM into N smaller sub-LPM", section 5 of the
+  /// paper).
   struct Pass
   {
     std::vector<Launch> launches;
@@ -38,8 +39,8 @@ public:
     std::size_t carriedFirst = 0;
   };
 
-  /// Directions of one cube face whose rays are propagated together, and whose deposits are in the temporary buffers T
-  /// at the same time.
+  /// Directions of one cube face whose rays are propagated together. The temporary buffers T hold their deposits at the
+  /// same time.
   struct Batch
   {
     int first = 0, count = 0; ///< range of directions
@@ -64,19 +65,19 @@ public:
 
   int SubMaps() const { return this->Settings.mapResolution * this->Settings.mapResolution; }
   int RayRow(const Batch& batch) const; ///< floats per row of a ray map
-  /// Number of floats per direction, for all channels and sub-maps, of the radiance of rays that wrap around the
-  /// marching axis into the next order.
+  /// Number of floats per direction for the radiance of rays that wrap around the marching axis into the next order, in
+  /// all channels and sub-maps.
   std::size_t CarriedStride(const Batch& batch) const;
 
-  /// Makes the passes of a batch for scattering order `order`; a pass traces the rays of one sub-map. Rays that wrap
-  /// around a periodic axis start at another position in their voxels in each order.
+  /// Makes the passes of a batch for scattering order `order`; a pass traces the rays of one sub-map. Passes differ
+  /// between orders if rays wrap around a periodic axis, because these rays start each order at another position in
+  /// their voxels.
   void MakePasses(Batch& batch, int order) const;
   /// Path of the rays of a sub-map (those that start at the same position within their voxels) in a scattering order.
   GridWalk Walk(const MapGeometry& map, int subMap, int order) const;
 
 private:
-  /// Voxel crossings of the rays of a batch on one sub-map: [plane][voxel of this plane, in the order in which the ray
-  /// crosses them][direction].
+  /// Voxel crossings of a batch's rays of one sub-map: [plane][index of the crossing within the plane][direction].
   using CrossingsByPlane = std::vector<std::vector<std::vector<PublishedCrossing>>>;
 
   int DirectionsPerBatch(std::size_t temporaryBytes) const;

@@ -35,7 +35,7 @@ VolumeLayouts::VolumeLayouts(const Grid& grid, int width)
   {
     this->row[layout] = RoundUp(across[layout][0], width);
     const cl_int rows = this->row[layout] * across[layout][1];
-    // Avoids planes whose size is a multiple of 4 KB.
+    // Pads planes whose size would be a multiple of 4 KB, whose voxels would map to the same cache sets.
     this->plane[layout] = RoundUp(rows, 16) + (rows % 1024 == 0 ? 16 : 0);
     this->volume[layout] = this->plane[layout] * across[layout][2];
   }
@@ -143,7 +143,7 @@ void PublishedVolumes::FindSlots()
   }
 }
 
-/// Allocates the source U in the layouts in which the maps read it, and sets it to the emission of the medium.
+/// Allocates the source U in the memory layouts in which ray maps read it, and sets it to the emission of the medium.
 void PublishedVolumes::MakeSources(const Medium& medium)
 {
   std::vector<PublishedPart> parts;

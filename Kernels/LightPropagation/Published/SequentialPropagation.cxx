@@ -14,13 +14,14 @@ namespace tyndall
 {
 namespace
 {
-/// (1 - left) / sigma with left = exp(-sigma length); by its series where the difference would cancel.
+/// Returns (1 - left) / sigma with left = exp(-sigma length). Uses the series for small sigma length, where 1 - left
+/// would lose digits.
 double Depth(double sigma, double left, double length)
 {
   return sigma * length > 1e-6 ? (1.0 - left) / sigma : length * (1.0 - 0.5 * sigma * length);
 }
 
-/// Moves a position by at most one voxel along an axis of `size` voxels, and wraps it around.
+/// Moves a position by `move` (-1, 0 or 1) voxels along an axis of `size` voxels, and wraps it around.
 /// @return whether the position has wrapped around
 bool Step(int& position, int move, int size)
 {
@@ -180,7 +181,8 @@ private:
     }
   }
 
-  /// Moves a ray into the next voxel; a ray that leaves through a side re-enters on the opposite side (Fig. 2).
+  /// Moves a ray into the next voxel. A ray that leaves through a side of the box re-enters on the opposite side (Fig.
+  /// 2 of the paper).
   void Move(Ray& ray, int moveU, int moveV, const MapGeometry& map)
   {
     const bool leavesU = Step(ray.u, moveU, map.sizeU) && !this->Settings.periodic[map.axisU];
@@ -219,7 +221,8 @@ private:
     }
   }
 
-  /// Applies Eq. (3) to a ray, then adds its contribution to Eq. (4) to the moments of the order.
+  /// Attenuates a ray in one voxel by Eq. (3) of the paper, and adds its contribution to Eq. (4) to the moments of the
+  /// order.
   void CrossVoxel(Ray& ray, const float* source, std::size_t first, double length, double density)
   {
     for (int c = 0; c < this->Channels; ++c)
@@ -280,7 +283,8 @@ private:
   std::vector<float> Extinction, Scattering;
   /// Source U by source direction, channels interleaved; empty if no map reads it.
   std::vector<std::vector<float>> Sources;
-  /// Moments of this order, in double: thousands of rays cross a flat voxel, and sums in float were wrong by 6e-4.
+  /// Moments of this order, in double precision: thousands of rays cross a flat voxel, and sums in float would have
+  /// errors of 6e-4.
   std::vector<std::vector<double>> OrderMoments;
   std::vector<std::vector<float>> Totals; ///< moments of all orders
   /// Radiance of the rays that wrap around the marching axis into the next order, by direction

@@ -198,7 +198,6 @@ static BY_ROW void unpack(const PlaneInfo* layout, const __global float* from, i
   }
 }
 
-// Packing and unpacking of angular moments.
 #if ANGULAR
 // Index in the volume's array of the moments (from the second angular function on) of voxel (u, v) in a channel, for
 // planes along x from `first` on, all of which must be in one group of MomentGroup voxels.

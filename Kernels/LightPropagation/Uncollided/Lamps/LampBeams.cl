@@ -371,7 +371,6 @@ static beam_layers layers_of(const LampInfo* lamp, const BeamRow* row)
   return layers;
 }
 
-// Path length of a beam per layer of voxels.
 static float length_per_layer(const LampInfo* lamp, const BeamRow* row, float2 tangent)
 {
   const int u = (row->axis + 1) % 3;
