@@ -29,16 +29,16 @@ public:
   void Separate(Communicator& communicator, const LightField& few, const LightField& between, const LightField& more);
 
   /// Predicted root-mean-square error of the fluence due to the angular discretisation, relative to the fluence, on a
-  /// grid with twice the voxels per axis.
+  /// grid with twice as many voxels per axis.
   double Error(const PropagationSettings& settings) const;
   /// Ratio of Error(settings) to the predicted difference between two solutions on the coarse grid, one with `settings`
   /// and one with `others`.
   double PartOfDifference(const PropagationSettings& settings, const PropagationSettings& others) const;
   /// Predicted work, in units of the work of one sweep with one direction per cube face.
   double Work(const PropagationSettings& settings) const;
-  /// The settings with the least work among those with a predicted error of at most `error`; if there are none, those
-  /// with the least error. Only settings that have their default values are changed. Uncollided light uses the
-  /// directions of scattered light unless Separate() was called.
+  /// The settings with the least work whose predicted error is at most `error`; if there are none, the settings with
+  /// the least error. Only settings that have their default values are changed. Uncollided light uses the directions of
+  /// scattered light unless Separate() was called.
   /// @param most  largest number of directions per cube face that may be chosen
   PropagationSettings Cheapest(
     const PropagationSettings& settings, double error, int most = std::numeric_limits<int>::max()) const;
@@ -46,8 +46,8 @@ public:
   void Correct(double factor);
 
 private:
-  /// ratio of the root-mean-square difference between the two solutions to the error that a solution with 9 directions
-  /// per cube face has on the finer grid
+  /// Ratio of the root-mean-square difference between the two solutions to the error with 9 directions per cube face on
+  /// the finer grid
   double Fallen;
   /// Errors of uncollided and of scattered light with 9 directions per cube face, relative to the fluence.
   double OfUncollided = 0.0, OfScattered = 0.0;

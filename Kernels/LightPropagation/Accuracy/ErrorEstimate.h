@@ -46,7 +46,8 @@ struct ErrorParts
 /// Sets fluenceError and relativeError of `light` (Eqs. (82) to (84)) from two coarse solutions. Collective; the
 /// returned error components and relativeError are global.
 /// @param light  light of this rank's subdomain
-/// @param same, other  fluence of this rank's coarse voxels, solved with the quadrature of `light` and with another one
+/// @param same, other  fluence of this rank's coarse voxels: `same` solved with the quadrature of `light`, `other` with
+/// a different quadrature
 /// @param partOfDifference  ratio of the angular error of `light` to the difference between the two coarse solutions
 /// @param orderInSpace  order of convergence in the voxel size
 ErrorParts WriteErrorEstimate(LightField& light, const CoarseBlocks& blocks, const std::vector<float>& same,

@@ -58,7 +58,7 @@ private:
 
   const CoarseBlocks& Blocks;
   const bool Here;
-  /// box of coarse voxels that each rank holds: the whole coarse grid on one rank, none on the others
+  /// Box of gathered coarse voxels, by rank: the whole coarse grid on one rank, empty on the other ranks
   std::vector<VoxelBox> Boxes;
   Medium TheMedium;
   Illumination Light;

@@ -39,7 +39,8 @@ PropagationSettings SettingsOfPreview(PropagationSettings settings);
 /// coarse grid.
 ///
 /// A small coarse grid is gathered and solved by the first rank that has voxels, which is faster than on several ranks;
-/// its result equals that of a serial preview for any decomposition. A larger one is decomposed. Collective.
+/// the result then equals that of a serial preview for any decomposition. A larger coarse grid is decomposed.
+/// Collective.
 /// @param alike  settings that are checked to be the same on all ranks, like the scene
 /// @param coarse  coarse grid, over the same box as the domain's grid and along no axis finer than it
 /// @param small  number of coarse voxels up to which one rank solves

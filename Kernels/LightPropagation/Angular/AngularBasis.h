@@ -31,8 +31,8 @@ public:
   /// Coefficients of the functions in spherical harmonics, [function][harmonic]. The harmonics are normalised so that
   /// their squares average to 1 over all directions.
   std::vector<double> Matrix() const;
-  /// Values of all functions of the basis in any direction, which need not belong to the quadrature. @param omega  unit
-  /// vector
+  /// Values of all functions of the basis in any direction, which need not belong to the quadrature.
+  /// @param omega  unit vector
   std::vector<double> At(const std::array<double, 3>& omega) const;
 
 private:
@@ -58,8 +58,8 @@ struct AngularValues
   int Beams() const { return this->beams.empty() ? 0 : static_cast<int>(this->beams.front().size()); }
 };
 
-/// Indices of angular functions sorted by parity along u and v, the axes across the marching axis: even-even, odd-even,
-/// even-odd, odd-odd. `counts` is the number of functions of each parity.
+/// Indices of angular functions sorted by parity along u and v, the two axes normal to the marching axis: even-even,
+/// odd-even, even-odd, odd-odd. `counts` is the number of functions of each parity.
 struct FunctionOrder
 {
   FunctionOrder(int degree, int u, int v);

@@ -19,8 +19,7 @@ constexpr int FewestParts = 48;
 /// A point on the border between the cells of two directions is replaced by two points, displaced to either side by
 /// this relative distance, so that each direction gets half of its light.
 constexpr double BorderTolerance = 1e-9;
-/// In KeepFlux(), eigenvalues of the matrix below this fraction of the largest one are not inverted; their modes are
-/// omitted.
+/// In KeepFlux(), modes of the matrix whose eigenvalue is below this fraction of the largest eigenvalue are omitted.
 constexpr double LeastMode = 1e-3;
 
 int CellsPerEdge(int perFace, const std::string& name)

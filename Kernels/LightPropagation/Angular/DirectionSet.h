@@ -13,7 +13,7 @@ namespace tyndall
 /// directions pass through the points (+-across, +-along) and (+-along, +-across).
 struct DirectionOrbit
 {
-  /// Point of a face through which one direction of the orbit points, 0 <= across <= along < 1.
+  /// Coordinates of the point of a face through which one direction of the orbit passes, 0 <= across <= along < 1.
   double across = 0.0, along = 0.0;
   double weight = 0.0; ///< weight of each direction of the orbit, sr
   /// Offset that Nearest() adds to the cosine of the angle to a direction of this orbit, so that the solid angle of
@@ -33,7 +33,8 @@ struct DirectionSet
   /// orbits, cells do not form a grid: the cell of a direction of the quadrature consists of all directions nearest to
   /// it (see Nearest).
   std::vector<DirectionOrbit> orbits = {};
-  /// Points (s, t) of a face, -1 to 1, through which its directions point; empty without orbits.
+  /// Points (s, t) of a face of the cube, -1 to 1, through which the directions of that face pass; empty without
+  /// orbits.
   std::vector<std::array<double, 2>> tangents = {};
 
   int PerFace() const { return this->cellsPerEdge * this->cellsPerEdge; }

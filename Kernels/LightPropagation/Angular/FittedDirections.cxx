@@ -10,8 +10,8 @@ namespace tyndall
 {
 namespace
 {
-/// Tabulated orbits of a fitted quadrature. A weight of 1 means equal weights of all directions (numerics.md, Eq.
-/// (16a)).
+/// Tabulated orbits of a fitted quadrature. Weights are relative to the weight 4 pi / (number of directions) of a
+/// uniform quadrature (numerics.md, Eq. (16a)).
 struct FittedSet
 {
   int perFace;
@@ -90,7 +90,7 @@ const std::vector<FittedSet>& FittedSets()
   return sets;
 }
 
-/// Points (s, t) of one face of the cube, -1 to 1, through which an orbit's directions point: 1, 4 or 8.
+/// The 1, 4 or 8 points (s, t) of one face of the cube, -1 to 1, through which the directions of an orbit pass.
 std::vector<std::array<double, 2>> TangentsOf(const DirectionOrbit& orbit)
 {
   std::vector<std::array<double, 2>> all;

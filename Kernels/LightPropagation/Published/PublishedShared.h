@@ -4,7 +4,7 @@
 #include "Device/SharedTypes.h"
 
 SHARED_BEGIN
-/// Two memory layouts of volumes, both padded: layout 0 is [z][y][x]; layout 1, for maps that march along x, is
+/// Two memory layouts of volumes, both padded: layout 0 is [z][y][x]; layout 1, for ray maps that march along x, is
 /// [x][z][y].
 typedef struct
 {

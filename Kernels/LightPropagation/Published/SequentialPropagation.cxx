@@ -281,7 +281,7 @@ private:
   SweepTally Tally;   ///< incident, escaped and wrapped power of the current order
   std::size_t Values; ///< number of voxels times number of channels
   std::vector<float> Extinction, Scattering;
-  /// Source U by source direction, channels interleaved; empty if no map reads it.
+  /// Source U of each source direction, channels interleaved; empty if no ray map reads it.
   std::vector<std::vector<float>> Sources;
   /// Moments of this order, in double precision: thousands of rays cross a flat voxel, and sums in float would have
   /// errors of 6e-4.

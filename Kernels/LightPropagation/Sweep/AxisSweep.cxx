@@ -256,9 +256,8 @@ cl::NDRange AxisSweep::RowsOfMaps() const
   return cl::NDRange(this->Plan.plane.sizeV, this->Plan.bundles.size(), 2);
 }
 
-/// Buffer in which escaped power is summed per cell of the box's faces, W. Its sums are exact (ExactValues), because
-/// tens of thousands of rays end in a cell; work-items that may add to the same cell have their own copies of all
-/// cells.
+/// Buffer in which escaped power is summed per cell of the box's faces, W. Tens of thousands of rays may end in a cell,
+/// so sums are exact (ExactValues). Work-items that may add to the same cell each have their own copy of all cells.
 const cl::Buffer& AxisSweep::CellsOf(const Deposit& to)
 {
   if (!to.faceOut)

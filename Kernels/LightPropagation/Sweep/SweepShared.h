@@ -8,19 +8,19 @@ SHARED_BEGIN
 enum
 {
   MaxMembers = 8, ///< maximum number of members, i.e. symmetric directions, in a bundle
-  /// Maximum number of frames in a bundle. A frame has the members whose directions differ only in signs; in the other
-  /// frame, u and v are exchanged
+  /// Maximum number of frames in a bundle. A frame has the members whose directions differ only in signs; the
+  /// directions of a second frame have u and v exchanged
   MaxFrames = 2,
   /// Rows in the ring buffer between two stages of crossing a plane (a stage takes each ray through one voxel): a stage
   /// reads rows y - 1 to y + 1 while the stage before it writes row y + 2
   RingRows = 4,
   /// Number of coefficients m of (1 - exp(-t)) / t = 1 + t (m0 + t (m1 + ...)) for thin voxels, see SweepPlan.cxx
   MeanLengthTerms = 5,
-  /// Maximum number of bundles that take turns on each tile (block of rows), if there are angular moments or planes are
-  /// chained
+  /// Maximum number of bundles that cross a tile (block of rows) in turn, before the first of them crosses the next
+  /// tile; used with angular moments or chained planes
   BundlesTogether = 16,
-  /// Rows for which a bundle's sources are stored: those on which its stages of crossing a plane (each takes every ray
-  /// through one voxel) work at a time
+  /// Number of rows for which a bundle's sources are stored: the rows on which its stages of crossing a plane (each
+  /// takes every ray through one voxel) work at a time
   MomentRows = 8,
   /// Maximum number of planes in a chain, i.e. planes that a bundle crosses together, row by row
   MostChained = 2,
@@ -76,9 +76,9 @@ enum
 /// plane has at most three stages.
 #define RINGS_OF(planes) (3 * (planes)-1)
 
-/// Number of floats that a bundle keeps from one tile of rows to the next: two ring buffers between stages; for
-/// MomentRows rows, the sources and path integrals of all members, and the path integral of a unit source in its own
-/// voxel.
+/// Number of floats that a bundle keeps from one tile of rows to the next: two ring buffers between stages and, for
+/// MomentRows rows, the sources and path integrals of all members and the path integral that a unit source causes
+/// within its own voxel.
 #define BUNDLE_FLOATS(channels, row) \
   ((RINGS_OF(1) * RingRows + 2 * MomentRows) * MaxMembers * (channels) * (row) + MomentRows * (row))
 
@@ -148,7 +148,7 @@ typedef struct
   /// Number of planes packed (copied to scratch) before any of them is crossed: a multiple of `block`
   int together;
   int chained; ///< number of planes in a chain, which a bundle crosses together, row by row
-  /// Number of rows in a tile, on which bundles take turns; 0: each bundle crosses all rows at once
+  /// Number of rows in a tile, which all bundles cross in turn; 0: each bundle crosses all rows at once
   int tile;
   float vacuum; ///< sigma_t used instead of 0 in vacuum, 1/length; so small that exp(-tau) is 1 in float
   float thin;   ///< sigma_t below which the polynomial `meanLength` holds on all segments, 1/length
@@ -197,8 +197,8 @@ typedef struct
 typedef struct
 {
   ulong sigmaFirst; ///< index of the first channel's first value in sigma_t
-  /// Index of the first channel's first value in source and path (in the flux three times, in the partial currents six
-  /// times this index), and floats from one channel to the next.
+  /// `first`: index of the first channel's first value in source and path; in the flux it is three times, in the
+  /// partial currents six times this index. `stride`: floats from one channel to the next.
   ulong first, stride;
   EachWay eachWay;
   int empty;  ///< 1: the maps (powers of rays) are uninitialised, and are cleared where rays start
@@ -216,8 +216,8 @@ typedef struct
   FaceInfo faces;
   MomentPlaces moments;
   int sizeY; ///< voxels along y of the grid or, if the volume is streamed, of a slot (device buffer for a slice)
-  /// 1: angular moments are read and added to in their array; 0: they are packed (copied to scratch) like the other
-  /// quantities of a plane
+  /// 1: the kernel reads and adds to angular moments in their array; 0: they are packed (copied to scratch) like the
+  /// other quantities of a plane
   int momentsInPlace;
   int packedMoments; ///< number of floats in a row of moments that is packed (copied to scratch)
   int parityEnds[4]; ///< end of the range of angular functions of each parity (SweepLayout.cl)

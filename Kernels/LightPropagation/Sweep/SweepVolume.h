@@ -25,8 +25,8 @@ struct SweepVolume
   std::size_t sigma_t_first = 0;          ///< index of the first channel's first value in sigma_t
   const Buffer<float>* source = nullptr;  ///< source, W / (length^3 sr); null: no source
   Deposit deposit;                        ///< output arrays; no flux if there are angular moments, which include it
-  /// Index of the first channel's first value in source and path (in flux three times this index, in partialCurrents
-  /// and firstMoments six times).
+  /// Index of the first channel's first value in source and path. In flux it is three times this index, in
+  /// partialCurrents and firstMoments six times.
   std::size_t first = 0;
   /// Incident radiance per cell of the box's faces, SweepRequest::faceIn; null: none
   const Buffer<float>* faceIn = nullptr;

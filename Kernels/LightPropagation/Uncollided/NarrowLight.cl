@@ -13,8 +13,7 @@
 // path     W length, [channel][voxel]
 // flux     net flux of the same light, W length, [channel][x, y, z][voxel]
 // moments  W length, with angular moments (MomentPlacesShared.h), added to
-// peak     1: moments of a single direction, or of the spread that the net flux implies; below 1: those of degree l are
-//          multiplied by peak^(l (l + 1) / 2 - 1)
+// peak     1: moments as the net flux implies; below 1: moments of degree l are multiplied by peak^(l (l + 1) / 2 - 1)
 __kernel void add_narrow_moments(MomentPlaces places, const __global float* basis, const __global float* path,
   const __global float* flux, __global float* moments, ulong stride, float peak)
 {

@@ -17,9 +17,9 @@ public:
   /// Deposit that receives the light to be collected. Its array of first moments is that of the volume's deposit, if
   /// there is one.
   Deposit To() const;
-  /// Adds the collected light, of direction `omega` in all voxels, to the volume's deposit.
+  /// Adds the collected light to the volume's deposit. Its direction is `omega` in all voxels.
   void AddAlong(const std::array<double, 3>& omega) const;
-  /// Adds the collected light, in each voxel along its net flux, to the volume's deposit.
+  /// Adds the collected light to the volume's deposit. Its direction in each voxel is that of its net flux.
   void AddAlongFlux() const;
 
 private:
@@ -27,7 +27,7 @@ private:
   Buffer<float> OwnPath, Flux;
 };
 
-/// Adds light along its net flux in each voxel to an array with angular moments.
+/// Adds light to an array with angular moments. The direction of the light in each voxel is that of its net flux.
 /// @param path, flux  W length, or another unit: [channel][voxel], [channel][x, y, z][voxel]
 /// @param peak  1: moments of a single direction, or of one that spreads diffusively about its mean; below 1: moments
 /// above degree 1 are reduced, see SmoothPeak()

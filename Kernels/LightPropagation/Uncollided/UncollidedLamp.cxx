@@ -31,7 +31,7 @@ SweepTally SweepBeam(const UncollidedVolume& volume, const Light& light, bool fi
   const Monitor& monitor);
 
 /// Adds a beam's deposit to the path and first moments of the volume's deposit. First moments are computed from the
-/// powers through each voxel's faces, including those that enter the neighbouring voxels.
+/// powers that enter each voxel and its neighbours through their faces.
 /// @param ofBeam  path and partial currents of the beam
 /// @param beyond  partial currents of the beam beyond the block's faces, if the layout's grid is a block
 void AddWithFirstMoments(
@@ -157,7 +157,7 @@ SweepTally UncollidedLamp::AddTo(const UncollidedVolume& volume, const Monitor& 
   return tally;
 }
 
-/// Deposits path integrals, net flux and first moments of the lamp's light, but no angular moments.
+/// Deposits path integrals, net flux and first moments of the lamp's light, without angular moments.
 SweepTally UncollidedLamp::Put(const UncollidedVolume& volume, const Monitor& monitor) const
 {
   if (this->Lamp.type == LightType::Directional)

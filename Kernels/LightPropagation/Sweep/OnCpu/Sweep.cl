@@ -97,7 +97,7 @@ typedef struct
   const __global OwnLightInfo* own;
 } packed_planes;
 
-// Determines the words of rows of a packed plane (IS_THIN, IS_FILLED).
+// Determines the flag words (IS_THIN, IS_FILLED) of rows of a packed plane.
 static BY_ROW void find_words(const SweepInfo* info, const __global float* plane, int2 rows, __global int* words)
 {
   const PlaneInfo* layout = &info->planes;

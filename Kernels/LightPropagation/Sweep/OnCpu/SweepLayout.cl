@@ -36,7 +36,7 @@
 #define PLANE_BEAMS (PlaneSource + CHANNELS)
 #define PLANE_PATH (PLANE_BEAMS + BEAMS * CHANNELS) // path integral of power, W length
 #define PLANE_FLUX (PLANE_PATH + CHANNELS)
-// Additional source for each combination of senses along u and v (WaysAside), W / (length^3 sr)
+// Additional source in each of the four quadrants of directions (signs along u and v, WaysAside), W / (length^3 sr)
 #define PLANE_OCTANTS (PLANE_FLUX + FLUX * CHANNELS)
 // Power that enters the voxel through each of its CurrentFaces faces, W; only if PlaneInfo::currents is 1
 #define PLANE_CURRENTS (PLANE_OCTANTS + (OCTANT_SOURCE ? WaysAside : 0) * CHANNELS)
@@ -65,8 +65,8 @@
 #define ROW_OF(planes, quantity, v) ROW_IN(state, planes, quantity, v)
 
 #if ANGULAR
-// Index, in a row of moments, of the first moment of voxel x; `higher` is the number of angular functions from the
-// second on. The order is [group][function][voxel of the group] (MomentPlacesShared.h).
+// Index, in a row of moments, of the moment of voxel x for the second angular function; `higher` is the number of
+// functions from the second on. The order is [group][function][voxel of the group] (MomentPlacesShared.h).
 #define IN_ROW(x, higher) ((x) / MomentGroup * ((higher)*MomentGroup) + (x) % MomentGroup)
 // Number of floats of a channel's row in the volume's array of moments, all functions from the second on.
 #define MOMENTS_OF_CHANNEL(info) ((ulong)(info)->moments.groups * ((info)->moments.functions - 1) * MomentGroup)
@@ -88,8 +88,8 @@ typedef struct
   } of[STAGES];
 } chain_of_stages;
 
-// Word that describes a row of a packed plane. Bit 0: some voxel is not optically thin, sigma_t >= PlaneInfo::thin.
-// Bits 1 to SEGMENTS, one per segment of the row: some voxel of the segment has a medium or a source, or
+// Flag word of a row of a packed plane. Bit 0: some voxel is not optically thin, sigma_t >= PlaneInfo::thin. Bits 1 to
+// SEGMENTS, one per segment of the row: some voxel of the segment has a medium or a source; always set if
 // SweepInfo::skips is 0.
 #define SEGMENTS 30
 #define IS_THIN(word) (((word)&1) == 0)
@@ -125,7 +125,7 @@ static int segment_bits(int width)
 // which the last stage of crossing lags behind the first stage.
 typedef char kept_rows_suffice[!KEPT_ROWS || KEPT_ROWS >= RowsOfChain + ROWS_BEHIND(MostChained) ? 1 : -1];
 
-// A plane that is being crossed: its packed quantities, words of rows and escaped power.
+// A plane that is being crossed: its packed quantities, flag words of its rows (IS_THIN, IS_FILLED) and escaped power.
 struct plane_place
 {
   __global float* planes;

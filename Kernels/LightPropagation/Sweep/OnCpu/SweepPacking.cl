@@ -60,8 +60,8 @@ static BY_ROW void clear_rows(__global float* row, int rows, int count)
   }
 }
 
-// Copies a block, transposed: reads REAL_WIDTH rows, `step` floats apart, of REAL_WIDTH planes; writes as many vectors
-// along the rows, `plane` floats apart.
+// Copies a block of voxels and transposes it: reads REAL_WIDTH rows, `step` floats apart, of REAL_WIDTH planes, and
+// writes REAL_WIDTH vectors along the rows, `plane` floats apart.
 // @param last  index of the last row that exists
 // @param count  number of planes to write
 static inline __attribute__((always_inline)) void pack_block(
@@ -225,7 +225,7 @@ static int of_one_group(const PlaneInfo* layout, int next, int backward)
   return backward ? plane % MomentGroup + 1 : MomentGroup - plane % MomentGroup;
 }
 
-// Words of row v of `count` packed planes together.
+// Flag word of row v, combined (bitwise or) over `count` packed planes.
 //   words  words of the planes' rows, [plane][row]
 static int words_of_planes(const PlaneInfo* layout, const __global int* words, int count, int v)
 {

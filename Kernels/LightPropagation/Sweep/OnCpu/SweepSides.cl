@@ -68,7 +68,7 @@ static BY_ROW void give_sides(
   }
 }
 
-// Whether light that crosses the side leaves the domain.
+// Whether light that crosses side `side` of the box leaves the domain.
 #define LEAVES_GRID(state, side) (((state)->outerSides >> (side)) & 1)
 #else
 #define LEAVES_GRID(state, side) true
@@ -80,7 +80,7 @@ static BY_ROW void give_sides(
 #define FACE_CELL(state, side, i, c) \
   ((state)->faceFirst[side] + (i) * (state)->faces->along[side] + (c) * (state)->faces->stride)
 
-// Sets the cells of the four sides to those of plane `plane` of the grid.
+// Sets the indices of the first cells of the four sides to those of plane `plane` of the grid.
 static BY_ROW void go_to_faces(sweep_state* state, int plane)
 {
   for (int side = 0; side < 4; ++side)

@@ -34,8 +34,8 @@ __kernel void sum_rows(const __global float* rows, ulong first, int length, __gl
   sums[first_sum + get_global_id(0)] = sum;
 }
 
-// Adds the deposits of lanes (each the rays of one sense along an axis) that have arrays of their own to `sum`, in the
-// order of the lanes, so that the result is identical, bit for bit, to that of lanes that add to `sum` directly. One
+// Adds the lanes' own arrays of deposits to `sum`; a lane is the rays of one sense along an axis. Lanes are added in
+// their order, so the result is identical, bit for bit, to that of lanes that add to `sum` one after another. One
 // work-item per value.
 __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values, __global float* sum, ulong first)
 {
@@ -48,8 +48,8 @@ __kernel void add_lanes(const __global float* of_lanes, int lanes, ulong values,
   sum[first + i] = all;
 }
 
-// Adds the angular moments of lanes (each the rays of one sense along an axis) that have arrays of their own to `sum`,
-// in the order of the lanes. One work-item per voxel, function and channel.
+// Adds the lanes' own arrays of angular moments to `sum`, in the order of the lanes; a lane is the rays of one sense
+// along an axis. One work-item per voxel, function and channel.
 __kernel void add_moments_of_lanes(
   PlaneLaunch launch, const __global float* of_lanes, int lanes, __global float* sum, ulong first)
 {

@@ -15,7 +15,7 @@ class LaneArrays
 {
 public:
   /// @param lanes  must outlive this object
-  /// @param to  the deposit; without net flux if that is among the angular moments
+  /// @param to  deposit of the volume; without net flux if the angular moments include it
   LaneArrays(Device& device, const GpuLanes& lanes, const VolumeLayout& layout, const Deposit& to);
 
   void Clear(const LaneBatch& batch);

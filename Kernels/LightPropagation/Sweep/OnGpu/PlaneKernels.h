@@ -62,9 +62,9 @@ struct PlaneRays
   const Buffer<float>&sidesIn, &sidesOut; ///< power of the rays at the sides, W; used only with SIDES
 };
 
-/// Values of the compiler option SIDES of the plane kernels: rays that enter and leave through the sides of the box are
-/// not stored; the box is a block (subdomain); or the box is the domain, with light given and summed per cell of its
-/// faces.
+/// Values of the compiler option SIDES of the plane kernels. Rays that enter and leave through the sides of the box are
+/// not stored; stored because the box is a block (subdomain); or stored because light is given or summed per cell of
+/// the domain's faces.
 enum
 {
   SidesNotStored = 0,

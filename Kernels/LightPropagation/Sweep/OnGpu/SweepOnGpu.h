@@ -95,7 +95,8 @@ private:
   SweepWorkspace& Workspace;
   GpuLanes The;
 
-  /// For a volume in host memory: its slices, for each lane (rays of one sense along an axis); null: swept in place
+  /// Slices of a volume in host memory, streamed for each lane (rays of one sense along an axis); null: the lane sweeps
+  /// the volume in place
   std::vector<std::unique_ptr<LaneSlices>> Slices;
   Buffer<SweepLane> Lanes;
   Buffer<BundleInfo> Bundles;

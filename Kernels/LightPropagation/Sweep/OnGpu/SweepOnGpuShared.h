@@ -13,7 +13,8 @@ typedef struct
   PlaneInfo planes;
   int axis;
   int backward; ///< 0: marches from the lower end of the axis, 1: from the upper end
-  /// Number of planes in which the rays of a sweep start: those of the axis, or of several laps around a periodic axis
+  /// Number of planes that rays cross in the laps in which they start: the planes of the axis, on a short periodic axis
+  /// those of several laps
   int patternPlanes;
   int around;               ///< whether the marching axis is periodic, so rays cross a voxel repeatedly
   int periodicU, periodicV; ///< whether the axes u and v, normal to the marching axis, are periodic
@@ -53,8 +54,8 @@ typedef struct
 typedef struct
 {
   ulong sigmaFirst, sourceFirst; ///< index of the first channel's first value in sigma_t, in source
-  /// Index of the first channel's first value in `path` (in the net flux three times, in the partial currents six times
-  /// this index)
+  /// Index of the first channel's first value in `path`; in the net flux it is three times, in the partial currents six
+  /// times this index
   ulong putFirst;
   ulong stride; ///< floats from one channel to the next
   /// For a streamed volume: index of the first float of the slot (buffer for one slice) in the array of the source, and

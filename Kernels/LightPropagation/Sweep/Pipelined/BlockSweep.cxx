@@ -16,7 +16,8 @@ SweepPlan PlanOf(
   SweepDescription sweep = Describe(volume, {});
   sweep.grid = partition.whole;
   sweep.box = partition.blocks[rank];
-  // Makes the plan provide for rays that enter through the sides, as if light were given per cell of the faces
+  // The plan must provide arrays for rays that enter through the sides, as if incident light were given per cell of the
+  // faces
   sweep.faceIn = true;
   SweepPlan plan(device, sweep, { rays.axis, rays.bundles });
   const std::array<int, 3>& n = partition.blocks[rank].size;

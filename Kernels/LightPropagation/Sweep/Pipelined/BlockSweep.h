@@ -44,7 +44,7 @@ public:
   /// Rays that enter the block from outside the domain; rays from other blocks are zero.
   /// @param boundary  empty: no incident light
   RaysAtFaces FromOutside(const SweepBoundary& boundary, const LightByCells& cells) const;
-  /// Power of this set of bundles incident on the whole domain, W, by face.
+  /// Incident power that the rays of this set of bundles carry through each face of the whole domain, W.
   std::array<Rgb, 6> PowerIn(const SweepBoundary& boundary) const;
 
   /// Carries the rays `in` through the block.
@@ -60,8 +60,8 @@ public:
   void Pack(const BlockContact& contact, const RaysAtFaces& out, std::vector<float>& message) const;
   void Unpack(const BlockContact& contact, const std::vector<float>& message, std::size_t& at, RaysAtFaces& in) const;
 
-  /// Number of incoming rays that cross `contacts` (the voxel faces shared with other blocks), i.e. of the values in
-  /// the messages from these blocks.
+  /// Number of incoming rays that cross `contacts` (voxel faces shared with other blocks), which is the number of
+  /// values in the messages from these blocks.
   std::size_t Values(const std::vector<BlockContact>& contacts) const;
   int Axis() const { return this->Bundles.axis; }
   /// Host memory of the incoming and outgoing rays at the block's faces.

@@ -108,8 +108,8 @@ std::vector<BlockContact> ContactsBetween(
     return {};
   }
   const PlaneAxes axes = AcrossAxis(rays.axis);
-  // Returns the contact of the given kind: the cells of block `from` that are the upwind neighbours of cells of block
-  // `to`, displaced by one voxel along each of the axes `along`.
+  // Returns the contact of kind `kind`: the cells of block `from` from which rays move by one voxel along each of the
+  // axes `along` into cells of block `to`.
   const auto contact = [&](BlockContact::Kind kind, std::initializer_list<int> along) {
     BlockContact found = { from, to, kind, target, false };
     for (const int axis : along)
@@ -375,8 +375,8 @@ SweepSchedule::SweepSchedule(
 
 std::vector<ParallelBundles> FastestParts(const BlockPartition& partition, const std::vector<AxisBundles>& rays)
 {
-  // Costs relative to that of carrying one ray through one voxel, which takes about 2 to 3 ns. The overhead per block,
-  // mostly for queueing kernel launches, was measured as about 1 ms.
+  // Costs are relative to carrying one ray through one voxel, which takes 2 to 3 ns. The overhead per block, mostly for
+  // queueing kernel launches, is about 1 ms (measured).
   const SweepCosts costs = { 1.0, 4e5, 2e3, 1.0 };
   std::vector<ParallelBundles> fastest = SortByOctant(rays, 0);
   double least = SweepSchedule(partition, fastest, costs).Time();

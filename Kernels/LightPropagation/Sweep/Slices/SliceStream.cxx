@@ -304,8 +304,8 @@ std::vector<SliceStream::Streamed> SliceStream::StreamedArrays(const SweepVolume
   return arrays;
 }
 
-/// Location in the host array and in the slot of the floats that are copied for a piece (range of planes), in one part
-/// (such as a channel) of an array without angular moments.
+/// Rows of floats to copy between host array and slot for a piece (range of planes): one part, such as a channel, of an
+/// array without angular moments.
 SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
 {
   const int axis = this->Plan.axes.axis;
@@ -321,8 +321,8 @@ SliceStream::Rows SliceStream::PlanarRows(const SlicePiece& piece) const
     place(inSlot, this->Extent), Count(this->Extent[0]), Count(this->Extent[0]) * Count(this->Extent[1]) };
 }
 
-/// Location in the host array and in the slot of the floats that are copied for a piece (range of planes), in the
-/// moments of all angular functions except the first.
+/// Rows of floats to copy between host array and slot for a piece (range of planes): the moments of all angular
+/// functions except the first.
 SliceStream::Rows SliceStream::MomentRows(const SlicePiece& piece) const
 {
   const MomentPlaces& host = this->Plan.moments;

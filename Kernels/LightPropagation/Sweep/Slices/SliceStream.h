@@ -42,7 +42,7 @@ public:
 
   int Thickness() const { return this->Extent[this->Plan.axes.axis]; } ///< number of planes that a slot holds
 
-  /// Launches of the sweep, cut into pieces that fit in a slot if the volume is streamed.
+  /// Launches of the sweep. If the volume is streamed, they are cut into pieces whose planes fit in a slot.
   struct Schedule
   {
     /// Planes that each unit of work crosses in each launch, [launch][unit of work]; empty: not streamed

@@ -555,8 +555,8 @@ static void follow_row(const LampInfo* lamp, const BeamRow* row, const __global 
   write_sums(&tally, shone, sums);
 }
 
-// Traces rows of beams through the grid or, IN_BLOCK, beams through a block of it: those that start in the block, and
-// those that arrive from other blocks.
+// Traces rows of beams through the grid. If IN_BLOCK is 1, traces beams through a block of the grid instead: beams that
+// start in the block, and beams that arrive from other blocks.
 // path  fraction of the power times length, in fixed point, [voxel of LampInfo::stored], added to. MOMENTS: [path, path
 //       times distance along x, y, z][voxel]. NET_FLUX: then path times direction, [x, y, z][voxel]. VACUUM: then the
 //       path in vacuum of light before it wraps around an axis, [voxel], and if AROUND the actual path of that light,

@@ -48,8 +48,8 @@ typedef struct
   /// Components along the marching axis, u and v of the cross product of two directions: that of the reference
   /// tangents, and that of the cone's axis; 0 if the two are parallel, as for a narrow cone
   float crossing[3];
-  /// Tangents of the first beam's centre, relative to the reference tangents baseU, baseV; tangentV is that of all
-  /// beams
+  /// Tangents of the first beam's centre, relative to the reference tangents baseU, baseV; all beams have the same
+  /// tangentV
   float tangentU, tangentV;
   float widthU, widthV; ///< width of a beam along u and v, as a difference of tangents
   int count;            ///< number of beams along u

@@ -39,14 +39,15 @@ public:
   /// @param volume  its arrays have as many values per channel as the sums
   /// @param factor  LampFactors::taken
   void AddTo(const SweepVolume& volume, const LampOnGrid& lamp, double factor) const;
-  /// Adds the sums per cell of the faces, converted to W, to the deposit's faceOut.
+  /// Converts the sums of escaped power per cell of the faces to W and adds them to the deposit's faceOut.
   /// @param faceFirst  index of the first channel's first cell in faceOut
   void AddCellsTo(const SweepVolume& volume, std::size_t faceFirst, const LampOnGrid& lamp, double factor) const;
 
   /// Adds light uniformly to the deposit's path. This is the limit of light that has wrapped many times around a box
   /// that is periodic along all axes.
   /// @param share  fraction of the lamp's power
-  /// @param extinction  Extinction() of the whole box, 1/length; if it is 0, nothing is added
+  /// @param extinction  sum of sigma_t over all voxels of the domain (Extinction()), 1/length; if it is 0, nothing is
+  /// added
   void SpreadEvenly(const SweepVolume& volume, const LampOnGrid& lamp, double share, double extinction) const;
 
 private:
