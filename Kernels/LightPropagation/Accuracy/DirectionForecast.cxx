@@ -11,8 +11,8 @@ namespace tyndall
 {
 namespace
 {
-/// largest number of directions per cube face with rays that start in the middle of voxels; with more, rays start at
-/// staggered positions
+/// Up to this number of directions per cube face, rays start in the middle of voxels; with more directions they start
+/// at staggered positions
 constexpr int LargestUnstaggered = 100;
 /// Measured cost of one direction for uncollided light, relative to one direction in a sweep of scattered light.
 constexpr double UncollidedWork = 5.0;

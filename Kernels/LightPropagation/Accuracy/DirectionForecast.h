@@ -21,7 +21,7 @@ public:
   DirectionForecast(
     Communicator& communicator, const LightField& few, int fewDirections, const LightField& more, int moreDirections);
 
-  /// Error of uncollided light relative to the error of all light.
+  /// Ratio of the angular error of uncollided light to the angular error of all light.
   double UncollidedPart() const;
   /// Determines two errors separately: the error caused by the directions of uncollided light, including the light
   /// scattered from it, and the error caused by the directions of scattered light. Collective.

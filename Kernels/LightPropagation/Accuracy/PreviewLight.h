@@ -30,7 +30,7 @@ constexpr int PreviewOrders = 24;
 constexpr std::size_t PreviewVoxels = 32768;
 
 /// Settings of light propagation maps for a preview: few directions, isotropic scattering, a large tolerance, and no
-/// further arrays.
+/// optional output arrays.
 PropagationSettings SettingsOfPreview(PropagationSettings settings);
 
 /// Solves a scene on a coarser grid of averages (Coarsening.h) and interpolates linearly between coarse voxel centres:

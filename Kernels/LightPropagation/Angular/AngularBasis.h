@@ -18,7 +18,7 @@ namespace tyndall
 class AngularBasis
 {
 public:
-  /// @param degree  L, at most that of MostDegree() for this set
+  /// @param degree  highest degree L of the functions, at most MostDegree() of the quadrature
   AngularBasis(const DirectionSet& set, int degree);
 
   int Degree() const { return this->L; }

@@ -103,7 +103,8 @@ enum class RayStarts
 };
 
 /// Bundles (directions whose segments have the same lengths) of all directions of `set` that march along `axis`,
-/// forward and backward, with mapResolution x mapResolution rays per voxel and direction (Pairs: two, if that is one).
+/// forward and backward, with mapResolution x mapResolution rays per voxel and direction; two rays with
+/// RayStarts::Pairs if mapResolution is 1.
 std::vector<Bundle> BundlesAlong(int axis, const Grid& grid, const std::array<bool, 3>& periodic,
   const DirectionSet& set, int mapResolution, RayStarts starts = RayStarts::Middle);
 

@@ -22,9 +22,9 @@ namespace tyndall
 ///
 /// A ray of direction i, weight w_i (sr), carries radiance L, W / (length^2 sr). Deposits are stored divided by
 /// sigma_s, so that fluence, the sum of deposits over all directions, is 4 pi I / sigma_s in the paper's notation, and
-/// exists in vacuum too. In a box that is periodic along some axes, light that enters through a face parallel to a
-/// ray's marching axis starts at the elements of the map, i.e. where the map's rays are within the voxels, so such a
-/// box should be several voxels wide.
+/// exists in vacuum too. If a box is periodic along some axes, light that enters through a face parallel to the
+/// marching axis starts at the positions of the map's rays within their voxels, not at the face. Such a box should
+/// therefore be several voxels wide.
 class PublishedModel
 {
 public:

@@ -1,4 +1,4 @@
-// Shared by C++ and the kernels of the published algorithm (PublishedPropagate.cl, PublishedCollect.cl).
+// Data types shared by C++ and the kernels of the published algorithm (PublishedPropagate.cl, PublishedCollect.cl).
 #pragma once
 
 #include "Device/SharedTypes.h"

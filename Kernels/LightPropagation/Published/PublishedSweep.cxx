@@ -166,8 +166,8 @@ GridWalk PublishedPlan::Walk(const MapGeometry& map, int subMap, int order) cons
   return map.Walk(this->Settings.mapResolution, subMap, order);
 }
 
-/// Adds the voxel crossings of direction i of a batch, for the rays of one sub-map (those that start at the same
-/// position within their voxels), to `byPlane`, and the entry that end_rays() reads to `ends`.
+/// Adds to `byPlane` the voxel crossings of direction i of a batch, for the rays of one sub-map (those that start at
+/// the same position within their voxels). Adds to `ends` the entry that end_rays() reads.
 void PublishedPlan::WalkThrough(const Batch& batch, int i, int subMap, int order, CrossingsByPlane& byPlane,
   std::vector<PublishedCrossing>& ends) const
 {

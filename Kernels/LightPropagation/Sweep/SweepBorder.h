@@ -14,8 +14,8 @@ std::array<double, 2> SidewaysMoves(const Bundle& bundle, int firstPlane, int pl
 /// @param left  escaped power, W, consecutive arrays [-u, +u, -v, +v][channel], which are added up
 void CountSideways(const SweepPlan& plan, const std::vector<float>& left, SweepTally& tally);
 
-/// Incident light of a sweep along one axis, in the layout of the sweep's buffers. Each array holds both senses of
-/// marching, forward first.
+/// Incident light of a sweep along one axis, in the layout of the sweep's buffers. Each array has values for both
+/// senses of marching, forward first.
 class SweepBorder
 {
 public:

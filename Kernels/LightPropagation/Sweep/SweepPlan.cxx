@@ -32,8 +32,8 @@ cl_int Int(T value)
   return static_cast<cl_int>(value);
 }
 
-/// Number of floats in a padded row: an odd number of vectors, so that rows do not map to the same cache sets, and one
-/// of a few sizes, since kernels, which take seconds to compile, are compiled for each size.
+/// Number of floats in a padded row. It is an odd number of vectors, so that rows do not map to the same cache sets.
+/// Only a few sizes are used, because kernels are compiled for each size, which takes seconds.
 int RowFloats(int width, int vector)
 {
   int vectors = ShortestRow / vector;
@@ -260,8 +260,9 @@ BundleInfo SweepPlan::Describe(const Bundle& bundle) const
   return description;
 }
 
-/// Determines the frames of each bundle (sets of members whose directions differ only in signs), and for both senses
-/// of marching the values of the angular functions in their directions and the index of each bundle's first value.
+/// Determines the frames of each bundle (sets of members whose directions differ only in signs). For both senses of
+/// marching, computes the values of the angular functions in their directions, and the index of each bundle's first
+/// value.
 void SweepPlan::LayFrames()
 {
   for (std::size_t b = 0; b < this->bundles.size(); ++b)
@@ -310,9 +311,9 @@ int SweepPlan::ParitiesOf(const Bundle& bundle) const
   return parities;
 }
 
-/// Appends to `coefficients` the values of the angular functions in the direction of each frame of bundle b, reflected
-/// to positive u and v, and the angular distributions of the beams' light (AngularValues::beams) in the direction of
-/// each of its members.
+/// Appends to `coefficients`, for bundle b: the values of the angular functions in the direction of each frame,
+/// reflected to positive u and v; then the angular distributions of the beams' light (AngularValues::beams) in the
+/// direction of each member.
 void SweepPlan::LayCoefficients(std::size_t b, int way)
 {
   const auto directionOf = [way](const Member& member) { return way == 0 ? member.direction : member.opposite; };

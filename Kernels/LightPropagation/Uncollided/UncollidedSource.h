@@ -27,7 +27,8 @@ struct UncollidedVolume
   /// Basis of the angular moments in the deposit's path; null: no angular moments. With a basis, sources do not deposit
   /// net flux, which the moments contain.
   const AngularBasis* basis = nullptr;
-  /// Receives the path integrals of a parallel beam alone, W length, [channel][voxel]; null: not needed.
+  /// Receives the path integrals of a parallel beam, separately from other light, W length, [channel][voxel]; null: not
+  /// needed.
   const Buffer<float>* beamPath = nullptr;
   /// With several ranks: fetches the power that enters voxels beyond the block's faces; empty: the block is the domain,
   /// or no first moments are computed.

@@ -395,8 +395,8 @@ static void begin_state(sweep_state* state, const SweepInfo* info)
 #endif
 }
 
-// Number of bundles that cross planes together, tile (block of rows) by tile; further bundles cross these planes
-// afterwards.
+// Number of bundles that cross a tile (block of rows) in turn before the first of them crosses the next tile. Further
+// bundles cross the planes afterwards.
 static int bundles_together(const sweep_state* state, int bundles)
 {
   return ANGULAR || state->tile > 0 ? min(bundles, (int)BundlesTogether) : bundles;

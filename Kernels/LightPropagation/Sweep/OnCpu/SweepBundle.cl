@@ -204,8 +204,8 @@ static void STAGE_ROW(sweep_state* state, int y, int slot, bool first, bool depo
 
 // Adds the power of the rays that leave the box from row y in a move of (du, dv) to the escaped power. `row` holds the
 // rays; the fraction `part` of their power moves. Of rays that move along u and v at once, half cross along u first and
-// half along v first. At the box's edge, half of their power therefore leaves through either face, and half of the
-// light incident next to the edge leaves again without crossing a voxel.
+// half along v first. At the box's edge, half of their power therefore leaves through each of the two faces, and half
+// of the light incident next to the edge leaves again without crossing a voxel.
 // across_u, across_v  power of the rays that enter through the faces normal to u and v, W, without light given per
 //                     cell: across_u is [member][channel], across_v a row of rays
 static BY_ROW void COUNT_ESCAPED(sweep_state* state, const __global float* row, int y, int m, int du, int dv,

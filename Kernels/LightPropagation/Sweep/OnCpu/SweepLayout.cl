@@ -45,8 +45,9 @@
 // Whether a bundle may cross up to PLANES_CHAINED planes together, row by row, as a chain. This is impossible if rays
 // that enter or leave sideways are stored for each plane, or if rows wrap around a periodic axis.
 #define CHAINED (!ANGULAR && !FACES && !SIDES && !PERIODIC)
-// Attribute BY_ROW of functions that are called at most once per row. Inlining them in unrolled loops makes compilation
-// a third slower; where planes may be chained, however, calls cost 10% of a sweep with 64 voxels per row.
+// BY_ROW is the attribute of functions that are called at most once per row. They are not inlined, because inlining in
+// unrolled loops makes compilation a third slower. If planes may be chained, they may be inlined, because calls would
+// cost 10% of a sweep with 64 voxels per row.
 #if CHAINED
 #define BY_ROW
 #else
@@ -110,7 +111,7 @@ static bool any_lane(integer mask)
   return (two.x | two.y) != 0;
 }
 
-// Binary logarithm of the number of voxels in a segment: a vector or, in longer rows, several.
+// Binary logarithm of the number of voxels in a segment of a row: one vector or, in longer rows, several vectors.
 static int segment_bits(int width)
 {
   int bits = 2;

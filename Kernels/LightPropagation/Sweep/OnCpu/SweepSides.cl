@@ -97,7 +97,7 @@ typedef struct
   float begin, end;
 } face_planes;
 
-// Range of planes for a ray that moves sideways in the plane that is crossed.
+// Range of planes through whose cells a ray leaves that moves sideways in the plane that is crossed.
 // @param planes  number of planes from one ray to the next
 static face_planes planes_of_ray(const sweep_state* state, float planes)
 {
@@ -133,7 +133,7 @@ static BY_ROW void leave_through(const sweep_state* state, int side, int i, int 
   }
 }
 
-// Adds the power of a row of rays that leaves through the cells of one side to the escaped power per cell.
+// Adds the power of a row of rays that leave through one side of the box to the escaped power per cell.
 static BY_ROW void leave_all_through(
   const sweep_state* state, int side, int c, face_planes of, const __global float* rays, float part)
 {

@@ -85,7 +85,7 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
     {
       light = alike.x + light_of_cells(&cells, power, faceU, place - sizeU, move.y);
     }
-    // At the plane's edge, half of the power enters through either face
+    // At an edge of the box, half of the power enters through each of the two faces
     if (place == sizeU + sizeV && move.x != 0 && move.y != 0)
     {
       light = 0.5f *
@@ -96,7 +96,8 @@ __kernel void enter_sides(int number, const __global SweepLane* lanes, const __g
   sides_in[lane->sides + ((ulong)k * lane->rays * CHANNELS + slot) * SIDE_FLOATS(&lane->planes) + place] = light;
 }
 
-// Fraction of a ray's power that leaves through the cells of plane p, if the ray moves out sideways in `plane`.
+// Fraction of a ray's power that leaves through the cells of plane p, if the ray leaves the box sideways in plane
+// `plane`.
 // @param planes  number of planes from one sideways move of the ray to the next
 static float part_through(const __global SweepLane* lane, int spread, int plane, int p, float planes)
 {

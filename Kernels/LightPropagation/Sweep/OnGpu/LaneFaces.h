@@ -8,8 +8,8 @@
 namespace tyndall
 {
 /// Incident radiance and escaped power per cell of the box's faces (SweepRequest::faceIn, Deposit::faceOut) in a sweep
-/// on GPUs; kernels in LaneFaces.cl. The device stores the rays at the sides of the planes that are crossed
-/// concurrently: one float per ray, plane and cell of the plane's edges, for entering and for leaving rays.
+/// on GPUs; kernels in LaneFaces.cl. For planes that are crossed in the same launches, the device stores the power of
+/// the rays that enter and leave sideways: two floats per ray, plane and cell of the plane's edges.
 class LaneFaces
 {
 public:
@@ -20,7 +20,7 @@ public:
     const Buffer<BundleInfo>& bundles;
     const Buffer<CrossingInfo>& crossings;
     bool ofRound = false; ///< PlaneLaunch::ofRound: rays wrap around a periodic axis, and no more light enters
-    /// Power of incident rays, W, that is uniform over each face, [ray][channel] (PlaneRays::entering)
+    /// Power of incident rays, W, from light that is uniform over each face, [ray][channel] (PlaneRays::entering)
     const Buffer<cl_float4>& entering;
   };
 
@@ -29,15 +29,16 @@ public:
   LaneFaces(Device& device, const GpuLanes& lanes, const Grid& grid, const SweepRequest& request);
 
   bool Shine() const { return this->FaceIn != nullptr; } ///< whether incident radiance is given per cell
-  /// Power of the rays that enter through the sides of the planes, W
+  /// Power of the rays that enter the planes sideways, W
   const Buffer<float>& In() const { return this->SidesIn; }
-  /// Power of the rays that leave through the sides of the planes, W
+  /// Power of the rays that leave the planes sideways, W
   const Buffer<float>& Out() const { return this->SidesOut; }
 
-  /// Adds to `maps` (power of each ray) the light incident per cell of the faces where the rays of open axes start.
+  /// Adds to `maps` (power of each ray) the light incident per cell of the faces where rays start, on open axes.
   /// @param first  index of the first channel's first value in faceIn and faceOut
   void EnterStart(const LaneBatch& batch, const Rays& rays, std::size_t first, const Buffer<float>& maps) const;
-  /// Writes the light incident per cell to the sides of the planes, before these are crossed.
+  /// Computes the power of the rays that enter the planes sideways, from the light incident per cell. Call before the
+  /// planes are crossed.
   void EnterSides(const LaneBatch& batch, const Rays& rays, std::size_t first);
   /// Adds to faceOut the power of the rays that left sideways from the planes just crossed and, on open axes, behind
   /// the last plane. Adds one lane after another, so that the order of summation does not depend on which lanes run

@@ -23,8 +23,8 @@ static void put(__global float* where, float value, int adds)
   *where = adds ? *where + value : value;
 }
 
-// Adds `value` to a path integral; with compensated (Kahan) summation, rounding error in `lost`, if rays cross a voxel
-// repeatedly.
+// Adds `value` to a path integral. If rays cross a voxel repeatedly, uses compensated (Kahan) summation, with the
+// rounding error in `lost`.
 static void put_path(const plane_state* state, __global float* path, __global float* lost, float value)
 {
   if (!state->lane->around)

@@ -116,7 +116,6 @@ SweepTally SweepOnGpu::ApplyGroup(
     {
       this->GoRound(batch, volume, tally, ofBatch);
     }
-    // Without incident light and source, there is no light to carry
     else if (lit || volume.source || this->ShineByCells())
     {
       this->CrossOnce(batch, volume, tally, ofBatch);

@@ -27,7 +27,7 @@ typedef struct
   ulong map; ///< index of the first float of the lane's maps, [ray][channel][v][u]
   /// Index of the first float of the lane's path integrals; with angular moments [function][channel][voxel]
   ulong path;
-  /// Index of the lane's first float in the partial currents, divided by 6, and in the net flux, divided by 3
+  /// The lane's first float has index 6 * deposit in the partial currents and index 3 * deposit in the net flux
   ulong deposit;
   /// Index of the first float of the lane's escaped power, [plane][-u, +u, -v, +v][channel][position along the face]
   ulong escaped;

@@ -51,7 +51,7 @@ typedef struct
 typedef struct
 {
   const __global float* rays; // power of the rays of this direction, W, [channel][v][u]
-  // Incident power of a ray, W, [channel]: x through the face normal to u, y through that normal to v.
+  // Incident power of a ray, W, [channel]: x through the face normal to u, y through the face normal to v.
   const __global float4* entering;
   // Source in this direction, W / (length^3 sr), [channel][v][u]; if ANGULAR
   const __global float* directed;

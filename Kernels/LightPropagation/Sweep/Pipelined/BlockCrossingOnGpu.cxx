@@ -57,8 +57,8 @@ private:
   Buffer<CrossingInfo> Crossings;
   /// Values of the angular functions in the rays' directions, if there are angular moments
   Buffer<float> Functions;
-  /// Power of light incident from outside the domain, W, [ray][channel]: x through the face normal to u, y through that
-  /// normal to v
+  /// Power of light incident from outside the domain, W, [ray][channel]: x through the face normal to u, y through the
+  /// face normal to v
   Buffer<cl_float4> Beyond;
   /// Power that escapes sideways, W, [plane][-u, +u, -v, +v][channel][position along the face]; sums over the positions
   Buffer<float> Left, Sides;
@@ -113,7 +113,7 @@ std::unique_ptr<LaneSlices> BlockCrossingOnGpu::MakeSlices()
   SweepPlan plan = this->Plan;
   plan.grid.size = plan.box.size;
   plan.box.first = {};
-  // A periodic axis needs the array `lost`, the rounding errors of path integrals.
+  // If the marching axis is periodic, the array `lost` (rounding errors of path integrals) is streamed too.
   plan.periodic[plan.axes.axis] = this->Rays.around;
   return LaneSlices::Make(this->TheDevice, plan, this->Lane, this->Workspace.sweep);
 }

@@ -41,7 +41,7 @@ public:
   /// @param planes  number of planes of the domain that rays have crossed in earlier laps
   void BeginLap(int planes);
 
-  /// Rays that enter the block from outside the domain; rays from other blocks are zero.
+  /// Returns the power of the rays that enter the block from outside the domain; 0 for rays from other blocks.
   /// @param boundary  empty: no incident light
   RaysAtFaces FromOutside(const SweepBoundary& boundary, const LightByCells& cells) const;
   /// Incident power that the rays of this set of bundles carry through each face of the whole domain, W.
@@ -112,8 +112,8 @@ private:
 /// Sideways move, for one direction (member) of a bundle, in one stage of crossing a plane, voxels along u and v.
 std::array<int, 2> MoveOf(const BundleInfo& bundle, int member, const CrossingInfo& crossing, int stage);
 
-/// Light per cell of the domain's faces in the sweep of a block: adds incident light and sums escaped power. Computes
-/// the same as SweepSides.cl and SweepMaps.cl, but on the host, where the rays at the block's faces are.
+/// Adds incident light and sums escaped power per cell of the domain's faces in the sweep of a block. Computes the same
+/// as SweepSides.cl and SweepMaps.cl, but on the host, where the powers of the rays at the block's faces are stored.
 class BlockSweep::ByCells
 {
 public:

@@ -102,8 +102,8 @@ double BlockSweep::ByCells::LightOf(int face, const Voxel& voxel, int channel) c
   return this->Cells.in ? this->Cells.in[this->CellOf(face, voxel, channel)] : 0.0;
 }
 
-/// Mean of the incident radiance of a face's cell and of the cell one move of the ray further, if that cell is on the
-/// face.
+/// Mean incident radiance of a cell of a face and of the cell one move of the ray further; of the first cell alone if
+/// the other one is not on the face.
 double BlockSweep::ByCells::MeanLight(int face, const Voxel& voxel, int aside, int move, int channel) const
 {
   const int size = this->Sweep.Whole.size[aside];

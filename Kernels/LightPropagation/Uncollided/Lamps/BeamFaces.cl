@@ -24,8 +24,8 @@ static int place(const LampInfo* lamp, int axis, float tangent, int* i)
   return (*i < 0) == (tangent < 0.0f) ? AFTER : BEFORE;
 }
 
-// Index of a voxel in the arrays of LampInfo, whose halo on a periodic axis may hold voxels of the opposite side of the
-// grid.
+// Index of a voxel in the arrays over LampInfo::stored. On a periodic axis, the halo in these arrays may hold voxels of
+// the opposite side of the grid.
 static ulong place_in_arrays(const LampInfo* lamp, const int* voxel)
 {
   ulong place = 0;

@@ -164,8 +164,8 @@ double LogarithmAlong(const Edge& edge, const glm::dvec3& point)
   return upTo(length - along) - upTo(-along);
 }
 
-/// Integral of ln |x - y| dx . dy over two edges: over the second edge by the tanh-sinh rule, split where the first
-/// edge is near.
+/// Integral of ln |x - y| dx . dy over two edges. The integral over the second edge uses the tanh-sinh rule, on
+/// intervals that end where the second edge is near the first.
 double LogarithmOver(const Edge& first, const Edge& second)
 {
   constexpr double step = 0.18;

@@ -1,6 +1,6 @@
 // Kernel that traces the beams from one point of a lamp through the box. Options:
 //   ATOMICS        1: the device has 64-bit atomics; else one work-item traces all beams
-//   LAMBERT, CONE  1: the lamp is a rectangle, a spot
+//   LAMBERT, CONE  1: the lamp is a rectangle (LAMBERT), a spot (CONE)
 //   MOMENTS        1: first moments of the deposit are computed
 //   NET_FLUX       1: net flux is computed
 //   FACE_OUT       1: the power that leaves through each cell of the box's faces is summed

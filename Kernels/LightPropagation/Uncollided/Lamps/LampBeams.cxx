@@ -147,7 +147,7 @@ private:
   const LampOnGrid Lamp;
   const Halo Stored;     ///< voxels in which this rank sums deposits while beams are traced: its block and the halo
   tyndall::Rounds Ranks; ///< exchange of beams between blocks
-  /// Extinction sigma_t of the stored voxels; empty if there is one rank only, which uses that of the volume
+  /// Extinction sigma_t of the stored voxels; empty on a single rank, which uses the volume's own array
   Buffer<float> SigmaT;
   std::unique_ptr<LampSums> Sums;
   cl::Kernel Kernel;

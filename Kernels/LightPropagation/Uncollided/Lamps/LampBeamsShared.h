@@ -28,7 +28,7 @@ typedef struct
   float spacing[3];
   float direction[3];       ///< axis of a spot's cone or normal of a rectangle, unit vector in space
   float cosine, sineSquare; ///< cosine and squared sine of the half angle of a spot's cone
-  /// Fraction of the traced power (LampOnGrid::Share) emitted per steradian; at normal emission if LAMBERT
+  /// Fraction of the traced power (LampOnGrid::Share) emitted per steradian; if LAMBERT, along the normal
   float intensity;
   /// Fixed-point units per unit of the path integral, which is a fraction of the traced power times length
   float scale;

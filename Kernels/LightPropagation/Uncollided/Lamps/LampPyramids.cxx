@@ -83,9 +83,9 @@ std::array<double, 3> WeightsOfAxes(const Grid& grid, const glm::dvec3& position
   return weights;
 }
 
-/// Pyramid of beams along one sense of an axis. Tangents along the k-th axis after it are lateral voxels per layer,
-/// relative to `Base`: the tangent of a narrow cone's axis, so that they keep their precision however narrow the cone
-/// is, else 0.
+/// Pyramid of beams along one sense of an axis. Tangents along the k-th axis after the pyramid's axis (k = 1, 2) are
+/// lateral voxels per layer, relative to `Base`. For a narrow cone, `Base` is the tangent of the cone's axis, so that
+/// tangents are precise however narrow the cone is; otherwise it is 0.
 class Pyramid
 {
 public:
