@@ -19,9 +19,9 @@ namespace
 {
 constexpr double Aim = 0.95;          ///< Goal: estimated error at which the search ends, as a fraction of the target
 constexpr double DirectionPart = 0.9; ///< angular error that is allowed, as a fraction of Goal
-/// The angular error may always be at least this fraction of Goal (the error at which the search ends), even if the
-/// error due to voxel size leaves less room. Voxels are halved only if the error due to voxel size exceeds the same
-/// fraction of Goal.
+/// At least this fraction of Goal (the error at which the search ends) is allowed for the angular error, even if the
+/// error due to voxel size leaves less. Voxels are halved only if the error due to voxel size exceeds the same fraction
+/// of Goal.
 constexpr double LeastRoom = 0.3;
 /// More directions do not help if the error due to voxel size alone is above this multiple of Goal, the error at which
 /// the search ends.

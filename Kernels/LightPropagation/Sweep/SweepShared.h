@@ -36,8 +36,8 @@ enum
   /// rows before it is crossed
   RowsAhead = 2,
   FloatsOfLine = 16, ///< number of floats in a cache line
-  /// Lowest row at which the first stage of crossing a plane begins. If v is periodic, this stage also crosses two
-  /// ghost rows before row 0, copies of the rows at the other end of the plane
+  /// Lowest row at which the first stage of crossing a plane begins. If v is periodic, this stage also crosses up to
+  /// two ghost rows before row 0, copies of the rows at the other end of the plane
   FirstRow = -2
 };
 

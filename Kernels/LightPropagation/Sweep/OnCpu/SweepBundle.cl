@@ -65,8 +65,7 @@ typedef struct
 
 // For one channel and a vector of voxels, carries the rays of all directions (members) of a bundle through one segment,
 // i.e. through one voxel each.
-// own_path  path integral that a unit source in a voxel causes within that voxel, times the cosine between rays and
-// axis
+// own_path  path integral that a unit source in a voxel causes within that voxel, times the rays' cosine to the axis
 static inline __attribute__((always_inline)) void CROSS_CHANNEL(const SEGMENT_ROWS* rows, const MEMBER_WAYS* ways,
   int x, int c, const real_crossing* crossing, real own_path, const __global float** in, __global float* out)
 {

@@ -11,9 +11,9 @@
 //             FaceInfo tells which
 //   ROWS_KEPT  number of rows that are kept in scratch memory of chained planes, i.e. planes that a bundle crosses
 //              together; a power of two; 0: all rows
-//   SIDES     1: the box is a block of a larger domain (SweepSides.cl) A program takes seconds to compile. Options
-// whose test at run time costs little are therefore members of SweepInfo, so that sweeps of incident light and of
-// scattered light share one program.
+//   SIDES     1: the box is a block of a larger domain (SweepSides.cl)
+// A program takes seconds to compile. Options whose test at run time costs little are therefore members of SweepInfo, so
+// that sweeps of incident light and of scattered light share one program.
 //
 // Rays carry power (W), so escaped power is a plain sum over rays at every face. A row of a map holds the power of the
 // rays, at the voxels that they enter, for all directions (members) of a bundle and all channels: float
