@@ -48,7 +48,8 @@ struct CoarseLight
   }
 };
 
-/// The search of SolveToTargetError(). Collective: all ranks take the same steps.
+/// Search of SolveToTargetError() for the cheapest solve that meets the target error. Collective: all ranks take the
+/// same steps.
 class TargetSearch
 {
 public:
@@ -133,8 +134,8 @@ private:
     }
   }
 
-  /// Whether to measure the error of uncollided light separately: if it is large, if there are boundary sources, and if
-  /// the target needs many directions.
+  /// Whether to measure the error of uncollided light separately: it is large, there are boundary sources, and the
+  /// target needs many directions.
   bool MayHaveFinerUncollided() const
   {
     return this->Forecast->UncollidedPart() > MuchUncollided && ShinesThroughFaces(this->TheScene.illumination) &&

@@ -252,8 +252,8 @@ DirectionSet EquiangularDirections(int perFace, const std::string& name)
   const int n = set.cellsPerEdge;
   for (std::size_t d = 0; d < set.directions.size(); ++d)
   {
-    // Each weight is computed for the cell's mirror image in the first octant of the face, with sorted indices, so that
-    // the weights of equivalent cells agree to the last bit.
+    // Each weight is computed for the cell's mirror image in the first eighth of the face, so that the weights of cells
+    // that are equivalent by symmetry agree to the last bit.
     const int i = static_cast<int>(d) % n;
     const int j = static_cast<int>(d) / n % n;
     const int u = std::min(std::max(i, n - 1 - i), std::max(j, n - 1 - j));

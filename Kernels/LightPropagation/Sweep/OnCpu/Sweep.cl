@@ -77,7 +77,7 @@ typedef struct
   __global leaving_float* leaving;
 } swept_rays;
 
-// Arrays in a work-item's scratch memory, in addition to those in sweep_state.
+// Arrays in a work-item's scratch memory, besides the arrays to which sweep_state points.
 typedef struct
 {
   __global float* planes;

@@ -12,8 +12,8 @@
 //   ROWS_KEPT  number of rows that are kept in scratch memory of chained planes, i.e. planes that a bundle crosses
 //              together; a power of two; 0: all rows
 //   SIDES     1: the box is a block of a larger domain (SweepSides.cl)
-// A program takes seconds to compile. Options whose test at run time costs little are therefore members of SweepInfo, so
-// that sweeps of incident light and of scattered light share one program.
+// A program takes seconds to compile. Options whose test at run time costs little are therefore members of SweepInfo,
+// so that sweeps of incident light and of scattered light share one program.
 //
 // Rays carry power (W), so escaped power is a plain sum over rays at every face. A row of a map holds the power of the
 // rays, at the voxels that they enter, for all directions (members) of a bundle and all channels: float
@@ -57,8 +57,8 @@
 #define PERIODIC_V (PERIODIC && state->periodicV)
 #define KEPT_ROWS (CHAINED ? ROWS_KEPT : 0)
 
-// Position of a row and quantity in a plane, [row][quantity][float]: data used together is contiguous, and no stride is
-// a power of two. If KEPT_ROWS is not 0, only the rows that bundles are crossing are stored, in a ring buffer of
+// Rows of a plane are stored as [row][quantity][float], so that data used together is contiguous and no stride is a
+// power of two. If KEPT_ROWS is not 0, only the rows that bundles are crossing are stored, in a ring buffer of
 // KEPT_ROWS rows.
 #define PLACE_OF_ROW(row) (KEPT_ROWS ? (row) & (KEPT_ROWS - 1) : (row))
 // Row v of a quantity in the packed plane `planes`; `layout` is a PlaneInfo or a sweep_state.

@@ -73,7 +73,7 @@ static bool is_lit(const LampInfo* lamp, const BeamRow* row, const int* voxel)
       square_distance(lamp, voxel, row->whole) < row->wholeFrom);
 }
 
-// Adds power that leaves through one face of the box at a voxel to the tally and to the face's cell.
+// Adds power that leaves the box from a voxel through one face to the tally and to the face's cell at that voxel.
 static void leave_box(const LampInfo* lamp, int face, const int* voxel, float power, lamp_tally* tally)
 {
   if (!tally->counts)
