@@ -33,7 +33,7 @@ enum class ComparedMethod
 };
 const char* NameOf(ComparedMethod method);
 
-/// What is compared with the reference.
+/// Quantity that is compared with the reference.
 enum class ComparedQuantity
 {
   Fluence,
@@ -47,73 +47,77 @@ const char* NameOf(ComparedQuantity quantity);
 /// Whether a method traces photons.
 bool IsOfPhotons(ComparedMethod method);
 
-/// When Monte Carlo photons are the reference of a comparison whose refractive index is constant.
+/// Conditions under which Monte Carlo photons are the reference of a comparison, if the refractive index is constant.
 enum class MonteCarloReference
 {
   Never = 0,
   Always = 1, ///< always; scenes that photons cannot simulate are then an error
-  /// Only if the photons' standard error is forecast to be far below the error of the finest light propagation maps
-  /// that are compared.
+  /// Only if a forecast shows that the photons' standard error will be far below the error of the finest light
+  /// propagation maps that are compared.
   WhereItCanBeat = 2
 };
 
-/// Smallest number of directions per face for which light propagation maps with more than one ray per voxel edge and
-/// direction are tried.
+/// Light propagation maps with more than one ray per voxel edge and direction are tried only from this number of
+/// directions per face on.
 constexpr int FewestForFinerMaps = 25;
 
-/// Settings that a comparison tries. Propagation: all numbers of directions on all grids; map resolutions (rays per
-/// voxel edge and direction) above 1 on the scene's grid, from 25 directions per face on; limits on the number of
-/// scattering orders with the number of directions nearest to 25. Photons: all counts with the first of `samplers`, and
-/// the second largest count with the others, with the integrators and octrees, and with the voxelisations of a mesh.
-/// Lattices: both lattices, on all grids with cubic voxels; with a varying refractive index on the scene's grid only,
-/// with uncollided light from each count of photons. PhotonsThenMaps: each count of photons, with the number of
-/// directions nearest to 25. Pictures: each quality.
+/// Settings that a comparison tries, by method:
+/// - propagation: all numbers of directions on all grids; map resolutions (rays per voxel edge and direction) above 1
+///   on the scene's grid, from 25 directions per face on; limits on the number of scattering orders with the number of
+///   directions nearest to 25
+/// - photons: all counts with the first of `samplers`; the second largest count with the other samplers, with the
+///   integrators and octrees, and with the voxelisations of a mesh
+/// - lattices: both lattices, on all grids with cubic voxels; with a varying refractive index on the scene's grid only,
+///   with uncollided light from each count of photons
+/// - PhotonsThenMaps: each count of photons, with the number of directions nearest to 25
+/// - pictures: each quality
 struct ComparedSettings
 {
   std::vector<int> directionsPerFace = { 4, 9, 25, 64, 100 };
   std::vector<int> mapResolutions = { 1, 2 };
-  /// Factors by which the voxel edges of the compared grids exceed those of the scene's grid. Factors that do not
-  /// divide the scene's grid are left out.
+  /// Factors by which the voxel edges of the compared grids exceed those of the scene's grid. A factor is left out if
+  /// it does not divide the numbers of voxels of the scene's grid.
   std::vector<int> coarsenings = { 1, 2, 4 };
-  /// Limits on the number of scattering orders that are tried, in addition to a run without limit.
+  /// Limits on the number of scattering orders that are tried. A run without limit is always included.
   std::vector<int> orders = { 1, 3, 10 };
   std::vector<int> photonCounts = { 10000, 100000, 1000000 };
   std::vector<Sampler> samplers = { Sampler::Hammersley };
-  /// Numbers of terms of the phase function that discrete ordinates try with the number of directions nearest to 25, in
-  /// addition to as many terms as the default has and the quadrature supports.
+  /// Numbers of terms of the phase function that discrete ordinates try with the number of directions nearest to 25.
+  /// The default number of terms, as far as the quadrature supports it, is always included.
   std::vector<int> terms;
   bool previews = false; ///< whether light propagation maps try their preview
-  /// Orders and step sizes (MarchSettings) that Photons try along bent rays, each order with each step size, in
-  /// addition to the defaults; and tolerances of octrees, whose construction counts as run time.
+  /// Settings that Photons try along bent rays, in addition to the defaults: orders and step sizes of the integrator
+  /// (MarchSettings), each order with each step size; and tolerances of octrees, whose construction counts as run time.
   std::vector<int> integratorOrders;
   std::vector<double> stepSizes, octreeTolerances;
-  /// Numbers of samples per voxel edge, and widths of the filter of the index, with which a mesh is voxelised, each
-  /// number with each width.
+  /// Numbers of samples per voxel edge, and widths of the filter that smooths the refractive index, with which a mesh
+  /// is voxelised. Each number is combined with each width.
   std::vector<int> supersamplings = { 2, 4, 8 }, filterSizes = { 5, 9, 13 };
   double tolerance = PropagationSettings().tolerance; ///< tolerance of propagation, PropagationSettings::tolerance
-  /// Whether the photons that give the reference for a varying refractive index are followed through all collisions;
-  /// false: only up to the first one, which gives uncollided light.
+  /// Whether the photons that give the reference for a varying refractive index are followed through all collisions.
+  /// False: they are followed only up to the first collision, which gives uncollided light.
   bool scattersReference = false;
-  /// When Monte Carlo photons are the reference if the refractive index is constant; that reference shares no solver
-  /// with the compared propagation methods.
+  /// When Monte Carlo photons are the reference, if the refractive index is constant. This reference does not use any
+  /// of the compared propagation solvers.
   MonteCarloReference monteCarloReference = MonteCarloReference::WhereItCanBeat;
 };
 
-/// One method with one setting, ready to run: what becomes a row of the comparison.
+/// One method with one setting, ready to run. Its result is a row of the comparison.
 struct ComparedRun
 {
   ComparedMethod method = ComparedMethod::LightPropagationMaps;
   std::string setting; ///< description of the setting, for the user
   /// The filters that repeat the run, in the order of the data: "Filter Property=Value ... | Filter ...". A value is a
-  /// list of numbers with commas, "#2" for the output of the second filter, "@Mesh" for what is connected to the
-  /// comparison's input Mesh, or nothing: nothing is connected. All other inputs and properties are those of the
-  /// comparison. Empty: filters cannot repeat it (coarser voxels; photons unless ComparedScene::suitsEmitter).
+  /// list of numbers with commas; "#2" for the output of the second filter; "@Mesh" for the data set at the
+  /// comparison's input Mesh; or empty for an input without a data set. All other inputs and properties are those of
+  /// the comparison. Empty if filters cannot repeat the run: coarser voxels, or photons unless
+  /// ComparedScene::suitsEmitter.
   std::string filters;
   Grid grid;         ///< grid of the resulting light; a picture's pixels
   double cost = 1.0; ///< cost relative to other runs of the method: rays times voxels, or photons
   bool allOrders = true;
   bool estimates = false; ///< whether the method can estimate its own error
-  /// Computes the light; of a picture, its radiance as `fluence` of three channels.
+  /// Computes the light. For a picture, its radiance is returned as `fluence` of three channels.
   /// @param estimate  whether to estimate the error as well
   std::function<LightField(bool estimate, const Monitor& monitor)> solve;
 };
@@ -133,7 +137,7 @@ std::vector<ComparedRun> PropagationRunsOf(
 
 std::vector<ComparedRun> PictureRunsOf(Device& device, const ComparedScene& scene);
 
-/// The number of directions per face nearest to 25, with which settings are tried that do not concern directions.
+/// The number of directions per face nearest to 25. Settings other than directions are tried with it.
 int UsualDirections(const ComparedSettings& settings);
 
 /// Light of `photons` evenly distributed photons without a filter, for a reference.
@@ -141,14 +145,13 @@ int UsualDirections(const ComparedSettings& settings);
 LightField MarchEvenly(Device& device, const ComparedScene& scene, std::size_t photons, int orders, std::uint64_t seed,
   const Monitor& monitor);
 
-/// A chain: uncollided light by photons, then scattered light by a solver to which it is given.
+/// A run in two steps: photons give the uncollided light, and a solver computes the scattered light from it.
 /// @param solver  setting, filters, grid and cost of the solver alone
 /// @param solve  solves with the given illumination, which has no other light than the photons'
 ComparedRun AfterPhotons(int photons, ComparedRun solver, Device& device, const ComparedScene& scene,
   const std::function<LightField(const Illumination&, const Monitor&)>& solve);
 
-/// Radiance, 3 per pixel, with which pictures are compared: of rays that take small steps and end nowhere in the
-/// medium.
+/// Reference radiance for pictures, 3 per pixel. Its rays take small steps, and are not ended at a small transmittance.
 std::vector<float> ReferencePicture(Device& device, const ComparedScene& scene, const Monitor& monitor);
 
 /// Light by the conservative scheme of light propagation maps.

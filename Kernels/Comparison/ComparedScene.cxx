@@ -139,7 +139,7 @@ VoxelizedMaterials MaterialsOf(const Medium& medium, const Field& ior, const Fie
   CheckClosed(materials.inside.mesh, materials.inside.name, medium.grid, VoxelizationSettings().samples);
   if (ior.values)
   {
-    // The index is smoothed across the surface: the materials have its extremes.
+    // The index is smoothed across the surface, so the indices of the two materials are its extremes.
     const auto less = [&](std::size_t a, std::size_t b) { return ior.values[a] < ior.values[b]; };
     const auto in = std::minmax_element(inside.begin(), inside.end(), less);
     const auto out = std::minmax_element(outside.begin(), outside.end(), less);

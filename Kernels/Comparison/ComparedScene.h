@@ -33,17 +33,17 @@ std::optional<Factors> FactorsBetween(const Grid& fine, const Grid& coarse);
 /// @param factors  fine voxels per coarse voxel along each axis
 std::vector<float> Averaged(const float* values, int components, const Grid& fine, const Factors& factors);
 
-/// A closed mesh of one material in another.
+/// A closed mesh of one material, surrounded by another material.
 struct VoxelizedMaterials
 {
   Solid inside;
   Material outside;
 };
 
-/// The materials of a voxelised medium: those of the voxels entirely inside and entirely outside the mesh.
+/// The two materials of a voxelised medium, taken from voxels entirely inside and entirely outside the mesh.
 /// @param occupancy  fraction of each voxel inside the mesh
 /// @throws InvalidInput if no voxel is entirely inside or outside, voxels of one material differ in a coefficient (as
-///   with noise, or several materials), or the mesh is open
+/// with noise, or several materials), or the mesh is open
 VoxelizedMaterials MaterialsOf(const Medium& medium, const Field& ior, const Field& occupancy, TriangleMesh&& mesh);
 
 /// The scene that all solvers of a comparison solve. Does not own its arrays.
@@ -54,7 +54,7 @@ struct ComparedScene
   Field ior;                            ///< refractive index; null: 1 everywhere
   const std::uint8_t* levels = nullptr; ///< octree level of each voxel, for photons; null: no octree
   std::array<bool, 3> periodic = { false, false, false };
-  /// Whether a photon emitter can be given the scene's light: false with boundary radiance or a default sky.
+  /// Whether a photon emitter can emit the scene's light. False with boundary radiance or a default sky.
   bool suitsEmitter = true;
   /// The mesh that the medium was voxelised from, with its material and the one outside (MaterialsOf); null: none.
   const VoxelizedMaterials* mesh = nullptr;

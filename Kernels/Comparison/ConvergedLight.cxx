@@ -10,8 +10,8 @@ namespace tyndall
 {
 namespace
 {
-/// Settings of one candidate for the converged run of light propagation maps. Ladder lists the candidates from the most
-/// accurate to the cheapest.
+/// Settings of one candidate for the converged run of light propagation maps. The list Ladder has all candidates, from
+/// the most accurate to the cheapest.
 struct Rung
 {
   int refinement, directions, map;

@@ -28,8 +28,8 @@ inline Monitor PartUntil(const Device& device, double end, const Monitor& monito
   };
 }
 
-/// Nominal run times on two slow cores, seconds. The computation of the reference is chosen by these numbers and not by
-/// a clock, so that it does not depend on the machine's load; a clock only stops work that takes too long nevertheless.
+/// Nominal run times on two slow cores, seconds. These numbers decide how the reference is computed, so that the
+/// decision does not depend on the machine's load. A clock only stops work that takes too long nevertheless.
 struct NominalSeconds
 {
   static constexpr double OfRayVoxel = 5e-9;   ///< time to sweep one ray through one voxel, per channel
@@ -41,8 +41,8 @@ struct NominalSeconds
 /// Reference light with which the results of all methods are compared.
 struct ReferenceLight
 {
-  /// Grid of the reference: the scene's, or one that is finer or coarser by integer factors. Errors are computed on the
-  /// coarser of the reference's and the scene's grid.
+  /// Grid of the reference: the scene's grid, or one that is finer or coarser by integer factors. Errors are computed
+  /// on the coarser of the two grids.
   Grid grid;
   int channels = 1;
   /// Fluence, W / length^2, `channels` per voxel; empty: unknown; NaN: unknown in this voxel.
@@ -52,11 +52,11 @@ struct ReferenceLight
   std::string text;                 ///< description of the reference for the user
 };
 
-/// Computes reference light. With a constant refractive index, depending on ComparedSettings::monteCarloReference:
-/// Monte Carlo photons (PhotonReference.h), or a converged run of the best method, with 256 directions per face, two
-/// rays per voxel edge and tolerance 1e-6 on the grid with halved voxel edges; a run with fewer directions, rays or
-/// voxels if that one would take more than `seconds`, by NominalSeconds. With a varying index: photons, of uncollided
-/// light or of all light (ComparedSettings::scattersReference).
+/// Computes reference light. With a constant refractive index, ComparedSettings::monteCarloReference selects one of
+/// two: Monte Carlo photons (PhotonReference.h), or a converged run of the best method. The converged run has 256
+/// directions per face, two rays per voxel edge and tolerance 1e-6, on the grid with halved voxel edges. If it would
+/// take more than `seconds` (NominalSeconds), it has fewer directions, rays or voxels. With a varying index, the
+/// reference is uncollided light or all light from photons (ComparedSettings::scattersReference).
 /// @throws InvalidInput if MonteCarloReference::Always is set but photons cannot simulate this scene; what the monitor
 ///   throws, if the machine is far slower than NominalSeconds
 ReferenceLight ConvergedLight(Device& device, const ComparedScene& scene, const ComparedSettings& settings,

@@ -45,8 +45,8 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
     {
       continue;
     }
-    // The refractive index is constant here (AddBent adds the runs with a varying one), so that coarse grids need no
-    // array of it.
+    // The refractive index is constant here, so coarse grids need no array of it. AddBent adds the runs with a varying
+    // index.
     const SceneBlock given = { Domain(scene.medium.grid), scene.medium, scene.illumination,
       coarse ? Field() : scene.ior };
     const auto scaled = coarse ? std::make_shared<CoarseScene>(given, grid) : nullptr;
@@ -60,7 +60,8 @@ void AddStraight(std::vector<ComparedRun>& runs, int directions, Device& device,
         SolveLatticeBoltzmann(device, solved.domain, solved.medium, solved.index, solved.illumination, of, monitor);
       if (estimate)
       {
-        // without the index, which is constant: the estimate then needs no cubes on its coarse grid
+        // The scene without the index, which is constant: the error estimate then does not need cubic voxels on its
+        // coarse grid
         const SceneBlock straight = { solved.domain, solved.medium, solved.illumination };
         EstimateDiffusionError(device, straight, of, false, monitor, light);
       }

@@ -10,8 +10,8 @@ namespace tyndall
 {
 namespace
 {
-/// Index, in an array with `has` channels per voxel, of the value that has the index `index` in an array with `wanted`
-/// channels; `has` is `wanted` or 1.
+/// Converts an index in an array with `wanted` channels per voxel to the index of the same value in an array with `has`
+/// channels per voxel; `has` is `wanted` or 1.
 std::size_t PlaceOf(std::size_t index, int has, int wanted)
 {
   return has == wanted ? index : index / static_cast<std::size_t>(wanted);
@@ -19,22 +19,21 @@ std::size_t PlaceOf(std::size_t index, int has, int wanted)
 
 constexpr int FewestSets = 16, MostSets = 64;            ///< least and largest number of photon sets of the reference
 constexpr int FewestToForecast = 4, MostToForecast = 64; ///< least and largest number of photon sets of the pilot run
-/// Photons per set of the pilot run: the largest photon count of the comparison divided by PartToForecast, but at least
-/// LeastToForecast.
+/// Number of photons per set of the pilot run: the largest photon count of the comparison divided by PartToForecast,
+/// but at least LeastToForecast.
 constexpr std::size_t PartToForecast = 16, LeastToForecast = 1000;
 /// Largest number of photons per set; these photons take a hundred megabytes.
 constexpr std::size_t MostOfASet = std::size_t{ 1 } << 21;
 /// Photons are the reference only if their error is at most this fraction of the error of the finest light propagation
 /// maps.
 constexpr double Beats = 1.0 / 3.0;
-/// Error to which the photons of the reference are to be reduced, as a fraction of the error of the finest light
-/// propagation maps.
+/// Target for the error of the reference's photons, as a fraction of the error of the finest light propagation maps.
 constexpr double Enough = 0.1;
 
 constexpr double TypicalSweeps = 20.0;
 
-/// Light propagation maps for the forecast of whether photons are the better reference: with few directions and, if the
-/// time and the device allow, the finest maps that are compared.
+/// Light propagation maps for the forecast, which decides whether photons are the better reference. `coarse` has few
+/// directions. `finest` are the finest maps that are compared, if time and device allow them.
 struct ForecastMaps
 {
   std::optional<LightField> coarse, finest;
@@ -52,8 +51,8 @@ double SecondsOf(const PropagationSettings& settings, const ComparedScene& scene
     settings.mapResolution * static_cast<double>(scene.medium.grid.VoxelCount());
 }
 
-/// Computes those light propagation maps for the forecast that fit the device and take at most `seconds` together, by
-/// NominalSeconds.
+/// Computes the light propagation maps for the forecast. Maps are left out if they do not fit the device, or if all
+/// would take more than `seconds` together (NominalSeconds).
 ForecastMaps FindMaps(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
@@ -117,7 +116,7 @@ double SecondsOfPhoton(const ComparedScene& scene, const LightField& light)
         : 0.0);
 }
 
-/// A pilot run with a few photons, for the forecast.
+/// A pilot run with a few photons, from which the cost of a reference by photons is forecast.
 struct Pilot
 {
   MeansOfSets means;
@@ -289,7 +288,7 @@ ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, co
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor)
 {
-  // Seconds for the light propagation maps; the pilot run of photons may take as long.
+  // Time in seconds for the light propagation maps; the pilot run of photons may take the same time.
   const double part = 0.5 * PhotonForecast::PartOfTime * seconds;
   PhotonForecast forecast;
   ForecastMaps maps = FindMaps(device, scene, settings, part, OfPart(monitor, 0.0, 0.5));

@@ -27,9 +27,9 @@ public:
   /// Relative standard error: ratio of the root mean squares of the standard errors and of the means.
   double RelativeError() const;
 
-  /// Lower estimate of the squared error of other light on the same voxels: its squared distance from the means,
-  /// reduced by the value that is expected from the photons' noise alone and by twice the standard deviation of that
-  /// value; at least 0.
+  /// Lower estimate of the squared error of other light on the same voxels, at least 0. It is the squared distance of
+  /// that light from the means, minus the part of it that is expected from the photons' noise alone, minus twice the
+  /// standard deviation of this part.
   double SquaredErrorOf(const std::vector<float>& other, int channels) const;
 
 private:
@@ -40,12 +40,12 @@ private:
 };
 
 /// Reference by photons without a filter, in sixteen to sixty-four independent sets; ReferenceLight::text states the
-/// standard error. Photons are scattered until they are absorbed or leave if ComparedSettings::scattersReference is
-/// set. If `monitor` throws TimeIsUp after four sets or more, these sets are the result.
+/// standard error. If ComparedSettings::scattersReference is set, photons are scattered until they are absorbed or
+/// leave. If `monitor` throws TimeIsUp after four or more sets, the sets so far are the result.
 /// @param set  photons per set
 /// @param seconds  time that sets beyond sixteen may take, by NominalSeconds
 /// @param maps  light propagation maps whose uncollided light is used if it does not differ significantly from that of
-///   the photons; null: none
+/// the photons; null: none
 ReferenceLight ReferenceOfPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings,
   std::size_t set, double seconds, const LightField* maps, const Monitor& monitor);
 
@@ -55,19 +55,19 @@ struct PhotonForecast
   static constexpr double PartOfTime = 0.5; ///< fraction of the available time that the forecast may take
 
   bool beats = false;
-  /// Photons per set, in sixteen sets, for a standard error of a tenth of the error of the light propagation maps, or
-  /// as many as the time allows.
+  /// Number of photons per set, for sixteen sets. With this number the standard error is a tenth of the error of the
+  /// light propagation maps, unless the time allows only fewer photons.
   std::size_t photonsOfASet = 0;
   std::string why; ///< explanation for the user, with the errors of photons and maps
   /// The finest light propagation maps that are compared; no value if they take too long or do not fit the device.
   std::optional<LightField> maps;
 };
 
-/// Compares a few photons with the finest light propagation maps on the scene's own grid. The mean square of their
-/// difference, reduced by the photons' variance and by twice the standard deviation of that variance, is taken as the
-/// maps' squared error. Photons are forecast to be better if the standard error of as many photons as the time allows
-/// is at most a third of the maps' error, or if even maps of few directions take more than a quarter of the time. All
-/// times are NominalSeconds.
+/// Compares a few photons with the finest light propagation maps on the scene's own grid. The squared error of the maps
+/// is taken as the mean square of the difference, minus the photons' variance, minus twice the standard deviation of
+/// this variance. Photons are forecast to be better in two cases: as many photons as the time allows have a standard
+/// error of at most a third of the maps' error, or even maps of few directions take more than a quarter of the time.
+/// All times are NominalSeconds.
 /// @param seconds  time for forecast and reference together
 PhotonForecast ForecastOfPhotons(
   Device& device, const ComparedScene& scene, const ComparedSettings& settings, double seconds, const Monitor& monitor);

@@ -65,8 +65,8 @@ LightField TraceAllOrders(
   return light;
 }
 
-/// Reconstructs the fluence from batches of photons. Light with fewer than two batches, i.e. without photons in the
-/// volume, is returned unchanged.
+/// Reconstructs the fluence from batches of photons. With fewer than two batches, which happens if no photon reaches
+/// the volume, the light is returned unchanged.
 LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, const Monitor& monitor)
 {
   if (photons.batches < 2)
@@ -88,7 +88,7 @@ LightField Rebuilt(Device& device, const Grid& grid, PhotonLight&& photons, cons
 }
 
 /// Light by a complete photon run of a method, from the emission of photons to the reconstruction.
-/// @param levels  as ComparedScene::levels, in place of it
+/// @param levels  octree levels, which replace ComparedScene::levels
 LightField Trace(Device& device, const ComparedScene& scene, const std::uint8_t* levels, ComparedMethod method,
   EmissionSettings emission, MarchSettings marching, const Monitor& monitor)
 {
@@ -109,7 +109,7 @@ LightField Trace(Device& device, const ComparedScene& scene, const std::uint8_t*
     settings.pilotCount = std::min(settings.pilotCount, std::max<std::size_t>(emission.photonCount / 10, 1));
     importance = FindImportance(marcher, grid, scene.illumination, settings, OfPart(monitor, 0.0, 0.1));
     const std::size_t pilots = importance.map.Cells() * importance.map.lights.size();
-    // pilot photons are included in the photon count
+    // the photon count includes pilot photons
     emission.photonCount -= std::min(emission.photonCount - 1, pilots);
     emission.map = importance.even ? nullptr : &importance.map;
   }
@@ -118,7 +118,7 @@ LightField Trace(Device& device, const ComparedScene& scene, const std::uint8_t*
   return Rebuilt(device, grid, marcher.March(emitted.photons, OfPart(monitor, 0.3, 0.9)), OfPart(monitor, 0.9, 1.0));
 }
 
-/// What differs between runs of photons.
+/// Settings that differ between runs of photons.
 struct PhotonSetting
 {
   EmissionSettings emission;
@@ -138,8 +138,8 @@ PhotonSetting SettingWith(int count, Sampler sampler)
   return setting;
 }
 
-/// The integrators and octrees that photons try along bent rays.
-/// @param usual  what the other settings are
+/// Settings with the integrators and octrees that photons try along bent rays.
+/// @param usual  values of all other settings
 std::vector<PhotonSetting> AlongBentRays(const PhotonSetting& usual, const ComparedSettings& settings)
 {
   const MarchSettings defaults;
@@ -207,7 +207,7 @@ std::vector<PhotonSetting> SettingsToTry(
   return all;
 }
 
-/// Computes the light of one setting: voxelises and builds an octree first, if the setting asks for it.
+/// Computes the light of one setting. Voxelises the mesh and builds an octree first, if the setting asks for it.
 LightField SolveWith(const PhotonSetting& setting, ComparedMethod method, Device& device, const ComparedScene& scene,
   bool estimate, const Monitor& monitor)
 {

@@ -19,7 +19,8 @@ namespace
 struct Setting
 {
   int directions = 25, map = 1, coarsening = 1, orders = 0;
-  /// Terms of the phase function, for discrete ordinates; 0: as many as the default has and the quadrature supports.
+  /// Number of terms of the phase function, for discrete ordinates; 0: the default number, as far as the quadrature
+  /// supports it.
   int terms = 0;
 };
 
@@ -61,8 +62,8 @@ std::vector<Setting> SettingsToTry(ComparedMethod method, const ComparedSettings
   return all;
 }
 
-/// Settings of discrete ordinates that correspond to those of propagation, with as many spherical harmonics as the
-/// quadrature supports, or with `terms` terms.
+/// Settings of discrete ordinates that correspond to settings of propagation, with `terms` terms of the phase function
+/// or, if `terms` is 0, with as many spherical harmonics as the quadrature supports.
 OrdinatesSettings AsOrdinates(const PropagationSettings& settings, int terms)
 {
   OrdinatesSettings as;
@@ -80,7 +81,7 @@ OrdinatesSettings AsOrdinates(const PropagationSettings& settings, int terms)
 
 /// The solver of a method.
 /// @param device  must outlive the solver
-/// @param terms  Setting::terms
+/// @param terms  number of terms of the phase function, Setting::terms
 PropagationSolver SolverOf(ComparedMethod method, Device& device, int terms)
 {
   return
@@ -186,7 +187,8 @@ ComparedRun PreviewOf(Device& device, const ComparedScene& scene, const Compared
   return run;
 }
 
-/// Maps that scatter the light of each count of photons.
+/// Runs in which each count of photons gives the uncollided light, and light propagation maps compute the scattered
+/// light.
 std::vector<ComparedRun> RunsAfterPhotons(Device& device, const ComparedScene& scene, const ComparedSettings& settings)
 {
   std::vector<ComparedRun> runs;

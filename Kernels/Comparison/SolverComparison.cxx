@@ -42,7 +42,7 @@ std::vector<float> InChannels(std::vector<float> values, int has, int wanted)
   return inAll;
 }
 
-/// Transfers results to the coarser of the grids of the scene and of the reference, and computes their errors there.
+/// Computes errors. Results are first transferred to the coarser of two grids, the scene's and the reference's.
 class Comparator
 {
 public:
@@ -61,8 +61,8 @@ public:
     this->FluenceDirect = this->AsCompared(reference.fluenceDirect, fromReference);
   }
 
-  /// Whether the reference includes the light that a method computes; true without any reference, since runs are then
-  /// only timed.
+  /// Whether the reference includes the quantity that a method computes. True if there is no reference, since runs are
+  /// then only timed.
   bool Has(ComparedMethod method) const { return !this->IsThere || !this->For(QuantityOf(method)).empty(); }
 
   /// Fluence of the reference in the scene's voxels, for pictures; empty if it is not known.
@@ -123,7 +123,7 @@ private:
   std::vector<float> Fluence, FluenceDirect;
 };
 
-/// Reason why what a method computes cannot be compared; empty if it can be.
+/// Reason why the quantity that a method computes cannot be compared; empty if it can be compared.
 std::string WhyNotComparable(ComparedMethod method, const Comparator& comparator)
 {
   return comparator.Has(method)                             ? ""
@@ -131,7 +131,7 @@ std::string WhyNotComparable(ComparedMethod method, const Comparator& comparator
                                                             : "the reference has no 'fluence'";
 }
 
-/// Reason why a method is not compared on a scene; empty if it is.
+/// Reason why a method is not compared on a scene; empty if it is compared.
 std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comparator& comparator)
 {
   const bool lattice = method == ComparedMethod::LatticeBoltzmann;
@@ -144,7 +144,8 @@ std::string WhyNot(ComparedMethod method, const ComparedScene& scene, const Comp
   {
     return "its voxels have to be cubes";
   }
-  // With a varying refractive index, photons compute the uncollided light of a lattice run.
+  // Photon methods compute light by photons. So does a lattice run with a varying refractive index, for its uncollided
+  // light.
   if (IsOfPhotons(method) || method == ComparedMethod::PhotonsThenMaps || (lattice && scene.BendsLight()))
   {
     const std::string why = scene.WhyNotByPhotons(QuantityOf(method) == ComparedQuantity::Fluence);
@@ -223,8 +224,8 @@ private:
     return this->TheDevice.Now() - start;
   }
 
-  /// Runs a setting repeatedly and returns its run times, seconds. A run that compiled kernels is left out, unless the
-  /// time allows no other.
+  /// Runs a setting repeatedly and returns its run times, seconds. The time of a run that compiled kernels is left out,
+  /// unless the time limit allows no other run.
   /// @param left  time that all repeats may take, seconds
   /// @param light  receives the light
   std::vector<double> TimesOf(const ComparedRun& run, double left, LightField& light, const Monitor& monitor)
@@ -320,7 +321,7 @@ private:
   int Late = 0;
 };
 
-/// The runs of all methods that the scene allows; adds the reasons why other methods are left out to result.leftOut.
+/// The runs of all methods that the scene allows. If a method is left out, the reason is added to result.leftOut.
 std::vector<Lane> LanesOf(Device& device, const ComparedScene& scene, const ComparisonSettings& settings,
   const Comparator& comparator, Comparison& result)
 {
@@ -368,13 +369,13 @@ std::size_t RunInTurns(
   return count;
 }
 
-/// Reference light, computed by ConvergedLight within half of the time budget, of the scene's mesh if it has one;
-/// empty, with a warning, if the machine is too slow for any reference.
+/// Reference light, computed by ConvergedLight within half of the time budget. If the scene has a mesh, the reference
+/// is computed from it. Empty, with a warning, if the machine is too slow for any reference.
 /// @param budget  time budget of the comparison, seconds
 ReferenceLight ReferenceWithin(Device& device, const ComparedScene& scene, const ComparedSettings& tried, double budget,
   std::vector<std::string>& warnings, const Monitor& monitor)
 {
-  constexpr std::size_t few = std::size_t(1) << 18; // of so many voxels, those a quarter as large fit most devices
+  constexpr std::size_t few = std::size_t(1) << 18; // voxels up to which edges a quarter as long fit most devices
   constexpr int samples = 16;
   const int refinement = scene.medium.grid.VoxelCount() <= few ? 4 : 2;
   const Monitor watch = PartUntil(device, device.Now() + 0.5 * budget, monitor, 0.0, 1.0);
@@ -429,7 +430,8 @@ ComparedSettings TriedBy(const ComparisonSettings& settings)
   if (tried.monteCarloReference == MonteCarloReference::WhereItCanBeat &&
     std::all_of(methods.begin(), methods.end(), IsOfPhotons))
   {
-    // No photons: maps are free of noise, and share no solver with the compared photons.
+    // The reference is not computed by photons: light propagation maps have no noise, and share no solver with the
+    // compared photons.
     tried.monteCarloReference = MonteCarloReference::Never;
   }
   tried.scattersReference = tried.monteCarloReference == MonteCarloReference::Always ||
@@ -501,7 +503,7 @@ ComparisonRow* BestOf(std::vector<ComparisonRow>& rows, ComparedQuantity quantit
   return best;
 }
 
-/// Makes pictures show the light of the filters `light`.
+/// Changes the rows of pictures so that they show the light of the filters `light`.
 void ShowLight(const std::string& light, std::vector<ComparisonRow>& rows)
 {
   const auto last = std::count(light.begin(), light.end(), '|') + 1;

@@ -41,17 +41,17 @@ struct ComparisonRow
   bool recommended = false; ///< see MarkRecommended
 };
 
-/// Sets `pareto` of each row that no other row for the same quantity (QuantityOf) dominates, i.e. is at least as fast
-/// and as accurate, and faster or more accurate. Rows without an error are not marked.
+/// Marks (`pareto`) the rows that no other row for the same quantity (QuantityOf) dominates. A row dominates another if
+/// it is at least as fast and as accurate, and faster or more accurate. Rows without an error are not marked.
 void MarkPareto(std::vector<ComparisonRow>& rows);
 
-/// Sets `recommended` of one row per quantity, among those with an error that filters can repeat: the fastest whose L2
-/// error is at most `acceptedError` or, if there is none, the most accurate. Pictures are made to show the recommended
-/// fluence, if there is one: its filters are prepended to theirs.
+/// Marks one row per quantity as recommended: the fastest with an L2 error of at most `acceptedError` or, if there is
+/// none, the most accurate. Only rows with an error that filters can repeat are considered. If a fluence is
+/// recommended, pictures are made to show it: its filters are prepended to theirs.
 void MarkRecommended(std::vector<ComparisonRow>& rows, double acceptedError);
 
-/// The recommended row that a user wants: of pictures, else of fluence, else of uncollided fluence; null if there is
-/// none.
+/// The recommended row that a user wants most: that of pictures, otherwise of fluence, otherwise of uncollided fluence.
+/// Null if no row is recommended.
 const ComparisonRow* RecommendedOf(const std::vector<ComparisonRow>& rows);
 
 struct RelativeErrors
@@ -69,9 +69,9 @@ struct ComparisonSettings
   ComparedSettings tried;
   /// Timed runs per setting, after a run that compiles kernels; fewer if the time budget does not allow them.
   int repeats = 3;
-  /// Total time budget, seconds: half of it for the reference, unless that is given; the methods share the rest. A run
-  /// that exceeds the budget is not started, or is stopped. Apart from that, the clock does not influence the
-  /// comparison.
+  /// Total time budget, seconds. Half of it is for the reference, unless the reference is given; the methods share the
+  /// rest. A run that exceeds the budget is not started, or is stopped. Apart from that, the clock does not influence
+  /// the comparison.
   double timeBudget = 300.0;
   double acceptedError = 0.01; ///< L2 error that the recommended setting may have
   bool estimates = true;       ///< whether solvers estimate their errors, in an extra run that is not timed

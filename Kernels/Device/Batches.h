@@ -21,8 +21,8 @@ struct Batches
   double from = 0.0, to = 1.0; ///< progress that is reported at the start and at the end, in [0, 1]
 };
 
-/// Calls queue(begin, size), which queues work on the device, for each batch; after each call, waits for the device and
-/// reports progress.
+/// Calls queue(begin, size), which queues work on the device, once per batch. Waits for the device and reports progress
+/// after each batch.
 /// @throws Aborted
 template <class Queue>
 void InBatches(Device& device, const Batches& batches, const Monitor& monitor, const Queue& queue)

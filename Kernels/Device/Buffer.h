@@ -58,7 +58,8 @@ public:
   std::size_t Size() const { return this->Count; }
   const cl::Buffer& Handle() const { return this->Memory.memory; }
 
-  /// Write copies the host's `values` to the array, and Read the array to `values`, after waiting for the device.
+  /// Copy values between the host and the array, after waiting for the device: Write from `values` to the array, Read
+  /// from the array to `values`.
   void Write(const T* values) { this->Write(values, this->Count); }
   void Write(const T* values, std::size_t count) ///< copies the first `count` values only
   {

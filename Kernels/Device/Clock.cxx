@@ -48,8 +48,8 @@ struct Compiling
 {
   std::mutex Guard;
   int Threads = 0;
-  /// `Since`: time at which the current period began in which any thread compiles. `Before`: total duration of earlier
-  /// such periods. Seconds.
+  /// Seconds. A period is a time during which at least one thread compiles. `Since`: start of the current period.
+  /// `Before`: total duration of earlier periods.
   double Since = 0.0, Before = 0.0;
 };
 

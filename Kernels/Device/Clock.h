@@ -17,7 +17,7 @@ inline double ClockSeconds()
 }
 
 /// Number of different kernels that this process's devices have created. A kernel is compiled, or read from a cache,
-/// when it is first run; a timing during which this number does not change includes no compilation.
+/// when it first runs. If this number does not change while run time is measured, the time includes no compilation.
 std::size_t KernelsMade();
 /// Counts a kernel that a device has created.
 /// @param program  program of the kernel, which must not be destroyed
@@ -36,9 +36,9 @@ public:
   WhileCompiling& operator=(const WhileCompiling&) = delete;
 };
 
-/// Callback during compilation. During the lifetime of this object, its `call` runs every 150 ms in the thread that
-/// created it, whenever that thread waits for a device's compiler (seconds, if the kernels are not cached). If a thread
-/// has several listeners, the latest one is called.
+/// Callback during compilation, which takes seconds if the kernels are not cached. While this object exists, its `call`
+/// runs every 150 ms in the thread that created it, whenever that thread waits for a device's compiler. If a thread has
+/// several listeners, the latest one is called.
 class CompilationListener
 {
 public:
@@ -52,8 +52,8 @@ public:
   /// The listener that this thread created last and has not destroyed; null if there is none.
   static const CompilationListener* OfThisThread();
 
-  /// Waits until isDone(duration), which waits for at most `duration`, returns true; calls the listener after each
-  /// false.
+  /// Calls isDone(duration) until it returns true, and the listener after each false. isDone waits for at most
+  /// `duration`.
   /// @return whether the listener was called
   template <class IsDone>
   bool Wait(const IsDone& isDone) const
@@ -68,7 +68,7 @@ public:
   }
 
 private:
-  /// Time between two calls of the listener; a program that is in the compiler's cache is read in less.
+  /// Time between two calls of the listener. Reading a program from the compiler's cache takes less.
   static constexpr std::chrono::milliseconds Patience{ 150 };
 
   Call TheCall;

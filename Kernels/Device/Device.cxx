@@ -39,15 +39,15 @@ struct Shared
   std::vector<std::string> Warnings;
 };
 
-/// The shared state, which is never destroyed: an OpenCL platform may be unloaded before static objects are destroyed,
-/// and must not be called then.
+/// The shared state. It is never destroyed, because an OpenCL platform may be unloaded before static objects are
+/// destroyed, and must not be called then.
 Shared& TheShared()
 {
   static auto& shared = *new Shared;
   return shared;
 }
 
-/// Notes the checksums of compiled programs. Called at the end of the process, so that the next process can detect
+/// Records the checksums of compiled programs. Called at the end of the process, so that the next process can detect
 /// files that were damaged in the meantime.
 void NoteWhatWasCompiled()
 {
@@ -88,7 +88,7 @@ std::optional<std::size_t> LimitOfMemory()
   return limited ? std::optional<std::size_t>(limit.rlim_cur >> 20) : std::nullopt;
 }
 
-/// Sentence for an error message: OpenCL drivers need memory for their compiler, and how to provide it.
+/// Sentence for an error message: the compiler of an OpenCL driver needs more memory, and how to provide it.
 std::string NeedsMemory()
 {
   const std::optional<std::size_t> limit = LimitOfMemory();
@@ -113,7 +113,7 @@ std::vector<Candidate> AllDevices(Shared& shared, std::string& troubles)
   }
   if (platforms.empty())
   {
-    // If memory is short, the OpenCL loader reports as well that there is no driver.
+    // The OpenCL loader reports that there is no driver also if memory is short.
     troubles += tooLittleMemory || LimitOfMemory() ? NeedsMemory() + " If there is no driver, install one:"
                                                    : std::string(" Install one:");
     troubles += " Debian's package pocl-opencl-icd runs OpenCL on the CPU.";
@@ -212,8 +212,8 @@ std::size_t MemoryOf(const cl::Device& device)
   return cpu ? std::max<std::size_t>(said, HostMemory() / 4 * 3) : said;
 }
 
-/// Whether kernels have their CPU variants on a device. The environment variable TYNDALL_AS_GPU selects the GPU
-/// variants on a CPU, for tests.
+/// Whether a device runs the CPU variants of kernels. The environment variable TYNDALL_AS_GPU selects the GPU variants
+/// on a CPU, for tests.
 bool IsTakenAsCpu(const cl::Device& device)
 {
   return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_CPU) != 0 && !std::getenv("TYNDALL_AS_GPU");
@@ -266,8 +266,8 @@ Device::Device(Device& whole, const MemoryBudget& budget)
 
 namespace
 {
-/// Whether the environment variable TYNDALL_WITHOUT, for tests, names a property (extension, host_memory, cache) that
-/// devices are assumed not to have.
+/// Whether the environment variable TYNDALL_WITHOUT names a property (an extension, host_memory or cache). Tests use it
+/// to run code for devices that lack the property.
 bool IsHidden(const std::string& name)
 {
   const char* hidden = std::getenv("TYNDALL_WITHOUT");
@@ -311,7 +311,7 @@ std::string NameWithStreaming(const Device& ofSolve)
 
 namespace
 {
-/// A buffer of a CPU device in memory pages of 2 MB, if available; with small pages, address translation (TLB misses)
+/// A buffer of a CPU device in memory pages of 2 MB, if available. With small pages, address translation (TLB misses)
 /// limits marches across a large grid.
 cl::Buffer InHugePages(const cl::Context& context, cl_mem_flags flags, std::size_t bytes)
 {
@@ -365,7 +365,7 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
     try
     {
       Allocation allocation = this->Whole->Allocate(bytes, flags, what, residence);
-      // the device `Whole` is itself a view, with a memory budget, and placed the buffer in host memory
+      // the device `Whole` is itself a view with a memory budget, and has placed the buffer in host memory
       if (allocation.onHost)
       {
         this->Memory.GiveBack(bytes);
@@ -399,8 +399,8 @@ Device::Allocation Device::Allocate(std::size_t bytes, cl_mem_flags flags, const
   }
 }
 
-/// Allocates a buffer in host memory. Only for views (devices with a solve's memory budget). If kernels use host memory
-/// in place, the bytes count towards the memory of the device.
+/// Allocates a buffer in host memory. Only for views, the devices that have the memory budget of a solve. If kernels
+/// use host memory in place, the bytes count towards the memory of the device.
 Device::Allocation Device::AllocateOnHost(std::size_t bytes, cl_mem_flags flags, const char* what)
 {
   constexpr const char* Advice = "a coarser grid or fewer directions";

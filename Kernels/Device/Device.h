@@ -23,14 +23,14 @@ namespace tyndall
 class Device
 {
 public:
-  /// The device whose name or platform contains `name` (case-insensitive). If `name` is empty: the device that the
-  /// environment variable TYNDALL_DEVICE names, else PoCL's CPU device, else the first device. Later calls return the
-  /// same object, so that programs are built once per process.
+  /// The device whose name or platform contains `name` (case-insensitive). An empty `name` stands for the device that
+  /// the environment variable TYNDALL_DEVICE names or, without this variable, for PoCL's CPU device, or else for the
+  /// first device. Later calls return the same object, so that programs are built once per process.
   /// @throws DeviceError if there is no such device; the text lists the available devices
   static std::shared_ptr<Device> Find(const std::string& name = {});
 
-  /// Warnings about how devices were opened since the last call, e.g. that compiled programs are cached elsewhere than
-  /// the user asked.
+  /// Warnings about how devices were opened since the last call, for example that compiled programs are cached in
+  /// another folder than the user asked for.
   static std::vector<std::string> TakeWarnings();
 
   /// Creates the context and the queue of an OpenCL device.
@@ -51,8 +51,8 @@ public:
   {
     return this->Cpu ? std::clamp(this->VectorWidth, least, most) : leastOnGpu;
   }
-  /// Whether the device has an OpenCL extension. False for extensions named in the environment variable TYNDALL_WITHOUT
-  /// (separated by blanks), which serves to test the code for devices without them.
+  /// Whether the device has an OpenCL extension. False for extensions that the environment variable TYNDALL_WITHOUT
+  /// names (separated by blanks), which tests use.
   bool HasExtension(const std::string& name) const;
 
   /// Limit, in bytes, for all buffers on this device together: the memory that OpenCL reports, but on a CPU at least
@@ -74,8 +74,8 @@ public:
   void ResetPeak() { this->Memory.ResetPeak(); }
 
   /// A kernel of the program `source`. Programs are cached, so that a second call with the same source and options
-  /// costs nothing. The kernel belongs to the caller: two threads receive two objects, since OpenCL does not allow them
-  /// to set the arguments of one kernel object.
+  /// costs nothing. The kernel object belongs to the caller; two threads receive two objects, because OpenCL does not
+  /// allow them to set the arguments of one object.
   /// @param name  name of the kernel function
   /// @param source  text of a .cl file with its includes expanded (kernel_source::...)
   /// @param options  compiler options, e.g. "-DCHANNELS=3"
@@ -100,18 +100,18 @@ public:
   /// Creates another in-order queue, with profiling events. Commands on both queues may run concurrently.
   cl::CommandQueue AnotherQueue() const { return { this->TheContext, this->TheDevice, CL_QUEUE_PROFILING_ENABLE }; }
   void Finish();
-  /// Waits for all queued commands and notifies this thread's CompilationListener, if a program was compiled since the
-  /// last wait: PoCL completes the compilation of a kernel at its first run. Must be called before any other wait for
-  /// queued commands, e.g. a blocking read.
+  /// Waits for all queued commands if a program was compiled since the last wait, and meanwhile notifies this thread's
+  /// CompilationListener: PoCL completes the compilation of a kernel at its first run. Must be called before any other
+  /// wait for queued commands, for example a blocking read.
   void AwaitFirstRuns();
 
   /// Allocates the memory pages of a buffer of `bytes` bytes that will be written completely (tyndall::TakePages). Does
   /// nothing if the device has its own memory, or for a few pages.
   void TakePages(const cl::Buffer& memory, std::size_t bytes) const;
 
-  /// Adds `seconds`, the estimated run time of work that was queued, and waits for all queued work once the sum reaches
-  /// a tenth of a second: progress is then reported and aborts are noticed that often, while short kernels follow each
-  /// other without the host.
+  /// Adds `seconds`, the estimated run time of queued work, to a sum, and waits for all queued work once the sum
+  /// reaches a tenth of a second. Progress is then reported, and aborts are noticed. Between these waits, short kernels
+  /// follow each other without the host.
   void Queued(double seconds);
 
   /// Seconds of the clock by which work is distributed: WorkSeconds, or a test's clock, which must be set before work
@@ -140,8 +140,8 @@ private:
   std::shared_ptr<KernelPrograms> Programs; ///< programs, shared by all views of the device
 };
 
-/// The device's name for the user, followed, if a solve used host memory, by the amounts of memory used on the device
-/// and in host memory.
+/// The device's name for the user. If a solve used host memory, the amounts of memory used on the device and in host
+/// memory follow.
 /// @param ofSolve  the view of the device with the solve's budget
 std::string NameWithStreaming(const Device& ofSolve);
 
@@ -151,8 +151,8 @@ inline std::string Define(const char* name, int value)
   return std::string(" -D") + name + "=" + std::to_string(value);
 }
 
-/// Work-group size for work-items that each process a row or more. CPU: 1, so that all threads receive work. GPU: the
-/// driver's choice, since groups of one work-item would leave most lanes of its vector units idle.
+/// Work-group size for work-items that each process a row or more. CPU: 1, so that all threads receive work. GPU:
+/// chosen by the driver, since groups of one work-item would leave most lanes of the vector units idle.
 /// @param dimensions  dimensions of the range, 1 to 3
 inline cl::NDRange GroupOfLargeItems(const Device& device, int dimensions = 1)
 {

@@ -8,8 +8,9 @@
 
 namespace tyndall
 {
-/// The caller's array for use by kernels: the caller's memory itself on a CPU, else a copy on the device. The array
-/// must outlive this object, and must not be accessed between a kernel's start and the device's next Finish (or Fetch).
+/// The caller's array, for use by kernels: the caller's memory itself on a CPU, otherwise a copy on the device. The
+/// array must outlive this object. It must not be accessed between a kernel's start and the device's next Finish (or
+/// Fetch).
 template <class T>
 class HostMappedBuffer
 {
@@ -33,8 +34,8 @@ public:
   HostMappedBuffer(const HostMappedBuffer&) = delete;
   HostMappedBuffer& operator=(const HostMappedBuffer&) = delete;
 
-  /// Waits for the device. After a failure, kernels queued before may still access the caller's array, which the caller
-  /// may free once this object is destroyed.
+  /// Waits for the device, because the caller may free the array once this object is destroyed. After a failure,
+  /// kernels that were queued before may still access the array.
   ~HostMappedBuffer()
   {
     if (this->Count > 0 && this->Copy.Size() == 0)
@@ -102,7 +103,7 @@ private:
 };
 
 /// Array on a device that is zero where nothing was written. On a CPU, parts that are never written use no memory,
-/// since the system maps new pages to a single page of zeros; only the written parts must fit.
+/// since the system maps new pages to a single page of zeros. Only the written parts must fit.
 template <class T>
 class ZeroedBuffer
 {

@@ -9,8 +9,8 @@ namespace tyndall
 /// Size of the machine's main memory, bytes.
 std::size_t HostMemory();
 
-/// Checks that arrays fit the machine's memory before they are allocated, because a machine that swaps memory to disk
-/// reports no error.
+/// Checks that arrays fit the machine's memory before they are allocated. Otherwise a machine that swaps memory to disk
+/// would become slow without an error.
 /// @param bytes  total size of the arrays
 /// @param what  description of the arrays, e.g. "A medium of 4 x 4 x 4 voxels (28 bytes each)"
 /// @param advice  a sentence that says what to do if they do not fit
@@ -20,9 +20,9 @@ void RequireHostMemory(double bytes, const std::string& what, const std::string&
 /// size of a large memory page, bytes, where the system has pages larger than 4 kB
 constexpr std::size_t LargePage = std::size_t(1) << 21;
 
-/// Allocates the pages of a memory range now, on all cores and in pages of 2 MB if available: page faults of a single
-/// core, 4 kB each, can take longer than filling the memory. Contents are preserved. Use it for memory that will be
-/// written completely.
+/// Allocates the pages of a memory range now, on all cores and in pages of 2 MB if available. Page faults of a single
+/// core, 4 kB each, can take longer than filling the memory. Contents are preserved. For memory that will be written
+/// completely.
 void TakePages(void* memory, std::size_t bytes);
 
 /// An empty vector with capacity for `count` values, whose pages are allocated by TakePages.
@@ -51,6 +51,7 @@ struct ZeroedArray
   std::size_t count;
 };
 
-/// Fills several arrays with zeros on all cores; a single core would take as long as the kernels that fill them later.
+/// Fills several arrays with zeros on all cores. On a single core this would take as long as the kernels that fill the
+/// arrays later.
 void MakeZeros(std::vector<ZeroedArray> arrays);
 }

@@ -12,13 +12,13 @@ namespace tyndall
 {
 namespace
 {
-/// Text prepended to every source. Clang warns that the calling convention of wide vectors depends on the target;
-/// kernel functions are never called from outside, so the warning does not matter.
+/// Text prepended to every source, which turns off a warning of Clang: the calling convention of wide vectors depends
+/// on the target. This does not matter, because kernel functions are never called from outside.
 const char* const WideVectors = "#ifdef __clang__\n#pragma clang diagnostic ignored \"-Wpsabi\"\n#endif\n";
 
 std::atomic<bool> AnyCompiled{ false };
 
-/// Advice, for the message of a failure that states no reason, to delete the folder of compiled kernels; empty if that
+/// Advice to delete the folder of compiled kernels, for the message of a failure that states no reason. Empty if the
 /// folder is not known.
 std::string AdviceOnCache(const std::string& folder)
 {
@@ -41,7 +41,8 @@ std::unique_lock<std::timed_mutex> LockHeard(std::timed_mutex& mutex)
   return lock;
 }
 
-/// Calls `build`; while it runs, this thread's CompilationListener (a progress callback, if there is one) is called.
+/// Calls `build`. Meanwhile, this thread's CompilationListener (a progress callback), if there is one, is called
+/// repeatedly.
 /// @return whether the call took longer than reading a program from a cache; false without a listener
 bool CallHeard(const std::function<void()>& build)
 {

@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// Cache of the programs built for one device. The device shares it with its views, the objects by which several solves
-/// use one device, each with a memory budget of its own. Thread-safe.
+/// Cache of the programs built for one device. The device shares the cache with its views, through which several solves
+/// use the device, each with its own memory budget. Thread-safe.
 class KernelPrograms
 {
 public:
@@ -23,12 +23,14 @@ public:
   /// Returns a kernel of a program, which is built unless it is in the cache. Device::Kernel calls this function.
   cl::Kernel Kernel(const char* name, std::string_view source, const std::string& options);
 
-  /// Whether a program was compiled since the last call, in a build so slow that it notified a CompilationListener.
+  /// Whether, since the last call of this function, a program was compiled in a build so slow that it notified a
+  /// CompilationListener.
   bool TakeCompiled() { return this->CompiledSince.exchange(false); }
   static bool HaveCompiled(); ///< whether this process has compiled a program rather than read it from a cache
 
 private:
-  /// A cached program. The first thread that needs it builds it; threads that need other programs do not wait.
+  /// A cached program. The first thread that needs the program builds it; other threads wait only if they need the same
+  /// program.
   struct KeptProgram
   {
     std::timed_mutex Building;

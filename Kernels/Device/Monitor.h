@@ -6,8 +6,9 @@
 
 namespace tyndall
 {
-/// Progress callback: every long computation calls it at least about ten times a second with the fraction of the work
-/// that is done, in [0, 1]; it returns false to abort. Called on the thread that started the computation.
+/// Progress callback. Every long computation calls it at least about ten times a second, with the fraction of the work
+/// that is done, in [0, 1]. It returns false to abort the computation. Called on the thread that started the
+/// computation.
 using Monitor = std::function<bool(double fractionDone)>;
 
 /// Monitor for a part of the work. Empty if `monitor` is.

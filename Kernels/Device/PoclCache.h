@@ -6,8 +6,8 @@
 
 namespace tyndall
 {
-/// The cache folder to which PoCL writes compiled programs. It is checked before PoCL uses it, because PoCL finds no
-/// device if it cannot create the folder, and ends the process if the disk is full or a file in the folder is damaged.
+/// The cache folder to which PoCL writes compiled programs. It is checked before PoCL uses it. PoCL finds no device if
+/// it cannot create the folder, and ends the process if the disk is full or a file in the folder is damaged.
 struct PoclCache
 {
   /// Free space that the folder must have, bytes; the compiled kernels of a scene need less.
@@ -40,8 +40,8 @@ struct DamagedFiles
 };
 
 /// A locked file in PoCL's cache folder that exists during the lifetime of this object and marks that this process is
-/// building a program. PoCL ends the process if cached bitcode is damaged in an undetectable way; the file then
-/// remains.
+/// building a program. If cached bitcode is damaged in a way that cannot be detected, PoCL ends the process while it
+/// builds; the file then remains.
 class BuildMark
 {
 public:
@@ -60,22 +60,21 @@ private:
 ///  - they are bitcode or libraries that are truncated, overwritten or unreadable;
 ///  - their contents changed since an earlier call recorded their checksums in the folder;
 ///  - two processes that started within the last hour, at least ten seconds apart, ended while they were building a
-///    program (BuildMark): then the files of all programs count as damaged.
-/// Files that look unchanged since their checksums were recorded are not read. Other processes may call this function,
-/// and PoCL may write, at the same time: PoCL writes files under another name and then renames them, so that none is
-/// incomplete.
+///    program (BuildMark): then the files of all programs count as damaged. Files that look unchanged since their
+///    checksums were recorded are not read. Other processes may call this function at the same time, and PoCL may
+///    write: it writes files under another name and then renames them, so that none is incomplete.
 DamagedFiles SetDamagedAside(const std::string& folder);
 
-/// Notes the checksums of files that PoCL has written to the folder since the last call.
+/// Records the checksums of files that PoCL has written to the folder since the last call.
 void NoteChecksums(const std::string& folder);
 
 /// Checks the free space of PoCL's cache folder; fast enough to be called before every program build.
 /// @throws DeviceError if the disk of the folder, which PoCL already uses, has become full
 void RequireRoom(const std::string& folder);
 
-/// Builds a program, with up to three attempts if the build fails without a compiler message: ranks that start with an
-/// empty folder compile the same programs at once, and a rank fails if another has just replaced its file (PoCL 3.1:
-/// pocl_remove of program.bc).
+/// Builds a program, with up to three attempts if the build fails without a compiler message. Ranks that start with an
+/// empty folder compile the same programs at once, and a rank's build fails if another rank has just replaced its file
+/// (PoCL 3.1: pocl_remove of program.bc).
 /// @param build  builds the program from its source and returns the log of a failure; empty: it succeeded
 /// @return the log of the last attempt; empty: it succeeded
 std::string BuildBesideOthers(const std::function<std::string()>& build);

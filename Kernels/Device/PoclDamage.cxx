@@ -27,7 +27,7 @@ namespace
 {
 constexpr const char* Aside = PoclCache::Damaged;
 
-/// Whether the bytes are complete LLVM bitcode: a signature and blocks, each of which states its number of words.
+/// Whether the bytes are complete LLVM bitcode: a signature, then blocks that each state their number of words.
 bool IsWholeBitcode(const std::string& bytes)
 {
   const auto word = [&bytes](std::size_t at) {
@@ -153,7 +153,7 @@ public:
   }
   void Forget(const std::string& path) { this->IsNew = this->Known.erase(path) > 0 || this->IsNew; }
 
-  /// Writes the recorded states to a new file and renames it, since other processes may write at the same time.
+  /// Writes the recorded states to a new file, then renames it, because other processes may write at the same time.
   void Write() const
   {
     if (!this->IsNew)
@@ -180,7 +180,7 @@ private:
   bool IsNew = false;
 };
 
-/// Inspection of PoCL's cache folder with as few system calls as possible: it checks the files whose state an earlier
+/// Inspection of PoCL's cache folder with as few system calls as possible. It checks the files whose state an earlier
 /// inspection recorded, and the program folders that have changed since then.
 class CacheInspection
 {
@@ -236,8 +236,8 @@ public:
 private:
   static bool IsOfKernels(const fs::path& path) { return path.extension() == ".bc" || path.extension() == ".so"; }
   static bool CanBeUsed(const fs::path& folder) { return access(folder.c_str(), R_OK | W_OK | X_OK) == 0; }
-  /// Whether a file name consists of `least` to `most` capital letters, as do the names of PoCL's program folders,
-  /// which are hashes; other files in the cache folder are ignored.
+  /// Whether a file name consists of `least` to `most` capital letters. The names of PoCL's program folders do, since
+  /// they are hashes. Other files in the cache folder are ignored.
   static bool IsOfHash(const fs::path& path, std::size_t least, std::size_t most)
   {
     const std::string name = path.filename().string();
@@ -288,7 +288,7 @@ private:
       return;
     }
     const std::optional<Note> found =
-      // state of the folder before its inspection, so that changes during it are detected next time
+      // state of the folder before its inspection, so that the next inspection detects changes made in the meantime
       NoteOf(folder.string());
     std::vector<std::string> files, unusable;
     std::error_code none;
@@ -316,7 +316,8 @@ private:
     {
       report(path, "cannot be used");
     }
-    // Whether the last change is more than a second ago: time stamps of file systems are coarse.
+    // Time stamps of file systems are coarse: the state of a folder is recorded only if its last change was more than a
+    // second ago.
     const bool rests = found && std::time(nullptr) - found->changed / 1000000000 > 1;
     if (sound && rests) // a folder that is not recorded as known is inspected again by the next process
     {
@@ -369,8 +370,8 @@ private:
       return "is cut off or overwritten";
     }
     found.sum = SumOf(*bytes);
-    // Bitcode that was replaced is not damaged: ranks that compile the same program at once replace each other's file,
-    // which may differ in some bytes.
+    // Bitcode that was replaced is not damaged. Ranks that compile the same program at once replace each other's file,
+    // and the new file may differ in some bytes.
     const bool replaced = before && before->number != found.number && file.extension() == ".bc";
     return before && before->sum != found.sum && !replaced ? "was changed" : "";
   }
@@ -381,11 +382,11 @@ private:
 
 constexpr const char* PrefixOfMarks = "tyndall-building-";
 
-/// Approximate start time of this process; ranks of one job start together and have nearly equal times.
+/// Approximate start time of this process. Ranks of one job start together, so that their start times are nearly equal.
 const std::time_t Begun = std::time(nullptr);
 
-/// Whether two or more processes that started at least ten seconds apart ended while they were building programs, which
-/// PoCL may have caused by loading damaged bitcode. If so, deletes the marks (files of BuildMark) of these processes;
+/// Whether two or more processes that started at least ten seconds apart ended while they were building programs. PoCL
+/// may have ended them by loading damaged bitcode. If so, deletes the marks (files of BuildMark) of these processes;
 /// always deletes marks older than an hour. A mark whose lock is free belongs to a process that has ended.
 bool EndedWhileBuilding(const std::string& folder)
 {

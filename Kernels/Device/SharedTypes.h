@@ -1,7 +1,7 @@
-// Types for structures and constants that C++ and OpenCL C share. These are defined once, in a header that both
-// compile: its name ends in Shared.h and it includes this header. Members are int, float, uint, ulong, int2, int4 and
-// float4, which have the same size and alignment in both languages; constants are enumerators. All definitions are
-// between SHARED_BEGIN and SHARED_END, which put them into C++'s namespace tyndall.
+// Types for structures and constants that C++ and OpenCL C share. Such structures are defined once, in a header that
+// both languages compile; its name ends in Shared.h, and it includes this header. Members are int, float, uint, ulong,
+// int2, int4 and float4, which have the same size and alignment in both languages. Constants are enumerators. All
+// definitions are between SHARED_BEGIN and SHARED_END, which put them into C++'s namespace tyndall.
 #pragma once
 
 #ifdef __OPENCL_C_VERSION__

@@ -10,8 +10,8 @@ constexpr std::size_t Count(int number)
   return static_cast<std::size_t>(number);
 }
 
-/// `value` rounded up to a multiple of `step`, both positive: e.g. rows to complete vectors, ranges to complete
-/// work-groups.
+/// `value` rounded up to a multiple of `step`, both positive; for example, rows to complete vectors, or ranges to
+/// complete work-groups.
 template <class Integer>
 constexpr Integer RoundUp(Integer value, Integer step)
 {

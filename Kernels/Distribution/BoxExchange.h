@@ -25,7 +25,7 @@ void PutPart(const std::vector<float>& taken, std::vector<float>& values, const 
 /// @return values of this rank's box `wanted`, `components` per voxel, x fastest
 std::vector<float> ValuesInBox(Communicator& communicator, const BlockPartition& partition,
   const std::vector<VoxelBox>& wanted, const std::vector<float>& own, int components);
-/// Gathers the values of the whole grid on every rank. Collective; parameters as above.
+/// Gathers the values of the whole grid on every rank. Collective; parameters as for ValuesInBox.
 std::vector<float> ValuesOfGrid(
   Communicator& communicator, const BlockPartition& partition, const std::vector<float>& own, int components);
 }

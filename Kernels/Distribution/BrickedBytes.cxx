@@ -6,10 +6,11 @@ namespace tyndall
 {
 namespace
 {
-constexpr std::int32_t NotYet = 256; ///< value of a brick of which no byte has been stored; no byte has this value
+constexpr std::int32_t NotYet = 256; ///< table entry of a brick without any stored byte; no byte has this value
 constexpr std::uint32_t LongestRun = 1u << 24;
 
-/// Run-length encoding of bytes: each number holds a byte and, in the upper bits, its number of repetitions minus one.
+/// Run-length encoding of bytes. Each number holds a byte in its lower bits, and the number of repetitions minus one in
+/// its upper bits.
 std::vector<std::uint32_t> RunsOf(const std::vector<std::uint8_t>& numbers)
 {
   std::vector<std::uint32_t> runs;

@@ -10,8 +10,9 @@
 
 namespace tyndall
 {
-/// One byte per voxel of a grid, stored in bricks of 8^3 voxels: a uniform brick needs 4 bytes, any other 516. For data
-/// that are piecewise constant, such as octree levels, so that every rank can store those of the whole grid.
+/// One byte per voxel of a grid, stored in bricks of 8^3 voxels. A uniform brick needs 4 bytes, any other brick 516.
+/// Meant for data that are piecewise constant, such as octree levels, so that every rank can store the data of the
+/// whole grid.
 class BrickedBytes
 {
 public:
@@ -30,8 +31,8 @@ public:
     return static_cast<std::uint8_t>(brick >= 0 ? brick : this->Uneven[Begin(brick) + Within(voxel)]);
   }
 
-  /// Value per brick, x fastest: the brick's byte if it is uniform; else -1 - n, where n is the index of the brick in
-  /// Dense().
+  /// One entry per brick, x fastest. A uniform brick has its byte as entry. Any other brick has -1 - n, where n is the
+  /// index of the brick in Dense().
   const std::vector<std::int32_t>& Table() const { return this->Bricks; }
   /// Bytes of the bricks that are not uniform, one per voxel, x fastest within a brick.
   const std::vector<std::uint8_t>& Dense() const { return this->Uneven; }
@@ -54,8 +55,8 @@ private:
   std::vector<std::uint8_t> Uneven;
 };
 
-/// Gathers, on each rank, the bytes in a box that may reach into other ranks' blocks; voxels outside the box remain
-/// unset. Messages are run-length encoded. Collective.
+/// Gathers, on each rank, the bytes of the voxels in a box that may reach into other ranks' blocks. Voxels outside the
+/// box have no byte. Messages are run-length encoded. Collective.
 /// @param own  bytes of this rank's block, x fastest
 /// @param wanted  by rank, the box whose bytes the rank needs, within the grid; may be empty
 BrickedBytes BytesOfBoxes(Communicator& communicator, const BlockPartition& partition,

@@ -30,23 +30,23 @@ public:
   const BlockPartition& Coarse() const { return this->CoarsePartition; }
   /// Smallest ratio, over the three axes, of coarse to fine spacing of the whole grids (Coarsening::Ratio).
   double Ratio() const { return this->Whole.Ratio(); }
-  /// Map (Coarsening) between this rank's coarse voxels and the fine voxels that they overlap, some of which other
-  /// ranks may own.
+  /// Map (Coarsening) between this rank's coarse voxels and the fine voxels that they overlap. Other ranks may own some
+  /// of these fine voxels.
   const Coarsening& Own() const { return this->OwnPart; }
   bool HasOwn() const { return this->OwnBox().VoxelCount() > 0; } ///< whether this rank owns coarse voxels
 
   /// Whether any coarse voxel of the grid straddles two ranks' blocks; the same on all ranks.
   bool Straddle() const { return this->AnyStraddles; }
-  /// Values of the fine voxels that this rank's coarse voxels overlap (Own()), gathered from the ranks that own them.
-  /// Collective.
+  /// Values of the fine voxels that this rank's coarse voxels overlap (all voxels of Own()), gathered from the ranks
+  /// that own them. Collective.
   /// @param values  values of this rank's block, `components` per fine voxel
   std::vector<float> Around(const std::vector<float>& values, int components) const;
   /// Means of fine values over this rank's coarse voxels. Collective.
   /// @param values  values of this rank's block, `components` per fine voxel
   std::vector<float> Average(const std::vector<float>& values, int components) const;
 
-  /// Map (Coarsening) between this rank's fine voxels and the coarse voxels that contain them (Parent), with one layer
-  /// of coarse voxels around these, between which refinement interpolates.
+  /// Map (Coarsening) between this rank's fine voxels and the coarse voxels that contain them (Parent). One layer of
+  /// coarse voxels around these is included, since refinement interpolates between coarse voxels.
   const Coarsening& Seen() const { return this->SeenPart; }
   /// Values of the coarse voxels of Seen(), gathered from the ranks that own them. Collective.
   /// @param values  values of this rank's coarse voxels, `components` per voxel
@@ -58,8 +58,8 @@ private:
   Communicator& TheCommunicator;
   BlockPartition FinePartition, CoarsePartition;
   Coarsening Whole;
-  /// By rank: box of the fine voxels that its coarse voxels overlap (Own()), and box of the coarse voxels between which
-  /// its fine voxels are interpolated (Seen()).
+  /// By rank: box of the fine voxels that the rank's coarse voxels overlap (Own()), and box of the coarse voxels from
+  /// which its fine voxels are interpolated (Seen()).
   std::vector<VoxelBox> AroundBoxes, SeenBoxes;
   bool AnyStraddles = false;
   Coarsening OwnPart, SeenPart;

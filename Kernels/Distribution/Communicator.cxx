@@ -110,9 +110,9 @@ std::vector<char> Communicator::TakeOwn(int tag)
   return bytes;
 }
 
-/// Combines the values of all ranks in rank order: rank 0 does so, and sends the result to all.
-/// @throws InvalidInput on all ranks, if the numbers of values differ: the ranks are at different points of a
-///   computation, or have different settings
+/// Combines the values of all ranks in rank order. Rank 0 combines them, and sends the result to all ranks.
+/// @throws InvalidInput on all ranks, if the numbers of values differ: the ranks are then at different points of a
+/// computation, or have different settings
 std::vector<double> Communicator::OverRanks(const std::vector<double>& values, const Joined& join)
 {
   if (this->Rank() > 0)
@@ -175,7 +175,7 @@ std::vector<char> Communicator::Agree(const std::vector<char>& own)
     }
   }
   const std::string words(worst.begin() + 1, worst.end());
-  // A text that begins with "On rank " comes from a nested call of Collective, which has already named the rank.
+  // A text that begins with "On rank " already names the rank, because it comes from a nested call of Collective.
   if (!alike && words.rfind("On rank ", 0) != 0)
   {
     const std::string where = "On rank " + std::to_string(from) + ": ";
@@ -220,8 +220,8 @@ void Communicator::RequireParcels(const std::vector<int>& with, const std::vecto
   }
 }
 
-/// Exchanges parcels (the bytes that this rank sends to one other rank) by Swap, and counts messages and bytes. A
-/// rank's parcel for itself is neither sent nor counted.
+/// Exchanges parcels by Swap, and counts messages and bytes. A parcel holds the bytes that this rank sends to one other
+/// rank. A rank's parcel for itself is neither sent nor counted.
 std::vector<std::vector<char>> Communicator::CountAndExchange(
   const std::vector<int>& with, std::vector<std::vector<char>> parcels)
 {

@@ -12,8 +12,8 @@
 
 namespace tyndall
 {
-/// Tags of messages between ranks, one for each purpose. Sweeps and lattice steps number their messages from 0 on,
-/// below these tags.
+/// Tags of messages between ranks, one for each purpose. Sweeps and lattice steps number their messages from 0 on;
+/// these numbers stay below the tags.
 namespace MessageTag
 {
 constexpr int ColumnsOfSight = 29992; ///< for columns of voxels seen by parallel rays, LitColor.cxx
@@ -58,8 +58,8 @@ public:
     return ValuesOf<T>(from == this->Rank() ? this->TakeOwn(tag) : this->Take(from, tag));
   }
 
-  /// Exchanges one parcel of values with each rank of `with`; parcels may be empty. Collective: ranks without partners
-  /// call it too, and if rank a names rank b, then b must name a.
+  /// Sends one parcel of values to each rank of `with`, and receives one from each; parcels may be empty. Collective:
+  /// ranks without partners call it too, and if rank a names rank b, then b must name a.
   /// @param with  different ranks; this rank may be among them
   /// @param pack  creates the parcels, one per rank of `with`. If it throws on one rank, all ranks throw (Collective)
   ///   and nothing is sent
@@ -88,14 +88,16 @@ public:
     return arrived;
   }
 
-  /// Element-wise sum and maximum over the ranks, identical on every rank; sums are added in rank order. Collective.
+  /// Sum, and maximum, of each element of `values` over the ranks, identical on every rank. Sums are added in rank
+  /// order. Collective.
   /// @throws InvalidInput on all ranks, if the numbers of values differ
   std::vector<double> Sum(const std::vector<double>& values);
   std::vector<double> Largest(const std::vector<double>& values);
 
-  /// Runs `work` on every rank. If any rank throws, all ranks throw the most severe error, that of the lowest such
-  /// rank; aborts are less severe than errors. The text names the rank unless all ranks failed alike. Collective.
-  /// Messages that ranks exchange within `work` must be sent even after an error (as SweepInBlocks.cxx does).
+  /// Runs `work` on every rank. If any rank throws, all ranks throw the most severe of the errors; aborts are less
+  /// severe than errors. Among equally severe errors, that of the lowest rank is thrown. The text names this rank
+  /// unless all ranks failed alike. Collective. Messages that ranks exchange within `work` must be sent even after an
+  /// error (as SweepInBlocks.cxx does).
   /// @throws Aborted, InvalidInput, DeviceError or another error, as the failed rank threw it
   void Collective(const std::function<void()>& work);
 
@@ -105,7 +107,7 @@ protected:
   virtual void Give(int to, int tag, std::vector<char> bytes) = 0;
   virtual std::vector<char> Take(int from, int tag) = 0;
 
-  /// Exchanges parcels, i.e. the bytes for one other rank each, with other ranks; this default implementation sends
+  /// Exchanges parcels with other ranks; a parcel holds the bytes for one other rank. This default implementation sends
   /// messages. Collective; called directly after all ranks have agreed that none has failed.
   /// @param with  ranks to exchange with, this rank not among them; parcels are in the same order
   virtual std::vector<std::vector<char>> Swap(const std::vector<int>& with, std::vector<std::vector<char>> parcels);
@@ -144,8 +146,8 @@ private:
   std::map<int, std::deque<std::vector<char>>> ToItself; ///< messages from this rank to itself, by tag
 };
 
-/// The text `own` of the lowest rank on which it is not empty; empty if it is empty on all ranks. The result is the
-/// same on every rank. Collective.
+/// The text `own` of the lowest rank that has one. Empty if the text is empty on all ranks. The result is the same on
+/// every rank. Collective.
 std::string WordsOfAny(Communicator& communicator, const std::string& own);
 
 /// Whether `own` is true on at least one rank. The result is the same on every rank. Collective.
@@ -163,8 +165,8 @@ protected:
   std::vector<char> Take(int from, int tag) override;
 };
 
-/// A message is shorter than the receiving rank expects, because the sender has failed. If another rank threw the
-/// cause, Communicator::Collective reports that error instead.
+/// Thrown if a message is shorter than the receiving rank expects, because its sender has failed.
+/// Communicator::Collective reports the sender's error instead, if the sender threw one.
 struct MissingMessage : std::runtime_error
 {
   MissingMessage()
@@ -174,8 +176,8 @@ struct MissingMessage : std::runtime_error
   }
 };
 
-/// Holds the first error of a rank while other ranks still wait for its messages: the rank continues, sends empty
-/// messages, and throws the error at the end.
+/// Holds the first error of a rank while other ranks still wait for its messages. The rank continues with empty
+/// messages, and throws the error at the end of the work.
 struct HeldFailure
 {
   /// Runs `work` and holds the error that it throws. Does nothing if an error is already held.

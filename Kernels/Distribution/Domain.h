@@ -10,9 +10,9 @@
 
 namespace tyndall
 {
-/// A distributed grid as one rank sees it: its own block, the whole grid, and reductions. On one rank the block is the
-/// whole grid, a reduction returns its argument and a collective step is a plain call, so that a solver need not know
-/// the number of ranks. A block may have no voxels.
+/// A distributed grid as one rank sees it: the rank's own block, the whole grid, and reductions over the ranks. On one
+/// rank the block is the whole grid, a reduction returns its argument, and a collective step is a plain call. A solver
+/// therefore need not know the number of ranks. A block may have no voxels.
 class Domain
 {
 public:

@@ -54,13 +54,13 @@ VoxelBox WithHalo(const VoxelBox& block, const Grid& whole, const std::array<boo
   return box;
 }
 
-/// Intersections of a box, which may reach beyond the grid, with the grid and its periodic images.
+/// Intersections of a box with the grid and with the periodic images of the grid, beyond whose ends the box may reach.
 std::vector<VoxelBox> PartsByPeriods(const VoxelBox& box, const Grid& whole)
 {
   std::vector<VoxelBox> parts;
   const VoxelBox period = { {}, whole.size };
-  // shift that moves the first voxel of `box` into the grid; minus this shift moves the grid to the first periodic
-  // image that the box overlaps
+  // `back` moves the first voxel of `box` into the grid. The opposite shift moves the grid to the first periodic image
+  // that the box overlaps.
   const std::array<int, 3> back = ShiftOf(box, whole.size);
   std::array<int, 3> by;
   for (by[2] = -back[2]; by[2] < EndOf(box, 2); by[2] += whole.size[2])

@@ -22,18 +22,20 @@ public:
   /// @param ghosts  by rank, boxes of the rank's ghost cells; cells within the grid that the rank owns itself are left
   ///   out
   /// @param held  a box that contains this rank's own cells and its ghost cells; arrays cover it, x fastest
-  /// @param gridSize  cells along each axis; ghost cells beyond an end of the grid wrap around, all cells of a box by
-  ///   the same number of periods, and may be images of the rank's own cells. Zeros: no ghost cells lie beyond the grid
+  /// @param gridSize  cells along each axis. Ghost cells beyond an end of the grid wrap around; all cells of a box wrap
+  ///   by the same number of periods. They may be images of the rank's own cells. Zeros: no ghost cells lie beyond the
+  ///   grid
   GhostCells(Communicator& communicator, const std::vector<VoxelBox>& own,
     const std::vector<std::vector<VoxelBox>>& ghosts, const VoxelBox& held,
     const std::array<int, 3>& gridSize = { 0, 0, 0 });
 
-  /// Copies the owners' values to this rank's ghost cells. Collective, with the same number of arrays on all ranks.
+  /// Copies values from the ranks that own the cells to this rank's ghost cells. Collective, with the same number of
+  /// arrays on all ranks.
   /// @param values  `arrays` arrays over the box `held`, `stride` values apart, each with `components` values per cell
   template <class Value>
   void Fill(Value* values, int arrays, std::size_t stride, std::size_t components = 1) const;
   void Fill(std::vector<double>& values) const { this->Fill(values.data(), 1, 0); }
-  /// Copies the owners' values to this rank's ghost cells. Collective.
+  /// Copies values from the ranks that own the cells to this rank's ghost cells. Collective.
   /// @param values  one array over the box `held`, `components` values per cell
   void FillComponents(std::vector<float>& values, int components) const
   {
@@ -46,8 +48,9 @@ public:
   /// Indices, in arrays over the box `held`, of this rank's ghost cells.
   std::vector<std::size_t> CopiedPlaces() const { return PlacesOf(this->Copied); }
   /// Exchanges values that are not stored in arrays over the box `held`. Collective.
-  /// @param owned  values at OwnedPlaces(); for each rank that has copies, those of `arrays` arrays in succession
-  /// @return values at CopiedPlaces(); for each owner, those of `arrays` arrays in succession
+  /// @param owned  values at OwnedPlaces(), ordered by the rank that has the copies, and for each rank array after
+  /// array
+  /// @return values at CopiedPlaces(), ordered by the rank that owns the cells, and for each rank array after array
   template <class Value>
   std::vector<Value> Exchange(const std::vector<Value>& owned, int arrays = 1) const;
 
@@ -69,8 +72,8 @@ private:
   std::vector<Shared> Copied; ///< by rank, the ghost cells of this rank whose owner is that rank
 };
 
-/// A rank's block with a halo of `layers` layers of ghost voxels, clipped at the ends of the grid, and the exchange of
-/// their values. Along a periodic axis the halo wraps around; ghost voxels may then be images of the block's own
+/// A rank's block with `layers` layers of ghost voxels around it, and the exchange of their values. The halo is clipped
+/// at the ends of the grid, but wraps around along a periodic axis. Ghost voxels may then be images of the block's own
 /// voxels.
 class Halo
 {
@@ -85,7 +88,7 @@ public:
   const std::array<bool, 3>& Periodic() const { return this->Around; }
   const Grid& Whole() const { return this->All; }
 
-  /// Copies the values of the own voxels of all ranks to halos. Collective.
+  /// Copies the values of all ranks' own voxels to the halos in which these voxels lie. Collective.
   /// @param own  values of the own voxels, `components` per voxel, x fastest
   /// @return values of the block with its halo, `components` per voxel, x fastest
   std::vector<float> Spread(const std::vector<float>& own, int components) const;
@@ -94,8 +97,8 @@ public:
   /// @param values  receives the values of the block with its halo, to which the result refers
   /// @return the field on the block with its halo; `own` if it has no values
   Field Spread(const Field& own, std::vector<float>& values) const;
-  /// Sums, for each own voxel, the values of all ranks that have the voxel in their block or halo (transpose of
-  /// Spread). The values are integers, so that the sum does not depend on the order of ranks. Collective.
+  /// Transpose of Spread: sums, for each own voxel, the values of all ranks that have the voxel in their block or halo.
+  /// The values are integers, so that the sum does not depend on the order of ranks. Collective.
   /// @param known  values of the block with its halo
   std::vector<std::int64_t> Gather(std::vector<std::int64_t> known) const;
 
@@ -106,13 +109,14 @@ private:
   std::optional<GhostCells> Ghosts;
 };
 
-/// Periodic axes along which a block spans the whole grid, so that its neighbour across the ends is the block itself.
+/// Periodic axes along which a block spans the whole grid. The block is then its own neighbour across the ends of the
+/// axis.
 std::array<bool, 3> GoesRoundAlone(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic);
 
-/// Layers of cells, one cell thick, beyond the faces of a block, each as a box. Beyond the ends of a periodic axis, a
-/// layer wraps around, unless the block spans the whole grid along this axis; beyond other ends of the grid there is
-/// none. Nothing for an empty block.
+/// Layers of cells, one cell thick, beyond the faces of a block, each as a box. Beyond an end of the grid there is no
+/// layer, unless the axis is periodic: then the layer wraps around. There is none either if the block spans the whole
+/// periodic axis. Nothing for an empty block.
 std::vector<VoxelBox> LayersBeside(
   const VoxelBox& own, const std::array<int, 3>& gridSize, const std::array<bool, 3>& periodic = {});
 

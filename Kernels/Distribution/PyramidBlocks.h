@@ -8,10 +8,10 @@
 
 namespace tyndall
 {
-/// Levels of a pyramid over a distributed grid: the grid itself, and ever coarser grids whose cells each join several
-/// cells of the level below. Each rank computes the levels up to the level `shared` for its box, which is its block and
-/// a margin around it, and contributes its cells of the shared level; every rank that has voxels computes the levels
-/// above, which are small. On one rank the box is the whole grid.
+/// Levels of a pyramid over a distributed grid: the grid itself, and successively coarser grids whose cells each
+/// combine several cells of the level below. Each rank computes the levels up to the level `shared` in its box, which
+/// is its block and a margin around it. The cells of the shared level are then exchanged, and every rank that has
+/// voxels computes the levels above, which are small. On one rank the box is the whole grid.
 class PyramidBlocks
 {
 public:
@@ -19,8 +19,8 @@ public:
   /// @param domain  must outlive this object
   /// @param shared  index of the shared level, the highest one that ranks compute for their own boxes
   /// @param margin  width of the margin, voxels
-  /// @param edge  number of voxels, a multiple of the edge of a cell of the shared level; boxes begin and, except at
-  ///   the grid's end, end at multiples of it
+  /// @param edge  number of voxels, a multiple of the edge of a cell of the shared level. Boxes begin at multiples of
+  /// it, and end at multiples of it or at the grid's end
   PyramidBlocks(const Domain& domain, int shared, int margin, int edge);
 
   int Shared() const { return this->SharedLevel; }
@@ -28,10 +28,9 @@ public:
   const VoxelBox& Box() const { return this->Boxes[static_cast<std::size_t>(this->TheDomain.Rank())]; }
   /// Grid of `size` voxels along each axis, with origin and spacing of the domain's grid.
   Grid GridOf(const std::array<int, 3>& size) const;
-  /// The cells of the shared level (the highest level that ranks compute for their own boxes) that this rank computes:
-  /// those whose first voxel lies in its box.
+  /// The cells of the shared level that this rank computes: those whose first voxel lies in its box.
   VoxelBox BoxCells() const { return this->CellsIn(this->Box()); }
-  /// All cells of the shared level, the highest one that ranks compute for their own boxes, of the whole domain.
+  /// All cells of the shared level in the whole domain.
   VoxelBox AllCells() const { return { {}, this->Cells.whole.size }; }
 
   /// Values of the voxels of this rank's box, gathered from the ranks that own them. Collective.
@@ -40,8 +39,7 @@ public:
   /// @return pointer to the values: in `storage`, or `own`
   const float* Gather(const float* own, int components, std::vector<float>& storage) const;
 
-  /// Values of all cells of the shared level (the highest one that ranks compute for their own boxes), gathered from
-  /// the BoxCells of all ranks. Collective.
+  /// Values of all cells of the shared level, gathered from the ranks that compute them (BoxCells). Collective.
   /// @param made  values of this rank's BoxCells, `components` per cell, x fastest
   /// @return `components` per cell, x fastest; empty on a rank without voxels
   std::vector<float> GatherCells(const std::vector<float>& made, int components) const;

@@ -61,8 +61,8 @@ public:
     for (bool left = true; left; ++round)
     {
       const std::vector<std::vector<OnItsWay>> parcels = this->Comm.Exchange<OnItsWay>(this->Neighbours, [&] {
-        // Progress at the end of this round, for the report: since the number of rounds is unknown, each is assumed to
-        // do half of the remaining work.
+        // Progress to report at the end of this round. The number of rounds is not known in advance, so each round is
+        // assumed to do half of the remaining work.
         const double next = this->Neighbours.empty() ? 1.0 : 0.5 * (1.0 + done);
         const Monitor ofRound = OfPart(monitor, done, next);
         std::vector<std::vector<OnItsWay>> gone = this->Sorted(follow(round, std::move(arrived), ofRound));

@@ -229,7 +229,8 @@ void ShareLeftOut(const Domain& domain, LightField& light)
 std::string WhyNotBegunOnAny(Communicator& communicator, const KeptLight& kept, const std::string& whyNot)
 {
   const std::string words = WordsOfAny(communicator, whyNot);
-  // Each rank stores the first-scattered power and the ratio of successive iterations of the whole domain.
+  // All ranks must have kept the same values of the whole domain: the first-scattered power, and the ratio of
+  // successive iterations.
   std::vector<double> values(kept.firstScattered.begin(), kept.firstScattered.end());
   values.insert(values.end(), kept.rate.begin(), kept.rate.end());
   const bool same = AreSame(communicator, std::move(values));

@@ -14,12 +14,12 @@
 
 namespace tyndall
 {
-// Functions that check properties of a distributed medium that must agree on all ranks, compute properties of the whole
-// medium, and share results of a solve. All but IsFirstThatHas are collective.
+// The following functions check that ranks agree on properties of a distributed medium, compute properties of the whole
+// medium, and share results of a solve. All of them but IsFirstThatHas are collective.
 
 /// Checks that numbers are the same on all ranks. Collective.
 /// @param what  description of the numbers, for the message
-/// @param has  whether this rank has the numbers; if not, its values are ignored but must be as many
+/// @param has  whether this rank has the numbers; if not, its values are ignored, but their count must be the same
 /// @throws InvalidInput on all ranks, if the values differ
 void RequireSame(Communicator& communicator, const char* what, bool has, std::vector<double> values);
 
@@ -27,12 +27,13 @@ void RequireSame(Communicator& communicator, const char* what, bool has, std::ve
 /// @throws InvalidInput on all ranks, if grids or partitions differ
 void RequireSame(Communicator& communicator, const BlockPartition& partition);
 
-/// Whether this rank is the lowest one that has voxels: the rank that counts a quantity which all ranks with voxels
-/// know. Sends no message.
+/// Whether this rank is the lowest one that has voxels. This rank counts quantities that all ranks with voxels know.
+/// Sends no message.
 bool IsFirstThatHas(const Communicator& communicator, const BlockPartition& partition);
 
-/// Agrees on the phase function of a distributed medium with mean cosine g by voxel: if g varies among the scattering
-/// voxels of all ranks, each rank keeps g by voxel; else all ranks set the same phase function. Collective.
+/// Agrees on the phase function of a distributed medium whose mean cosine g is given by voxel. If g varies among the
+/// scattering voxels of all ranks, each rank keeps g by voxel. Otherwise all ranks set the same phase function.
+/// Collective.
 /// @param has     whether this rank has voxels
 /// @param g       g by voxel of this rank; without values, its medium is not changed
 /// @param medium  medium of this rank, whose phase function is of the wanted type
@@ -51,13 +52,13 @@ SceneChannels ChannelsOfAll(const Domain& domain, const SceneChannels& here);
 void SumOverRanks(const Domain& domain, const std::vector<Rgb*>& powers);
 
 /// Broadcasts the scalar results of a solve on one rank to all ranks: channels, numbers of directions, energy balance,
-/// face powers, half-range flux, convergence, saved sweeps, device and leftOut. Arrays are not sent, nor are doubts,
-/// since previews are not checked for errors. Collective.
+/// face powers, half-range flux, convergence, saved sweeps, device and leftOut. Neither arrays nor warnings are sent.
+/// Collective.
 /// @param found  true on the one rank that has the result
 /// @param light  the result on that rank; receives it on the others
 void ShareFigures(Communicator& communicator, bool found, LightField& light);
 
-/// Sets `light.leftOut` on all ranks to that of the first rank that has voxels. Collective.
+/// Sets `light.leftOut` on all ranks to the value of the first rank that has voxels. Collective.
 void ShareLeftOut(const Domain& domain, LightField& light);
 
 /// Reason why a distributed solve cannot start from kept light, the same text on all ranks; empty if it can. Each rank

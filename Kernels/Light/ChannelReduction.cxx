@@ -10,7 +10,8 @@ namespace tyndall
 {
 namespace
 {
-/// Expands each group of `width` values to three groups: its multiples by red, green and blue of `colour`.
+/// Expands each group of `width` values to three groups: the group multiplied by the red, the green and the blue
+/// component of `colour`.
 void Spread(std::vector<float>& values, std::size_t width, const Rgb& colour)
 {
   std::vector<float> three(3 * values.size());
@@ -37,8 +38,8 @@ void KeepOne(std::vector<float>& values, std::size_t width)
   values.shrink_to_fit();
 }
 
-/// Applies change(power) to each power by channel of a LightField, and multiplies its powers summed over channels by
-/// `scale`.
+/// Applies change(power) to each power of a LightField that is stored by channel, and multiplies its powers that are
+/// summed over channels by `scale`.
 template <class Change>
 void ChangePowers(LightField& light, const Change& change, double scale)
 {
@@ -69,7 +70,8 @@ void ForArrays(LightField& light, const Act& act)
   act(light.firstMoments, std::size_t{ 6 });
 }
 
-/// A field whose component of `channel` is used for all channels; unchanged if one component is already.
+/// A view of a field in which all channels use the component of `channel`. Unchanged if all channels already use one
+/// component.
 Field InChannel(const Field& field, int channel)
 {
   return { field.values, field.components, field.HasColour() ? channel : field.standsForAll };
@@ -158,7 +160,7 @@ namespace
 {
 constexpr std::size_t Three = 3;
 
-/// Gives all channels angular moments of the highest degree of any of them, if any has moments.
+/// If any channel has angular moments, extends the moments of all channels to the highest degree of any channel.
 void AlignMoments(std::vector<LightField>& channels)
 {
   const std::size_t voxels = std::max<std::size_t>(channels[0].fluence.size(), 1);
@@ -184,7 +186,8 @@ void AlignMoments(std::vector<LightField>& channels)
   }
 }
 
-/// Interleaves groups of `width` values of three channels; no values if the channels do not have the same number.
+/// Interleaves groups of `width` values of three channels. Returns no values if the channels differ in their number of
+/// values.
 std::vector<float> Interleave(const std::array<const std::vector<float>*, Three>& channels, std::size_t width)
 {
   const std::size_t count = channels[0]->size();
@@ -201,7 +204,7 @@ std::vector<float> Interleave(const std::array<const std::vector<float>*, Three>
   return all;
 }
 
-/// Adds the report of a channel that was solved after those of `light`.
+/// Adds the report of a channel that was solved later to the report of `light`.
 void AddReport(LightField& light, const LightField& channel)
 {
   const auto add = [](std::vector<std::string>& all, const std::vector<std::string>& more) {

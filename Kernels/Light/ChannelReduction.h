@@ -6,7 +6,7 @@
 
 namespace tyndall
 {
-/// Number of colour channels of a scene: in the resulting light, and in the solve.
+/// Number of colour channels of a scene, in the resulting light and in the solve.
 struct SceneChannels
 {
   int given = 1; ///< number of channels of the result: 3 if medium or lights have coloured data, else 1
@@ -17,19 +17,19 @@ struct SceneChannels
   SceneChannels(const Medium& medium, const MediumTraits& traits, const Illumination& illumination);
   /// Number of channels in which the scene is solved: 1 if that suffices and `leaveOut` is true, else 3.
   int Solved(bool leaveOut) const { return leaveOut && this->one ? 1 : 3; }
-  /// Converts light of `solved` channels to `given` channels; LightField::leftOut states whether one channel was solved
-  /// for all.
+  /// Converts light of `solved` channels to `given` channels. If one channel was solved for all, LightField::leftOut
+  /// says so.
   void Undo(LightField& light, int solved) const;
 
 private:
   const char* LeftOut() const;
 };
 
-/// Grey scene with the values of one channel.
+/// Grey scene that consists of one channel of a coloured scene.
 struct OneChannelScene
 {
   OneChannelScene(const Medium& medium, const Illumination& illumination, int channel);
-  /// With the values of the brightest channel, for a scene whose three channels are multiples of each other.
+  /// The scene of the brightest channel, for a scene whose three channels are multiples of each other.
   OneChannelScene(const Medium& medium, const Illumination& illumination, const SceneChannels& channels)
     : OneChannelScene(medium, illumination, channels.colour.Brightest())
   {
@@ -39,8 +39,8 @@ struct OneChannelScene
   Illumination light;
 };
 
-/// Solves a scene in one channel if that suffices and `leaveOut` is true, else in three. The result has channels.given
-/// channels.
+/// Solves a scene in one channel if that suffices and `leaveOut` is true, otherwise in three. The result has
+/// channels.given channels.
 /// @param solve  called as solve(medium, illumination, channels); returns the LightField
 template <class Solve>
 LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Medium& medium,
@@ -49,9 +49,9 @@ LightField SolveChannels(bool leaveOut, const SceneChannels& channels, const Med
 /// Expands light of one channel to three channels: its multiples by the components of `colour`.
 void Spread(LightField& light, const Rgb& colour);
 
-/// Joins the light of three channels, each solved as a scene of one channel (OneChannelScene). Arrays that not all of
-/// them have are left out, but for angular moments: a channel without them has its mean scattered radiance, which
-/// includes the light first scattered from lamps.
+/// Joins the light of three channels, each solved as a scene of one channel (OneChannelScene). Arrays that not all
+/// channels have are left out, except for angular moments: a channel without moments uses its mean scattered radiance
+/// as moment of degree 0, which includes the light first scattered from lamps.
 LightField JoinChannels(std::vector<LightField> channels);
 
 /// Reduces light of three equal channels to one channel.

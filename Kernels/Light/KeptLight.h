@@ -9,8 +9,8 @@
 
 namespace tyndall
 {
-/// Properties of a solve that must be equal in two solves for the light of one to be the initial guess of the other.
-/// Medium and lights may differ: a poor guess costs sweeps, but does not change the result.
+/// Properties of a solve that must be equal in two solves, so that the light of the first can be the initial guess of
+/// the second. Medium and lights may differ: a poor guess costs sweeps, but does not change the result.
 struct LightKind
 {
   std::string method; ///< name of the solver and its iteration scheme
@@ -28,20 +28,20 @@ struct LightKind
 };
 
 /// Light of the last solve, as initial guess of the next one (WarmStart; numerics.md, section 6.4); empty before the
-/// first solve. In a distributed solve each rank stores the light of its subdomain, while powers and convergence rows
-/// are those of the domain. A solve that is given a KeptLight starts from it if possible, and stores its result in it
-/// on success. The caller owns it, and discards it to start without a guess.
+/// first solve. In a distributed solve each rank stores the light of its subdomain; powers and convergence rows are
+/// those of the domain. A solve that is given a KeptLight starts from it if possible, and stores its result in it on
+/// success. The caller owns the KeptLight, and discards it to start without a guess.
 struct KeptLight
 {
   LightKind kind;
   /// Scattered light, in the units and the layout of the solver; uncollided light is recomputed in each solve.
   std::vector<float> scattered;
-  /// power of the first-collision source, W; the next solve multiplies the initial guess by the ratio of its own such
-  /// power to this one
+  /// power of the first-collision source, W. The next solve multiplies the initial guess by the ratio of its own power
+  /// of this kind to this value
   Rgb firstScattered = {};
   Rgb rate = {}; ///< ratio of the light of successive iterations at the end of the last solve
   std::vector<ConvergenceRow> fromDarkness; ///< convergence rows of the last solve without an initial guess
-  std::vector<KeptLight> channels; ///< of a solve of one channel after the other, in place of the members above
+  std::vector<KeptLight> channels;          ///< used instead of the members above if channels were solved one by one
 
   /// Whether no light is kept. A rank without voxels keeps the powers of the domain, but no values.
   bool Empty() const { return Sum(this->firstScattered) == 0.0; }

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Texts of LightField::leftOut, each of which names a part of the computation that a scene did not need; the comments
-/// below say for which scenes. All solvers use the same texts.
+/// Texts of LightField::leftOut. Each names a part of the computation that the scene did not need; the comments say for
+/// which scenes it is used. All solvers use the same texts.
 namespace left_out
 {
 extern const char* const Grey;             ///< text if neither medium nor lights are coloured
@@ -56,12 +56,13 @@ std::string MirrorImages(int classes, int directions);
 std::string SourcesBesideVolume(int beside, int sources);
 /// Text that a part of the samples emits no photon, because it would miss the volume.
 std::string PhotonsBesideVolume(double part);
-/// Text that a phase function has fewer terms than were asked for; the eigenvalues of the others are 0.
+/// Text that a phase function has fewer terms than were asked for, because the eigenvalues of the other terms are 0.
 std::string TermsOfZero(int terms, int asked);
-/// Text that the scene varies along one axis only, so that it was solved as plane-parallel layers.
+/// Text that the scene varies along one axis only and was therefore solved as plane-parallel layers.
 /// @param polarNodes  number of polar cosines of that solve
 std::string TwoAxes(int polarNodes);
-/// Text that a slab was solved with another number of directions than set: perFace per cube face.
+/// Text that plane-parallel layers were solved with `perFace` directions per cube face instead of the number that was
+/// set.
 std::string DirectionsAlongSlab(int perFace);
 }
 }

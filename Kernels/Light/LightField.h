@@ -42,9 +42,9 @@ struct ConvergenceRow
 {
   int iteration = 0;
   double seconds = 0.0; ///< time since the start of the solve, s
-  /// Estimate of the relative error if the solver stops after this row: ratio of the scattered light not yet propagated
-  /// to all scattered light (numerics.md, Eqs. (43), (73)). 1 after the first row unless it is the last, since one
-  /// order does not show the rate of convergence.
+  /// Estimate of the relative error that the solver would have if it stopped after this row: ratio of the scattered
+  /// light not yet propagated to all scattered light (numerics.md, Eqs. (43), (73)). 1 after the first row unless it is
+  /// the last, since one order does not show the rate of convergence.
   double residual = 0.0;
   /// Relative change of the light by this iteration. Much smaller than the error if light is scattered very often.
   double change = 0.0;
@@ -62,8 +62,8 @@ struct SolveReport
   /// Half-range flux of the quadrature used for boundary sources (DirectionSet.h); 0: there is none.
   double halfRangeFlux = 0.0;
   std::vector<ConvergenceRow> convergence;
-  /// Number of sweeps that the initial guess saved, for each convergence row: the number of the row at which the last
-  /// solve without a guess reached the residual of this row, less the number of this row; 0 if this solve had no guess.
+  /// Number of sweeps that the initial guess saved, for each convergence row. It is the number of the row at which the
+  /// last solve without a guess reached the same residual, minus the number of this row. 0 if this solve had no guess.
   /// Empty if no warm start was requested (KeptLight.h).
   std::vector<int> sweepsSaved;
   bool converged = true; ///< whether the last residual is at most the tolerance, or all requested orders were computed
@@ -71,10 +71,9 @@ struct SolveReport
   /// Number of polar quadrature nodes of a plane-parallel solve (PropagationSettings::polarNodes); 0: rays were traced
   /// through voxels.
   int polarNodes = 0;
-  /// Number of directions per face of the cube that was used, if the solver chooses it
-  /// (PropagationSettings::adaptDirections).
+  /// Number of directions per face of the cube, if the solver chose this number (PropagationSettings::adaptDirections).
   int directionsPerFace = 0;
-  /// Directions per face of the cube for uncollided boundary light; 0: as directionsPerFace.
+  /// Directions per face of the cube for uncollided boundary light; 0: the same number as directionsPerFace.
   int uncollidedDirections = 0;
   std::vector<std::string> leftOut; ///< parts of the computation that the scene did not need (LeftOut.h)
   int solves = 1;                   ///< number of solves, including those on coarser grids (TargetError.h)
@@ -91,8 +90,8 @@ struct LightField : SolveReport
   std::vector<float> fluence;       ///< fluence, W / length^2, `channels` per voxel
   std::vector<float> fluenceDirect; ///< fluence of uncollided light, W / length^2, `channels` per voxel
   /// First moments of collisions of lamps' uncollided light (numerics.md, Eq. (37)), 6 * channels per voxel: for
-  /// channels 0, 1, 2 one value per face -x, +x, ... +z. Each is the distance, 0 to 1/2 voxel, of the mean collision
-  /// position from the voxel's centre towards the face, times the uncollided fluence, W / length^2. Empty: not
+  /// channels 0, 1, 2 one value per face -x, +x, ... +z. A value is the distance of the mean collision position from
+  /// the voxel's centre towards the face, 0 to 1/2 voxel, times the uncollided fluence, W / length^2. Empty: not
   /// requested.
   std::vector<float> firstMoments;
   std::vector<float> fluenceError; ///< estimated standard error of the fluence, W / length^2, `channels` per voxel
@@ -102,10 +101,11 @@ struct LightField : SolveReport
   std::vector<float> scatteredRadiance;
   std::vector<std::array<double, 3>>
     storedDirections; ///< directions of scatteredRadiance; a single (0, 0, 0) if it is isotropic
-  /// Angular moments of the in-scattered radiance by outgoing direction, W / (length^2 sr): coefficients of the
-  /// spherical harmonics of Numerics/Legendre.h times sqrt(4 pi), [voxel][(degree + 1)^2][channel], so that
-  /// the first is the mean. Excludes light first scattered from lampsApart, and the unscattered part given by
-  /// straightOn. 0 in voxels that do not scatter; empty if scattering is isotropic or the moments were not requested.
+  /// Angular moments of the in-scattered radiance by outgoing direction, W / (length^2 sr), [voxel][(degree +
+  /// 1)^2][channel]. They are the coefficients of the spherical harmonics of Numerics/Legendre.h times sqrt(4 pi), so
+  /// that the first is the mean. Light first scattered from lampsApart is not included, nor is the fraction straightOn
+  /// of scattering that is treated as unscattered. 0 in voxels that do not scatter; empty if scattering is isotropic or
+  /// the moments were not requested.
   std::vector<float> scatteredMoments;
   /// Fraction of scattered light that is treated as unscattered (delta-M; numerics.md, Eq. (8a)); 1 or 3 per voxel.
   std::vector<float> straightOn;
@@ -115,7 +115,8 @@ struct LightField : SolveReport
   /// radiance.
   std::vector<float> surfaceRadiance;
   EnergyBalance balance;
-  /// Escaped power through faces -x, +x, -y, +y, -z, +z, W: power that leaves, less the power the faces reflect.
+  /// Net power that escapes through faces -x, +x, -y, +y, -z, +z, W: the power that leaves, minus the power that the
+  /// faces reflect.
   std::array<Rgb, 6> facePowerOut = {};
   /// Outgoing partial current in the cells of the box's faces, W / length^2, [cell][channel] (BoxFaces.h), before
   /// reflection; empty if it was not requested and no face reflects.

@@ -2,8 +2,8 @@
 
 namespace tyndall
 {
-/// Trade-off between accuracy and run time, from which the settings that determine both are chosen. Each solver has a
-/// function that maps a quality to its settings, depending on the scene.
+/// Trade-off between accuracy and run time. Each solver has a function that chooses its settings by a quality,
+/// depending on the scene.
 enum class Quality
 {
   Draft = 0,   ///< previews while settings are chosen
@@ -12,8 +12,8 @@ enum class Quality
   Reference = 3 ///< reference solutions of comparisons
 };
 
-/// Sets `number` to the quality's value `ofQuality` if it has its default value; any other value was chosen by the user
-/// and is not changed. Quality::Default changes no number, so a user can choose any value.
+/// Sets `number` to the quality's value `ofQuality` if it still has its default value. A number with any other value
+/// was chosen by the user and is not changed. Quality::Default changes no number, so that a user can choose any value.
 template <class Number>
 void SetUnlessChosen(Number& number, const Number& byDefault, const Number& ofQuality)
 {

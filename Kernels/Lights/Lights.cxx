@@ -78,10 +78,11 @@ Rgb Lookup(const Environment& environment, const std::array<double, 3>& directio
 
 namespace
 {
-/// Smallest opening angle, degrees; the squared sine of a smaller one underflows in floats.
+/// Smallest opening angle of a spot, degrees. The squared sine of a smaller angle underflows in floats.
 constexpr double LeastSpotAngle = 1e-12;
 
-/// Unit vector along a vector; scales it first, so that squares neither underflow nor overflow. 0 if the vector is 0.
+/// Unit vector along a vector; 0 if the vector is 0. The vector is scaled first, so that squares neither underflow nor
+/// overflow.
 glm::dvec3 Unit(const std::array<double, 3>& vector)
 {
   const double largest = std::max({ std::abs(vector[0]), std::abs(vector[1]), std::abs(vector[2]) });
@@ -120,7 +121,7 @@ double AxialIntensity(const Light& lamp)
   const double sine = std::sin(0.5 * HalfAngle(lamp));
   switch (lamp.type)
   {
-    // 2 sin^2(angle / 2) instead of 1 - cos(angle), which is inaccurate for a narrow cone
+    // 2 sin^2(angle / 2) equals 1 - cos(angle), which would be inaccurate for a narrow cone
     case LightType::Spot: return 1.0 / (4.0 * Pi * sine * sine);
     case LightType::Rectangle: return 1.0 / Pi;
     case LightType::Point: return 1.0 / (4.0 * Pi);
@@ -152,12 +153,14 @@ std::array<std::array<double, 3>, 2> RectangleEdges(const Light& light)
 namespace
 {
 constexpr double FarAway = 1e5; ///< distance, relative to the box's longest edge, from which light is taken as parallel
-/// Distance, relative to the box's longest edge, from which doubles cannot resolve which voxels a cone illuminates.
+/// Distance of a lamp, relative to the box's longest edge, at which doubles can no longer resolve which voxels its cone
+/// illuminates.
 constexpr double TooFarToAim = 1e10;
-/// Largest edge, relative to the distance, for which a rectangle is taken as a point.
+/// A rectangle is taken as a point if its largest edge, relative to its distance, is at most this.
 constexpr double SmallFromFar = 1e-3;
 
-/// Directional light that replaces a lamp beyond FarAway. @param way  vector from the lamp to the box's centre
+/// Directional light that replaces a lamp that is further away than FarAway.
+/// @param way  vector from the lamp to the box's centre
 Light Parallel(const Light& lamp, const glm::dvec3& way, double distance)
 {
   const double angle = AngleFromAxis(lamp, { way.x, way.y, way.z });

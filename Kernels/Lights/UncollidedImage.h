@@ -9,9 +9,9 @@ namespace tyndall
 {
 struct Medium;
 
-/// Uncollided light by voxel, computed by another solver, e.g. from photons along bent rays. A solver to which it is
-/// given uses it in place of the uncollided light of the lamps, and transports the light scattered from it
-/// (numerics.md, section 5.7).
+/// Uncollided light by voxel that another solver has computed, for example from photons along bent rays. A solver that
+/// receives it uses it in place of the uncollided light of the lamps, and transports the light that is scattered from
+/// it (numerics.md, section 5.7).
 struct UncollidedImage
 {
   Field fluence; ///< uncollided fluence, W / length^2, on the medium's grid; null values: there is no such light
@@ -26,8 +26,8 @@ struct UncollidedImage
 /// Power that the medium absorbs and scatters from the image's light in one channel, W.
 double PowerLost(const UncollidedImage& image, const Medium& medium, int channel);
 
-/// Checks given uncollided light.
+/// Checks an UncollidedImage.
 /// @throws InvalidInput if a fluence is negative or beyond float, a mean direction is not finite or longer than 1
-///   (names the first such voxel), or an escaped power is not representable as float
+/// (names the first such voxel), or an escaped power is not representable as float
 void Check(const UncollidedImage& image, const Medium& medium);
 }

@@ -7,8 +7,8 @@
 
 namespace tyndall
 {
-/// Index of the face (0 to 5: -x, +x, -y, +y, -z, +z) through which light enters that travels up (towards +) or down
-/// `axis`.
+/// Index of the face (0 to 5: -x, +x, -y, +y, -z, +z) through which light enters. The light travels along `axis`, in
+/// the positive direction if `up`.
 inline int EntryFace(int axis, bool up)
 {
   return 2 * axis + (up ? 0 : 1);
@@ -17,8 +17,8 @@ inline int EntryFace(int axis, bool up)
 /// A face cell: the face of a boundary voxel that lies on a face of the box.
 struct BoxFaceCell
 {
-  /// Index among the cells of all faces: faces in the order -x, +x, -y, +y, -z, +z; within a face the lower axis varies
-  /// fastest.
+  /// Index among the cells of all faces. Faces are in the order -x, +x, -y, +y, -z, +z; within a face the lower of its
+  /// two axes varies fastest.
   std::size_t number;
   /// `face`: index of the box's face. `u`, `v`: position of the cell in that face, u along the lower of its two axes.
   int face, u, v;
@@ -26,11 +26,12 @@ struct BoxFaceCell
   std::size_t inward; ///< index of the next voxel inwards from `voxel`; `voxel` if there is none
 };
 
-/// Numbering of the cells of one face of the box among the cells of all faces: `first` is the index of its first cell.
+/// Numbering of the cells of one face of the box. Cells of all faces are numbered together; `first` is the index of the
+/// first cell of this face.
 struct BoxFaceLayout
 {
   std::size_t first;
-  /// Index difference between neighbouring cells along each axis; 0 along the face's normal.
+  /// Difference of the indices of neighbouring cells along each axis; 0 along the face's normal.
   std::array<std::size_t, 3> step;
 
   /// Index of the cell at a boundary voxel.
@@ -87,10 +88,10 @@ inline std::size_t BoxFaceCellCount(const Grid& grid)
 }
 
 /// Cosines to the outward normal at which the outgoing radiance of a face cell is tabulated. Cubic interpolation
-/// between them is within 0.5% of Chandrasekhar's H function for cosines of at least 0.03.
+/// between these cosines reproduces Chandrasekhar's H function within 0.5% for cosines of at least 0.03.
 constexpr std::array<double, 4> SurfaceCosines = { 0.05, 0.25, 0.6, 1.0 };
 
-/// Optical thickness of a boundary voxel along the face's normal above which the light at its surface is distinguished
-/// from that at its centre.
+/// If the optical thickness of a boundary voxel along the face's normal is above this, the light at its surface is
+/// distinguished from the light at its centre.
 constexpr double ThickAtSurface = 0.5;
 }

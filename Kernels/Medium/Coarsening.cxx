@@ -31,8 +31,8 @@ struct Part
   std::size_t first, size;
 };
 
-/// Means over coarse voxels along one axis: from an array [outer][fine voxel][inner], which covers the fine voxels
-/// `from` along the axis, to one [outer][coarse voxel][inner], which covers the coarse voxels `to`.
+/// Means over coarse voxels along one axis. The input array [outer][fine voxel][inner] covers the fine voxels `from`
+/// along the axis, the result [outer][coarse voxel][inner] the coarse voxels `to`.
 std::vector<float> AverageAlong(const CoarsenedAxis& axis, const float* values, std::size_t outer, const Part& from,
   const Part& to, std::size_t inner)
 {
@@ -134,8 +134,9 @@ VoxelBox Coarsening::CoarseBox(const VoxelBox& fine) const
   for (int axis = 0; axis < 3; ++axis)
   {
     const long all = this->FineOfAll[axis], fewer = this->CoarseOfAll[axis];
-    // First coarse voxel c whose centre is not below the lower side of fine voxel `side`. In units of fine voxels, that
-    // centre is at (2 c + 1) all / (2 fewer), where `all` and `fewer` are the numbers of fine and coarse voxels.
+    // Index of the first coarse voxel whose centre is not below the lower side of fine voxel `side`. In units of fine
+    // voxels, the centre of coarse voxel c is at (2 c + 1) all / (2 fewer), where `all` and `fewer` are the numbers of
+    // fine and coarse voxels.
     const auto firstFrom = [=](long side) {
       return static_cast<int>((2 * fewer * side - all + 2 * all - 1) / (2 * all));
     };
@@ -219,7 +220,7 @@ std::vector<float> Coarsening::Average(const Field& values, const Field& weights
 }
 
 /// Interpolation weights of a fine voxel along an axis: 1 - part for coarse voxel `first` and part for coarse voxel
-/// `second`, both as indices in the array of coarse values, which may cover only a box of the coarse grid.
+/// `second`. Both are indices in the array of coarse values, which may cover only a box of the coarse grid.
 struct Coarsening::Between
 {
   std::size_t first, second;

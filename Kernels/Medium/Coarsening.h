@@ -20,14 +20,14 @@ public:
   /// @param coarse  grid over the same box as `fine`, along no axis finer
   Coarsening(const Grid& fine, const Grid& coarse);
 
-  /// This transfer restricted to a box of each grid. Average() requires that `fine` contains FineBox(coarse), and
-  /// returns bit for bit the values that it returns for the complete grids; Parent() requires that `coarse` contains
+  /// This transfer restricted to a box of each grid. Average() requires that `fine` contains FineBox(coarse); it then
+  /// returns bit for bit the values of the unrestricted transfer. Parent() requires that `coarse` contains
   /// ParentBox(fine).
   Coarsening PartOf(const VoxelBox& fine, const VoxelBox& coarse) const;
   /// Box of the fine voxels that overlap a box of coarse voxels.
   VoxelBox FineBox(const VoxelBox& coarse) const;
-  /// Box of the coarse voxels whose centres lie in a box of fine voxels. Boxes that partition the fine grid yield boxes
-  /// that partition the coarse grid.
+  /// Box of the coarse voxels whose centres lie in a box of fine voxels. If boxes partition the fine grid, their coarse
+  /// boxes partition the coarse grid.
   VoxelBox CoarseBox(const VoxelBox& fine) const;
   /// Box of the coarse voxels that contain the centres of a box of fine voxels.
   VoxelBox ParentBox(const VoxelBox& fine) const;
@@ -37,20 +37,20 @@ public:
   /// Smallest ratio of coarse to fine spacing among the axes with more than one voxel; 1 if there is none.
   double Ratio() const;
 
-  /// Means over coarse voxels: each fine voxel is weighted by its overlap, so that the integral is conserved. NaN if
-  /// any of the fine values is NaN.
+  /// Means over coarse voxels. Each fine voxel is weighted by its overlap, so that the integral is conserved. A mean is
+  /// NaN if any of its fine values is NaN.
   /// @param values  values of the fine voxels, x fastest, `components` each
   std::vector<float> Average(const float* values, int components) const;
 
-  /// Weighted means over coarse voxels, 0 where all weights are 0. Used for the mean cosine, weighted by sigma_s
+  /// Weighted means over coarse voxels; 0 if all weights are 0. Used for the mean cosine, with sigma_s as weight
   /// (numerics.md, Eq. (3e)). Means are clamped to the range of the values, so that rounding cannot exceed it.
   /// @param weights  weights of the fine voxels, not negative
   /// @return 3 components per coarse voxel if values or weights are coloured, else 1
   std::vector<float> Average(const Field& values, const Field& weights) const;
 
-  /// Interpolates coarse values at the centres of the fine voxels: linearly between coarse centres, constant beyond
-  /// them. A restricted transfer requires that its coarse box contains ParentBox(fine) and one layer of coarse voxels
-  /// around it, clipped to the grid.
+  /// Interpolates coarse values at the centres of the fine voxels: linearly between coarse centres, constant beyond the
+  /// outermost ones. A restricted transfer requires that its coarse box contains ParentBox(fine) and one layer of
+  /// coarse voxels around it, clipped to the grid.
   /// @param values  values of the coarse voxels, x fastest, `components` each
   std::vector<float> Refine(const std::vector<float>& values, int components) const;
 

@@ -20,8 +20,8 @@ std::int32_t BitsOf(float value)
 }
 
 /// Values of one field in a layer of bricks normal to z, which is contiguous in memory. Floats are compared as
-/// integers, which needs no branches: the bit patterns of non-negative floats, read as integers, have the same order as
-/// the floats, and those of non-finite values are larger.
+/// integers, without branches: read as integers, the bit patterns of non-negative floats have the same order as the
+/// floats, and those of non-finite values are larger.
 class LayerOfBricks
 {
 public:
@@ -81,8 +81,8 @@ private:
     }
   }
 
-  /// Combines the bits of each brick's values by OR, in Bits. Reads memory sequentially; reading brick by brick would
-  /// take twice as long.
+  /// Combines the bits of each brick's values by OR, in Bits. Memory is read sequentially, because reading brick by
+  /// brick would take twice as long.
   void Collect()
   {
     const std::size_t each = Count(this->Of.components), ofBrick = BrickEdge * each;
@@ -126,7 +126,7 @@ private:
   const Grid& TheGrid;
   const std::array<int, 3> BrickCount;
   const int Layer;
-  /// All bits set for the values of a row of a brick that belong to a component in use, else 0.
+  /// Mask for the values of a row of a brick: all bits set for components in use, 0 for others.
   std::array<std::int32_t, 3 * BrickEdge> Used;
   /// [brick][lane of a vector instruction]: the bits of a brick's values in this lane, combined by OR
   std::vector<std::int32_t> Bits;

@@ -14,8 +14,9 @@ namespace tyndall
 /// emission.
 ///
 /// Determined in one pass over the medium's arrays on all cores, together with the checks that every solver makes, so
-/// that a mostly empty medium costs little more than one read. A reader's active-voxel mask is not used: after a filter
-/// that changes the arrays it would be wrong and lose light, and a medium that was not read from a file has none.
+/// that a mostly empty medium costs little more than one read. The active-voxel mask of a file is not used: after a
+/// filter that changes the arrays it would be wrong and lose light, and a medium that was not read from a file has no
+/// such mask.
 struct FilledBricks
 {
   /// Summary of all values of sigma_a, sigma_s or emission, in all components that channels use.
@@ -35,7 +36,7 @@ struct FilledBricks
     return this->filled.empty() ? 0.0
                                 : static_cast<double>(this->filledCount) / static_cast<double>(this->filled.size());
   }
-  /// Elements of `filled` for the row of bricks along x that contains the voxels at (y, z).
+  /// Part of `filled` for one row of bricks along x: the row that contains the voxels at (y, z).
   const unsigned char* RowOf(int y, int z) const
   {
     const auto row = static_cast<std::size_t>(z / BrickEdge * this->count[1] + y / BrickEdge);

@@ -45,7 +45,8 @@ void CheckComponents(const Field& field, const char* name)
 
 namespace
 {
-/// Largest spacing; the smallest one is its inverse, so that products of several areas stay within doubles.
+/// Largest spacing, length. The smallest spacing is its inverse. Products of several areas then stay within the range
+/// of doubles.
 constexpr double LongestSpacing = 1e30;
 constexpr double MostUnequal = 1e9; ///< largest ratio of the longest to the shortest spacing
 
@@ -88,7 +89,7 @@ void CheckMeanCosines(const Medium& medium)
   }
 }
 
-/// Checks that sigma_a + sigma_s is at most LargestExtinction.
+/// Checks that sigma_a + sigma_s is at most LargestExtinction in each voxel.
 void CheckExtinction(const Medium& medium, const FilledBricks& bricks)
 {
   if (!medium.sigma_a.values && !medium.sigma_s.values)
@@ -100,7 +101,7 @@ void CheckExtinction(const Medium& medium, const FilledBricks& bricks)
     const double g = std::abs(medium.phase.MeanCosine(i, c));
     return medium.sigma_a.At(i, c) + (1.0 + g) * medium.sigma_s.At(i, c);
   };
-  // If sigma_a and sigma_s are at most this, sigma_a + (1 + |g|) sigma_s is small enough, since 1 + |g| is at most 2.
+  // sigma_a + (1 + |g|) sigma_s needs no test if sigma_a and sigma_s are at most `little`, since 1 + |g| is at most 2.
   constexpr float little = static_cast<float>(LargestExtinction / 4.0);
   if (bricks.absorption.largest <= little && bricks.scattering.largest <= little)
   {

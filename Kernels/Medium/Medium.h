@@ -11,8 +11,7 @@ namespace tyndall
 /// Largest sigma_t, 1/length; the inverse of a larger value is not a normal float.
 constexpr double LargestExtinction = 1e37;
 
-/// A participating medium, constant in each voxel: sigma_a, sigma_s, emission (Le of pbrt) and phase function on a
-/// grid.
+/// A participating medium on a grid, constant in each voxel: sigma_a, sigma_s, emission and phase function.
 struct Medium
 {
   Grid grid;
@@ -21,13 +20,13 @@ struct Medium
   Field emission; ///< emitted radiance per unit length, W / (length^3 sr)
   PhaseOfMedium phase;
 
-  /// Scattering coefficient of the isotropic medium with the same diffusion and absorption, by the similarity relation
-  /// (numerics.md, Eq. (8)), 1/length.
+  /// Scattering coefficient, 1/length, of the isotropic medium with the same diffusion and absorption (similarity
+  /// relation, numerics.md, Eq. (8)).
   float TransportSigmaS(std::size_t voxel, int channel) const
   {
     return static_cast<float>(this->sigma_s.At(voxel, channel) * (1.0 - this->phase.MeanCosine(voxel, channel)));
   }
-  /// Extinction coefficient of the isotropic medium to which TransportSigmaS belongs, 1/length.
+  /// Extinction coefficient, 1/length, of the isotropic medium whose scattering coefficient is TransportSigmaS.
   float TransportSigmaT(std::size_t voxel, int channel) const
   {
     return this->sigma_a.At(voxel, channel) + this->TransportSigmaS(voxel, channel);
@@ -42,7 +41,7 @@ struct Medium
   }
 };
 
-/// Whether the transport optical thickness (TransportSigmaT) of any voxel along the grid's longest spacing is above
+/// Whether any voxel's transport optical thickness, along the grid's longest spacing and with TransportSigmaT, is above
 /// `meanFreePaths`.
 bool AnyVoxelIsThickerThan(double meanFreePaths, const Medium& medium);
 

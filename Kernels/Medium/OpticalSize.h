@@ -19,8 +19,9 @@ struct OpticalSize
 /// @param extinction  coefficient at density 1, 1/length, not negative
 OpticalSize OpticalSizeOf(const float* density, const Grid& grid, double extinction);
 
-/// Sums for OpticalSizeOf() over a box of the grid: the density summed along each row in x, y and z, the total, and the
-/// number of voxels that are not empty. The sums of disjoint boxes that cover the grid add up to those of the grid.
+/// Sums from which OpticalSizeOf() is computed, over a box of the grid: the density summed along each row in x, y and
+/// z, the total, and the number of voxels that are not empty. For disjoint boxes that cover the grid, they add up to
+/// the sums of the grid.
 /// @param density  one value per voxel of the box, x fastest, not negative
 std::vector<double> OpticalSumsOf(const float* density, const VoxelBox& box, const Grid& whole);
 /// Optical size of a medium, from sums over its boxes.

@@ -15,7 +15,7 @@ constexpr Rgb PerMillimetre(const Rgb& coefficients, double lengthInMillimetres)
     coefficients[2] / lengthInMillimetres };
 }
 
-/// Mean cosine where none was measured, or where sigma_s is the reduced coefficient, sigma_s (1 - g).
+/// Mean cosine 0, for media without a measured value, or whose sigma_s is the reduced coefficient sigma_s (1 - g).
 constexpr Rgb Isotropic = { 0.0, 0.0, 0.0 };
 
 constexpr Rgb OfAllColours(double g)

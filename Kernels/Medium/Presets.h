@@ -18,6 +18,6 @@ struct MediumPreset
   const char* source;
 };
 
-/// All presets. Red, green and blue are at 650, 550 and 450 nm if the source specifies wavelengths.
+/// All presets. If the source specifies wavelengths, red, green and blue are at 650, 550 and 450 nm.
 const std::vector<MediumPreset>& MediumPresets();
 }

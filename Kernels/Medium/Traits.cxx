@@ -165,7 +165,7 @@ public:
   {
   }
 
-  /// Determines the box from the filled bricks; only the outermost ones are searched voxel by voxel.
+  /// Determines the box from the filled bricks; only the outermost bricks are searched voxel by voxel.
   void Find(const FilledBricks& bricks)
   {
     const FilledBox ofBricks = this->BoxOf(bricks);

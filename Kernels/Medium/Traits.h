@@ -32,8 +32,8 @@ private:
   Rgb Sum = {};
 };
 
-/// Common colour of all boundary sources and of the lights inside the box; there is none if a face's albedo is
-/// coloured.
+/// Common colour of all boundary sources and of the lights inside the box. If a face's albedo is coloured, there is no
+/// common colour.
 CommonColour ColourOf(const Illumination& illumination);
 
 /// Properties of a medium that let solvers omit computations. Determined in one scan of its arrays (some milliseconds

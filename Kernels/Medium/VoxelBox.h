@@ -24,14 +24,14 @@ struct VoxelBox
     const std::array<int, 3> at = Grid{ this->size }.VoxelAt(index);
     return { this->first[0] + at[0], this->first[1] + at[1], this->first[2] + at[2] };
   }
-  /// A voxel of the grid, counted from the first voxel of the box.
+  /// Converts a voxel of the grid to indices relative to the first voxel of the box.
   std::array<int, 3> Within(const std::array<int, 3>& voxel) const
   {
     return { voxel[0] - this->first[0], voxel[1] - this->first[1], voxel[2] - this->first[2] };
   }
 };
 
-/// The voxels of a box of the grid `whole` as a grid, at the position of these voxels in space.
+/// The box of the grid `whole` as a grid of its own, at the same position in space.
 inline Grid GridOfBox(const VoxelBox& box, const Grid& whole)
 {
   Grid grid = whole;

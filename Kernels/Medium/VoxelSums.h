@@ -5,8 +5,8 @@
 
 namespace tyndall
 {
-/// Sum of term(index of the voxel) over all voxels, on all of the host's cores; the order of addition is always the
-/// same.
+/// Sum of term(index of the voxel) over all voxels, on all of the host's cores. The order of addition is always the
+/// same, and so is the result.
 template <class Term>
 double SumOverVoxels(const Grid& grid, const Term& term)
 {

@@ -1,7 +1,6 @@
-// Sums in 64-bit fixed point, which do not depend on the order of their terms (numerics.md, Eq. (35)). The host
-// defines
-//   ATOMICS  1: several work-items may add to one sum at once; 0: only one at a time does (the device has no 64-bit
-//            atomics, or needs none)
+// Sums in 64-bit fixed point, which do not depend on the order of their terms (numerics.md, Eq. (35)). The host defines
+//   ATOMICS  1: several work-items may add to a sum at the same time; 0: only one work-item adds to a sum, which
+//            needs no 64-bit atomics
 
 #pragma once
 

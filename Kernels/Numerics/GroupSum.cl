@@ -25,7 +25,8 @@
   }
 #endif
 
-// For values in chunks, each summed by one work-group: index of a work-item's first vector of `width` values in the
-// chunk (FIRST_IN_CHUNK), and stride to its next vector (STEP_IN_CHUNK). Adjacent work-items read adjacent vectors.
+// Access to values in chunks, each summed by one work-group. A work-item reads vectors of `width` values:
+// FIRST_IN_CHUNK is the index of its first vector in the chunk, STEP_IN_CHUNK the stride to its next one. Adjacent
+// work-items read adjacent vectors.
 #define FIRST_IN_CHUNK(width) (get_local_id(0) * (GROUP == 1 ? 0 : (width)))
 #define STEP_IN_CHUNK(width) (GROUP * (width))

@@ -68,7 +68,8 @@ std::vector<double> SphericalHarmonics(int degree, const std::array<double, 3>& 
 {
   std::vector<double> values((degree + 1) * (degree + 1));
   const double z = omega[2];
-  // (x + i y)^m gives sin^m times cosine and sine of m times the azimuth, so that the poles need no special case.
+  // (x + i y)^m equals sin^m times the cosine (real part) and sine (imaginary part) of m times the azimuth. It needs no
+  // special case at the poles.
   double real = 1.0, imaginary = 0.0;
   double sectoral = std::sqrt(1.0 / (4.0 * Pi)); // normalisation of the harmonic of degree m and order m, without sin^m
   for (int m = 0; m <= degree; ++m)

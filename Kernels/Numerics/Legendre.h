@@ -8,8 +8,8 @@ namespace tyndall
 /// Legendre polynomials P_0(x) to P_degree(x), by recurrence, for |x| <= 1.
 std::vector<double> LegendrePolynomials(int degree, double x);
 
-/// Values of sum_l scale[l] factors[l][k] P_l(x[k]) for all k at once, so that compilers vectorise the computation; |x|
-/// <= 1.
+/// Values of sum_l scale[l] factors[l][k] P_l(x[k]) for all k, with |x| <= 1. All k are computed together, so that
+/// compilers vectorise the computation.
 /// @param factors  one row per element of `scale`, each at least as long as `x`
 std::vector<double> LegendreSums(
   const std::vector<double>& x, const std::vector<double>& scale, const std::vector<std::vector<double>>& factors);

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-// Conversion of numbers to text and back, independent of the locale: a host program may have set one with a decimal
-// comma. No source converts floating-point numbers in another way (the test NumbersKnowNoLocale).
+// Conversion of numbers to text and back, independent of the locale: a host program may have set a locale with a
+// decimal comma. No other source converts floating-point numbers (the test NumbersKnowNoLocale checks this).
 
 namespace tyndall
 {
@@ -36,7 +36,8 @@ inline std::string FloatLiteral(float value)
   return Text("%.8e", value) + "f";
 }
 
-/// Floating-point number at the start of a text, after blanks; empty if there is none, or if it is beyond doubles.
+/// Floating-point number at the start of a text, after blanks. Empty if there is none, or if it is beyond the range of
+/// doubles.
 inline std::optional<double> NumberIn(std::string_view text)
 {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");

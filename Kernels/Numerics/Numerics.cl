@@ -22,8 +22,8 @@ typedef TYNDALL_JOIN(int, REAL_WIDTH) integer;
 #define as_real TYNDALL_JOIN(as_float, REAL_WIDTH)
 #define to_integer TYNDALL_JOIN(convert_int, REAL_WIDTH)
 #define to_real TYNDALL_JOIN(convert_float, REAL_WIDTH)
-// Loads and stores of unaligned vectors, used instead of vload and vstore, since PoCL splits a vstore into pieces of
-// four floats.
+// Loads and stores of unaligned vectors. They take the place of vload and vstore, because PoCL splits a vstore into
+// pieces of four floats.
 typedef real __attribute__((aligned(4))) real_anywhere;
 #define load_real(index, pointer) (*(const __global real_anywhere*)((pointer) + (index)))
 #define store_real(value, index, pointer) (*(__global real_anywhere*)((pointer) + (index)) = (value))
@@ -36,7 +36,7 @@ typedef real __attribute__((aligned(4))) real_anywhere;
 #define multiply_add mad
 #endif
 
-// Rounds to the nearest integer, for |x| < 2^22: adding 1.5 * 2^23 leaves no mantissa bits for a fraction. PoCL's rint
+// Rounds to the nearest integer, for |x| < 2^22. Adding 1.5 * 2^23 leaves no mantissa bits for a fraction. PoCL's rint
 // takes fifteen instructions.
 inline real nearest_whole(real x)
 {

@@ -1,6 +1,6 @@
 // Counter-based random numbers: Philox 4x32 with ten rounds (Salmon, Moraes, Dror and Shaw 2011, "Parallel random
-// numbers: as easy as 1, 2, 3", section 3.2). A block of four random numbers is a function of key and counter alone, so
-// the order of evaluation does not matter.
+// numbers: as easy as 1, 2, 3", section 3.2). A block of four random numbers depends on key and counter only, not on
+// the order of evaluation.
 
 #pragma once
 
@@ -32,7 +32,8 @@ static random_numbers random_of(ulong seed, ulong stream)
   return random;
 }
 
-// State of the random numbers of a photon that has used `blocks` blocks, with `left` numbers of the last one unused.
+// State of the random numbers of a photon that has drawn `blocks` blocks of four numbers, with `left` numbers of the
+// last block unused.
 static random_numbers random_after(ulong seed, ulong stream, uint blocks, int left)
 {
   random_numbers random = random_of(seed, stream);

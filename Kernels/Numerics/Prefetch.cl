@@ -1,5 +1,6 @@
-// PREFETCH loads a cache line before it is read (write: 0) or written (write: 1); `locality`, 0 to 3, selects the cache
-// level as in GCC's builtin. On GPUs it has no effect: NVIDIA's compiler has the builtin, but not for OpenCL pointers.
+// PREFETCH loads a cache line ahead of its use. `write`: 0 before reading, 1 before writing. `locality`, 0 to 3,
+// selects the cache level as in GCC's builtin. It has no effect on GPUs, because NVIDIA's compiler does not accept the
+// builtin for OpenCL pointers.
 //
 // The host defines FOR_CPU with every kernel (Device.cxx).
 

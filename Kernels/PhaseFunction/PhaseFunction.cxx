@@ -25,7 +25,7 @@ void CheckMeanCosine(double g)
   }
 }
 
-/// Value of 1 + g^2 - 2 g c, with c the cosine, without cancellation, also for g near -1.
+/// 1 + g^2 - 2 g c, with c the cosine; computed without cancellation, also for g near -1.
 double SquareOfHenyeyGreenstein(double g, double cosine)
 {
   const double size = std::abs(g);
@@ -50,7 +50,7 @@ double CosineOfHenyeyGreenstein(double g, double u)
   return std::clamp((1.0 + g * g - s * s) / (2.0 * g), -1.0, 1.0);
 }
 
-/// Fraction of light scattered below a cosine by the Henyey-Greenstein function.
+/// Cumulative distribution of the Henyey-Greenstein function: fraction of light scattered at cosines below `cosine`.
 double BelowOfHenyeyGreenstein(double g, double cosine)
 {
   if (std::abs(g) < 1e-4)
@@ -93,7 +93,8 @@ double CosineOfSchlick(double k, double u)
   return std::clamp((2.0 * u + k - 1.0) / (2.0 * k * u - k + 1.0), -1.0, 1.0);
 }
 
-/// Inverse cumulative distribution of Rayleigh's function, 3/8 (1 + c^2) in c: solves c^3 + 3 c + 4 = 8 u.
+/// Inverse cumulative distribution of Rayleigh's phase function, 3/8 (1 + c^2) for the cosine c: solves c^3 + 3 c + 4 =
+/// 8 u.
 double CosineOfRayleigh(double u)
 {
   const double half = 4.0 * u - 2.0;
@@ -171,7 +172,8 @@ void CheckRows(const std::vector<double>& cosines, const std::vector<double>& va
   CheckEnds(cosines, values);
 }
 
-/// The last row whose ascending value is not above `value`, but neither above the last interval nor below the first.
+/// Index of the row that begins the interval of `values` (ascending) in which `value` lies. A value beyond the table
+/// belongs to the first or the last interval.
 std::size_t RowBefore(const std::vector<double>& values, double value)
 {
   const auto after = std::upper_bound(values.begin(), values.end(), value);
@@ -186,7 +188,7 @@ double ValueOfTable(const PhaseFunction::Table& table, double cosine)
   return table.values[row] + std::clamp(part, 0.0, 1.0) * (table.values[row + 1] - table.values[row]);
 }
 
-/// Cumulative distribution of a tabulated phase function: a parabola between two rows.
+/// Cumulative distribution of a tabulated phase function, a parabola between two rows.
 double BelowOfTable(const PhaseFunction::Table& table, double cosine)
 {
   const std::size_t row = RowBefore(table.cosines, cosine);
@@ -226,8 +228,8 @@ std::vector<double> MomentsOfTable(const PhaseFunction::Table& table, int degree
   return moments;
 }
 
-/// Legendre moments of a phase function with a peak at cosine 1 (`peak` > 0) or -1, integrated by Gauss's rule over
-/// intervals that halve towards the peak.
+/// Legendre moments of a phase function with a peak at cosine 1 (`peak` > 0) or at -1. They are integrated by Gauss's
+/// rule over intervals that halve towards the peak.
 std::vector<double> MomentsByQuadrature(const PhaseFunction& function, double peak, int degree)
 {
   std::vector<double> moments(degree + 1, 0.0);
@@ -280,7 +282,7 @@ PhaseFunction PhaseFunction::Schlick(double g)
 {
   CheckMeanCosine(g);
   PhaseFunction function;
-  // Also if g is 0, so that WithMeanCosine(), which keeps the kind of function, yields Schlick's functions
+  // The kind is Schlick also if g is 0, because WithMeanCosine() keeps the kind of function.
   function.Which = Kind::Schlick;
   function.The.first = g == 0.0 ? 0.0 : KOfSchlick(g);
   return function;
@@ -308,7 +310,7 @@ PhaseFunction PhaseFunction::Tabulated(std::vector<double> cosines, std::vector<
   double sum = 0.0;
   for (std::size_t row = 0; row < table.cosines.size(); ++row)
   {
-    // Divided by the largest value, so that the integral does not overflow
+    // Values are divided by the largest one, so that the integral does not overflow.
     table.values[row] /= largest > 0.0 ? largest : 1.0;
     sum +=
       row == 0 ? 0.0 : Pi * (table.values[row] + table.values[row - 1]) * (table.cosines[row] - table.cosines[row - 1]);
@@ -394,8 +396,8 @@ double PhaseFunction::CosineAt(double u) const
     case Kind::HenyeyGreenstein: return CosineOfHenyeyGreenstein(this->The.first, u);
     case Kind::DoubleHenyeyGreenstein:
     {
-      // The cosine is found by bisection, since the cumulative distribution of two functions has no inverse in closed
-      // form
+      // The cosine is found by bisection, because the cumulative distribution of a sum of two functions has no inverse
+      // in closed form.
       double low = -1.0, high = 1.0;
       for (int i = 0; i < 60; ++i)
       {
@@ -465,8 +467,8 @@ DeltaM::DeltaM(const std::vector<double>& all)
 {
   if (this->moments.size() > 1)
   {
-    // The fraction treated as unscattered is not negative, as only light near the forward direction counts as
-    // unscattered; and it is limited so that the moments of the remainder are in [-1, 1].
+    // The fraction treated as unscattered is limited on both sides. It is not negative, since only light near the
+    // forward direction counts as unscattered. Its upper limit keeps the moments of the remainder in [-1, 1].
     this->forward = std::max(this->forward, 0.0);
     for (double moment : this->moments)
     {

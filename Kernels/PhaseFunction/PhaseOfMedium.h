@@ -32,7 +32,7 @@ public:
   const Field& G() const { return this->ByVoxel; } ///< mean cosine by voxel; has no values if g does not vary
   bool Varies() const { return this->ByVoxel.values != nullptr; }
 
-  /// Whether scattering is isotropic; false if g varies by voxel, even if it is 0.
+  /// Whether scattering is isotropic. False if g varies by voxel, even if all its values are 0.
   bool IsIsotropic() const { return !this->Varies() && this->Functions[0].IsIsotropic() && !this->HasColour(); }
   bool HasColour() const;
   double MeanCosine(std::size_t voxel, int channel) const
@@ -41,9 +41,9 @@ public:
   }
   /// Phase function of a voxel in a channel.
   PhaseFunction At(std::size_t voxel, int channel) const;
-  /// Phase function of this kind with the mean cosines `g` by voxel, which may be on another grid.
+  /// The same kind of phase function with other mean cosines `g` by voxel, which may be on another grid.
   PhaseOfMedium WithG(const Field& g) const { return PhaseOfMedium(this->Functions[0], g); }
-  /// Phase function that has the function of `channel` in all channels, for a scene that is solved in one channel.
+  /// Phase function for a scene that is solved in one channel: all channels have the function of `channel`.
   PhaseOfMedium Seen(int channel) const;
 
 private:
@@ -52,7 +52,7 @@ private:
   Field ByVoxel;
 };
 
-// Mean cosines by voxel are used only in voxels that scatter; in other voxels they may be any number or NaN.
+// Mean cosines by voxel are used only in voxels that scatter. In other voxels they may have any value, even NaN.
 
 /// Smallest and largest mean cosine g of the voxels that scatter, by channel; infinity and minus infinity for a channel
 /// in which no voxel scatters.
@@ -94,10 +94,10 @@ struct MeanCosineRange
   std::array<double, 3> least, greatest;
 };
 
-/// Phase function of a medium with g by voxel: one function per channel if all voxels that scatter have the same g,
-/// else a function by voxel. A channel in which no voxel scatters has the g of another channel.
+/// Phase function of a medium with g by voxel. If all voxels that scatter have the same g, it is one function per
+/// channel, otherwise a function by voxel. A channel in which no voxel scatters has the g of another channel.
 /// @param kind  a kind with one mean cosine (PhaseFunction::WithMeanCosine), else InvalidInput is thrown
-/// @param range  range of g in the domain, of which `g` may cover a subdomain
+/// @param range  range of g in the domain; `g` itself may cover a subdomain
 inline PhaseOfMedium PhaseByVoxel(const PhaseFunction& kind, const Field& g, const MeanCosineRange& range)
 {
   if (!range.IsEven())
@@ -115,9 +115,8 @@ inline PhaseOfMedium PhaseByVoxel(const PhaseFunction& kind, const Field& g, con
   return PhaseOfMedium(functions);
 }
 
-/// Replaces meaningless mean cosines, which checks would reject.
-/// @return g with values outside (-1, 1) replaced by 0 in voxels that do not scatter; empty if there are none to
-///   replace
+/// Replaces mean cosines outside (-1, 1), which checks would reject, in voxels that do not scatter.
+/// @return g with such values replaced by 0; empty if there are none to replace
 inline std::vector<float> WithoutUnusedCosines(const Field& g, const Field& sigma_s, std::size_t voxels)
 {
   const auto components = static_cast<std::size_t>(g.components);

@@ -18,15 +18,16 @@ namespace
 {
 /// Maximum number of directions for SingularValues: the computation time grows with the cube of their number
 constexpr int MostForSingularValues = 1024;
-/// A column is linearly dependent if less than this fraction of its length remains after projection.
+/// A column counts as linearly dependent on earlier ones if less than this fraction of its length remains after
+/// projection.
 constexpr double Dependent = 1e-3;
 constexpr double Nothing = 1e-14; ///< eigenvalues below this, relative to the largest, count as zero (rounding)
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Orthonormal columns, [direction i][term k]: sqrt(w_i) u_k(i), with the weights w_i of the quadrature and the basis
-/// functions u_k of the phase function; and an eigenvalue of the phase matrix per column.
+/// Orthonormal columns, [direction i][term k], and an eigenvalue of the phase matrix per column. A column has the
+/// values sqrt(w_i) u_k(i), with the weights w_i of the quadrature and the basis functions u_k of the phase function.
 struct Basis
 {
   MatrixXd columns;
@@ -74,8 +75,8 @@ double Cosine(const Direction& a, const Direction& b)
   return std::clamp(a.omega[0] * b.omega[0] + a.omega[1] * b.omega[1] + a.omega[2] * b.omega[2], -1.0, 1.0);
 }
 
-/// Degree beyond which the Legendre moments of the smallest of the directions' cells (CapMoments) are below 1e-4; a
-/// cell is a cap whose solid angle is the direction's weight.
+/// Degree beyond which the Legendre moments (CapMoments) of the smallest cell of a direction are below 1e-4. The cell
+/// of a direction is a cap whose solid angle is the direction's weight.
 int DegreeOfMeans(const std::vector<Direction>& directions)
 {
   double least = 4.0 * Pi;
@@ -86,8 +87,8 @@ int DegreeOfMeans(const std::vector<Direction>& directions)
   return std::clamp(static_cast<int>(20.0 / std::sqrt(least / Pi)), 16, 512);
 }
 
-/// Legendre moments of the directions' cells (CapMoments: caps whose solid angles are the weights),
-/// [degree][direction], up to the degree beyond which terms vanish in rounding.
+/// Legendre moments (CapMoments) of the directions' cells, [degree][direction], up to the degree beyond which terms
+/// vanish in rounding. The cell of a direction is a cap whose solid angle is the direction's weight.
 std::vector<std::vector<double>> MeansByDegree(
   const std::vector<double>& moments, const std::vector<Direction>& directions)
 {
@@ -141,7 +142,7 @@ std::vector<double> CellMeanMatrix(const PhaseFunction& function, const std::vec
   return matrix;
 }
 
-/// Orthonormalises columns in their order (Gram-Schmidt); linearly dependent ones are omitted.
+/// Orthonormalises columns in their order (Gram-Schmidt), and omits linearly dependent ones.
 Basis Orthonormal(const MatrixXd& columns, const VectorXd& values)
 {
   Basis basis = { MatrixXd(columns.rows(), columns.cols()), VectorXd(columns.cols()), {} };
@@ -204,9 +205,9 @@ Basis Eigenvectors(const MatrixXd& matrix)
   return basis;
 }
 
-/// Basis of the eigenvectors of a matrix that is repaired to conserve power and have the exact mean cosine: 1 and omega
-/// are made eigenvectors, and eigenvalues on their orthogonal complement are limited to the theoretical maximum
-/// (numerics.md, Eq. (D5)).
+/// Basis of the eigenvectors of a matrix that is repaired, so that it conserves power and has the exact mean cosine.
+/// For this, 1 and omega are made eigenvectors. The eigenvalues on their orthogonal complement are limited to the
+/// theoretical maximum (numerics.md, Eq. (D5)).
 Basis RepairedEigenvectors(
   const MatrixXd& matrix, const std::vector<Direction>& directions, const std::vector<double>& moments)
 {
@@ -226,14 +227,15 @@ Basis RepairedEigenvectors(
 }
 
 /// Fraction of light in the forward peak that `terms` terms cannot represent: the Legendre moment of the degree after
-/// that of the last term; 0 if this moment is negative.
+/// the degree of the last term, or 0 if this moment is negative.
 double PeakBeyond(const std::vector<double>& moments, int terms)
 {
   return std::max(0.0, moments[DegreeOfTerm(terms - 1) + 1]);
 }
 
-/// Multiplies the eigenvalues of degree l, without a peak of the fraction `peak`, by exp(-s l (l + 1)), with the
-/// smallest s for which their sum is nowhere negative, and sets the peak such that the mean cosine stays.
+/// Damps the part of the phase function without the peak: multiplies its eigenvalues of degree l by exp(-s l (l + 1)),
+/// with the smallest s for which the sum is nowhere negative. `peak` is the fraction in the peak; it is changed so that
+/// the mean cosine stays.
 void DampNegatives(const VectorXd& roots, double g, Basis& basis, double& peak)
 {
   const VectorXd whole = basis.values;

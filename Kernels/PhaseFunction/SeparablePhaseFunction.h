@@ -14,11 +14,12 @@ enum class PhaseFactorisation
   SphericalHarmonics ///< spherical harmonics; eigenvalues are Legendre moments of the phase function, degree by degree
 };
 
-/// Value of the phase matrix' element for a pair of directions.
+/// How an element of the phase matrix, for a pair of directions, is computed.
 enum class PhaseSampling
 {
   PointValues, ///< value of the phase function at the angle between the two directions, as published
-  /// Mean of the phase function over both directions' cells, taken as caps of equal solid angle (numerics.md, Eq. (D3))
+  /// Mean of the phase function over the cells of both directions; a cell is a cap with the direction's solid angle
+  /// (numerics.md, Eq. (D3))
   CellMeans
 };
 
@@ -28,16 +29,17 @@ struct SeparableSettings
   int terms = 25; ///< number of terms, at most the number of directions
   PhaseFactorisation factorisation = PhaseFactorisation::SphericalHarmonics;
   PhaseSampling sampling = PhaseSampling::PointValues;
-  /// Whether to repair the truncated sum so that it conserves power exactly for any number of terms, and has the exact
-  /// mean cosine if there are at least four terms; false: as published, where truncation and sampling change both.
+  /// Whether to repair the truncated sum: it then conserves power exactly for any number of terms, and has the exact
+  /// mean cosine if there are at least four terms. False: as published, where truncation and sampling change both power
+  /// and mean cosine.
   bool repaired = true;
   /// Whether to treat a fraction of scattered light as unscattered (delta-M: W. J. Wiscombe, J. Atmos. Sci. 34 (1977));
-  /// the terms represent the remainder. Ignored with singular values if all terms are kept, since nothing is then
+  /// the terms represent the remainder. Ignored with singular values if all terms are kept, because the sum is then not
   /// truncated.
   bool truncatesPeak = false;
   /// Whether to damp the terms by their degrees until the sum is nowhere negative, as angular moments are damped in
-  /// boxes that are thin along one axis (numerics.md, Eq. (8d)); power and mean cosine stay. With spherical harmonics
-  /// only.
+  /// boxes that are thin along one axis (numerics.md, Eq. (8d)). Power and mean cosine are unchanged. Only with
+  /// spherical harmonics.
   bool nowhereNegative = false;
 };
 
@@ -58,12 +60,12 @@ struct SeparableErrors
 ///
 ///   p(i, j) = peak [i = j] / w_i + (1 - peak) sum_k lambda_k u_k(i) u_k(j),    sum_i w_i u_k(i) u_l(i) = [k = l]
 ///
-/// so that scattering takes 2 N multiplications per direction instead of D, the number of directions.
+/// Scattering then takes 2 N multiplications per direction; the full matrix takes as many as there are directions.
 ///
-/// With singular values, the terms with the largest ones come first; if repaired, they are preceded by the four terms
-/// that carry power and mean cosine. With spherical harmonics, orthonormalised on the set degree by degree (J. E.
-/// Morel, Nucl. Sci. Eng. 101 (1989)), terms are ordered by degree: N = (L + 1)^2 completes a degree, other N prefer
-/// some axes. Terms with eigenvalue zero are omitted.
+/// With singular values, the terms with the largest singular values come first; if repaired, the four terms that carry
+/// power and mean cosine precede them. With spherical harmonics, orthonormalised on the directions degree by degree (J.
+/// E. Morel, Nucl. Sci. Eng. 101 (1989)), terms are ordered by degree. N = (L + 1)^2 terms complete a degree; with any
+/// other N some axes are preferred. Terms with eigenvalue zero are omitted.
 class SeparablePhaseFunction
 {
 public:
@@ -79,8 +81,8 @@ public:
   } ///< number of terms kept, at most SeparableSettings::terms
   int DirectionCount() const { return static_cast<int>(this->Directions.size()); }
   const std::vector<Direction>& TheDirections() const { return this->Directions; }
-  /// Fraction of scattered light treated as unscattered; may be negative with SeparableSettings::nowhereNegative, if
-  /// the mean cosine is.
+  /// Fraction of scattered light treated as unscattered. It may be negative with SeparableSettings::nowhereNegative if
+  /// the mean cosine is negative.
   double Peak() const { return this->PeakPart; }
   double Eigenvalue(int term) const { return this->Eigenvalues[term]; } ///< lambda_k of term k, in [-1, 1] if repaired
   double Factor(int direction, int term) const ///< value u_k(i) of a term k in direction i, 1/sqrt(sr)
@@ -89,8 +91,8 @@ public:
   }
   double Value(int i, int j) const; ///< sum_k lambda_k u_k(i) u_k(j), without the peak, 1/sr
 
-  /// Absolute eigenvalues of the phase matrix (its singular values), largest first; with spherical harmonics, those of
-  /// the terms.
+  /// Absolute eigenvalues of the phase matrix (its singular values), largest first. With spherical harmonics: absolute
+  /// eigenvalues of the terms.
   const std::vector<double>& SingularValues() const { return this->Singular; }
   /// The full phase matrix, 1/sr, [i][j], including the peak; repaired if the settings request it.
   const std::vector<double>& Matrix() const { return this->Whole; }
@@ -104,9 +106,9 @@ private:
   std::vector<double> Eigenvalues, Factors, Singular, Whole;
 };
 
-/// Theoretical value of SeparableErrors::frobenius: a phase function on the sphere has its Legendre moments chi_l as
-/// eigenvalues, each 2 l + 1 times; the error is the root of the sum of squares of all but the `terms` largest,
-/// relative to that of all (numerics.md, Eq. (D4)).
+/// Theoretical value of SeparableErrors::frobenius. A phase function on the sphere has its Legendre moments chi_l as
+/// eigenvalues, each 2 l + 1 times. The error is the root of the sum of squares of all but the `terms` largest
+/// eigenvalues, divided by the root of the sum over all eigenvalues (numerics.md, Eq. (D4)).
 /// @param moments  Legendre moments of the phase function, up to a degree beyond which they are negligible
 double TheoreticalError(const std::vector<double>& moments, int terms);
 

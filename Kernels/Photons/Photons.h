@@ -19,8 +19,8 @@ struct Photon
   std::array<double, 3> position = {};
   std::array<float, 3> direction = { 0.0f, 0.0f, 1.0f }; ///< direction of travel, unit length
   std::array<float, 3> power = {};                       ///< power of each channel (RGB), W
-  /// Ratio of the photon's power to its power if the photons of its light had uniform density: large where photons are
-  /// sparse.
+  /// Ratio of the photon's power to the power that it would have if its light emitted photons of uniform density. Large
+  /// where photons are sparse.
   float weight = 1.0f;
   /// Index of the photon's batch, from 0. Batches are independent samples, each of which carries a part of the power.
   std::int32_t batch = 0;
@@ -37,12 +37,12 @@ struct MarchSettings
   double stepSize = 1.0;
   bool meanDirection = true;
   /// Whether photonCount and photonWeight are returned, for up to 16777215 photons. They need one more number per
-  /// voxel, summed in the same pass.
+  /// voxel.
   bool counts = false;
-  /// Whether batchFluence is returned: separate sums for each of up to MarchedBatchesAtMost batches, which need at
-  /// least as many copies of the sums. With Sums::Private a copy is filled by one compute unit and belongs to one
-  /// batch: to keep all compute units busy, use batches of equal size, as many as there are compute units or a multiple
-  /// of that.
+  /// Whether batchFluence is returned. It needs separate sums, and so at least one copy of the sums, for each of up to
+  /// MarchedBatchesAtMost batches. With Sums::Private each copy is filled by one compute unit and belongs to one batch.
+  /// To keep all compute units busy, use batches of equal size, whose number is the number of compute units or a
+  /// multiple of it.
   bool batches = false;
   /// Number of scattering orders that photons are followed through. 1: up to their first collision (the uncollided
   /// flux, without randomness); m: through m - 1 scatterings; 0: until they are absorbed or have escaped.
@@ -51,18 +51,18 @@ struct MarchSettings
   /// Number of random batches of photons, up to MarchedBatchesAtMost, from which the standard error (fluenceError of
   /// the light) is estimated; 0: no standard error. Cannot be combined with counts or batches.
   int errorBatches = 0;
-  /// Whether bricks of 8^3 voxels that hold no medium store only their mean light, in one record, and are crossed by
-  /// photons in one segment. In a mostly empty medium this needs a small fraction of the memory and of the time; in
-  /// the voxels of bricks that hold any medium the light agrees to rounding. Takes effect only if the index is
-  /// constant (empty space then focuses no light), at least three quarters of the bricks are empty, and photons are
-  /// followed through one order, without counts and batches; otherwise light is stored voxel by voxel.
+  /// Whether a brick of 8^3 voxels without medium stores only its mean light, in one record, and is crossed by photons
+  /// in one segment. In a mostly empty medium this takes a small fraction of the memory and of the time. In the voxels
+  /// of bricks that hold medium the light agrees to rounding. Takes effect only if the index is constant (empty space
+  /// then focuses no light), at least three quarters of the bricks are empty, and photons are followed through one
+  /// order, without counts and batches. Otherwise light is stored voxel by voxel.
   bool byBricks = false;
-  /// Whether kernels are compiled without the channels and the integrator that the scene does not need. With false,
-  /// kernels always have three channels and the integrator, to measure the saving.
+  /// Whether kernels are compiled without the channels and the path integrator if the scene does not need them. With
+  /// false, kernels always have three channels and the integrator, to measure the saving.
   bool leaveOut = true;
 
-  /// Method that keeps concurrent additions to the same sum from losing deposits. All methods give the same light,
-  /// bit for bit.
+  /// How concurrent additions to the same sum are kept from losing deposits. All choices give the same light, bit for
+  /// bit.
   enum class Sums
   {
     Fitting, ///< Private on a CPU of up to 8 cores and on devices without 64-bit atomics, Shared otherwise
@@ -82,7 +82,7 @@ void Check(const MarchSettings& settings);
 struct PhotonPath
 {
   std::size_t photon = 0; ///< index of the photon in the array of photons that were marched
-  /// Its start, each point where it changes direction, and its end, world coordinates.
+  /// Points of the path: its start, each point where it changes direction, and its end, world coordinates.
   std::vector<std::array<double, 3>> points;
   std::vector<float> left; ///< fraction of the photon's power (sum of channels) left at each corner; 1 if it had none
 };
@@ -90,18 +90,19 @@ struct PhotonPath
 /// Light that photons deposited in a medium, with its energy balance and statistics.
 struct PhotonLight
 {
-  /// Light of all orders. With maximumOrders = 1, the uncollided light alone: fluenceDirect would be equal and is
-  /// left empty, the energy balance counts first-scattered power as `absorbed`, and its `leftOver` is the power of
-  /// photons terminated before they escaped (total reflection can trap them). With more orders, fluenceDirect is the
-  /// uncollided light, `absorbed` is absorption alone, and `leftOver` also includes power that would be scattered
-  /// once more, less the net power added by Russian roulette.
+  /// Light of all scattering orders, with its energy balance.
+  /// With maximumOrders = 1 it is the uncollided light alone. fluenceDirect would be equal and is left empty; the
+  /// energy balance counts first-scattered power as `absorbed`; its `leftOver` is the power of photons terminated
+  /// before they escaped (total reflection can trap them).
+  /// With more orders, fluenceDirect is the uncollided light, and `absorbed` is absorption alone. `leftOver` then also
+  /// includes power that would be scattered once more, less the net power added by Russian roulette.
   LightField light;
   Rgb scattered = {};            ///< W, power scattered for the first time
   std::uint64_t scatterings = 0; ///< number of scatterings of all photons; 0 with a single scattering order
   Rgb exchanged = {};            ///< W, net power added by Russian roulette; its expected value is 0
-  /// Mean direction of the light, three values per voxel: sum of power times direction over sum of power, of length
-  /// at most 1. Empty if not requested. Coarse in voxels so dark that their sum is a few units of fixed point, some
-  /// 2^-62 of all power times the longest path.
+  /// Mean direction of the light, three values per voxel: sum of power times direction over sum of power, of length at
+  /// most 1. Empty if not requested. It is coarse in voxels so dark that their sum is a few fixed-point units; a unit
+  /// is about 2^-62 of all power times the longest path.
   std::vector<float> meanDirection;
   /// Number of photons that crossed each voxel with power above 0; a photon counts again each time it re-enters.
   /// Empty if not requested.
@@ -110,8 +111,8 @@ struct PhotonLight
   /// largest. Empty if not requested.
   std::vector<float> photonWeight;
   int batches = 1; ///< number of batches: the largest Photon::batch plus one
-  /// Fluence estimated from each batch of photons alone, as if the batch carried all the power,
-  /// [voxel][batch][channel]. Its mean over batches is `light.fluence`. Empty if not requested.
+  /// Fluence that each batch of photons gives if it carries all the power, [voxel][batch][channel]. The mean over
+  /// batches is `light.fluence`. Empty if not requested.
   std::vector<float> batchFluence;
   std::size_t missed = 0;   ///< number of photons whose lines miss the volume; their power does not count as entered
   std::size_t deposits = 0; ///< number of path segments whose light was added to the sums of voxels
@@ -121,8 +122,8 @@ struct PhotonLight
   double seconds = 0.0; ///< total duration, from the given photons to the light on the host, s
 };
 
-/// Light of pilot photons, a small first set by which the final photons are distributed, in coarse cells that fill the
-/// medium's box (Pfeuti 2009, section 3.2.2). In all arrays x varies fastest.
+/// Light of pilot photons in coarse cells that fill the medium's box (Pfeuti 2009, section 3.2.2). Pilot photons are a
+/// small first set; their light decides how the final photons are distributed. In all arrays x varies fastest.
 struct PilotLight
 {
   /// Grid of the coarse cells. Where their number does not divide the number of voxels, some cells are one voxel

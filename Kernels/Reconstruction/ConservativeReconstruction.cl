@@ -5,17 +5,18 @@
 //   WOVEN       1: the grid's light is [voxel][batch][channel] with two batches; 0: [batch][voxel][channel]
 //   FINEST      1: the finer level is the grid itself, in the host's layout; 0: rows of a level
 //
-// Fields of a pyramid level: the light of each batch (sum of channels), then the smoothed quantities, which are the
-// mean light's channels and its flux (light times mean direction). The detail of a level is the level less the
-// interpolated level above.
+// Fields of a pyramid level: first the light of each batch (sum of channels), then the quantities to be smoothed. These
+// are the channels of the batches' mean light, and its flux (light times mean direction). The detail of a level is the
+// level minus the interpolation of the next coarser level.
 
 #include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.cl"
 
 #define CARRIED (CHANNELS + 3 * DIRECTIONS)
 #define FIELDS (BATCHES + CARRIED)
-// Indices of the fields of a result that follow its CARRIED smoothed quantities: the source level, which is the pyramid
-// level from which the light is taken (fractional where levels are blended), and the squared error.
+// Fields of a result: first CARRIED smoothed quantities, then the two fields with these indices. The source level
+// (BLENDED) is the pyramid level from which the light is taken; it is fractional where levels are blended. SQUARED is
+// the squared error.
 #define BLENDED CARRIED
 #define SQUARED (BLENDED + 1)
 #define RESULTS (CARRIED + BesideResults)
@@ -147,8 +148,8 @@ inline void add_voxels(pair* sum, const __global float* batches, const __global 
 #define last_of(p) ((p).y)
 #endif
 
-// Computes pyramid level 1, whose cells are 2 x 2 x 2 voxels, from the grid's voxels: all fields (light of each batch,
-// then channels and flux of the mean light) in one pass, with weights 1 3 3 1 along each axis.
+// Computes pyramid level 1, whose cells are 2 x 2 x 2 voxels, from the grid's voxels with weights 1 3 3 1 along each
+// axis. One pass computes all fields: the light of each batch, then channels and flux of the mean light.
 __kernel void voxels_down(const __global float* batches, const __global float* directions, int4 fine_size,
   __global float* coarse, int4 size, float scale)
 {
@@ -218,9 +219,9 @@ inline light_pair load_light(
   return light;
 }
 
-// Measures noise and light in the details of a level (the level less the interpolated level above), by cells of
-// 2 x 2 x 2 (numerics.md, Eq. (101)). Field 0 is the noise, the variance of the batches' mean detail d:
-// sum (d_b - d)^2 / (B (B - 1)). Field 1 is d^2.
+// Measures noise and light in the details of a level, in cells of 2 x 2 x 2 (numerics.md, Eq. (101)). A detail is the
+// level minus the interpolation of the next coarser level. Field 0 is the noise, that is, the variance of the batches'
+// mean detail d: sum (d_b - d)^2 / (B (B - 1)). Field 1 is d^2.
 __kernel void measure_details(const __global float* fine, const __global float* directions, int4 fine_size, float scale,
   const __global float* coarse, int4 size, __global float* measured)
 {
@@ -276,7 +277,7 @@ __kernel void measure_details(const __global float* fine, const __global float* 
   }
 }
 
-// Smooths `fields` quantities of a level, from number `first` on, by binomial weights 1 4 6 4 1 along y and z; the
+// Smooths `fields` quantities of a level, from number `first` on, with binomial weights 1 4 6 4 1 along y and z. The
 // kernels that read the output smooth along x.
 __kernel void smooth_across(const __global float* from, int4 size, __global float* to, int first, int fields)
 {
@@ -317,8 +318,9 @@ inline real smoothed(const __global float* row, int x)
     0.0625f * (load_real(x - 2, row) + load_real(x + 2, row));
 }
 
-// Computes the Wiener gain, the fraction of a level's details (the level less the interpolated level above) that is
-// kept (numerics.md, Eq. (102)). Twice the noise is subtracted, so that random fluctuations are not mistaken for light.
+// Computes the Wiener gain, the fraction of a level's details that is kept (numerics.md, Eq. (102)). A detail is the
+// level minus the interpolation of the next coarser level. Twice the noise is subtracted, so that random fluctuations
+// are not mistaken for light.
 __kernel void find_gains(const __global float* measured, int4 size, __global float* gains)
 {
   const int y = ROW_Y, z = ROW_Z;
@@ -338,8 +340,8 @@ __kernel void find_gains(const __global float* measured, int4 size, __global flo
   }
 }
 
-// Adds up the squared error (numerics.md, Eq. (104)): noise that was kept, light that was mistaken for noise (times
-// `honesty`), and the error of the levels above.
+// Adds up the squared error (numerics.md, Eq. (104)). It has three parts: noise that was kept, light that was removed
+// as noise (times `honesty`), and the error of the coarser levels.
 __kernel void add_errors(
   const __global float* removed, int4 size, float honesty, const __global float* results, __global float* gains)
 {
@@ -357,9 +359,9 @@ __kernel void add_errors(
   }
 }
 
-// Computes the result of the top level of the pyramid: the quantities that are to be smoothed are taken as they are (a
-// gain of 1). The noise, the variance of the batches' mean light, is smoothed before begin_errors stores it as the
-// squared error.
+// Computes the result of the top level of the pyramid. The quantities to be smoothed are taken unchanged (gain 1). The
+// noise, which is the variance of the batches' mean light, is smoothed before begin_errors stores it as the squared
+// error.
 __kernel void begin_results(
   const __global float* level, int4 size, __global float* results, float top, __global float* noise)
 {
@@ -453,10 +455,10 @@ inline __attribute__((always_inline)) void store_voxels(
 #endif
 }
 
-// Computes the result of a level: the interpolated result of the level above plus the gain times the details of this
-// level (its light less the interpolated light of the level above).
+// Computes the result of a level: the interpolated result of the next coarser level, plus the gain times the details of
+// this level.
 //   fine, fine_size, directions, scale   light of this level
-//   coarse, results, gains               light, result and gains of the level above, of `size`
+//   coarse, results, gains               light, result and gains of the next coarser level, of `size`
 //   to          output: rows of RESULTS fields of this level; with FINEST the fluence of the grid's voxels
 //   number      number of this level, from 0
 //   mean_direction, blended     output with FINEST: mean direction of each voxel, and the level from which its
@@ -469,8 +471,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   const size_t field = field_of(size);
   const float unit = 1.0f / scale;
   const size_t fine_field = field_of(fine_size);
-  // The loop over the four rows of children is the outer one, so that only one row of each quantity of this level is
-  // read at a time: hardware prefetches a few rows, but not four of every quantity.
+  // The loop over the four rows of children is outermost, so that only one row of each quantity of this level is read
+  // at a time. Hardware prefetches a few rows, but not four rows of every quantity.
   for (int k = 0; k < 4; ++k)
   {
     const rows_about rows = rows_for_children(size, y, z, k);
@@ -520,8 +522,8 @@ __kernel void blend_level(const __global float* fine, const __global float* dire
   }
 }
 
-// Scales each channel of the light to conserve its total, and computes the standard errors: channels share the error
-// of their sum in proportion to their light.
+// Scales each channel of the light to conserve its total, and computes the standard errors. The error of the sum of
+// channels is divided among them in proportion to their light.
 __kernel void finish_light(const __global float* gains, int4 size, float4 conserve, float unit, __global float* fluence,
   __global float* errors, int4 fine_size)
 {

@@ -25,16 +25,16 @@ struct ConservativeLevel
   /// Result of the level: smoothed quantities, source level (pyramid level from which the light is taken), squared
   /// error.
   LightRows results;
-  /// Fraction of the details of the next finer level (what it holds beyond this level, interpolated) that is kept, and
-  /// the squared errors (GainField to ErrorField).
+  /// Fraction of the details of the next finer level that is kept, and squared errors (fields GainField to ErrorField).
+  /// The details are the finer level minus the interpolation of this level.
   LightRows gains;
-  /// Intermediate results for the gains. `measured`: noise and squared light of the details of the next finer level,
-  /// from measure_details. `across`: the same, smoothed along y and z.
+  /// Intermediate results for the gains. `measured` (from measure_details): noise and squared light of the details of
+  /// the next finer level. `across`: the same two quantities, smoothed along y and z.
   LightRows measured, across;
 };
 
-/// Light of all batches in the grid's voxels on the device: the host's own array [voxel][batch][channel] or, where
-/// kernels cannot read that efficiently (AreWoven is false), a copy [batch][voxel][channel] whose rows are padded to a
+/// Light of all batches in the grid's voxels on the device. It is the host's own array [voxel][batch][channel] if
+/// kernels can read that efficiently (AreWoven). Otherwise it is a copy [batch][voxel][channel] with rows padded to a
 /// multiple of two vectors.
 class BatchedLight
 {
@@ -48,10 +48,10 @@ private:
   Buffer<float> Apart;
 };
 
-/// Passes of the conservative estimator over the levels of a pyramid (numerics.md, Eqs. (101) to (104)): Build
-/// upwards, Begin at the top, Refine downwards. One object covers the levels of this rank's box (its block and halo) up
-/// to the shared level, the coarsest one that ranks compute from their boxes. Another object covers the levels of the
-/// domain from the shared level on, on every rank.
+/// Passes of the conservative estimator over the levels of a pyramid (numerics.md, Eqs. (101) to (104)): Build upwards,
+/// Begin at the top, Refine downwards. The shared level is the coarsest one that ranks compute from their own boxes
+/// (block and halo). One object covers the levels of this rank's box up to the shared level. A second object, on every
+/// rank, covers the levels of the domain from the shared level on.
 class ConservativePasses
 {
 public:
@@ -102,8 +102,8 @@ private:
   std::vector<ConservativeLevel> Levels;
 };
 
-/// Fraction of the light removed together with the noise that counts as error: the factor 0.4 of numerics.md, Eq.
-/// (104), where its fit is described.
+/// The factor 0.4 of numerics.md, Eq. (104), where its fit is described: this fraction of the light that is removed
+/// together with the noise counts as error.
 constexpr float Honesty = 0.4f;
 
 /// Number of voxels that the first launch of a kernel processes; its run time determines the size of later launches.
@@ -120,8 +120,8 @@ ConservativeLevel MakeLevel(const Reconstruction& task, const std::array<int, 3>
     LightRows(device, size, 2, width, what) };
 }
 
-/// Whether kernels read the light of batches in the host's layout [voxel][batch][channel]: for two batches with rows
-/// of a multiple of two vectors. With more batches they would have to gather single values.
+/// Whether kernels read the light of batches in the host's layout [voxel][batch][channel]. They do for two batches and
+/// rows that are a multiple of two vectors. With more batches they would have to gather single values.
 bool AreWoven(const NoisyLight& light, int width)
 {
   return light.batches == 2 && WholeVectors(light.grid.size[0], width) == light.grid.size[0];
@@ -244,7 +244,7 @@ void ConservativePasses::Begin()
   this->Kernels.Run(errors, top.light.Cells());
 }
 
-/// Computes the gains of a level's details (the fractions of them that are kept), and the error of these details.
+/// Computes the gains of a level (the fractions of its details that are kept) and the error of these details.
 void ConservativePasses::FindGains(int level)
 {
   ConservativeLevel& above = this->At(level + 1);

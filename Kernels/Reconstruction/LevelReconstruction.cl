@@ -9,8 +9,8 @@
 #include "Reconstruction/LightPyramidShared.h"
 #include "Reconstruction/LightRows.cl"
 
-// The four rows of a level between which a row of voxels lies, y fastest, and the interpolation weights along y and
-// z.
+// A row of voxels lies between four rows of a level. Holds these rows, y fastest, and the interpolation weights along y
+// and z.
 typedef struct
 {
   size_t at[4];
@@ -115,8 +115,9 @@ inline void take(real* taken, const real* channels, integer where)
   }
 }
 
-// Finds the lowest level with at least `least` photons (level `top` if none has), and interpolates the first `fields`
-// fields of `wanted` there: the channels of the light or, for the published estimator, the photons' weight.
+// Finds the lowest level with at least `least` photons (level `top` if there is none), and interpolates the first
+// `fields` fields of `wanted` at this level. These are the channels of the light or, for the published estimator, the
+// photons' weight.
 inline real populated(const __global float* counts, const rows_between* rows_of_counts, float least,
   const __global float* wanted, const rows_between* rows, const int fields, int top, int x, real* found)
 {
@@ -139,8 +140,8 @@ inline real populated(const __global float* counts, const rows_between* rows_of_
   return level;
 }
 
-// Returns the level up to which the difference of successive levels does not grow (listing B.3), at most `highest`;
-// `taken` receives the light of that level.
+// Returns the highest level, at most `highest`, up to which the difference of successive levels does not grow (listing
+// B.3). `taken` receives the light of this level.
 inline real by_surround(
   const __global float* light, const rows_between* rows, int top, real highest, int x, real* taken)
 {
@@ -173,7 +174,7 @@ inline real by_surround(
 }
 
 #if DIRECTIONS
-// Stores the mean direction that each voxel has at its level, one of `lowest` to `top`.
+// Stores the mean direction of each voxel at its level, which is one of `lowest` to `top`.
 inline void store_direction(const __global float* light, const rows_between* rows, int lowest, int top, real level,
   int x, size_t voxel, __global float* direction)
 {

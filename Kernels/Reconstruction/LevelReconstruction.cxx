@@ -62,9 +62,9 @@ private:
   std::vector<LightPyramid> Pyramids;
 };
 
-/// Increment of photon weight per level: that of the settings or, if they give none, 0.999 times the mean weight of
-/// voxels with photons. The factor makes up for the rounding of weights in the march: if all weights are equal, none
-/// falls below the first increment. Collective.
+/// Increment of photon weight per level: the value of the settings or, if they give none, 0.999 times the mean weight
+/// of voxels with photons. The factor allows for the rounding of weights in the march: otherwise some of several equal
+/// weights might fall below the first increment. Collective.
 /// @param own  photon weights in the voxels of this rank's block
 double WeightStepOf(const Reconstruction& task, const float* own)
 {
@@ -154,7 +154,7 @@ void LevelPasses::Choose(double weightStep)
   const WholeRows direction(this->Kernels, result.meanDirection, this->Size, 3, "mean directions");
   const WholeRows chosen(this->Kernels, result.mipLevel, this->Size, 1, "levels");
 
-  // The kernel does not read pyramids that the estimator does not use; another pyramid is passed in their place.
+  // If the estimator does not use a pyramid, another one is passed in its place; the kernel does not read it.
   const LightPyramid& light = this->Pyramids.front();
   const LightPyramid& heavy = this->Pyramids.back();
   const LightPyramid& photons = this->Pyramids[std::min<std::size_t>(1, this->Pyramids.size() - 1)];

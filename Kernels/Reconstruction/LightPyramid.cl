@@ -31,8 +31,8 @@ __kernel void split_voxels(
   }
 }
 
-// Filters 4 x 4 x 4 finer cells with a separable kernel, of weight `near` for the two inner and `far` for the two
-// outer cells along each axis.
+// Filters 4 x 4 x 4 finer cells with a separable kernel. Along each axis the two inner cells have the weight `near`,
+// the two outer ones `far`.
 __kernel void smooth_down(
   const __global float* fine, int4 fine_size, __global float* coarse, int4 size, int fields, float near, float far)
 {
@@ -109,8 +109,8 @@ __kernel void join_down(
   }
 }
 
-// Copies rows of `count` voxels, from_row voxels apart, to rows that are to_row voxels apart; padding repeats the
-// last voxel. The layout changes from [voxel][batch][channel] to [batch][voxel][channel].
+// Copies rows of `count` voxels. Rows are from_row voxels apart in the source and to_row voxels apart in the copy,
+// whose padding repeats the last voxel. The layout changes from [voxel][batch][channel] to [batch][voxel][channel].
 __kernel void copy_rows(
   const __global float* from, int count, int from_row, __global float* to, int to_row, int batches, int channels)
 {

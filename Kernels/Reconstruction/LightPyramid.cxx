@@ -15,9 +15,9 @@ int RowWidth(const Device& device, const Grid& grid)
 
 namespace
 {
-/// Pitch of layers in floats, equal to layer_of in LightRows.cl. Rows at the same position of all layers and
-/// quantities are used together; with pitches that are multiples of 4 kB they would map to the same few cache sets.
-/// So a layer ends with 3 and a quantity (FieldStride) with 41 unused lines of 64 bytes.
+/// Pitch of layers in floats, equal to layer_of in LightRows.cl. Rows at the same position of all layers and quantities
+/// are used together. With pitches that are multiples of 4 kB they would map to the same few cache sets. A layer
+/// therefore ends with 3, and a quantity (FieldStride) with 41, unused lines of 64 bytes.
 std::size_t LayerStride(const std::array<int, 3>& size, int stride)
 {
   const std::size_t layer = Count(size[1]) * Count(stride);

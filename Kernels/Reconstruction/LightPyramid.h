@@ -76,9 +76,9 @@ private:
   int RowWidth;
 };
 
-/// A voxel array on the device whose rows are a multiple of two vectors: the host's own array if its rows are, else a
-/// copy with longer rows, padded with the row's last voxel. The host's array is referenced and must outlive this
-/// object.
+/// A voxel array on the device, with rows that are a multiple of two vectors. If the host's rows already are, it is the
+/// host's own array. Otherwise it is a copy with rows padded by their last voxel. The host's array is referenced and
+/// must outlive this object.
 class WholeRows
 {
 public:
@@ -93,7 +93,7 @@ public:
 
   const cl::Buffer& Handle() const { return this->Wide.Size() > 0 ? this->Wide.Handle() : this->Own.Handle(); }
 
-  /// Waits for the device, and makes the host's array hold what kernels wrote.
+  /// Waits for the device. Afterwards the host's array holds the values that kernels wrote.
   void Fetch() const;
 
 private:
@@ -107,15 +107,14 @@ private:
   Buffer<float> Wide;
 };
 
-/// Layout, for kernels, of a grid's voxels in arrays as in WholeRows: voxels along x, y, z, and pitch of rows in
-/// voxels.
+/// Layout of voxels for kernels that read WholeRows: number of voxels along x, y, z, and pitch of rows in voxels.
 inline cl_int4 VoxelLayout(const std::array<int, 3>& size, int width)
 {
   return { { size[0], size[1], size[2], WholeVectors(size[0], width) } };
 }
 
-/// Position of a block in the domain, for a pyramid over the block: its lower levels cover the block, its upper
-/// levels the domain.
+/// Position of a block in the domain, for a pyramid whose lower levels cover the block and whose upper levels cover the
+/// domain.
 struct PartOfPyramid
 {
   std::array<int, 3> whole = {}; ///< number of voxels of the domain along x, y, z

@@ -13,8 +13,8 @@ enum
 typedef struct
 {
   int4 size[LevelsAtMost + 1]; ///< layout of each level as in LightRows.cl: cells along x, y, z, and floats per row
-  /// First voxel of the block among the voxels that the level covers: its position in the domain for levels that cover
-  /// the domain, 0 for levels that cover only the block.
+  /// First voxel of the block, counted from the first voxel that the level covers: its position in the domain for
+  /// levels that cover the domain, 0 for levels that cover only the block.
   int4 first[LevelsAtMost + 1];
   ulong offset[LevelsAtMost + 1]; ///< offset of each level in the buffer, in floats
 } PyramidLevels;
@@ -27,8 +27,9 @@ enum LevelEstimator
   ByNearestPhotons
 };
 
-/// Fields of the gains: for each cell of a level, the fraction of the details (the finer level less this level,
-/// interpolated) that is kept in its 2 x 2 x 2 cells of the next finer level, and the squared errors.
+/// Fields of the gains, per cell of a level. The gain is the fraction of the details that is kept in the cell's 2 x 2 x
+/// 2 children, the cells of the next finer level; details are the finer level minus the interpolation of this level.
+/// The other fields are squared errors.
 enum
 {
   GainField = 0,    ///< fraction of the details that is kept, Eq. (102) of numerics.md
@@ -40,8 +41,8 @@ enum
 
 enum
 {
-  /// Number of fields of a result after the smoothed quantities: the source level (pyramid level from which the light
-  /// is taken), and the squared error.
+  /// Number of fields of a result after the smoothed quantities. They are the source level (the pyramid level from
+  /// which the light is taken) and the squared error.
   BesideResults = 2
 };
 SHARED_END

@@ -1,7 +1,7 @@
 // Row layout and vector access for all kernels of the reconstruction, with REAL_WIDTH 8 (CPUs) or 1.
 //
-// A level of a pyramid consists of `fields` volumes of rows, one volume per quantity. A row has GUARD values before
-// and after it that repeat its end values, as does the padding that extends it to a multiple of 2 REAL_WIDTH: loads
+// A level of a pyramid consists of `fields` volumes of rows, one volume per quantity. A row is padded to a multiple of
+// 2 REAL_WIDTH, and has GUARD values before and after it. Padding and guards repeat the row's end values, so that loads
 // along x need no bounds checks. The int4 `size` of a level is cells along x, y, z, then the pitch of rows in floats.
 //
 // Voxel arrays in the host's layout interleave their components and have no guards; the w component of their `size`
@@ -54,9 +54,9 @@ typedef struct
 } pair_of_three;
 
 #if REAL_WIDTH == 8
-// Selects lanes 0, 3, 6 of a, 1, 4, 7 of b, and 2, 5 of c. In three vectors of interleaved voxels each component
-// occupies every lane once, so this selection and one permutation separate the components; written as a single shuffle,
-// they compile to sixteen moves.
+// Selects lanes 0, 3, 6 of a, 1, 4, 7 of b, and 2, 5 of c. In three vectors of voxels with interleaved components, each
+// component occupies every lane once. This selection and one permutation therefore separate the components. A single
+// shuffle would compile to sixteen moves.
 inline float8 lanes_of(float8 a, float8 b, float8 c)
 {
   const int8 second = (int8)(0, -1, 0, 0, -1, 0, 0, -1), third = (int8)(0, 0, -1, 0, 0, -1, 0, 0);
@@ -122,7 +122,7 @@ inline void store_three(pair x, pair y, pair z, size_t voxel, __global float* va
 #define any_of(condition) any(condition)
 #endif
 
-// x if positive, else 0; fmax is not used, as it tests for NaN.
+// x if positive, else 0. fmax is not used, since it also tests for NaN.
 #define positive_part(x) ((x) > 0.0f ? (x) : 0.0f)
 
 inline int within(int i, int count)
@@ -130,8 +130,8 @@ inline int within(int i, int count)
   return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-// Pitches in floats of a layer of rows (layer_of) and of a quantity's volume (field_of). Neither is a multiple of 4
-// kB, with which layers would evict each other from the cache (LightPyramid.cxx).
+// Pitches in floats of a layer of rows (layer_of) and of a quantity's volume (field_of). Neither is a multiple of 4 kB:
+// layers would then evict each other from the cache (LightPyramid.cxx).
 inline size_t layer_of(int4 size)
 {
   const size_t layer = (size_t)size.y * size.w;
@@ -149,9 +149,9 @@ inline size_t row_of(int4 size, int field, int y, int z)
   return field * field_of(size) + within(z, size.z) * layer_of(size) + (size_t)within(y, size.y) * size.w + GUARD;
 }
 
-// Repeats a row's first value in its guards (the GUARD values before it) and its last one in its padding and the guards
-// after it, if its first or last cell is among the `width` cells that were written from x on. `count` is the number of
-// cells in the row.
+// Fills the guards and the padding of a row. The GUARD values before the row repeat its first value; the padding and
+// the guards after it repeat its last one. A side is filled only if the cell at that end of the row is among the
+// `width` cells that were written from x on. `count` is the number of cells in the row.
 inline void repeat_ends(__global float* row, int x, int width, int count)
 {
   if (x == 0)
@@ -175,8 +175,8 @@ inline real nearer(real near, real far)
   return multiply_add((real)0.25f, far, (real)0.75f * near);
 }
 
-// Offsets, within a field of a cell's level, of the four rows from which row k of the cell's children is interpolated.
-// A cell at (y, z) has eight children, in four rows of pairs; row k is at y = k % 2, z = k / 2.
+// A cell at (y, z) has eight children, in four rows of pairs: row k is at y = k % 2, z = k / 2. Holds the offsets,
+// within a field of the cell's level, of the four rows from which a row of children is interpolated.
 typedef struct
 {
   size_t here, beside, behind, opposite;
@@ -201,8 +201,8 @@ inline real cells_for_children(const __global float* field, const rows_about* ro
     nearer(load_real(rows->behind + x, field), load_real(rows->opposite + x, field)));
 }
 
-// Trilinear interpolation from REAL_WIDTH cells, from x on, to row k of their children (rows_for_children). Rows are
-// interpolated one at a time, as all eight children of several quantities do not fit into a CPU's registers.
+// Interpolates REAL_WIDTH cells, from x on, trilinearly to row k of their children (rows_for_children). Rows are
+// interpolated one at a time, because all eight children of several quantities do not fit into a CPU's registers.
 inline children interpolate(const __global float* field, const rows_about* rows, int x)
 {
   const real middle = cells_for_children(field, rows, x);

@@ -22,14 +22,15 @@ namespace
 {
 using Estimator = ReconstructionSettings::Estimator;
 
-/// Number of pyramid levels above the grid that each rank computes from its box (its block and a halo); ranks then
-/// exchange the cells of the last one.
+/// Number of pyramid levels above the grid that each rank computes from its box (block and halo). The ranks then
+/// exchange the cells of the highest of these levels.
 constexpr int LevelsOfBox = 2;
 
-/// Width in voxels of the halo that a rank needs for the pyramid levels of its box. Conservative: per level one cell
-/// of the level above for interpolation, four for gains and errors, two for details and the levels from which they
-/// are computed. Other estimators: the two cells of a level between which a voxel lies along each axis, each of which
-/// is computed from four cells of the next finer level.
+/// Width in voxels of the halo that a rank needs to compute the pyramid levels of its box.
+/// Conservative estimator, per level: one cell of the next coarser level for interpolation, four for gains and errors,
+/// two for details and the levels from which these are computed.
+/// Other estimators: along each axis the two cells of a level between which a voxel lies, each computed from four cells
+/// of the next finer level.
 int MarginOf(Estimator estimator)
 {
   return estimator == Estimator::Conservative ? 32 : 16;
@@ -45,7 +46,7 @@ int EdgeOf(Estimator estimator, int shared)
 /// Number of pyramid levels above a grid, at most `levels` and at least 1.
 int LevelsOf(const Grid& grid, int levels)
 {
-  // The level above a single voxel is the voxel itself.
+  // At least 1, also for a grid of a single voxel: level 1 is then the voxel itself.
   return std::max(std::min(levels, PyramidLayout(grid.size).Top()), 1);
 }
 
@@ -70,8 +71,9 @@ struct ArrayRange
   std::array<double, 3> total = {}; ///< sum of the values of each component; [0] only, for one component
 };
 
-/// Computes the summary of an array. Several sums are accumulated in parallel, because a single sum waits for each of
-/// its additions. Each quantity has a loop of its own over a block of values in cache, which compilers vectorise.
+/// Computes the summary of an array. Several sums are accumulated in parallel, because each addition to a single sum
+/// would wait for the previous one. Each quantity has its own loop over a block of values in cache, so that compilers
+/// vectorise it.
 /// @param low, high  required range of the values
 ArrayRange RangeOf(const float* values, std::size_t count, std::size_t components, float low, float high)
 {
@@ -375,7 +377,7 @@ void CheckPresence(const NoisyLight& light, Estimator estimator)
   }
 }
 
-/// Checks that the host's memory suffices, approximately, for the result and, if the device is a CPU, for
+/// Checks that the host's memory is approximately sufficient for the result and, if the device is a CPU, for
 /// intermediate arrays.
 void RequireMemory(const Device& device, const NoisyLight& light, bool conservative, std::size_t voxels)
 {
@@ -387,8 +389,8 @@ void RequireMemory(const Device& device, const NoisyLight& light, bool conservat
     "Reconstructing light on " + std::to_string(voxels) + " voxels", "Use a coarser grid or fewer batches.");
 }
 
-/// Sets channels and batches on ranks without voxels to the values of the other ranks. Returns whether there are mean
-/// directions. Collective.
+/// Sets channels and batches on ranks without voxels to the values of the other ranks. Returns whether the light has
+/// mean directions. Collective.
 /// @throws InvalidInput if ranks disagree
 bool AgreeOnKind(const Domain& domain, NoisyLight& light)
 {
@@ -435,7 +437,7 @@ bool IsOneColour(const Domain& domain, const NoisyLight& light)
 }
 
 /// Reconstructs each channel separately as grey light, with its own gains (fractions of detail that are kept) and
-/// errors; directions and source levels remain those of the sum of channels. Collective.
+/// errors. Directions and source levels remain those of the sum of channels. Collective.
 void ReconstructChannels(Device& device, const Domain& domain, const NoisyLight& light,
   const ReconstructionSettings& settings, const Monitor& monitor, ReconstructedLight& result)
 {

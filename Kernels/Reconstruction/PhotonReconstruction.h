@@ -32,8 +32,8 @@ struct ReconstructionSettings
 {
   enum class Estimator
   {
-    /// Light from one pyramid level per voxel, the lower one of two: the level up to which differences of successive
-    /// levels do not grow, and a level in proportion to the photon weight (Pfeuti 2009, section 3.2.4).
+    /// Light of each voxel from one pyramid level, the lower of two levels (Pfeuti 2009, section 3.2.4): the level up
+    /// to which differences of successive levels do not grow, and a level that is proportional to the photon weight.
     Published,
     /// Keeps the detail of each pyramid level as far as independent batches agree on it, and estimates the error.
     Conservative,
@@ -74,23 +74,23 @@ struct ReconstructedLight
 /// size the last voxel is treated as if it were repeated.
 ///
 /// Conservative (numerics.md, Eqs. (101) to (104)): builds a Laplacian pyramid of each batch (down by weights 1 3 3 1
-/// along each axis, up by trilinear interpolation). Batches agree on light but not on noise; their differences give a
-/// Wiener gain for the detail of each level, the fraction of the detail that is kept. fluenceError covers the noise
-/// that was kept and the light that was mistaken for noise. Negative light is set to 0. Mean directions are smoothed
-/// as flux (fluence times direction) with the same gains. Light of three channels that has the same colour everywhere
-/// is smoothed by the gains of the sum of channels, and its channels share one relative error; otherwise each channel
-/// is smoothed separately and has its own error.
+/// along each axis, up by trilinear interpolation). Batches agree on light but not on noise. Their differences give a
+/// Wiener gain for each level, which is the fraction of the level's detail that is kept. fluenceError covers the noise
+/// that was kept and the light that was mistaken for noise. Negative light is set to 0. Mean directions are smoothed as
+/// flux (fluence times direction) with the same gains. Light of three channels that has the same colour everywhere is
+/// smoothed by the gains of the sum of channels, and its channels share one relative error; otherwise each channel is
+/// smoothed separately and has its own error.
 ///
-/// Published (Pfeuti 2009, section 3.2.4, listings B.2, B.3; numerics.md, Eq. (100)): uses the lower of two levels:
-/// the level up to which the difference of successive levels does not grow, and the photon weight divided by
-/// `weightStep`, with the weight from the first level that contains at least one photon. The published,
-/// constant-radius and nearest-photons estimators interpolate light and directions trilinearly in a pyramid built
-/// with a 4x4x4 Gaussian kernel.
+/// Published (Pfeuti 2009, section 3.2.4, listings B.2, B.3; numerics.md, Eq. (100)): uses the lower of two levels. One
+/// is the level up to which the difference of successive levels does not grow. The other is the photon weight divided
+/// by `weightStep`; the weight is taken from the first level that contains at least one photon. The published,
+/// constant-radius and nearest-photons estimators interpolate light and directions trilinearly in a pyramid built with
+/// a 4x4x4 Gaussian kernel.
 ///
-/// Collective. Each rank stores its block with a halo of 32 voxels (16 for estimators other than the conservative
-/// one), from which it builds two levels of each pyramid; the levels above, a 64th of the grid's voxels, are computed
-/// redundantly on every rank that has voxels (numerics.md, section 13.2). The result does not depend on the
-/// decomposition, to rounding.
+/// Collective. Each rank stores its block with a halo of 32 voxels (16 for estimators other than the conservative one),
+/// from which it builds two levels of each pyramid. The coarser levels have a 64th of the grid's voxels and are
+/// computed on every rank that has voxels (numerics.md, section 13.2). The result does not depend on the decomposition,
+/// to rounding.
 ///
 /// @param domain  the grid and its partition; `Domain(grid)` in a serial program
 /// @param light   light of this rank's block

@@ -13,8 +13,8 @@ namespace tyndall
 bool NeedsCounts(ReconstructionSettings::Estimator estimator);  ///< whether the estimator needs photon counts
 bool NeedsWeights(ReconstructionSettings::Estimator estimator); ///< whether the estimator needs photon weights
 
-/// Task of the reconstruction on one rank: the settings, and the validated light of the rank's box, which is its block
-/// and the halo on which the block's result depends (PyramidBlocks).
+/// Task of the reconstruction on one rank: the settings, and the checked light of the rank's box. The box is the rank's
+/// block and the halo on which the result in the block depends (PyramidBlocks).
 class Reconstruction
 {
 public:
@@ -61,7 +61,7 @@ public:
   std::array<double, 3> total = {}; ///< total of the light over the domain, for each channel
 
 private:
-  /// Memory of the arrays of `light`; empty if the box is the block, whose arrays are those of the caller.
+  /// Memory of the arrays of `light`. Empty if the box is the block: `light` then refers to the caller's arrays.
   std::array<std::vector<float>, 4> Storage;
 
 public:
@@ -72,8 +72,8 @@ private:
   void Check(const NoisyLight& given);
 };
 
-/// Computes light by the conservative estimator: of the mean light of all batches, the detail of each pyramid level
-/// (the level less the interpolated next coarser one) is kept as far as the batches agree on it. Collective.
+/// Computes light by the conservative estimator. The detail of a pyramid level is the level minus the interpolation of
+/// the next coarser one. Of the batches' mean light, each detail is kept as far as the batches agree on it. Collective.
 /// @param result  arrays must have the size of the box (Reconstruction::MakeRoom)
 void ReconstructConservative(const Reconstruction& task, ReconstructedLight& result);
 

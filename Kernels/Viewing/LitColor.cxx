@@ -20,12 +20,12 @@ constexpr std::size_t VoxelsOfThread = 16384; ///< smallest number of voxels per
 /// Largest number of pixels along each edge of a view from which the exposure is determined: a parallel projection
 /// along an axis of the grid, in which a pixel shows one column of voxels.
 constexpr int ColumnsOfView = 64;
-/// LitColor::distance is at least so long that the largest optical depth k sigma_t distance of all voxels (alpha is 1 -
-/// exp of its negative, see LitColor.h) has this value: then 8 bits resolve the opacities.
+/// Lower limit on the largest optical depth k sigma_t distance of a voxel, with alpha = 1 - exp(-k sigma_t distance)
+/// (LitColor.h). LitColor::distance is chosen so long that the limit is reached: 8 bits then resolve the opacities.
 constexpr double ResolvedDepth = 2.0;
-/// A voxel's optical depth is multiplied by a factor k, which compensates for blending in display values (LitColor.h).
-/// It is chosen so that a voxel blended over black has the right display value at this fraction of the largest radiance
-/// that a ray can receive from it: the 1/4 of numerics.md, Eq. (112d).
+/// The factor k on a voxel's optical depth compensates for blending in display values (LitColor.h). It is chosen so
+/// that a voxel blended over black has the right display value at this fraction of the largest radiance that a ray can
+/// receive from it, see numerics.md, Eq. (112d).
 constexpr double PartOfVeil = 0.25;
 constexpr double AsGoodAsOpaque = 0.95; ///< opacity of a column of voxels from which on it is taken as 1
 
@@ -120,8 +120,8 @@ SeenColumn LookAlong(const SourceFunction& source, double edge, std::size_t firs
   return seen;
 }
 
-/// Calls act(u, v) for the columns of voxels along an axis that a view (ColumnsOfView) shows and that lie in a box. A
-/// view shows a regular subset of the grid's columns.
+/// Calls act(u, v) for those columns of voxels along an axis that lie in a box and that a view shows. A view shows a
+/// regular subset of the grid's columns, at most ColumnsOfView along each edge.
 template <class Act>
 void ForColumnsOfView(const Grid& whole, int axis, const VoxelBox& box, const Act& act)
 {
@@ -166,7 +166,7 @@ struct SeenPixels
   std::vector<float> radiance, alpha;
 };
 
-/// Pixels of the two views along an axis: composites the columns of voxels of all blocks.
+/// Pixels of the two views along an axis, from its lower and from its upper end: composites the columns of all blocks.
 /// @param byRank  columns of each rank's block, from SeenInBlock
 SeenPixels BehindEachOther(
   const BlockPartition& partition, int axis, const std::vector<std::vector<SeenColumn>>& byRank)
@@ -176,7 +176,7 @@ SeenPixels BehindEachOther(
   std::sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b) { return partition.blocks[a].first[axis] < partition.blocks[b].first[axis]; });
   const std::size_t width = static_cast<std::size_t>(partition.whole.size[AcrossAxis(axis).u]);
-  // Columns of voxels by their position in the plane across the axis: each as seen from the lower and from the upper
+  // Composited columns by their position in the plane across the axis, each as seen from the lower and from the upper
   // end.
   std::map<std::size_t, std::array<SeenColumn, 2>> columns;
   for (int side = 0; side < 2; ++side)
@@ -203,8 +203,8 @@ SeenPixels BehindEachOther(
   return seen;
 }
 
-/// Exposure by AutomaticExposure for six parallel views, along each axis from both sides, of a subset of the columns.
-/// The first rank composites the views. Collective.
+/// Exposure that AutomaticExposure chooses for six parallel views, along each axis from both sides. The views show a
+/// subset of the columns, and the first rank composites them. Collective.
 double ExposureAlongAxes(const Domain& domain, const SourceFunction& source)
 {
   Communicator& others = domain.Comm();
@@ -320,8 +320,8 @@ std::vector<double> ColumnDepths(const Domain& domain, int axis, const std::vect
   return domain.Sum(depths);
 }
 
-/// Largest opacity of the three axis-parallel columns through each voxel of this rank, about the largest opacity along
-/// any ray through the voxel; 1 from AsGoodAsOpaque on. Collective.
+/// Largest opacity of the three axis-parallel columns through each voxel of this rank. It stands for the largest
+/// opacity along any ray through the voxel. Values of AsGoodAsOpaque and above are set to 1. Collective.
 /// @param extinction  mean extinction of this rank's voxels, 1/length
 std::vector<float> LargestOpacities(const Domain& domain, const std::vector<float>& extinction)
 {
@@ -349,9 +349,9 @@ std::vector<float> LargestOpacities(const Domain& domain, const std::vector<floa
   return opacities;
 }
 
-/// Factor k by which each voxel's optical depth is multiplied, to compensate for blending in display values
-/// (numerics.md, Eq. (112d)); at least 1.
-/// @param radiance  largest radiance that a ray shows of the voxel, 3 per voxel
+/// Factor k, at least 1, by which each voxel's optical depth is multiplied to compensate for blending in display values
+/// (numerics.md, Eq. (112d)).
+/// @param radiance  largest radiance that a ray receives from the voxel, 3 per voxel
 /// @param colour    tone-mapped radiance, 4 per voxel
 /// @param most      largest opacity along a ray through the voxel
 std::vector<float> VeilFactors(const std::vector<float>& radiance, const std::vector<std::uint8_t>& colour,

@@ -9,12 +9,12 @@
 
 namespace tyndall
 {
-/// Colours and opacities of a lit medium, for volume mappers that blend display colours of voxels and do not compute
-/// light.
+/// Colours and opacities of a lit medium, for volume renderers that only blend the display colours of voxels and do not
+/// compute light themselves.
 struct LitColor
 {
   std::vector<std::uint8_t> rgba; ///< red, green, blue, alpha per voxel; colours are not multiplied by alpha
-  /// Path length for which alpha is the opacity of a voxel, length.
+  /// Path length that belongs to alpha: a path of this length through the voxel has the opacity alpha. Unit: length.
   double distance = 1.0;
   double exposure = 1.0; ///< factor by which radiance was multiplied before tone mapping
 };
@@ -28,10 +28,10 @@ struct LitColor
 /// colour of its neighbours, so that interpolation at the medium's rim does not darken it. Emission from voxels without
 /// extinction is not shown.
 ///
-/// Alpha: 1 - exp(-k sigma_t distance), with sigma_t averaged over the channels. k compensates for blending in display
-/// (gamma-encoded) values, which makes a thin veil darker than its radiance: a quarter of the largest light that a ray
-/// shows of the voxel, over black, has the display value that ToneMap gives it, Eq. (112d). In opaque media k is 1 for
-/// dark voxels, and 4.3 where exposed radiance is 1.
+/// Alpha: 1 - exp(-k sigma_t distance), with sigma_t averaged over the channels. Blending in display (gamma-encoded)
+/// values makes a thin veil darker than its radiance. The factor k compensates for this: it makes a quarter of the
+/// largest radiance that a ray receives from the voxel, blended over black, appear with the display value of ToneMap,
+/// Eq. (112d). In opaque media k is 1 for dark voxels, and 4.3 where exposed radiance is 1.
 ///
 /// Distance: the voxel's shortest edge, or more where the medium is so thin that 8 bits would not resolve its opacity.
 ///

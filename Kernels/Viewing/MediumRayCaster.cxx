@@ -17,8 +17,8 @@ namespace
 {
 constexpr float LeastViewedIndex = 1e-3f;
 constexpr float LargestViewedIndex = 1e3f;
-/// Relative variation of the refractive index over the box's faces up to which no warning is given: smoothing of
-/// structures near the border causes some.
+/// A warning is given if the refractive index varies over the box's faces by more than this fraction. Smoothing of
+/// structures near the border causes smaller variations.
 constexpr float FacesAlike = 1e-3f;
 
 IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
@@ -31,8 +31,8 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
     {
       const bool wholeRow = k == 0 || k == size[2] - 1 || j == 0 || j == size[1] - 1;
       const float* row = ior.values + grid.IndexOf({ 0, j, k });
-      // Of a row that lies on a y or z face of the box all voxels are examined; of another row only the first and the
-      // last voxel, which lie on the x faces.
+      // Only voxels at the box's faces are examined: all of a row that lies on a y or z face, otherwise the first and
+      // last voxel of the row, which lie on the x faces.
       const int step = wholeRow ? 1 : std::max(size[0] - 1, 1);
       for (int i = 0; i < size[0]; i += step)
       {
@@ -44,8 +44,8 @@ IndexRange RangeOnFaces(const Field& ior, const Grid& grid)
   return range;
 }
 
-/// Warnings about parts of the scene that may not look as intended, a sentence each: a table without light, a surface
-/// index that does not occur in the medium, an index that varies over the box's faces.
+/// Warnings about inputs that probably do not give the intended picture, one sentence each: a table without light, a
+/// surface index that does not occur in the medium, an index that varies over the box's faces.
 /// @param ior    refractive index; null: constant
 /// @param index  range of `ior`
 std::vector<std::string> DoubtsAbout(
@@ -95,8 +95,8 @@ void CheckViewedIndex(const Field& ior, const Grid& grid)
   }
 }
 
-/// The lights to which shadow rays are traced: if light is shown by angular moments, the lamps whose first scattering
-/// the moments lack (SolvedLight::lampsApart), else the illumination's lights.
+/// The lights to which shadow rays are traced. If light is shown by angular moments, these are the lamps whose first
+/// scattering is not in the moments (SolvedLight::lampsApart); otherwise they are the illumination's lights.
 const std::vector<Light>& LampsOf(const SolvedLight& light, const Illumination& illumination, const ViewSettings& asked)
 {
   return ShownDegree(light, asked) >= 0 ? light.lampsApart : illumination.lights;
@@ -107,8 +107,8 @@ bool Shine(const std::vector<Light>& lamps)
   return std::any_of(lamps.begin(), lamps.end(), [](const Light& lamp) { return !IsBlack(lamp.power); });
 }
 
-/// The caller's settings, with shadow rays switched off if there are no lamps, and on if angular moments are shown,
-/// since these do not include the first scattering of lamps.
+/// Adapts the caller's setting shadowRays to the scene. It is switched off if there are no lamps. It is switched on if
+/// angular moments are shown, since these do not include the first scattering of lamps.
 ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
 {
   asked.shadowRays = (asked.shadowRays || showsMoments) && lampsShine;
@@ -116,7 +116,7 @@ ViewSettings Needed(ViewSettings asked, bool showsMoments, bool lampsShine)
 }
 
 /// Checks all inputs except the medium's own values.
-/// @return the settings, by Needed
+/// @return the settings as the scene needs them (function Needed)
 /// @throws InvalidInput as the constructor
 ViewSettings Checked(const Medium& medium, const SolvedLight& light, const Illumination& illumination,
   const ViewSettings& asked, const Field& ior, const BlockOfScene* block, bool lampsShine)
@@ -160,7 +160,7 @@ MediumRayCaster::MediumRayCaster(Device& device, const Medium& medium, const Fil
 {
   if (this->Traits.PacksOnce())
   {
-    // The light that voxels emit and scatter is computed here and not in Render, because the caller's arrays may not
+    // The light that voxels emit and scatter is computed now and not in Render, because the caller's arrays may not
     // outlive the constructor.
     this->PrepareSources({}, {});
   }
@@ -225,8 +225,8 @@ bool MediumRayCaster::ShowsBackgroundColor() const
   return this->Settings.showBackground && !this->Behind.IsSky() && !this->Behind.HasEnvironment();
 }
 
-/// Packs the samples of the medium for a pass of the picture (scattered or unscattered light), unless they are already
-/// packed for it.
+/// Packs the samples of the medium for the pass `what` of the picture, for scattered or for unscattered light, unless
+/// they are already packed so.
 void MediumRayCaster::Pack(Packing what)
 {
   if (this->Samples.PackedFor() != what)
@@ -251,8 +251,8 @@ void MediumRayCaster::PackForShadowRays()
   this->Samples.Pack(Packing::ForShadowRays, this->Scene, this->Sources.Direct(), this->Sources.Diffuse());
 }
 
-/// Completes the sources for camera rays, once the light of all lamps is known: evaluates the angular moments in the
-/// direction of the camera, and packs the samples.
+/// Completes the sources for camera rays once the light of all lamps is known: evaluates the angular moments in the
+/// direction of the camera, then packs the samples.
 void MediumRayCaster::FinishSources(const Camera& camera)
 {
   if (this->Traits.ShowsMoments())

@@ -42,8 +42,9 @@ namespace tyndall
 ///
 /// E is the irradiance of one light after attenuation by the medium; p is the phase function of the voxel and channel,
 /// from the light's direction to the camera's. D = min(sum of E, fluenceDirect) is the part of fluence that the shadow
-/// rays already account for, so that no light counts twice. The sum over lights is evaluated at voxel centres. With
-/// shadow rays all other light is taken to scatter isotropically. Shadow rays are straight, also through glass.
+/// rays already give; it is subtracted so that no light counts twice. The sum over lights is evaluated at voxel
+/// centres. With shadow rays all other light is taken to scatter isotropically. Shadow rays are straight, also through
+/// glass.
 ///
 /// Where the voxels at a face of the box are thicker than a mean free path, rays that enter through this face receive
 /// the outgoing radiance that the solver computed there (`surface`), see SurfaceLight in Backdrop.cxx. This applies to
@@ -54,11 +55,11 @@ namespace tyndall
 /// needs as many directions as it has pixels.
 ///
 /// Where the light has angular moments (scatteredMoments) and singleScatteringOnly is off, the moments replace the
-/// table above (numerics.md, section 14.7, Eqs. (112a) to (112c)). The picture is then the sum of scattered light, from
-/// its moments in each voxel in the direction of the camera; the first scattering of lampsApart, by shadow rays with
-/// the whole phase function, whether or not shadowRays is set; and the light of lampsApart that was scattered forwards
-/// more than once. The fraction of scattering that the solver treated as unscattered does not attenuate the camera's
-/// rays either, but alpha, depth, backgroundColor and the environment's peaks refer to light that is not scattered at
+/// table above (numerics.md, section 14.7, Eqs. (112a) to (112c)). The picture is then the sum of three parts. The
+/// moments give the scattered light of each voxel in the direction of the camera. Shadow rays give the first scattering
+/// of lampsApart with the whole phase function, whether or not shadowRays is set. The third part is light of lampsApart
+/// that was scattered forwards more than once. Scattering that the solver treated as unscattered does not attenuate the
+/// camera's rays. But alpha, depth, backgroundColor and the environment's peaks refer to light that is not scattered at
 /// all. The illumination's lights are not used.
 ///
 /// Refraction (Pfeuti 2009, section 3.1.6 and listing A.4, which uses Euler steps). Where the refractive index n
@@ -90,9 +91,9 @@ public:
   /// Copies medium and light to the device.
   /// @param illumination  its lights are the targets of shadow rays, its environment and sky are the background
   /// @param ior  refractive index, one component per voxel; null or constant: rays are straight
-  /// @param block  set if the medium is one of several blocks of a grid whose pictures are composited
-  ///   (Blocks/PictureInBlocks.h); `ior` then covers the voxels of BlockOfScene::known. Null: the medium is the whole
-  ///   domain
+  /// @param block  if the medium is one block of a grid whose blocks' pictures are composited
+  ///   (Blocks/PictureInBlocks.h): position of the block; `ior` then covers the voxels of BlockOfScene::known. Null:
+  ///   the medium is the whole domain
   /// @throws InvalidInput as Check(medium) and Check(illumination); for a light array that is not finite or does not
   ///   have 1 or 3 components (a direction: 3); for an index outside [1e-3, 1e3] or without exactly one component; if
   ///   the settings need an array that is missing; for a setting out of its range
@@ -115,13 +116,13 @@ public:
   /// Whether backgroundColor is visible: the background is shown, and neither environment nor sky is behind the medium.
   bool ShowsBackgroundColor() const;
 
-  /// Renders the picture. The constructor packs the samples, except with shadow rays or if the sources depend on the
-  /// camera; then this function packs them.
+  /// Renders the picture. The samples have been packed by the constructor, or are packed here if there are shadow rays
+  /// or if the sources depend on the camera.
   /// @param ends  distance along the view axis at which an opaque surface ends each pixel's ray, length; 1e30 if no
-  ///   surface does; empty: no ray ends. What the surface hides, including the background, is left out: alpha is 1 -
-  ///   transmittance up to the surface. Reflected and mirrored rays are not ended.
+  /// surface does; empty: no ray ends. What the surface hides, including the background, is not shown: alpha is 1 -
+  /// transmittance up to the surface. Reflected and mirrored rays are not ended.
   /// @param block  set if the medium is a block of a larger grid: the picture then holds the contribution of this block
-  ///   (Blocks/BlockPixels.h); requires CastsBlocks(). Null: the medium is the whole domain
+  /// (Blocks/BlockPixels.h); requires CastsBlocks(). Null: the medium is the whole domain
   /// @throws InvalidInput for a degenerate camera, or if `ends` does not have one value per pixel; Aborted
   Picture Render(const Camera& camera, const Monitor& monitor = {}, const std::vector<float>& ends = {},
     const GridBlock* block = nullptr);
@@ -130,8 +131,9 @@ public:
   /// table. Shadow rays then end at the block's faces.
   bool CastsBlocks() const { return this->Traits.OnlyStraight(); }
 
-  /// Renders a block again, after Render with the same camera, with the transmittance of the blocks in front of it:
-  /// rays end where their total transmittance falls below the minimum, and depth is where it falls to 1/2.
+  /// Renders a block again, after Render with the same camera, now that the transmittance of the blocks in front is
+  /// known. Rays end where the total transmittance of these blocks and this one falls below the minimum; the depth is
+  /// where it falls to 1/2.
   /// @param starts  transmittance of the blocks in front
   /// @throws Aborted
   Picture RenderBehind(const Camera& camera, const GridBlock& block, const Starts& starts, const Monitor& monitor = {});

@@ -17,8 +17,8 @@ namespace tyndall
 {
 namespace
 {
-/// Ratio of a picture's error to its difference from the coarse one: errors are of second order in the step
-/// (Richardson), and proportional to the transmittance at which rays end.
+/// Ratio of a picture's error to its difference from the coarse picture. Errors are of second order in the step
+/// (Richardson extrapolation), and proportional to the transmittance at which rays end.
 constexpr double PartOfDifference = 1.0 / 3.0;
 
 int ChannelsOf(const Field& moments)
@@ -27,17 +27,18 @@ int ChannelsOf(const Field& moments)
   return moments.components / ((degree + 1) * (degree + 1));
 }
 
-/// Light of all degrees above the last one, relative to that of the last degree. The light that moments show was
-/// scattered at least twice, and each scattering multiplies moments by those of the phase function, which decrease from
-/// degree to degree by the mean ratio r = straightOn^(1 / (degree + 1)): the sum of r^2, r^4, ...
+/// Light in the angular moments above the last degree that is stored, relative to the light in the last degree. The
+/// light that moments show was scattered at least twice, and each scattering multiplies moments by those of the phase
+/// function. These decrease from degree to degree by the mean ratio r = straightOn^(1 / (degree + 1)). Returns the sum
+/// of r^2, r^4, ...
 double HigherDegrees(double straightOn, int degree)
 {
   const double square = std::min(std::pow(std::abs(straightOn), 2.0 / (degree + 1)), 0.999);
   return square / (1.0 - square);
 }
 
-/// Angular moments of light with those of the last degree changed such that PartOfDifference of what changes in the
-/// picture is the light of higher degrees.
+/// Angular moments of the light with changed moments of the last degree. The change is such that PartOfDifference times
+/// the resulting difference of pictures is the light in higher degrees.
 std::vector<float> ForHigherDegrees(const SolvedLight& light, std::size_t voxels)
 {
   const Field& moments = light.scatteredMoments;
@@ -55,7 +56,7 @@ std::vector<float> ForHigherDegrees(const SolvedLight& light, std::size_t voxels
   return changed;
 }
 
-/// Angular moments of the error of light: relative to those of the light, as fluenceError to fluence.
+/// Angular moments of the light's error: the moments of the light, multiplied by fluenceError / fluence.
 std::vector<float> MomentsOfError(const SolvedLight& light, std::size_t voxels)
 {
   const Field& moments = light.scatteredMoments;
@@ -71,14 +72,14 @@ std::vector<float> MomentsOfError(const SolvedLight& light, std::size_t voxels)
   return scaled;
 }
 
-/// A camera whose rays, through a picture of CoarserSettings, are those of every second pixel of `size` pixels.
+/// A camera for a picture of CoarserSettings whose rays are those of every second pixel in a picture of `size` pixels.
 Camera OfEverySecondPixel(Camera camera, const std::array<int, 2>& size)
 {
   const double aspect = camera.aspect > 0.0 ? camera.aspect : static_cast<double>(size[0]) / size[1];
   std::array<double, 2> wider;
   for (int axis = 0; axis < 2; ++axis)
   {
-    const double all = 2.0 * ((size[axis] + 1) / 2); // pixels of `size` that the coarse picture is wide
+    const double all = 2.0 * ((size[axis] + 1) / 2); // width of the coarse picture, in pixels of `size`
     wider[axis] = all / size[axis];
     camera.shift[axis] = ((camera.shift[axis] - 1.0) * size[axis] - 1.0 + all) / all;
   }
@@ -123,7 +124,7 @@ PictureErrorCasters::PictureErrorCasters(Device& device, const Medium& medium, c
                                  : "the input has no fluence_error, which solvers write with EstimateError");
     return;
   }
-  // Lamps are dark, because shadow rays compute their light anew; the background is known.
+  // Lamps are dark here because shadow rays compute their light again; the background has no error.
   Medium dark = medium;
   dark.emission = {};
   Illumination unlit = illumination;
@@ -183,7 +184,7 @@ void EstimatePictureError(Picture& picture, const Camera& camera, bool knowsLigh
     const double ofRays = PartOfDifference * (fine - coarse.radiance[i]);
     error[i] = static_cast<float>(std::hypot(ofRays, knowsLight ? ofLight.radiance[i] : 0.0));
   }
-  // as for fluence: smoothed over neighbouring blocks, and in proportion to the radiance within a block
+  // as for the error of fluence: smoothed over neighbouring blocks, and in proportion to the radiance within a block
   Domain domain(pixels);
   LightField shown;
   shown.channels = 3;

@@ -9,15 +9,15 @@
 
 namespace tyndall
 {
-/// Settings of the pictures from which the error of a picture with `settings` is estimated.
+/// Settings of the two coarser pictures (PictureErrorCasters) from which the error of a picture is estimated.
 ViewSettings CoarserSettings(ViewSettings settings);
 
-/// Two more pictures from which the error of a picture is estimated without a reference (numerics.md, section 14.10),
-/// both of every second pixel along each axis:
+/// Two more pictures, both of every second pixel along each axis, from which the error of a picture is estimated
+/// without a reference (numerics.md, section 14.10):
 ///  - `coarse`: half as many samples along rays and along the edges of rectangle lights, rays that end at four times
-///    the transmittance, and with other angular moments of the last degree, which stand for higher degrees;
+/// the transmittance, and angular moments of the last degree that are changed to represent higher degrees;
 ///  - `ofLight`: the error of the light, fluenceError, in place of the light.
-/// The error due to the interpolation of light and medium between voxel centres is not estimated.
+/// The error due to interpolation of light and medium between voxel centres is not estimated.
 struct PictureErrorCasters
 {
   /// Prepares both pictures; parameters and exceptions as of MediumRayCaster.
@@ -35,7 +35,7 @@ struct PictureErrorCasters
   std::string lightLeftOut; ///< why the error of the light is not part of the estimate; empty: it is, or is none
 };
 
-/// Renders `coarse` (ofLight false) or `ofLight` by a camera, in a size in pixels.
+/// Renders the picture `coarse`, or `ofLight` if the first argument is true, by a camera and in a size in pixels.
 using RenderForError = std::function<Picture(bool ofLight, const Camera&, const std::array<int, 2>& size)>;
 
 /// Sets error and relativeError of a picture.

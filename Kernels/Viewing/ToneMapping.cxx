@@ -17,8 +17,8 @@ namespace tyndall
 namespace
 {
 constexpr std::size_t PixelsOfThread = 32768; ///< smallest number of pixels per thread
-/// Largest exposure that is accepted. Products of radiance and exposure may overflow a float to infinity, but never
-/// become NaN.
+/// Largest exposure that is accepted. With it, radiance times exposure may overflow a float to infinity, but never
+/// becomes NaN.
 constexpr double LargestExposure = 1e30;
 
 double EncodeSrgb(double linear)
@@ -98,8 +98,8 @@ void Check(const ToneMapping& settings)
 
 std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::vector<float>& alpha)
 {
-  constexpr float Parts = 16.0f; // what a fully covered pixel adds to its entry in the histogram of luminance
-  // Number of low bits of a luminance (float) that are ignored in its entry in the histogram.
+  constexpr float Parts = 16.0f; // count by which a fully covered pixel increases its class of the luminance histogram
+  // The class of a luminance in the histogram is given by the bits of the float above this many low bits.
   constexpr int Shift = 23 - 8;
   std::vector<int> count((1u << (31 - Shift)), 0);
   std::mutex mutex;
@@ -126,12 +126,12 @@ std::vector<int> LuminanceCounts(const std::vector<float>& radiance, const std::
 double ExposureOfCounts(const std::vector<int>& count)
 {
   const double lit = std::accumulate(count.begin(), count.end(), 0.0);
-  // Binary logarithm of the luminance at the centre of an entry of the histogram.
+  // Binary logarithm of the luminance at the centre of a class of the histogram.
   const auto logarithm = [](std::size_t entry) {
     return static_cast<double>(entry >> 8) - 127.0 + std::log2(1.0 + ((entry & 255) + 0.5) / 256.0);
   };
 
-  // Mean logarithm over the entries of the histogram that are not much darker than the 95th percentile.
+  // Mean logarithm over those classes of the histogram that are not much darker than the 95th percentile.
   const double darkest = std::log2(1e-3);
   double sum = 0.0;
   double counted = 0.0;

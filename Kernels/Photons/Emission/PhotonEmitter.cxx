@@ -20,8 +20,8 @@ namespace
 constexpr std::size_t TrySamples = 4096;
 constexpr std::size_t ReportEvery = 100000;
 
-/// Photon source of a light, with a sampler of the square image that the importance map has for this light; without a
-/// sampler if it has none.
+/// Photon source of a light, with a sampler of the square image that the importance map holds for this light. There is
+/// no sampler if the map has no image for it.
 struct SpreadSource
 {
   PhotonSource source;
@@ -42,8 +42,8 @@ struct SpreadSource
     return this->source.shoot(sample);
   }
 
-  /// Mean weight of samples: 1 but for chance. Weights and powers are divided by it, so that the powers of directional
-  /// light sum to the power that reaches the volume.
+  /// Mean weight of the samples, 1 up to statistical fluctuation. Weights and powers are divided by it, so that the
+  /// powers of a directional light sum exactly to the power that reaches the volume.
   double MeanWeight(const SampleSequence& samples, std::size_t count) const
   {
     double sum = this->sampler ? 0.0 : static_cast<double>(count);
@@ -121,7 +121,8 @@ std::vector<std::size_t> Shares(const std::vector<Tried>& tried, std::size_t cou
   return shares;
 }
 
-/// Photon of one sample, moved to the volume; empty if the sample emits none or misses the volume.
+/// Photon of one sample, moved to the point where it enters the volume; empty if the sample emits none or misses the
+/// volume.
 /// @param weight  weight of the photon, Photon::weight
 /// @param part    fraction of its light's power that the photon carries in uniform sampling
 std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot, double weight, double part)
@@ -140,8 +141,8 @@ std::optional<Photon> PhotonOf(const Grid& grid, const std::optional<Shot>& shot
 
 /// Checks that the photons' powers are in the range of float: not 0, not infinite, and not so small that digits are
 /// lost.
-/// @param parts  number of parts of the emission, each of which a separate call computes; if there are several, `mean`
-///   tells whether power is too small, because photons of other parts may be brighter
+/// @param parts  number of parts of the emission; each call computes one part. If there are several, `mean` decides
+/// whether power is too small, because photons of other parts may be brighter
 /// @param mean   power of all lights over the number of photons of all parts, W
 void CheckPowers(const EmittedPhotons& emitted, int parts, double mean)
 {
@@ -195,16 +196,16 @@ void Check(const EmissionSettings& settings)
     "Ask for fewer photons (PhotonCount).");
 }
 
-/// Numbers of samples of one light, and the range of them that this call uses, which computes only one part of the
-/// emission (EmissionSettings::part).
+/// Numbers of the samples of one light. The emission may be divided into parts (EmissionSettings::part); a call
+/// computes one part and uses only a range of the samples.
 struct Tries
 {
   std::size_t all = 0;            ///< number of all samples of the light
   std::size_t begin = 0, end = 0; ///< range of them that this call uses
 };
 
-/// Returns, for each light, the number of its samples and the range of them that this call uses, which computes only
-/// one part of the emission.
+/// Returns, for each light, its number of samples and the range of samples in the part of the emission that this call
+/// computes.
 std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettings& settings)
 {
   const std::vector<std::size_t> shares = Shares(tried, settings.photonCount);
@@ -214,7 +215,7 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
   {
     if (shares[s] > 0)
     {
-      // Each batch needs at least one photon of each light, since each batch must estimate the light of all lights
+      // Each batch has at least one photon of each light, because each batch must estimate the light of all sources
       // without bias.
       tries[s].all = std::max(
         static_cast<std::size_t>(std::lround(shares[s] / tried[s].hits)), static_cast<std::size_t>(settings.batches));
@@ -233,7 +234,7 @@ std::vector<Tries> TriesOf(const std::vector<Tried>& tried, const EmissionSettin
   return tries;
 }
 
-/// What the emission of all parts leaves out.
+/// Texts that report which work the emission of all parts leaves out.
 std::vector<std::string> LeftOutOf(const std::vector<Tried>& tried, const std::vector<Tries>& tries)
 {
   std::vector<std::string> words;

@@ -23,17 +23,18 @@ struct EmissionSettings
   std::size_t photonCount = 100000;
   Sampler sampler = Sampler::Hammersley;
   std::uint64_t seed = 0;
-  /// Number of independent batches, 1 to 16. Each batch shifts the sample sequence by a different vector; every
-  /// second batch also exchanges the first two coordinates, and Hammersley's bases 2 and 3, so that the patterns of
-  /// two batches are unrelated.
+  /// Number of independent batches, 1 to 16. Each batch shifts the sample sequence by a different vector. Every second
+  /// batch also exchanges the first two coordinates, and Hammersley's bases 2 and 3, so that the errors of consecutive
+  /// batches are not correlated.
   int batches = 1;
   /// Relative density of photon origins (the points of a light's photon plane where its photons start); null or empty:
   /// uniform. Photons of lights for which the map has no density are sampled uniformly.
   const ImportanceMap* map = nullptr;
   /// Upper limit of the photon density that the map may request, relative to uniform sampling; at least 1.
   double densestAtMost = 8.0;
-  /// Number, from 0, of the part of the emission to compute, and number of parts. The photons of all parts, one part
-  /// after another, are those of an undivided emission, in the same order.
+  /// Emission may be computed in several parts. `part` is the number, from 0, of the part to compute, and `parts` the
+  /// number of parts. The photons of all parts, one part after another, are those of an undivided emission, in the same
+  /// order.
   int part = 0, parts = 1;
 };
 
@@ -41,8 +42,8 @@ struct EmissionSettings
 struct EmittedPhotons
 {
   std::vector<Photon> photons;
-  /// Number of each photon's light: its index in `illumination.lights`, EnvironmentLight for the environment and the
-  /// sky, -2 for the faces.
+  /// The light of each photon: its index in `illumination.lights`, EnvironmentLight for the environment and the sky, -2
+  /// for light that enters through the faces.
   std::vector<int> lights;
   Rgb power = {};                   ///< W, total power of the emitted photons
   std::vector<std::string> leftOut; ///< texts of left_out, of the photons of all parts
@@ -71,7 +72,7 @@ struct EmittedPhotons
 EmittedPhotons EmitPhotons(
   const Grid& grid, const Illumination& illumination, const EmissionSettings& settings, const Monitor& monitor = {});
 
-/// Pilot photons of one light, from which its importance map is computed.
+/// Pilot photons of one light: a few photons that are traced before the others, to compute the light's importance map.
 struct PilotPhotons
 {
   int light = 0; ///< index of the light in `illumination.lights`, or EnvironmentLight for environment and sky

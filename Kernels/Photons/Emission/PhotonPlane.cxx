@@ -39,8 +39,8 @@ bool IsBefore(const glm::dvec2& a, const glm::dvec2& b)
   return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
 
-/// Sorts points by x, and makes nearly equal x exactly equal: rounding separates the corners of a box seen face-on,
-/// and the hull would count the sliver between them as an edge.
+/// Sorts points by x, and makes nearly equal x exactly equal. Rounding separates the corners of a box seen face-on; the
+/// hull would then treat the sliver between them as an edge.
 std::vector<glm::dvec2> Sorted(std::vector<glm::dvec2> points)
 {
   std::sort(points.begin(), points.end(), IsBefore);
@@ -70,8 +70,8 @@ double HeightAt(const std::vector<glm::dvec2>& chain, double x, bool fromLeft)
   return chain.back().y;
 }
 
-/// Returns the step of a cumulative table that contains the fraction u of the total. `part` receives the position of
-/// that fraction within the step.
+/// Index of the step of a cumulative table in which the fraction u of the total is reached. `part` receives the
+/// position of that fraction within the step.
 std::size_t Choose(const std::vector<double>& cumulative, double u, double& part)
 {
   return static_cast<std::size_t>(FindStep(cumulative.data(), static_cast<int>(cumulative.size()) - 1, u, part));
@@ -87,8 +87,8 @@ glm::dvec3 Corner(const Grid& grid, int which)
   return corner;
 }
 
-/// Unit vector perpendicular to the direction, along the projection of an axis of the volume, so that a face seen
-/// face-on is mapped to a square grid.
+/// Unit vector perpendicular to the direction, along the projection of an axis of the volume. A face seen face-on is
+/// thus mapped to a square grid.
 glm::dvec3 AxisAcross(const glm::dvec3& direction)
 {
   const glm::dvec3 axis = std::abs(direction.x) < 0.9 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
@@ -135,8 +135,8 @@ glm::dvec2 ConvexPolygon::At(double u, double v) const
   const Slice& slice = this->Slices[Choose(this->Below, u, part)];
   const double w0 = slice.high0 - slice.low0;
   const double w1 = slice.high1 - slice.low1;
-  // t is the fraction of the slice's width up to which the area is the fraction `part`; w0, w1 are the slice's heights
-  // at its two ends: w0 t + (w1 - w0) t^2 / 2 = part (w0 + w1) / 2, solved without cancellation.
+  // t is the fraction of the slice's width that encloses the fraction `part` of its area, for heights w0 and w1 at the
+  // slice's ends. It solves w0 t + (w1 - w0) t^2 / 2 = part (w0 + w1) / 2, here without cancellation.
   const double wanted = part * (w0 + w1);
   const double root = std::sqrt(std::max(w0 * w0 + (w1 - w0) * wanted, 0.0));
   const double t = w0 + root > 0.0 ? std::min(wanted / (w0 + root), 1.0) : part;
@@ -292,8 +292,8 @@ glm::dvec3 LampView::Direction(double u, double v) const
   {
     return glm::normalize(this->Faces->At(u, v) - this->Place);
   }
-  // The polar angle is measured from the normal of a face that the lamp is on, and the azimuth from the normal of a
-  // second such face; from coordinate axes if there is none.
+  // Axes of spherical coordinates for the lamp. The polar axis is the normal of a face on which the lamp lies, the
+  // azimuth starts at the normal of a second such face. Coordinate axes take the place of missing faces.
   std::array<int, 3> axes = { 2, 0, 1 };
   std::stable_partition(axes.begin(), axes.end(), [this](int axis) { return this->Inwards[axis] != 0; });
   const auto& [pole, first, second] = axes;

@@ -62,12 +62,12 @@ public:
   double SolidAngle() const { return this->Angle; }
   glm::dvec3 At(double u, double v) const; ///< a point on the rectangle
 
-  /// Weight, sr, of a point returned by At; its mean over the unit square is the solid angle. The weight is constant
-  /// unless the map preserves area.
+  /// Weight, sr, of a point returned by At; the mean weight over the unit square is the solid angle of the rectangle.
+  /// All weights are equal unless the map preserves area.
   double SolidAngleBy(const glm::dvec3& point) const;
 
 private:
-  /// Solid angle, sr, of the rectangle if all of its area were at a given distance from the eye.
+  /// Solid angle, sr, that the rectangle would have if all of its area were at the given distance from the eye.
   double AngleByArea(double distance) const;
 
   glm::dvec3 Eye, X, Y, Z; ///< position of the eye; axes of the rectangle, Z towards the eye
@@ -92,10 +92,10 @@ private:
   std::vector<double> Below = { 0.0 }; ///< cumulative solid angle, sr, up to the end of each face, with a leading 0
 };
 
-/// The directions from a lamp into the volume. For a lamp inside the volume they are the full sphere, for one on a
-/// face a half, on an edge a quarter, at a corner an eighth of the sphere; for a lamp outside, the solid angle of the
-/// visible faces. A lamp counts as on a face if it is within a millionth of the volume's edge of it (rounding of its
-/// position).
+/// The directions from a lamp into the volume. Inside the volume they are the full sphere; on a face half, on an edge a
+/// quarter, at a corner an eighth of the sphere. For a lamp outside they are the solid angle of the visible faces. A
+/// lamp counts as on a face if its distance from the face is at most a millionth of the volume's edge, which allows for
+/// rounding.
 class LampView
 {
 public:
@@ -103,13 +103,14 @@ public:
 
   LampView(const Grid& grid, const glm::dvec3& lamp);
 
-  /// Position, moved onto the face if the lamp counts as on a face.
+  /// Position of the lamp, moved exactly onto a face if the lamp counts as on the face.
   const glm::dvec3& Lamp() const { return this->Place; }
   bool Outside() const { return this->Faces.has_value(); }
   double SolidAngle() const;
   glm::dvec3 Direction(double u, double v) const; ///< a direction into the volume, unit length, uniform in solid angle
 
-  /// Whether a direction does not point out of the volume through a face that the lamp is on.
+  /// Whether a direction leads into the volume: false if the lamp lies on a face and the direction points out through
+  /// it.
   bool Enters(const glm::dvec3& direction) const;
 
 private:

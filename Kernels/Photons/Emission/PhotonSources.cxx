@@ -28,8 +28,8 @@ std::array<glm::dvec3, 2> Across(const glm::dvec3& n)
   return { glm::dvec3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), glm::dvec3(b, sign + n.y * n.y * a, -n.y) };
 }
 
-/// Unit vector at an angle to a unit axis.
-/// @param versine  1 - cosine of the angle; the cosine itself would lose the digits of a small angle
+/// Unit vector at a given angle to a unit axis.
+/// @param versine  1 - cosine of the angle, which keeps the digits of a small angle
 /// @param turn     azimuth around the axis, in full turns
 glm::dvec3 Around(const glm::dvec3& axis, double versine, double turn)
 {
@@ -125,8 +125,8 @@ struct FaceOfGrid
   }
 };
 
-/// Photons of a rectangle: samples points on the rectangle, then directions to the faces of the volume that each
-/// point sees.
+/// Photons of a rectangular light: samples points on the rectangle, then directions to those faces of the volume that
+/// are visible from each point.
 PhotonSource RectangleByPlaces(const Grid& grid, const Light& light)
 {
   const glm::dvec3 middle = Vector(light.position);
@@ -146,9 +146,9 @@ PhotonSource RectangleByPlaces(const Grid& grid, const Light& light)
           } };
 }
 
-/// Photons of a rectangle that is large as seen from the volume, so that most of its points contribute next to
-/// nothing. Samples points on the faces of the volume, then directions in the solid angle of the rectangle as seen
-/// from each point; for the part of the rectangle inside the volume, points on that part.
+/// Photons of a rectangular light that is large as seen from the volume, so that most of its points contribute almost
+/// nothing. Samples points on the faces of the volume, then directions in the solid angle of the rectangle as seen from
+/// each point. For the part of the rectangle inside the volume, samples points on that part.
 class RectangleByFaces
 {
 public:
@@ -187,7 +187,7 @@ public:
   }
 
 private:
-  /// Number of sets of points that are sampled: one per face, and the part of the rectangle in the volume
+  /// Number of point sets that are sampled: one on each face, and one on the part of the rectangle inside the volume
   static constexpr int Parts = 7;
 
   std::optional<Shot> ShootFrom(int part, const PhotonSample& u) const
@@ -253,7 +253,7 @@ private:
   void SetShares()
   {
     constexpr int samples = 512;
-    // Least share of the samples for a set of points that may contribute, even if none of its test samples did
+    // Smallest fraction of the samples for a point set that may contribute, even if no test sample of it did
     constexpr double least = 0.01;
     std::array<double, Parts> shares = {};
     double sum = 0.0;
@@ -297,8 +297,8 @@ private:
   std::array<double, Parts + 1> Shares = {};
 };
 
-/// Mean square of the photons' powers over the square of their mean: 1 if all photons reach the volume with the same
-/// power, infinite if none reaches it.
+/// Mean square of the photons' powers, divided by the square of their mean. 1 if all photons reach the volume with the
+/// same power; infinite if none reaches it.
 double Unevenness(const Grid& grid, const PhotonSource& source, const Rgb& power)
 {
   constexpr int samples = 1024;
@@ -407,8 +407,8 @@ private:
     return FaceOfGrid{ this->TheGrid, axis, seen[axis] > 0.0 }.At(part, u[1]);
   }
 
-  /// Sampling weights of the pixels: radiance of the bilinear image times solid angle times projected area of the
-  /// volume.
+  /// Sampling weights of the pixels: radiance of the bilinear image, times solid angle, times the volume's area
+  /// projected along the pixel's direction.
   std::vector<double> Weights() const
   {
     std::vector<double> weights(static_cast<std::size_t>(this->Width) * this->Height);

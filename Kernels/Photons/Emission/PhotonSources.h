@@ -31,8 +31,8 @@ struct PhotonSource
   bool alike = false; ///< whether all photons of this light reach the volume with equal power
 };
 
-/// Returns the sources of all lights of the illumination, sampled as documented at EmitPhotons. Boundary sources
-/// (faces) are last.
+/// Returns the sources of all lights of the illumination, sampled as documented at EmitPhotons. Light that enters
+/// through the faces comes last.
 std::vector<PhotonSource> PhotonSourcesOf(const Grid& grid, const Illumination& illumination);
 
 /// Moves a photon along its direction to the point where it enters the volume; empty if it misses the volume.

@@ -33,7 +33,8 @@ double RadicalInverse(std::size_t i, std::size_t base)
   return std::min(inverse, 1.0 - 0x1p-53);
 }
 
-/// Stride by which an index modulo count visits each of 0 ... count - 1 once, with successive values far apart.
+/// Stride with which an index, taken modulo `count`, visits each of 0 ... count - 1 once, with successive values far
+/// apart.
 std::size_t Scatter(std::size_t count)
 {
   std::size_t stride = std::max<std::size_t>(static_cast<std::size_t>(0.6180339887498949 * count), 1);
@@ -64,8 +65,8 @@ double SampleSequence::Random(std::size_t i, int dimension) const
   return Unit(Mix(Mix(this->Seed + 1) ^ Mix(4 * static_cast<std::uint64_t>(i) + dimension)));
 }
 
-/// A point in cell i of a grid of Count cells, at the fractions `across` and `along` of the cell's extent; rows have
-/// heights in proportion to their number of cells.
+/// A point in cell i of a grid of Count cells. `across` and `along` are its position within the cell as fractions of
+/// the cell's extent. The height of a row is proportional to its number of cells.
 std::array<double, 2> SampleSequence::Cell(std::size_t i, double across, double along) const
 {
   const std::size_t row = ((i + 1) * this->Rows - 1) / this->Count;
@@ -117,13 +118,13 @@ int FindStep(const double* table, int count, double u, double& part)
 {
   const double wanted = u * table[count];
   int step = static_cast<int>(std::upper_bound(table + 1, table + count, wanted) - table) - 1;
-  // If rounding has raised `wanted` to the total, the last step of nonzero height is meant
+  // If rounding has raised `wanted` to the total, uses the last step of nonzero height.
   while (step > 0 && table[step + 1] == table[step])
   {
     --step;
   }
   part = std::min(
-    // At most 1 - 2^-40, so that step + part stays below step + 1 after rounding.
+    // At most 1 - 2^-40: a larger part could round step + part up to step + 1.
     (wanted - table[step]) / (table[step + 1] - table[step]), 1.0 - 0x1p-40);
   return step;
 }

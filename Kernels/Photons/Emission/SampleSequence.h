@@ -23,8 +23,9 @@ enum class Sampler
 /// 3 a second, whose cells are visited in another order. A nonzero seed shifts all points of Hammersley, Halton and
 /// Grid by the same vector, modulo 1.
 ///
-/// Batches with the same seed are independent sets: each batch above 0 uses another shift; odd batches exchange
-/// dimensions 0 and 1, and Hammersley's bases 2 and 3, so that the errors of an even and an odd batch are unrelated.
+/// Batches with the same seed are independent point sets: each batch above 0 uses another shift. Odd batches also
+/// exchange dimensions 0 and 1, and Hammersley's bases 2 and 3, so that the errors of an even and an odd batch are not
+/// correlated.
 class SampleSequence
 {
 public:
@@ -52,8 +53,8 @@ private:
 /// @param part   output: position of u * total within that step, [0, 1)
 int FindStep(const double* table, int count, double u, double& part);
 
-/// Map from the unit square to the cells of an image that distributes uniform points by the image's density: rows by
-/// their marginal distribution, then columns by the row's conditional distribution.
+/// Map from the unit square to the cells of an image, which distributes uniform points in proportion to the image's
+/// values. Rows are chosen by their marginal distribution, then columns by the row's conditional distribution.
 class DensityTable
 {
 public:

@@ -12,8 +12,8 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum number of passes that redistribute the density above the upper limit to other cells; each pass leaves fewer
-/// cells above the limit.
+/// Maximum number of passes that move density above the upper limit to other cells. Each pass leaves fewer cells above
+/// the limit.
 constexpr int RoundsOfSharing = 64;
 
 std::string LightName(int light)
@@ -50,13 +50,13 @@ void CheckSquare(const ImportanceMap& map, std::size_t square)
   }
 }
 
-/// Scales densities to a mean of 1 and limits each to `most`, by distributing the excess among the other cells.
+/// Scales densities to a mean of 1 and limits each to `most`; the excess is distributed among the other cells.
 std::vector<double> Capped(const float* density, std::size_t cells, double most)
 {
   std::vector<double> capped(density, density + cells);
   const double largest = *std::max_element(capped.begin(), capped.end());
   const auto total = [&] { return std::accumulate(capped.begin(), capped.end(), 0.0); };
-  // Divided by the largest density, so that the sum does not overflow
+  // Densities are first divided by the largest one, so that their sum does not overflow
   std::for_each(capped.begin(), capped.end(), [&](double& d) { d /= largest; });
   const double scale = cells / total();
   std::for_each(capped.begin(), capped.end(), [&](double& d) { d *= scale; });

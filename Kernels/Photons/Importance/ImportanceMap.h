@@ -11,8 +11,9 @@ namespace tyndall
 /// from 0.
 constexpr int EnvironmentLight = -1;
 
-/// Relative density of photon origins: for each light a square image over its photon plane or, for lights without
-/// one, over the first two coordinates of the samples from which its photons are computed.
+/// Relative density of photon origins, as one square image for each light. For directional lights the image covers the
+/// photon plane. Lights without a photon plane have an image over the first two coordinates of the samples from which
+/// their photons are computed.
 struct ImportanceMap
 {
   int size = 0; ///< cells along an edge of each square image

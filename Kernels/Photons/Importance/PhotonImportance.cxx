@@ -12,17 +12,18 @@ namespace tyndall
 {
 namespace
 {
-// Constants of the automatic thresholds, which are in proportion to the pilot photons' light (numerics.md, Eq. (96)).
+// Constants of the automatic thresholds, which are proportional to the light of the pilot photons (numerics.md, Eq.
+// (96)).
 constexpr double SteepPart = 0.2; ///< fraction of the lit cells whose gradient of luminance counts as steep
-/// Smallest difference of luminance between neighbouring cells, relative to the median luminance, that counts as steep;
-/// smaller ones are noise, or extinction in fog.
+/// Smallest difference of luminance between neighbouring cells that counts as steep, relative to the median luminance.
+/// Smaller differences are statistical noise, or extinction in fog.
 constexpr double SteepAtLeast = 0.25;
 constexpr double DimBelow = 0.5; ///< luminance, relative to the median, below which a lit cell counts as dark
-/// Smallest fraction of lit cells that must be chosen for dense sampling to justify a map
+/// An importance map is used only if at least this fraction of the lit cells is chosen for dense sampling
 constexpr double FewCells = 0.01;
-/// A light needs no map if the standard deviation of the map of its chosen cells (mean 1), times the fourth root of the
-/// fraction of lit cells that are chosen, is below this. Measured values of this product: 0.2 to 0.46 for thin or thick
-/// fog under a sun from any direction, or a lamp above or in it; 0.53 to 1 for glass in fog.
+/// A light needs no map if the product of two numbers is below this: the standard deviation of the map of its chosen
+/// cells (mean 1), and the fourth root of the fraction of lit cells that are chosen. Measured products: 0.2 to 0.46 for
+/// thin or thick fog under a sun from any direction, or a lamp above or in it; 0.53 to 1 for glass in fog.
 constexpr double EvenMap = 0.5;
 
 constexpr int LargestEdge = 1024; ///< maximum number of map cells along an edge
@@ -59,8 +60,8 @@ std::vector<double> LuminanceOf(const PilotLight& light)
   return luminance;
 }
 
-/// Adds the pilot light of one lamp to the light of earlier lamps. Each cell keeps the origins (positions on the
-/// photon plane) of the photons of the first lamp that reaches it.
+/// Adds the pilot light of one lamp to that of earlier lamps. A cell reached by several lamps keeps the origins,
+/// positions on the photon plane, of the first lamp's photons.
 void Add(const PilotLight& more, PilotLight& light)
 {
   if (light.count.empty())
@@ -139,8 +140,8 @@ void ChooseThresholds(const std::vector<double>& luminance, Importance& importan
     }
   }
   const double median = Quantile(lit, 0.5);
-  // Photons cross a cell in rows. Their number N fluctuates by about one per row, sqrt(N) in all, and the luminance by
-  // the fraction 1 / sqrt(N).
+  // Noise of the luminance of a cell. Photons cross a cell in rows, and each row's count fluctuates by about one. The
+  // total N then fluctuates by sqrt(N), and the luminance by the fraction 1 / sqrt(N).
   const double chance = 1.0 / std::sqrt(std::max(Quantile(counts, 0.5), 1.0));
   importance.gradientThreshold =
     std::max(Quantile(steepness, 1.0 - SteepPart), std::max(SteepAtLeast, chance) * median);
@@ -168,8 +169,7 @@ double ChooseCells(const std::vector<double>& luminance, Importance& importance)
   return lit > 0 ? static_cast<double>(chosen) / static_cast<double>(lit) : 0.0;
 }
 
-/// Adds 1 to the map cells whose centres are in a circle, and in any case to the cell that contains the circle's
-/// centre.
+/// Adds 1 to the map cells whose centres lie in a circle, and always to the cell that contains the circle's centre.
 void Splat(double x, double y, double diameter, int size, std::vector<double>& map)
 {
   const double radius = 0.5 * diameter;
@@ -192,10 +192,10 @@ void Splat(double x, double y, double diameter, int size, std::vector<double>& m
   }
 }
 
-/// Diameter, in map cells, of the circle drawn for a coarse cell. As published, it is the sum of the standard
-/// deviations, along both axes, of the origins on the photon plane of the cell's photons (Listing B.1), which leaves
-/// gaps between the circles of neighbours. Otherwise the circle spans the square with these deviations, including the
-/// spread of origins within their map cells.
+/// Diameter, in map cells, of the circle drawn for a coarse cell. As published (Listing B.1), it is the sum of two
+/// standard deviations, along the two axes of the photon plane, of the origins of the cell's photons. This leaves gaps
+/// between the circles of neighbouring cells. Otherwise the circle spans the square with these deviations, including
+/// the spread of origins within their map cells.
 double DiameterOf(const float* deviation, bool asPublished)
 {
   if (asPublished)
@@ -206,8 +206,8 @@ double DiameterOf(const float* deviation, bool asPublished)
   return 2.0 * (whole(deviation[0]) + whole(deviation[1]));
 }
 
-/// Draws a circle around the mean origin, on the photon plane, of each chosen cell's photons into a map of that plane,
-/// and scales it to mean 1. Empty if no chosen cell has photons of this light.
+/// Map of the photon plane of one light, scaled to mean 1, in which each chosen cell is drawn as a circle around the
+/// mean origin of its photons. Empty if no chosen cell has photons of this light.
 std::vector<double> CirclesOf(const std::vector<float>& chosen, const PilotLight& light, int size, bool asPublished)
 {
   std::vector<double> map(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), 0.0);
@@ -255,8 +255,8 @@ std::vector<double> Smooth(const std::vector<double>& map, int size)
   return pass(pass(map, 1, row), row, 1);
 }
 
-/// Standard deviation from 1 of the map's means over blocks, eight along an edge: at a finer scale, the gaps between
-/// the circles of neighbouring cells would dominate.
+/// Standard deviation, from 1, of the map's means over blocks, eight along an edge. Smaller blocks would show mainly
+/// the gaps between the circles of neighbouring cells.
 double DeviationOf(const std::vector<double>& map, int size)
 {
   const int blocks = std::min(size, 8);

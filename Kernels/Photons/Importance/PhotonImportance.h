@@ -11,8 +11,8 @@ namespace tyndall
 struct ImportanceSettings
 {
   /// Number of pilot photons per light, at least 1; about a tenth of the photons that will be marched. It is rounded
-  /// down to a square number, whose root is the map's size. It should be the square of a multiple of the number of
-  /// coarse cells along an axis: otherwise even uniform light looks striped.
+  /// down to a square number, whose root is the map's size. This root should be a multiple of the number of coarse
+  /// cells along an axis: otherwise even uniform light looks striped.
   std::size_t pilotCount = 1024;
   std::array<int, 3> cells = { 16, 16, 16 }; ///< number of coarse cells along each axis, each at least 1
   std::uint64_t seed = 0;
@@ -35,17 +35,17 @@ struct Importance
   std::vector<float> gradient; ///< W / length^2, difference of fluence between neighbouring cells, one value per cell
   std::vector<float> chosen;   ///< by cell: 1 if it is to be sampled densely, else 0
   double gradientThreshold = 0.0, luminanceThreshold = 0.0; ///< W / length^2, the thresholds that were used
-  /// Whether the light is too even for importance sampling to help: the map is 1 everywhere, and photons should be
+  /// True if the light is too even for importance sampling to help. The map is then 1 everywhere, and photons should be
   /// distributed uniformly.
   bool even = false;
   std::vector<std::string> leftOut;
 };
 
-/// Computes the importance map of photon origins (Pfeuti 2009, section 3.2.2; numerics.md, section 12.2). The light
-/// of pilot photons on a jittered grid is summed in coarse cells; cells with a steep gradient of light, and dark
-/// cells, are chosen. Each chosen cell is drawn into the map as a circle around the mean origin of its photons, with
-/// a diameter from their standard deviations; a 5x5 Gaussian filter of variance 2 smooths the map, and a uniform
-/// background is added.
+/// Computes the importance map of photon origins (Pfeuti 2009, section 3.2.2; numerics.md, section 12.2). Pilot photons
+/// start on a jittered grid, and their light is summed in coarse cells. Cells with a steep gradient of light, and dark
+/// cells, are chosen. Each chosen cell is drawn into the map as a circle around the mean origin of its photons, with a
+/// diameter from the standard deviations of the origins. A 5x5 Gaussian filter of variance 2 smooths the map, and a
+/// uniform background is added.
 ///
 /// Collective.
 /// @param marcher  marcher of the pilot photons, with the medium in which they are marched

@@ -17,8 +17,8 @@ namespace tyndall
 namespace
 {
 constexpr int LargestOrigin = 65535;
-/// Number of integers about the origins of photons in the record of a coarse cell (the sums that belong to it): number
-/// of photons, sums of their columns and rows, and sums of the squares of columns and rows.
+/// Number of integers in the record of a coarse cell that describe the origins of its photons: number of photons, sums
+/// of their columns and rows, and sums of the squares of columns and rows.
 constexpr int OriginNumbers = 5;
 
 std::array<int, 3> CellsOf(const std::array<int, 3>& asked, const Grid& grid)
@@ -69,8 +69,8 @@ void CheckOrigins(const std::vector<Photon>& photons, const std::vector<std::arr
   }
 }
 
-/// Marks of photons (one 64-bit integer each) for the kernel option CELLS of PhotonMarch.cl: column and row of each
-/// photon's origin on the photon plane.
+/// One 64-bit integer per photon for the kernel option CELLS of PhotonMarch.cl: column and row of the photon's origin
+/// on the photon plane.
 std::vector<cl_ulong> MarksOfOrigins(const std::vector<std::array<int, 2>>& origins, const PackedPhotons& packed)
 {
   std::vector<cl_ulong> marks;
@@ -103,8 +103,8 @@ PilotLight DarkPilotLight(const Grid& voxels, const std::array<int, 3>& cells, i
   return light;
 }
 
-/// Adds up the copies of all coarse cells' sums that are stored one after another in a buffer; `size` is the number of
-/// integers in one copy.
+/// Sums over the copies of the coarse cells' deposits, which are stored in a buffer one copy after another.
+/// @param size  number of integers in one copy
 std::vector<std::int64_t> SumOfCopies(const Buffer<cl_long>& memory, std::size_t size)
 {
   const std::vector<cl_long> read = memory.Read();

@@ -11,8 +11,8 @@
 namespace tyndall
 {
 /// Sums the light of pilot photons in coarse cells (PhotonMarcher::Gather). Each rank begins with the photons that
-/// start in its subdomain or enter the volume there; their deposits, which are integers, are summed over ranks. The
-/// map from voxels to cells is kept between calls.
+/// start in its subdomain or enter the volume there. Deposits are integers and are summed over the ranks. The map from
+/// voxels to cells is kept between calls.
 class PilotGathering
 {
 public:

@@ -20,9 +20,9 @@ namespace
 {
 constexpr const char* MultiplyAdds = " -cl-mad-enable";
 constexpr int RoundsAtMost = 64; ///< maximum length of a path, in multiples of the sum of the domain's edges
-/// Power, in units of PackedPhotons::unit, too small to affect any sum; MarchInfo::darkness
+/// A photon with less power than this affects no sum; in units of PackedPhotons::unit (MarchInfo::darkness)
 constexpr float DarkUnits = 1e-3f;
-/// Maximum fraction of filled bricks (bricks that contain medium) with which arrays are stored by bricks; with more
+/// Arrays are stored by bricks if at most this fraction of the bricks is filled, that is, contains medium. With more
 /// filled bricks, skipping empty ones saves little.
 constexpr double FilledAtMost = 0.25;
 
@@ -42,8 +42,8 @@ IndexGrid SizeOf(const std::array<int, 3>& size)
   return { { size[0], size[1], size[2] } };
 }
 
-/// Creates the memory layout by bricks, in which an empty brick takes the place of one voxel; a layout without bricks
-/// if arrays are stored voxel by voxel.
+/// Creates the memory layout by bricks, in which an empty brick has a single record. If arrays are stored voxel by
+/// voxel, creates a layout without bricks.
 PhotonBricks BricksOf(Device& device, const Grid& grid, const FilledBricks& filled, const MarchSettings& settings,
   bool bends, bool scatters)
 {
@@ -215,8 +215,8 @@ MarchMedium::MarchMedium(Device& onDevice, const Medium& medium, const Field& io
   }
   else if (this->IsBlock() && this->hasLevels)
   {
-    // In a block of a larger domain, SetNodes sets the octree levels later. Until then, all voxels have level 0, which
-    // suffices for OwnNodes: it only needs to know where the refractive index varies.
+    // In a block of a larger domain, SetNodes sets the octree levels later. Until then all voxels have level 0, since
+    // OwnNodes needs to know only where the refractive index varies.
     const std::vector<std::uint8_t> single(this->block.known.VoxelCount(), 0);
     this->PackVoxels(medium, ior, single.data());
   }

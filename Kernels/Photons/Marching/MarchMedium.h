@@ -30,8 +30,7 @@ struct MarchTraits : MediumTraits
   /// Number of channels of the light that packed photons deposit, 1 or 3.
   int ColoursOf(const PackedPhotons& packed) const { return packed.grey && !this->coloured ? 1 : 3; }
 };
-// The following functions check the medium through which photons are marched; each rank has one block (subdomain) of
-// it.
+// The following functions check this rank's block of the medium through which photons are marched.
 
 /// Checks the medium of this rank's block; a rank without voxels checks nothing.
 /// @param levels  octree levels of the block's voxels; null if there is no octree
@@ -50,13 +49,14 @@ void RequireSameMedium(const Domain& domain, const Medium& medium, const Field& 
 /// @param own  range in this rank's block
 IndexRange IndexRangeOfAll(const Domain& domain, const IndexRange& own);
 
-/// Traits of the medium in the domain. Collective.
+/// Traits of the medium in the whole domain. Collective.
 /// @param medium, ior  coefficients and refractive index of this rank's block
 /// @param filled  filled bricks of this rank's medium
 MarchTraits MarchTraitsOf(const Domain& domain, const Medium& medium, const Field& ior, const FilledBricks& filled);
 
-/// Memory layout by bricks, for the medium and for the sums of deposits: a filled brick has one record (the values of
-/// a voxel) per voxel, x fastest; an empty brick has a single record. Record 0 stands for all places outside the grid.
+/// Memory layout by bricks, for the medium and for the sums of deposits. A record has the values of one voxel. A filled
+/// brick has one record per voxel, x fastest; an empty brick has a single record. Record 0 stands for all places
+/// outside the grid.
 class PhotonBricks
 {
 public:
@@ -66,7 +66,8 @@ public:
   bool AreThere() const { return this->RecordCount > 0; }   ///< whether arrays are stored by bricks
   std::size_t Records() const { return this->RecordCount; } ///< number of records
   std::size_t Count() const { return this->Begin.size(); }  ///< number of bricks
-  /// Index of the first record of each filled brick; for an empty brick, its record's index, negated (less than 0).
+  /// Index of the first record of each filled brick. For an empty brick: the index of its record, negated and therefore
+  /// below 0.
   const Buffer<cl_int>& First() const { return this->OnDevice; }
 
   struct Coefficients ///< coefficients of the medium by records
@@ -123,17 +124,17 @@ public:
     const MarchTraits& traits, const MarchedPart& block, const FilledBricks* filled = nullptr,
     const std::uint8_t* levels = nullptr);
 
-  /// Octree nodes of the block's voxels, one byte per voxel: whether n varies in the voxel, and the level of the node
-  /// that contains it (0: n is constant; else 1 + level).
+  /// Octree nodes of the block's voxels, one byte per voxel: 0 if n is constant in the voxel, else 1 + the level of the
+  /// node that contains the voxel.
   /// @param levels  octree levels of the block's voxels
   std::vector<std::uint8_t> OwnNodes(const std::uint8_t* levels) const;
-  /// Uploads the octree nodes of the domain, which steps evaluate beyond the block as well.
+  /// Uploads the octree nodes of the whole domain, since steps read them beyond the block as well.
   /// @param all  nodes of the domain's voxels, from OwnNodes of all ranks
   void SetNodes(const BrickedBytes& all);
 
   MarchInfo Describe() const;     ///< parameters of the marching kernels
   IndexGrid DescribeGrid() const; ///< size of the grid for kernels
-  /// Parameters of the conversion of the sums of photons' deposits to light.
+  /// Parameters of the kernels that convert the sums of deposits to light.
   /// @param weightUnit  photon weight per unit of the voxels' sums (StartingPhotons::weightUnit), if photons are
   /// counted
   LightSumsInfo DescribeSums(const PackedPhotons& packed, const MarchShares& shares, float weightUnit = 0.0f) const;
@@ -144,8 +145,8 @@ public:
   bool IsBlock() const { return this->block.own.size != this->block.whole.size; }
   /// Number of voxels of the grid with a padding of one voxel at each face.
   std::size_t PaddedCount() const { return Count(this->Padded(2)); }
-  /// Number of records (the values that belong to one voxel or empty brick) of extinction and of deposits: those of
-  /// the bricks, or one per voxel of the padded grid.
+  /// Number of records of extinction and of deposits. With bricks, these are the bricks' records; otherwise there is
+  /// one record per voxel of the padded grid.
   std::size_t Records() const { return this->bricks.AreThere() ? this->bricks.Records() : this->PaddedCount(); }
 
   /// Creates a kernel of PhotonMarch.cl for photons with `channels` power channels.

@@ -11,12 +11,12 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum number of compute units of a CPU with which each work-item has a private copy of the sums: with more, adding
-/// up the copies costs more than atomics.
+/// On CPUs with at most this many compute units, each work-item has a private copy of the sums of deposits. With more
+/// units, adding up the copies costs more than atomics.
 constexpr int PrivateSumsAtMost = 8;
 /// Number of consecutive photons that a work-item fetches at a time; they are neighbours in space.
 constexpr int MarchBlock = 512;
-/// Number of path segments in the first launch with straight rays; two cores need less time for them than the target
+/// Number of path segments in the first launch with straight rays. Two cores compute them in less than the intended
 /// time of a launch.
 constexpr double EventsPerLaunch = 4e7;
 constexpr double FirstBent = 16384; ///< number of photons in the first launch with curved rays
@@ -40,8 +40,8 @@ bool NeedAtomics(const Device& device, MarchSettings::Sums sums)
   return sums == MarchSettings::Sums::Shared || (sums == MarchSettings::Sums::Fitting && atomics && !few);
 }
 
-/// Number of photons in the first launch. With straight rays, the cost of a launch follows from the number of voxels;
-/// with curved rays, it is measured in the first launch.
+/// Number of photons in the first launch. For straight rays it follows from the number of voxels, which determines the
+/// cost. For curved rays the first launch is small, since it measures the cost.
 double FirstLaunch(const MarchMedium& medium)
 {
   const double edges = (medium.grid.size[0] + medium.grid.size[1] + medium.grid.size[2]) / 3.0;
@@ -170,7 +170,7 @@ cl::NDRange MarchKernel::Group() const
   return this->Target.shares.workers > 0 ? cl::NDRange(1) : GroupOfLargeItems(this->Medium.device, 2);
 }
 
-// Divides a march into few, long launches, because work-items idle at the end of each launch.
+// Launches are few and long, because work-items idle at the end of each launch.
 Batches PhotonLaunches(
   const MarchMedium& medium, std::size_t photons, std::size_t first, std::size_t whole, int batches)
 {

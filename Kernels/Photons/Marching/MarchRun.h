@@ -21,8 +21,8 @@ namespace tyndall
 struct MarchShares
 {
   bool atomics = false; ///< whether deposits are added by 64-bit atomics
-  /// Number of work-items, which fetch photons from a common counter; 0: one work-item per packet (vector of photons),
-  /// and all photons of a batch add to one copy.
+  /// Number of work-items, which fetch photons from a common counter. 0: one work-item per packet (vector of photons);
+  /// all photons of a batch then add to one copy.
   int workers = 0;
   int copies = 1;
   int batches = 1;
@@ -43,8 +43,8 @@ struct MarchSums
   int numbers = 1;         ///< 64-bit numbers in a record
   bool directions = false; ///< whether a record holds the sums of power times direction
   bool counts = false;     ///< whether a record counts the photons that crossed its voxel
-  /// Index of the coarse cell of each voxel, for deposits to coarse cells, which also count photons; null: deposits
-  /// to voxels.
+  /// Set if deposits are summed in coarse cells, which also count photons: index of the coarse cell of each voxel.
+  /// Null: deposits are summed in voxels.
   const Buffer<cl_int>* cells = nullptr;
   const Buffer<cl_long>* sums = nullptr; ///< sums of deposits in fixed point, [copy][record][number]
 
@@ -61,7 +61,8 @@ inline const int* WhereIs(const PhotonOnItsWay& photon)
 struct PhotonsOnDevice
 {
   /// Uploads photons that start.
-  /// @param marks  mark for counting of each packed photon (PhotonMarch.cl); empty if photons are not counted
+  /// @param marks  one 64-bit integer per packed photon, which counts the photon or tells its origin (PhotonMarch.cl);
+  /// empty if photons are not counted
   PhotonsOnDevice(Device& device, const PackedPhotons& packed, const std::vector<cl_ulong>& marks = {});
   PhotonsOnDevice(Device& device, std::vector<PhotonOnItsWay> arrived, int batches, int channels);
 
@@ -139,7 +140,7 @@ public:
     std::vector<PhotonOnItsWay> gone; ///< photons that entered other blocks, in any order
   };
   /// Marches photons that start in this block.
-  /// @param marks  mark for counting of each photon; empty if photons are not counted
+  /// @param marks  one 64-bit integer per photon for counting (PhotonMarch.cl); empty if photons are not counted
   /// @throws Aborted; the sums then hold only a part of the photons' deposits
   Outcome Start(const PackedPhotons& photons, const std::vector<cl_ulong>& marks, const Monitor& monitor);
   /// Marches photons that arrived from other blocks to their ends or until they leave this block.
@@ -164,7 +165,8 @@ private:
 std::vector<PhotonPath> TracePaths(const Domain& domain, const MarchMedium* through, const std::vector<Photon>& photons,
   const std::vector<std::size_t>& numbers, int eventLimit);
 
-/// Device times, s, of a march in turns (launches that follow photons over a limited number of path segments).
+/// Device times, s, of a march in turns. A turn is a launch that follows photons over a limited number of path
+/// segments.
 struct TurnTimes
 {
   int turns = 0;          ///< number of turns
@@ -173,20 +175,22 @@ struct TurnTimes
   double together = 0.0;  ///< time during which march and `meanwhile` were running concurrently
 };
 
-/// Callbacks of a march in turns: photons march a limited number of path segments per turn, and the light deposited
-/// so far is processed while the next turn is running (Bernabei et al., section III-A).
+/// Callbacks of a march in turns. In each turn photons march a limited number of path segments, while the light
+/// deposited in earlier turns is processed (Bernabei et al., section III-A).
 struct MarchTurns
 {
-  /// Number of path segments of a photon per turn (from voxel wall to voxel wall); 0: one turn, to the photon's end.
+  /// Number of path segments, from voxel wall to voxel wall, that a photon marches per turn. 0: a single turn, to the
+  /// photon's end.
   int stretches = 16;
-  /// Whether photons march on a separate command queue, concurrently with `meanwhile`; false: one queue for both.
+  /// Whether photons march on a separate command queue, concurrently with the processing of light (`meanwhile`). False:
+  /// one queue for both.
   bool sideBySide = true;
   /// Called once before the first turn.
   /// @param photons  the packed photons
   /// @param channels  number of channels of the fluence that `take` receives
   std::function<void(const PackedPhotons& photons, int channels)> begin;
-  /// Queues the processing of the light of earlier turns, without waiting for it. Returns the events of the first and
-  /// the last queued command.
+  /// Queues the processing of the light deposited in earlier turns, without waiting for it. Returns the events of the
+  /// first and the last queued command.
   std::function<std::array<cl::Event, 2>(const cl::CommandQueue& queue)> meanwhile;
   /// Queues the transfer of the light accumulated since the march began.
   /// @param fluence  W / length^2, [voxel][channel]

@@ -8,15 +8,15 @@ SHARED_BEGIN
 enum
 {
   EndWords = 3, ///< number of integers in a PhotonEnd (final state of a photon); its powers follow them
-  /// PhotonEnd::face of a photon that was terminated before it left the volume. This value and larger ones denote ends
+  /// PhotonEnd::face of a photon that was terminated before it left the volume. Values from this one on denote ends
   /// that are not at a face.
   StillGoing = 6,
   Dark = 7,     ///< PhotonEnd::face of a photon with power below MarchInfo::darkness
   Elsewhere = 8 ///< PhotonEnd::face of a photon that continues in another block of the grid
 };
 
-/// Maximum look-ahead of the integrator along each axis, in half steps: more than twice the look-ahead where n is
-/// smooth.
+/// Maximum look-ahead of the path integrator along each axis, in half steps. It is more than twice the look-ahead where
+/// the refractive index n is smooth.
 enum
 {
   LeapfrogLooksAhead = 3, ///< limit of the leapfrog, which looks half a step ahead where n is smooth
@@ -55,8 +55,8 @@ typedef struct
   /// copy c belongs to batch c % batches.
   int copies, batches;
   int first, count; ///< first photon within each batch, and number of photons in each batch
-  /// 1: photons that arrived from another block, or continue after an earlier turn (launch that follows photons over a
-  /// limited number of path segments); 0: photons that start
+  /// 1: photons continue, since they arrived from another block or marched in an earlier turn (a launch over a limited
+  /// number of path segments); 0: photons start
   int resumes;
   int events; ///< maximum number of path segments per photon in this launch
   int last;   ///< 1: photons that have not ended after this launch are terminated
@@ -76,15 +76,15 @@ typedef struct
 #endif
 } PhotonEnd;
 
-/// State of a photon's path as it passes into another block, complete, so that the path continues bit for bit as on
-/// an undivided grid. Positions are in voxels of the domain, times as in photon_lanes (PhotonSteps.cl).
+/// Complete state of a photon's path as it passes into another block: the path continues there bit for bit as on an
+/// undivided grid. Positions are in voxels of the domain, times as in photon_lanes (PhotonSteps.cl).
 typedef struct
 {
   int voxel[3];  ///< voxel of the domain that the photon enters
   float wall[3]; ///< time since the step began at which the photon reaches the next wall along each axis
   float now;     ///< time since the step began
   float turn;    ///< time since the step began at which the step ends
-  /// Time since the step began before which the photon does not start a new step where the refractive index varies
+  /// Time since the step began until which the photon starts no new step where the refractive index varies
   float settled;
   float step;        ///< duration of the current step
   float start[3];    ///< position at which the step began
@@ -92,12 +92,12 @@ typedef struct
   float momentum[3]; ///< T = n dx/ds of numerics.md, Eq. (90), along the path, voxels per time
 } WayOnward;
 
-/// A photon that passes from one block of the domain into another, with straight or bent path and without scattering.
-/// Only the power channels in use are valid.
+/// A photon without scattering that passes from one block of the domain into another, on a straight or bent path. Only
+/// the power channels in use are valid.
 typedef struct
 {
-  /// 64-bit integer of the photon: count and weight that it adds to voxels, column and row of its origin, or its
-  /// index, depending on the kernel's options (PhotonMarch.cl)
+  /// 64-bit integer of the photon, depending on the kernel's options (PhotonMarch.cl): count and weight that it adds to
+  /// voxels; or column and row of its origin; or its index
   ulong mark;
   WayOnward way;
   int batch;     ///< index of the photon's batch
@@ -122,7 +122,8 @@ typedef struct
   /// Factor that converts deposits, in units of power times voxel diagonal, to fluence, W / length^2; divided by
   /// 2^exponent
   float fluence;
-  /// Binary exponent of the factor `fluence`, stored separately because their product may be below the range of float
+  /// Binary exponent of the factor `fluence`. It is stored separately because the factor times 2^exponent may be below
+  /// the range of float
   int exponent;
   float colour[3];            ///< colour of the single channel, relative to white, if CHANNELS is 1
   float weight;               ///< photon weight per unit of the voxels' sums of weights
@@ -136,7 +137,7 @@ typedef struct
 {
   ulong seed;       ///< seed of the random numbers
   ulong copyStride; ///< number of 64-bit numbers in one copy of the sums of deposits
-  /// Maximum number of scatterings of a photon; it is terminated at the next collision.
+  /// Maximum number of scatterings of a photon; the photon is terminated at the collision after them.
   int mostScatterings;
   int first, count; ///< first photon of the launch, and number of photons
   int resumes;      ///< 1: photons that arrived from other blocks; 0: photons that start
@@ -152,7 +153,7 @@ typedef struct
   float exchanged;       ///< net power added to the photon by Russian roulette
 } ScatterEnd;
 
-/// A scattered photon that passes from one block of the domain into another, with the complete state on which its
+/// A photon with scattering that passes from one block of the domain into another, with the complete state on which its
 /// further path and scatterings depend.
 typedef struct
 {

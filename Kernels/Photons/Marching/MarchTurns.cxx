@@ -22,8 +22,8 @@ Span SpanOf(const cl::Event& first, const cl::Event& last)
     1e-9 * static_cast<double>(last.getProfilingInfo<CL_PROFILING_COMMAND_END>()) };
 }
 
-/// Number of path segments in each turn (launch that follows photons over a limited number of segments); the last turn
-/// follows photons to their ends.
+/// Number of path segments in each turn. A turn is a launch that follows photons over a limited number of segments; the
+/// last turn follows them to their ends.
 class TurnSchedule
 {
 public:
@@ -57,8 +57,8 @@ private:
   std::int64_t Before = 0; ///< number of path segments per photon in all turns (launches) begun so far
 };
 
-/// State of the photons on the device between turns (launches that follow them over a limited number of path
-/// segments), and the kernel that marches them.
+/// State of the photons on the device between turns, and the kernel that marches them. A turn is a launch that follows
+/// photons over a limited number of path segments.
 class TurnsOfPhotons
 {
 public:

@@ -19,7 +19,7 @@ namespace tyndall
 {
 namespace
 {
-/// Multiplies the tallies (powers) of a single channel by the colour that the channel stands for.
+/// Multiplies powers that were counted in a single channel by the colour that this channel stands for.
 void Colour(const Rgb& colour, PhotonLight& result)
 {
   EnergyBalance& balance = result.light.balance;
@@ -207,7 +207,7 @@ void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonL
     {
       cl_float units;
       std::memcpy(&units, ends.data() + i * words + EndWords + c, sizeof(units));
-      // Power of dark photons, almost 0, is added to the power of photons that were terminated.
+      // The small remaining power of dark photons is added to that of photons that were terminated.
       out[std::min<int>(end.face, StillGoing)][c] += WholeUnits(units);
     }
   }
@@ -345,10 +345,10 @@ void Widen(std::vector<double>& values)
 }
 }
 
-// One photon of each group of `batches` consecutive photons is chosen at random rather than by a fixed stride:
-// low-discrepancy samples depend on the digits of their indices (every sixteenth index has the same last four binary
-// digits, which are Hammersley's leading ones), so that with a stride all photons of a batch would start in one part
-// of the light.
+// One photon of each group of `batches` consecutive photons is chosen at random. A fixed stride would not do:
+// low-discrepancy samples depend on the digits of their indices. For example, every sixteenth index has the same last
+// four binary digits, which are the leading digits of Hammersley's points, so that all photons of a batch would start
+// in one part of the light.
 PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches)
 {
   std::mt19937 random; // with its default seed, so that every batch draws the same numbers
@@ -367,7 +367,7 @@ PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t
 void MarchedBatches::Add(PhotonLight&& part)
 {
   ++this->Count;
-  // The batch may have fewer channels than the earlier ones, if all of its photons happen to have one colour.
+  // This batch may have fewer channels than the earlier ones, if all of its photons happen to have one colour.
   if (this->Count > 1 && part.light.channels < this->All.light.channels)
   {
     Spread(part.light, White);
@@ -430,8 +430,8 @@ PhotonLight MarchedBatches::Sum() &&
   const double count = this->Count;
   for (std::size_t i = 0; i < this->Fluence.size(); ++i)
   {
-    // The sum is over `count` independent batches, each with a part of the power; its variance follows from their
-    // scatter.
+    // The light is the sum over `count` independent batches, each with a part of the power. Its variance follows from
+    // the scatter of the batches.
     const double scatter = this->Squares[i] - this->Fluence[i] * this->Fluence[i] / count;
     light.fluenceError.push_back(static_cast<float>(std::sqrt(std::max(scatter, 0.0) * count / (count - 1.0))));
   }

@@ -21,7 +21,7 @@ public:
   /// Provides sums for the deposits of packed photons, all zero, and describes their memory layout.
   /// @throws DeviceError if the sums do not fit into the device's memory
   MarchSums Prepare(const PackedPhotons& packed);
-  /// Number of copies of the sums, by ShareSums; the memory of existing sums counts as available.
+  /// Number of copies of the sums that fit into memory (ShareSums); the memory of existing sums counts as available.
   MarchShares Share(int numbers, int batches) const;
   /// Discards the sums after an aborted march, which leaves them nonzero.
   void Forget() { this->Sums = Buffer<cl_long>(); }
@@ -47,29 +47,29 @@ private:
 };
 
 /// Adds the final states of photons to the light's energy balance: the power that escaped through each face of the
-/// domain, and the power left over. Powers are rounded to whole units, so that their sums do not depend on the order
-/// of the photons. Photons that continue in another block are ignored.
+/// domain, and the power of photons that were terminated. Powers are rounded to whole units, so that their sums do not
+/// depend on the order of the photons. Photons that continue in another block are ignored.
 /// @param ends  final state (PhotonEnd) and remaining power of each photon, in units of packed.unit
 void Tally(const PackedPhotons& packed, const std::vector<cl_int>& ends, PhotonLight& result);
 
-/// Replaces this rank's tallies of uncollided light (energy balance, powers, numbers) by their sums over all ranks.
-/// Collective.
+/// Replaces this rank's powers and numbers of uncollided light (energy balance, powers, counts) by their sums over all
+/// ranks. Collective.
 void AddUpTallies(const Domain& domain, PhotonLight& result);
-/// Replaces this rank's tallies of scattered light (energy balance, powers, number of scatterings) by their sums over
-/// all ranks. Collective.
+/// Replaces this rank's powers and numbers of scattered light (energy balance, powers, number of scatterings) by their
+/// sums over all ranks. Collective.
 void AddUpScattered(const Domain& domain, PhotonLight& result);
 
-/// Expands arrays and tallies of packed.channels channels to the channels of the light, or reduces them to one
-/// channel if `colours` is 1.
+/// Converts arrays and powers of packed.channels channels to the channels of the light, or to one channel if `colours`
+/// is 1.
 void PutIntoColours(const PackedPhotons& packed, int colours, PhotonLight& result);
 
 void SayWhatIsLeftOut(const MarchMedium& medium, const PackedPhotons& packed, LightField& light);
 
-/// Indices of the photons in one of the batches from which the standard error is estimated: one random photon out of
-/// each group of `batches`, the same on every machine.
+/// Indices of the photons in one of the batches from which the standard error is estimated. From each group of
+/// `batches` consecutive photons one is chosen at random, the same on every machine.
 PhotonNumbers NumbersOfBatch(std::size_t photons, std::size_t batch, std::size_t batches);
 
-/// Sums the light of several independent batches of photons, each a part of all the power, and estimates the standard
+/// Sums the light of several independent batches of photons, each with a part of the power, and estimates the standard
 /// error of the sum (numerics.md, Eq. (99e)).
 class MarchedBatches
 {

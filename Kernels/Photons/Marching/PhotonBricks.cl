@@ -1,6 +1,6 @@
-// Marching through a medium stored by bricks of voxels, most of which are empty. A photon crosses an empty brick to its
-// wall in one segment, and deposits to the brick's single record; it crosses a filled brick voxel by voxel. Voxels are
-// addressed by the indices of their records (MarchMedium.h). The refractive index is constant.
+// Marching through a medium that is stored by bricks of voxels, most of them empty. A photon crosses an empty brick in
+// one segment and deposits to the brick's single record. It crosses a filled brick voxel by voxel. Voxels are addressed
+// by the indices of their records (MarchMedium.h). The refractive index is constant.
 
 #pragma once
 #include "Medium/BrickShared.h"
@@ -9,8 +9,8 @@
 #define NO_SLOPE 1e37f // stands for the infinite time to cross a voxel along an axis with zero velocity
 
 // Finds the records (MarchMedium.h) that hold the sums and the extinction of the photons' voxels.
-//   last  number of voxels along an edge of the region that a photon crosses in one segment, less one: BrickEdge - 1
-//         in an empty brick, 0 in a single voxel
+//   last  edge, in voxels and less 1, of the region that a photon crosses in one segment: BrickEdge - 1 in an empty
+//         brick, 0 in a single voxel
 static void find_records(const march_arrays* arrays, const integer* voxel, integer* record, integer* last)
 {
   const IndexGrid* grid = &arrays->info->grid;
@@ -29,7 +29,8 @@ static void find_records(const march_arrays* arrays, const integer* voxel, integ
   *last = empty & ~outside & within;
 }
 
-// First voxel, and end, along an axis of the region (a voxel or a brick) that a photon crosses in one segment.
+// Along one axis, the first voxel and the end of the region that a photon crosses in one segment: a voxel, or an empty
+// brick.
 static integer lower_end(integer voxel, integer last)
 {
   return voxel & ~last;
@@ -76,8 +77,8 @@ static void set_off_in_bricks(
   }
 }
 
-// Moves photons through the walls that they reach at time `next`. Along axes without such a wall, the voxel is
-// computed from the position at that time, limited to the current region to guard against rounding.
+// Moves photons through the walls that they reach at time `next`. Along axes without such a wall, the voxel is computed
+// from the position at that time. It is limited to the current region, because of rounding.
 static void cross_in_bricks(const march_arrays* arrays, const photon_lanes* lanes, real next, integer* voxel,
   integer* last, real* wall, integer* record)
 {

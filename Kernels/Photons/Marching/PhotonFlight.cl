@@ -15,18 +15,19 @@
 // Floats per photon: position, unit direction, power in units of PackedPhotons::unit
 #define PHOTON_FLOATS (6 + CHANNELS)
 #if CELLS
-// Integers per cell: deposits, number of photons, sums of column and row of their origins and of their squares.
+// Integers in the record of a coarse cell: deposits of the channels, number of photons, sums of column and row of their
+// origins, and sums of the squares of both.
 #define RECORD (CHANNELS + 5)
 #else
 #define RECORD (CHANNELS + 3 * DIRECTIONS + COUNTS)
 #endif
 #define TINY 1e-20f
 
-// State of a packet that changes within a step, kept in registers; photon_lanes has the complete state.
+// Part of a packet's state that changes within a step, kept in registers. photon_lanes has the complete state.
 typedef struct
 {
-  // `at`: index of the voxel's extinction; `alive`: -1, 0 for a photon that has ended; `crossings`: number of path
-  // segments
+  // `at`: index of the voxel's extinction; `alive`: -1, or 0 for a photon that has ended; `crossings`: number of path
+  // segments so far
   integer at, alive, crossings;
   real wall[3], now; // times since the step began: arrival at the next wall of each axis, and now
   // Optical thickness of the voxel's diagonal; sign bit set where the refractive index varies
@@ -110,8 +111,8 @@ static void attenuate(const march_arrays* arrays, photon_flight* flight, real le
       thick = truth(tau > (real)0.5f);
     }
     gained[c] = flight->power[c] * factor;
-    // Through many optically thin voxels, rounding errors have the same sign in each voxel: compensated summation
-    // (Kahan).
+    // Rounding errors in optically thin voxels all have the same sign and add up. Compensated summation (Kahan) keeps
+    // them small.
     const real taken = flight->power[c] * lost - flight->owed[c];
     const real rest = thick ? flight->power[c] * left : flight->power[c] - taken;
     flight->owed[c] = thick ? (real)0.0f : (flight->power[c] - rest) - taken;
@@ -142,7 +143,8 @@ static void deposit(__global long* record, const float* a, float4 direction)
 }
 
 #if COUNTS || CELLS
-// Counts one photon in the record of a voxel or cell that it entered (entered: -1, else 0).
+// Counts a photon in the record of the voxel or cell that it has entered.
+//   entered  -1 if the photon has entered the voxel or cell in this segment, else 0
 static void count_photon(__global long* record, ulong mark, int entered)
 {
 #if COUNTS
@@ -186,8 +188,8 @@ static void deposit_all(const march_arrays* arrays, const photon_lanes* lanes, c
 #undef DEPOSIT
 }
 
-// Prefetches extinction and records of the sums a few voxels ahead of the photons, on a straight line: memory access
-// dominates the time of a march through a large grid. Grids stored by bricks are small enough not to need it.
+// Prefetches extinction and records of the sums a few voxels ahead of the photons, on a straight line, because memory
+// access dominates the time of a march through a large grid. Grids stored by bricks are small and are not prefetched.
 static void ask_ahead(const march_arrays* arrays, const photon_lanes* lanes, integer at)
 {
 #if REAL_WIDTH > 1 && !BRICKS
@@ -217,7 +219,7 @@ static void keep_owed(photon_lanes* lanes, const photon_flight* flight)
 #endif
 }
 
-// Appends photon k, which has entered a voxel of another block, to the photons that leave this block, `gone`.
+// Appends photon k, which has entered a voxel of another block, to `gone`, the photons that leave this block.
 static void hand_on(const march_arrays* arrays, const photon_lanes* lanes, int k)
 {
   __global PhotonOnItsWay* photon = arrays->gone + atomic_add(arrays->gone_count, 1);
@@ -256,8 +258,8 @@ static void take_one_over(photon_lanes* lanes, int k, const __global PhotonOnIts
 #endif
 }
 
-// Loads a packet of photons that arrived from other blocks: `first` to `first + REAL_WIDTH`, but only those before
-// `end`.
+// Loads a packet of photons that arrived from other blocks: those with indices from `first` to `first + REAL_WIDTH`,
+// and below `end`.
 static void take_over(const march_arrays* arrays, const __global PhotonOnItsWay* arrived, int first, int end,
   photon_lanes* lanes, photon_flight* flight)
 {
@@ -305,7 +307,7 @@ static void leave_light(const march_arrays* arrays, photon_flight* flight, real 
   gain->at = flight->at;
 #endif
 #if COUNTS || CELLS
-  // Photons that start on a wall, and terminated photons, have path segments of zero length, which are not counted.
+  // Photons that start on a wall, and terminated photons, have a path segment of zero length. It is not counted.
   gain->entered = truth(gain->at != flight->counted) & truth(length > (real)0.0f);
   flight->counted = gain->entered ? gain->at : flight->counted;
 #endif
@@ -350,7 +352,7 @@ static integer to_turn(const photon_lanes* lanes, const photon_flight* flight)
 }
 #endif
 
-// Mask of the photons that end, because they are outside or dark, or that must start a new step.
+// Mask of the photons that `attend` must handle: they end, because they are outside or dark, or they start a new step.
 static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
   integer special = truth(flight->sigma == (real)OUTSIDE) | truth(brightest(flight) < (real)arrays->info->darkness);
@@ -360,8 +362,8 @@ static integer to_attend(const march_arrays* arrays, const photon_lanes* lanes, 
   return special & flight->alive;
 }
 
-// Mask of the photons in a block that have reached the limit of path segments. On an undivided grid, `follow` applies
-// the limit, as all photons of a packet have the same number of segments.
+// Mask of the photons in a block that have reached the limit of path segments. On an undivided grid the mask is not
+// needed: all photons of a packet have the same number of segments, and `follow` applies the limit.
 static integer halted(const march_arrays* arrays, const photon_flight* flight)
 {
 #if BLOCKS
@@ -399,10 +401,10 @@ static void give_up_lost(const march_arrays* arrays, photon_lanes* lanes, intege
 }
 #endif
 
-// Handles the photons that a mask selects: ends those that have left the grid or the block (a photon that enters
-// another block is handed on to it), those whose power is below MarchInfo::darkness, and, in a block, those that have
-// reached the limit of path segments. Starts a new step for those whose step has ended or that have entered a region
-// of varying refractive index.
+// Handles the photons that a mask selects. A photon ends if it has left the grid or the block, if its power is below
+// MarchInfo::darkness, or, in a block, if it has reached the limit of path segments. A photon that enters another block
+// is passed on to it. A photon starts a new step if its step has ended or if it has entered a region of varying
+// refractive index.
 static void attend(
   const march_arrays* arrays, photon_lanes* lanes, const photon_flight* flight, integer mask, int first)
 {

@@ -15,8 +15,8 @@
 #define PUT_WHERE(mask, array, value) (*(real*)(array) = (mask) ? (value) : VECTOR(array))
 #define PUT_INTEGERS_WHERE(mask, array, value) (*(integer*)(array) = (mask) ? (value) : INTEGERS(array))
 
-// Loops over axes and channels are unrolled by pragma, as PoCL does not unroll them itself, and arrays with a
-// variable index are not kept in registers.
+// Loops over axes and channels are unrolled by pragma. PoCL does not unroll them itself, and it would not keep arrays
+// with a variable index in registers.
 #define FOR_AXES(a) _Pragma("unroll") for (int a = 0; a < 3; ++a)
 #define FOR_CHANNELS(c) _Pragma("unroll") for (int c = 0; c < CHANNELS; ++c)
 

@@ -16,8 +16,7 @@
 //   a = power b (path integral of transmittance, in diagonals),   0 <= a <= power
 // Coarse cells, whose voxels differ in s, gain power times path length in diagonals (b = 1).
 //
-// A photon is counted when it enters a voxel (or coarse cell), once for any number of segments in it, and again when
-// it re-enters.
+// A photon is counted each time it enters a voxel (or coarse cell), however many segments it then has inside.
 
 #include "Photons/Marching/PhotonFlight.cl"
 
@@ -32,7 +31,8 @@ static float total_power(const photon_flight* flight)
   return sum;
 }
 
-// Whether the path continues straight into another block, so that it has no corner at the end of this segment.
+// Whether the path continues in the same direction in another block. The end of this segment is then no corner of the
+// path.
 static bool goes_on_elsewhere(const march_arrays* arrays, const photon_lanes* lanes, const photon_flight* flight)
 {
 #if BLOCKS
@@ -55,13 +55,12 @@ static void add_vertex(const march_arrays* arrays, const photon_lanes* lanes, co
 }
 #endif
 
-// Follows a packet of photons (one per vector lane), some of which have not ended, over at most `events` path segments
-// per photon, or to their ends. Returns whether some photons have not ended. With PATHS, `vertices` counts the
-// vertices of the path.
+// Follows a packet of photons (one per vector lane) over at most `events` path segments, or to their ends. Returns
+// whether some photons have not ended. With PATHS, `vertices` counts the vertices of the path.
 static bool follow(
   const march_arrays* arrays, photon_lanes* lanes, photon_flight* flight, int first, int events, int* vertices)
 {
-  // The deposit of a segment is added during the next segment, while the extinction for it is fetched from memory.
+  // The deposit of a segment is added while the extinction for the next segment is fetched from memory.
   photon_gain gain;
   bool owed = false;
   for (int event = 0; event < events; ++event)
@@ -127,8 +126,8 @@ static void give_up_all(const march_arrays* arrays, photon_lanes* lanes, const p
 }
 
 #if BLOCKS
-// Loads a packet of photons that arrived from other blocks. Photons that are outside, dark or at the limit of path
-// segments end, and photons whose step has ended start the next step. With PATHS, counts their corners.
+// Loads a packet of photons that arrived from other blocks. Ends photons that are outside, dark or at the limit of path
+// segments, and starts the next step of photons whose step has ended. With PATHS, counts the corners of their paths.
 static void resume_packet(const march_arrays* arrays, const __global PhotonOnItsWay* arrived, int first, int end,
   photon_lanes* lanes, photon_flight* flight, int* vertices)
 {
@@ -151,9 +150,9 @@ static void resume_packet(const march_arrays* arrays, const __global PhotonOnIts
 }
 #endif
 
-// Follows photons `first` to `first + REAL_WIDTH`, but only those before `end`, to their ends or into another block.
-// With PATHS, returns the number of vertices of the path, including its start but not the point where it enters the
-// block.
+// Follows the photons with indices from `first` to `first + REAL_WIDTH`, and below `end`, to their ends or into another
+// block. With PATHS, returns the number of vertices of the path; the path's start counts, the point where it enters the
+// block does not.
 //   photons  photons that start (PHOTON_FLOATS each) or, with `resumes`, PhotonOnItsWay
 static int march_packet(const march_arrays* arrays, const __global float* photons, int resumes, int first, int end)
 {
@@ -189,8 +188,9 @@ static int march_packet(const march_arrays* arrays, const __global float* photon
 #endif
 
 #if PATHS
-// Traces the parts of paths that lie in this block, one per work-item. Counts the vertices of part i in places[i] or,
-// if launch.writes, writes them to vertices + places[i]. Marks identify photons.
+// Traces the parts of paths that lie in this block, one per work-item. If launch.writes is 0, counts the vertices of
+// part i in places[i]; otherwise writes these vertices to vertices + places[i]. `marks` holds the indices of the
+// photons.
 __kernel void trace_paths(
   MarchInfo info, MarchLaunch launch, const __global float* sigma, const __global float* coefficients,
   const __global uchar* nodes, const __global int* cells, const __global float* photons, const __global ulong* marks,
@@ -210,7 +210,7 @@ __kernel void trace_paths(
 #else
 
 #if TURNS
-// State of a packet of photons between two turns.
+// State of a packet of photons between two turns (launches over a limited number of path segments).
 typedef struct
 {
   photon_lanes lanes;
@@ -236,7 +236,8 @@ __kernel void size_packet(__global int* bytes)
 
 // Marches a packet of photons (one per vector lane) for one turn: over launch->events path segments from its current
 // state.
-//   going  number of photons in the packet that have not ended; also added to `left`
+//   going  receives the number of photons in the packet that have not ended
+//   left   is increased by this number
 static void take_turn(const march_arrays* arrays, const MarchLaunch* launch, const __global float* photons,
   __global photon_packet* packet, __global int* going, volatile __global int* left, int first, int end)
 {
@@ -299,8 +300,8 @@ __kernel void march_photons(
     const int begin = batch_begin[batch] + launch.first, left = min(launch.count, batch_begin[batch + 1] - begin);
     const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + copy * launch.copyStride, ends, 0, marks,
       cells GONE };
-    // Blocks of consecutive photons, which are neighbours in space and share cache lines, are marched by one
-    // work-item. The sums do not depend on which work-item fetches a block.
+    // A work-item marches blocks of consecutive photons, which are neighbours in space and share cache lines. The sums
+    // do not depend on which work-item fetches a block.
     for (int block = atomic_add(counters + batch, BLOCK); block < left; block = atomic_add(counters + batch, BLOCK))
     {
       for (int i = begin + block; i < begin + min(block + BLOCK, left); i += REAL_WIDTH)

@@ -23,9 +23,9 @@ namespace tyndall
 {
 namespace
 {
-/// Width in voxels of the halo of the refractive index on which paths in a block depend (numerics.md, Eq. (99f)):
-/// three for the support of the spline, and the integrator's look-ahead. Beyond the halo, the index counts as
-/// constant.
+/// Width in voxels of the halo of the refractive index on which paths in a block depend (numerics.md, Eq. (99f)): three
+/// voxels for the support of the spline, and the look-ahead of the path integrator. Beyond the halo, the index counts
+/// as constant.
 /// @param octree  whether steps follow the nodes of an octree
 int ReachOfIndex(const MarchSettings& settings, bool octree)
 {
@@ -89,8 +89,8 @@ public:
   /// @param turns  callbacks for a march in turns; null: photons are marched to their ends at once
   PhotonLight March(const std::vector<Photon>& share, MarchTurns* turns, const Monitor& monitor);
   std::vector<PhotonPath> Paths(const std::vector<Photon>& share, const std::vector<std::size_t>& chosen) const;
-  /// Checks that light is stored voxel by voxel.
-  /// @param what  beginning of the error message: what requires it
+  /// Throws unless light is stored voxel by voxel.
+  /// @param what  beginning of the error message: the feature that requires storage voxel by voxel
   /// @throws InvalidInput if light is stored by bricks
   void RequireVoxels(const char* what) const;
 
@@ -180,8 +180,9 @@ VoxelBox PhotonMarcher::Implementation::KnownOf(const VoxelBox& block, int reach
   return block.VoxelCount() > 0 ? Grown(block, reach, this->TheDomain.Whole()) : block;
 }
 
-/// Refractive index in this rank's block and its halo, gathered from all ranks; null values if nothing depends on it.
-/// @param reach  halo in voxels; 0: nothing depends on the index
+/// Refractive index in this rank's block and its halo, gathered from all ranks. Null values if no path depends on the
+/// index.
+/// @param reach  halo in voxels; 0: no path depends on the index
 /// @param values  storage of the gathered index, if the domain is divided
 Field PhotonMarcher::Implementation::IndexAround(const Field& ior, int reach, std::vector<float>& values) const
 {
@@ -282,7 +283,7 @@ void PhotonMarcher::Implementation::ByTurns(const StartingPhotons& starting, con
   Tally(starting.packed, onDevice.ends.Read(), result);
 }
 
-/// Follows photons to their first collision, and converts their deposits to light. Collective.
+/// Follows photons to their first collision, and converts their deposits to uncollided light. Collective.
 void PhotonMarcher::Implementation::FollowUncollided(
   const StartingPhotons& starting, MarchTurns* turns, PhotonLight& result, const Monitor& monitor)
 {
@@ -317,8 +318,8 @@ void PhotonMarcher::Implementation::FollowUncollided(
   AddUpTallies(this->TheDomain, result);
 }
 
-/// Follows photons through scatterings. Returns one channel's scattered light in this rank's block, and its tallies
-/// (energy balance and number of scatterings). Collective.
+/// Follows photons of one channel through scatterings. Returns their light in this rank's block, their energy balance
+/// and the number of scatterings. Collective.
 /// @param in  medium and phase function of the channel; null if this rank has no voxels
 ScatteredPhotons PhotonMarcher::Implementation::FollowScattered(
   const PhotonScattering* in, PackedPhotons photons, const Monitor& monitor) const

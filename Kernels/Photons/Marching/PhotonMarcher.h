@@ -28,13 +28,13 @@ namespace tyndall
 ///
 /// With several ranks, each marches photons through its block (subdomain), and sends photons that leave it, with the
 /// complete state of their paths, to the rank whose block they enter (numerics.md, section 12.6). Paths do not depend
-/// on the blocks: the light is the same, bit for bit, on any number of ranks; powers of scattered light, which are
-/// sums of floats, agree to 1e-9. A rank stores only its block of the medium and, for the refractive index, a halo of
-/// some voxels: 20 or more for steps of order 4 in an octree, whose nodes are stored on every rank. Storing light by
-/// bricks requires an undivided grid.
+/// on the blocks: the light is the same, bit for bit, on any number of ranks. Powers of scattered light, which are sums
+/// of floats, agree to 1e-9. A rank stores its block of the medium and, for the refractive index, a halo of some
+/// voxels; for steps of order 4 in an octree the halo has 20 or more. The nodes of the octree are stored on every rank.
+/// Storing light by bricks requires an undivided grid.
 ///
-/// Kernels are specialised to the scene: without integrator and interpolation if the refractive index is constant, with
-/// one power channel if all photons have one colour and the medium is grey.
+/// Kernels are compiled for the scene: without path integrator and interpolation if the refractive index is constant,
+/// and with one power channel if all photons have one colour and the medium is grey.
 class PhotonMarcher
 {
 public:

@@ -8,7 +8,7 @@
 #define component(values, count, voxel, c) \
   ((count) == 0 ? 0.0f : (values)[(voxel) * (count) + ((count) == 3 ? (c) : 0)])
 
-// Whether n^2 varies in a voxel, within the reach of interpolation.
+// Whether n^2 varies in a voxel, within the reach of the spline interpolation.
 //   low, high  least and largest spline coefficient of n^2 near each voxel, in the padded layout of these coefficients
 static bool index_varies(
   const IndexGrid* known, const __global float* low, const __global float* high, int x, int y, int z)

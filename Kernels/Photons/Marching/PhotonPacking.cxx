@@ -15,8 +15,8 @@ namespace tyndall
 {
 namespace
 {
-/// Base-2 logarithm of the number of tiles along an axis, by which photons are sorted; a tile is one to two voxels
-/// wide in a grid of 128^3 voxels.
+/// Photons are sorted by tiles. This is the base-2 logarithm of the number of tiles along an axis; in a grid of 128^3
+/// voxels a tile is one to two voxels wide.
 constexpr int TileBits = 8;
 constexpr double SameColour = 1e-6;
 
@@ -63,7 +63,8 @@ void CheckPhotons(const std::vector<Photon>& photons, bool batches)
   }
 }
 
-/// Line of a photon inside the grid: start and direction in voxels, and the tile by which it is sorted.
+/// The line along which a photon crosses the grid: start and direction in voxels, and the tile by which the photon is
+/// sorted.
 struct Ray
 {
   std::array<float, 3> position, direction;
@@ -91,8 +92,8 @@ Ray RayOf(const Grid& grid, const Photon& photon, const std::array<double, 3>& p
     const double omega = photon.direction[a] / length;
     ray.position[a] = static_cast<float>(position[a]);
     ray.direction[a] = static_cast<float>(omega);
-    // Photons are sorted by the points half a diagonal of the grid along their lines, because all photons of a lamp
-    // in the volume start at one point.
+    // Photons are sorted by the point half a diagonal of the grid along their line, because all photons of a lamp in
+    // the volume start at the same point.
     const double middle = (position[a] + omega * reach + reach) / (grid.size[a] + 2.0 * reach);
     const int tiles = 1 << TileBits;
     ray.tile |= Spread(std::min(std::max(static_cast<int>(middle * tiles), 0), tiles - 1)) << a;
@@ -150,14 +151,14 @@ Rgb PowerOf(const Photon& photon)
   return { photon.power[0], photon.power[1], photon.power[2] };
 }
 
-/// Unit of power, W, of which the brightest photon has at most 2^31: sums of whole units do not depend on the order
-/// of addition.
+/// Unit of power, W, in which the brightest photon has at most 2^31 units. Sums of whole units do not depend on the
+/// order of addition.
 double UnitOfPower(double brightest)
 {
   return brightest > 0.0 ? std::exp2(std::ceil(std::log2(brightest)) - 31.0) : 1.0;
 }
 
-/// Photons whose lines meet the grid, moved into it.
+/// Photons whose lines meet the grid. Those that start outside have been moved to the point where they enter it.
 struct IncomingPhotons
 {
   std::vector<Ray> rays;
@@ -215,7 +216,7 @@ void FillInOrder(PackedPhotons& packed, const std::vector<Photon>& photons, cons
   }
 }
 
-/// Totals over the photons of all ranks that decide how each photon is packed.
+/// Totals over the photons of all ranks that decide how photons are packed.
 struct PhotonTotals
 {
   double brightest = 0.0;      ///< W, power of the brightest photon, sum of channels
@@ -266,7 +267,7 @@ bool HaveColour(const std::vector<Photon>& photons, const Rgb& first)
   return common.IsOne();
 }
 
-/// Creates PackedPhotons that hold no photons yet: only channels, colour, unit of power and number of batches.
+/// Creates PackedPhotons without photons: sets only channels, colour, unit of power and number of batches.
 PackedPhotons PackingOf(const PhotonTotals& all, bool coloured, double depositsAtMost)
 {
   PackedPhotons packed;
@@ -304,8 +305,8 @@ void FillPacking(PackedPhotons& packed, const std::vector<Photon>& photons, cons
   FillInOrder(packed, photons, met, order);
 }
 
-/// Base by which an integer is split into a high and a low half, two doubles that are summed over ranks without
-/// rounding.
+/// Base by which an integer is split into a high and a low half, stored in two doubles. These are summed over ranks
+/// without rounding.
 constexpr double Half = 0x1p31;
 
 }
@@ -386,7 +387,7 @@ void AddUpEntered(const Domain& domain, PackedPhotons& packed)
   }
 }
 
-/// A photon in the format in which it is sent to the rank where it starts.
+/// Format in which a photon is sent to the rank where it starts.
 struct SentPhoton
 {
   float values[9] = {}; ///< position, direction and power, as in PackedPhotons::values
@@ -431,7 +432,8 @@ std::vector<int> EveryRank(const Communicator& communicator)
   return ranks;
 }
 
-/// Replaces the packed photons that start on this rank by the photons received from all ranks, sorted by batch.
+/// Replaces the packed photons by those that start on this rank, which were received from all ranks, and sorts them by
+/// batch.
 void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, StartingPhotons& starting)
 {
   PackedPhotons& packed = starting.packed;
@@ -461,13 +463,13 @@ void Join(const std::vector<std::vector<SentPhoton>>& parcels, bool marked, Star
   packed.batchBegin.back() = static_cast<int>(packed.numbers.size());
 }
 
-/// Computes the mark of each photon, the 64-bit integer that it adds to each voxel that it enters: a count of one in
-/// the upper bits, and the photon's weight, in units, in the lower bits.
+/// Computes the mark of each photon, the 64-bit integer that it adds to each voxel that it enters: a count of 1 in the
+/// upper bits, and the photon's weight, in units, in the lower bits.
 /// @param largest, count  largest weight, and number, of the photons of all ranks
 /// @throws InvalidInput if there are more photons than voxels can count
 void MarkForCounting(const std::vector<Photon>& share, float largest, std::size_t count, StartingPhotons& starting)
 {
-  // A voxel counts photons in the upper bits of a 64-bit number, above the sum of their weights.
+  // The count has the upper bits of a 64-bit number; the lower bits hold the sum of the photons' weights.
   constexpr std::size_t CountedAtMost = (std::size_t(1) << (64 - CountShift)) - 1;
   constexpr double WeightUnits = 65536.0; // the largest weight has this number of units
   Require(count <= CountedAtMost,
@@ -513,8 +515,8 @@ bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::arra
 
 PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger)
 {
-  // A channel much fainter than the others has a smaller unit in proportion, or rounding its deposits to units would
-  // lose a part of its power.
+  // A channel much fainter than the others has a proportionally smaller unit. Otherwise rounding its deposits to units
+  // would lose a part of its power.
   const double own = packed.entered[static_cast<std::size_t>(channel)], all = Sum(packed.entered);
   const double scale = larger * (packed.channels == 3 && own > 0.0 ? std::exp2(std::ceil(std::log2(own / all))) : 1.0);
   PackedPhotons one;
@@ -527,8 +529,8 @@ PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour
   {
     one.values.insert(one.values.end(), from, from + 6);
     one.values.push_back(static_cast<float>(from[6 + channel] * (colour / scale)));
-    // Powers are not rounded to whole units: the powers of equal photons would all be rounded in the same direction,
-    // and the rounding errors would add up.
+    // Powers are not rounded to whole units here: for photons of equal power all rounding errors would have the same
+    // sign and add up.
     one.entered[0] += one.unit * one.values.back();
   }
   return one;

@@ -11,8 +11,8 @@
 
 namespace tyndall
 {
-/// Photons in the format of the kernels: positions in voxels, inside the volume or where the photon enters it, sorted
-/// so that neighbours in space are neighbours in memory.
+/// Photons in the format of the kernels. Positions are in voxels, inside the volume or where the photon enters it. The
+/// photons are sorted so that neighbours in space are neighbours in memory.
 struct PackedPhotons
 {
   int channels = 1; ///< power channels per photon: 1 if one channel suffices for photons of one colour, else 3
@@ -49,8 +49,8 @@ PackedPhotons Pack(const std::vector<Photon>& photons, const Grid& grid, bool co
 /// Extracts one channel of packed photons, as photons of one channel.
 /// @param channel  index of the packed channel
 /// @param colour   power in the requested channel per unit of packed power
-/// @param larger   ratio of the new unit to the old one, a power of two, for a channel that carries all of the power; a
-///   fainter channel has a smaller unit
+/// @param larger   ratio of the new unit to the old one, a power of two, for a channel that carries all of the power. A
+/// fainter channel has a smaller unit
 PackedPhotons OneChannel(const PackedPhotons& packed, int channel, double colour, double larger);
 
 /// Rounds power to whole units, so that sums do not depend on the order of their terms.
@@ -64,10 +64,10 @@ inline std::int64_t WholeUnits(float power)
 /// @return false if the line does not meet the grid
 bool MoveOnto(const Grid& grid, std::array<double, 3>& position, const std::array<double, 3>& direction);
 
-// Functions for photons distributed over ranks: all photons are those of rank 0, then those of rank 1, and so on.
-// These functions are collective, except for ThoseIn.
+// The following functions are for photons distributed over ranks. All photons are numbered rank by rank, first those of
+// rank 0, then those of rank 1. The functions are collective, except for ThoseIn.
 
-/// Position of one rank's photons among all photons.
+/// Position of this rank's photons in the numbering of all photons.
 struct PlaceOfShare
 {
   std::size_t first = 0; ///< index of the rank's first photon among all photons
@@ -81,12 +81,12 @@ std::vector<std::int64_t> SumExactly(Communicator& communicator, const std::vect
 /// Photons that start in this rank's block.
 struct StartingPhotons
 {
-  /// Packed photons that start on this rank. Its member `numbers` holds indices among the photons of all ranks; its
-  /// members `entered` (power that enters the volume) and `missed` (photons that miss it) are totals over all ranks.
+  /// Packed photons that start on this rank. `packed.numbers` holds indices among the photons of all ranks.
+  /// `packed.entered` (power that enters the volume) and `packed.missed` (number of photons that miss it) are totals
+  /// over all ranks.
   PackedPhotons packed;
-  /// Mark of each photon: the number that the kernel adds to a voxel for each photon that crosses it, 1 in the upper
-  /// bits (the count) and the photon's weight in units of weightUnit in the lower ones. Empty if photons are not
-  /// counted.
+  /// Mark of each photon: the integer that it adds to each voxel that it crosses. The upper bits are a count of 1, the
+  /// lower bits the photon's weight in units of weightUnit. Empty if photons are not counted.
   std::vector<cl_ulong> marks;
   /// Photon weight that counts as 1 in the integer sums of weights of the voxels; 0 if photons are not counted.
   float weightUnit = 0.0f;
@@ -109,7 +109,7 @@ StartingPhotons SendToTheirBlocks(const Domain& domain, const std::vector<Photon
 std::vector<Photon> ChosenOnEachRank(Communicator& communicator, const std::vector<Photon>& share,
   const PlaceOfShare& place, const std::vector<std::size_t>& chosen);
 
-/// Selects the packed photons that start in a block. A photon starts in the voxel to which the kernels, with their
+/// Selects the packed photons that start in a block. A photon belongs to the voxel to which the kernels, with their
 /// rounding, assign its position. `entered` and `missed` of the result are still totals over all photons.
 PackedPhotons ThoseIn(const VoxelBox& block, const Grid& whole, const PackedPhotons& packed);
 }

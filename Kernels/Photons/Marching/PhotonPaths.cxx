@@ -17,8 +17,8 @@ namespace
 struct PathVertex
 {
   cl_ulong photon = 0; ///< index of the photon among all photons; the kernel carries it along as the photon's mark
-  /// Number, from 1, of the round (ranks trace photons, then exchange those that left their blocks) in which this
-  /// vertex was found.
+  /// Number, from 1, of the round in which this vertex was found. In a round, all ranks trace photons in their blocks,
+  /// then exchange the photons that left.
   cl_ulong round = 0;
   /// Position in voxels (x, y, z), and remaining power (w: sum of channels, in units of PackedPhotons::unit watts).
   cl_float4 place = {};
@@ -61,8 +61,8 @@ public:
     return this->Trace(PhotonsOnDevice(this->Medium.device, arrived, 1, this->Channels), marks);
   }
 
-  /// Vertices of all paths so far. In each round (ranks trace photons, then exchange those that left their blocks) the
-  /// vertices of a photon are appended in order along its path.
+  /// Vertices of all paths so far. Each round of tracing and exchange between ranks appends the vertices of a photon in
+  /// order along its path.
   std::vector<PathVertex> vertices;
 
 private:
@@ -148,8 +148,7 @@ std::vector<PathVertex> TraceVertices(const Domain& domain, const MarchMedium* t
 }
 
 /// Builds the path of packed photon i from its vertices.
-/// @param all  vertices of all paths, sorted by photon, then by the round of exchange between ranks in which they were
-///   found
+/// @param all  vertices of all paths, sorted by photon, then by the round of tracing in which they were found
 PhotonPath PathOf(const Grid& grid, const PackedPhotons& packed, std::size_t i, const std::vector<PathVertex>& all)
 {
   const float* const power = packed.values.data() + i * static_cast<std::size_t>(packed.FloatsEach()) + 6;

@@ -10,18 +10,18 @@
 //   BLOCKS      1: the grid is a block of the domain, and photons march until they leave it; without BRICKS
 //
 // A path obeys dr/dt = T, dT/dt = grad(n^2) / 2 with dt = ds / n (numerics.md, Eq. (90)). It is a sequence of steps,
-// straight lines of constant velocity; comments and names call the change of velocity between steps a turn:
+// which are straight lines of constant velocity. A turn is the change of velocity between two steps. The integrators:
 //   order 2  steps from kick to kick of the leapfrog, Eq. (91): the polygon of steps is the path
 //   order 4  steps of Yoshida's integrator, each of three leapfrogs
 //   order 1  explicit Euler, Eq. (92), as in Pfeuti 2009, Eq. 2.10 and 2.11: dx/ds = v / n, dv/ds = grad n
 //
-// The integrator evaluates n^2 ahead of the photon, but no farther than the look-ahead limits in MarchShared.h: where
-// a jump of n makes a photon much faster than its step was meant for, it could otherwise evaluate n^2 arbitrarily far
-// ahead, and a block of the domain stores the index only within that limit (numerics.md, Eq. (99f)). Steps in an
-// octree are longer: those of order 2 do not evaluate the index ahead, and those of order 4 end where they leave a
-// cube of 2^YoshidaLevel voxels per edge, even in larger nodes.
+// The integrator evaluates n^2 ahead of the photon, but no farther than the look-ahead limits in MarchShared.h, since a
+// block of the domain stores the index only within these limits (numerics.md, Eq. (99f)). Without them, a jump of n
+// that accelerates a photon could make the integrator look arbitrarily far ahead. Steps in an octree are longer. Those
+// of order 2 do not evaluate the index ahead. Those of order 4 end where they leave a cube of 2^YoshidaLevel voxels per
+// edge, even in larger nodes.
 //
-// Where n is constant within the reach of interpolation nothing is evaluated, and one step lasts until n varies.
+// Where n is constant within the reach of interpolation, n^2 is not evaluated, and one step lasts until n varies.
 //
 // Positions are in voxels of the domain, velocities in voxels per time, lengths in voxel diagonals.
 //
@@ -49,17 +49,17 @@ typedef struct
   // the padded grid or, with BRICKS, of records. Sign bit set: the index varies in the voxel.
   const __global float* sigma;
   const __global float* coefficients; // B-spline coefficients of n^2 (SquaredIndex.cl)
-  // Octree node of each voxel of the region `known` (info->known, padded by one voxel). 0: the index is constant in the
-  // voxel; 1: it varies, and the node is a single voxel; 1 + k: it varies, and the node has 2^k voxels per edge. With
-  // NODE_BRICKS: of each voxel of the domain, stored as a table of bricks, then the bricks (BrickedBytes).
+  // Octree nodes, one byte per voxel. 0: the index is constant in the voxel; 1 + k: it varies, and the node that
+  // contains the voxel has 2^k voxels per edge. The array covers the region `known` (info->known, padded by one voxel).
+  // With NODE_BRICKS it covers the domain, stored as a table of bricks followed by the bricks (BrickedBytes).
   const __global uchar* nodes;
   __global long* sums;       // sums of deposits in fixed point, [info->copy][RECORD]
   __global PhotonEnd* ends;  // final states of photons
   __global float4* vertices; // vertices of a path: position in voxels, remaining power; null: vertices are only counted
-  // With MARKS: marks of photons, for their weight (COUNTS), origin (CELLS) or index (PATHS).
+  // With MARKS: one 64-bit integer per photon, which holds its weight (COUNTS), origin (CELLS) or index (PATHS).
   const __global ulong* marks;
-  // With CELLS: index of the coarse cell that contains each voxel, [info->copy]. With BRICKS: index of the first record
-  // of each filled brick, or minus the index of the record of an empty one (PhotonBricks in MarchMedium.h).
+  // With CELLS: for each voxel, index of the coarse cell that contains it, [info->copy]. With BRICKS: for each brick,
+  // index of its first record, or minus the index of its only record if it is empty (PhotonBricks in MarchMedium.h).
   const __global int* cells;
 #if BLOCKS
   __global PhotonOnItsWay* gone;     // photons that entered other blocks, in any order
@@ -94,10 +94,10 @@ typedef struct
   LANES(ulong, mark); // mark of the photon, for its weight (COUNTS), origin (CELLS) or index (PATHS)
 #endif
 #if BLOCKS
-  // Kahan compensation of the power of photons that continue in another block.
+  // Kahan compensation of the power, stored here for photons that continue in another block.
   float owed[CHANNELS][REAL_WIDTH] __attribute__((aligned(64)));
 #if CELLS
-  // Coarse cell in which the photon was counted last, so that it is not counted there again; kept here for photons that
+  // Coarse cell in which the photon was counted last, so that it is not counted again. Stored here for photons that
   // continue in another block.
   LANES(int, counted);
 #endif
@@ -152,8 +152,8 @@ static integer padded(const MarchInfo* info, const integer* voxel)
   return place_in(&info->grid, info->first, 1, voxel);
 }
 
-// Finds the voxels that contain positions p, for photons in the mask. A photon on a wall between two voxels is taken to
-// be in the voxel with index `at`, not in the one that rounding of p would select.
+// Finds the voxels that contain positions p, for photons in the mask. A photon on a wall between two voxels is assigned
+// to the voxel with index `at`, whatever the rounding of p.
 static void voxels_at(const MarchInfo* info, integer mask, const real* p, integer at, integer* voxel)
 {
   FOR_AXES(a)
@@ -184,8 +184,8 @@ static void voxels_at(const MarchInfo* info, integer mask, const real* p, intege
   }
 }
 
-// Time until a photon at p reaches the wall ahead of it: `high` if its velocity u is positive, `low` if negative.
-// `inverse` is 1 / u.
+// Time until a photon at p reaches the wall ahead of it. `low` and `high` are the walls of its voxel; u is its velocity
+// along the axis, and `inverse` is 1 / u.
 static real time_to_wall(real p, real low, real high, real u, real inverse)
 {
   const real time = ((u > (real)0.0f ? high : low) - p) * inverse;
@@ -286,8 +286,8 @@ static void squared_index_at(const march_arrays* arrays, integer mask, const rea
   }
 }
 
-// Limits a displacement along an axis, in voxels, to the distance up to which the integrator may evaluate n^2 ahead of
-// the photon (look-ahead, MarchShared.h).
+// Limits a displacement along an axis, in voxels, to the distance ahead of the photon up to which the integrator may
+// evaluate n^2 (MarchShared.h).
 static real looked_ahead(const MarchInfo* info, real way)
 {
   if (ORDER == 2 && info->levels)
@@ -299,8 +299,8 @@ static real looked_ahead(const MarchInfo* info, real way)
   return lesser(greater(way, (real)-most), (real)most);
 }
 
-// Finds the voxels of arbitrary positions; for positions beyond the region in which the index is known, voxels of its
-// padding.
+// Finds the voxels of arbitrary positions. A position beyond the region in which the index is known is assigned to a
+// voxel of the region's padding.
 static void voxels_of_places(const MarchInfo* info, const real* p, integer* voxel)
 {
   FOR_AXES(a)
@@ -327,8 +327,8 @@ static int node_of_whole(const march_arrays* arrays, int3 voxel)
   return brick >= 0 ? brick : arrays->nodes[(ulong)bricks.x * bricks.y * bricks.z * sizeof(int) + uneven];
 }
 
-// Octree nodes of the voxels of the photons in a mask; 0 outside the mask. 0: n is constant in the voxel; 1 + k: it
-// varies, and the node that contains the voxel has 2^k voxels per edge.
+// Octree nodes at the voxels of the photons in a mask. 0: n is constant in the voxel, or the photon is not in the mask.
+// 1 + k: n varies, and the node that contains the voxel has 2^k voxels per edge.
 static integer nodes_of(const march_arrays* arrays, integer mask, const integer* voxel)
 {
   if (!NODE_BRICKS)
@@ -359,15 +359,13 @@ static real times_of_steps(
 {
   const MarchInfo* info = arrays->info;
   const integer node = nodes_of(arrays, mask, voxel);
-  // The speed is bounded from below, as a kick at a jump of n within the step may leave a photon almost without
-  // velocity.
+  // The speed is bounded from below: a kick at a jump of n within the step may leave a photon almost without velocity.
   const real shortest =
     (real)info->stepSize / greater(sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]), (real)info->slowest);
   real time = shortest;
   if (info->levels && anywhere(truth(node > 1)))
   {
-    // The step lasts until the photon leaves the octree's node, or a cube within it, and slightly enters the next
-    // one.
+    // The step ends slightly beyond the octree node that contains the photon or, with order 4, beyond a cube within it.
     const integer above = max(node, 1) - 1, level = ORDER == 4 ? min(above, YoshidaLevel) : above;
     real out = NEVER;
     FOR_AXES(a)
@@ -394,8 +392,8 @@ static void pull(const march_arrays* arrays, integer mask, const real* p, real* 
 }
 
 #if ORDER == 1
-// Makes a step of explicit Euler from positions p: sets velocities u, and returns the duration, which equals path
-// length in diagonals.
+// Makes a step of explicit Euler from positions p. Sets the velocities u, and returns the step's duration, which equals
+// its path length in diagonals.
 static real take_step(
   const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
 {
@@ -416,7 +414,7 @@ static real take_step(
   return step;
 }
 #elif ORDER == 4
-// Makes a step of Yoshida's integrator from positions p: sets the mean velocities u of the step, and returns its
+// Makes a step of Yoshida's integrator from positions p. Sets the mean velocities u of the step, and returns its
 // duration.
 static real take_step(
   const march_arrays* arrays, photon_lanes* lanes, integer mask, const integer* voxel, const real* p, real* u)
@@ -456,7 +454,7 @@ static real take_step(
 }
 #endif
 
-// Starts new steps of the photons in a mask, which have entered a region of varying index or ended their step.
+// Starts new steps of the photons in a mask. These have ended a step, or have entered a region of varying index.
 static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer mask)
 {
   const MarchInfo* info = arrays->info;
@@ -470,8 +468,8 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
   }
   voxels_at(info, mask, p, INTEGERS(lanes->at), voxel);
 #if ORDER == 2
-  // Photons that enter a region of varying index drift for half a step. Photons at the end of a step are kicked, then
-  // drift for half the old step and half the new one.
+  // A photon that enters a region of varying index drifts for half a step. A photon at the end of a step is kicked; it
+  // then drifts for half the old step and half the new one.
   const integer kicked = mask & truth(VECTOR(lanes->turn) <= now);
   const real step = VECTOR(lanes->step);
   real change[3], end[3], seen[3];
@@ -510,8 +508,8 @@ static void take_turns(const march_arrays* arrays, photon_lanes* lanes, integer 
 }
 #endif
 
-// Parks photon k of the packet, which has ended, at velocity 0 in a voxel of the padding around the grid, where it
-// deposits nothing while the packet's other photons march on.
+// Parks photon k of the packet, which has ended, while the other photons march on: gives it velocity 0 and a voxel of
+// the padding around the grid, where it deposits nothing.
 static void rest(photon_lanes* lanes, int k)
 {
   lanes->alive[k] = 0;
@@ -562,7 +560,8 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
   PUT(lanes->settled, (real)0.0f);
   PUT(lanes->step, (real)0.0f);
 #if BENDS
-  // Photons start with speed n. Where the index does not vary, every coefficient equals n^2.
+  // Photons start with speed n. Where the index does not vary, n^2 is the spline coefficient, the same at all
+  // neighbours.
   const integer varies = truth(as_integer(gather(float, arrays->sigma, INTEGERS(lanes->at))) < 0);
   real squared, gradient[3];
   squared_index_at(arrays, varies, p, &squared, gradient);
@@ -591,8 +590,8 @@ static void set_off(const march_arrays* arrays, photon_lanes* lanes, real* p, re
 
 #if BLOCKS
 // Transfer of photons from one block of the domain into another. All coordinates are those of the domain, so a path
-// continues as on an undivided grid. An arriving photon is on the wall through which it enters its new voxel; whether
-// it ends there or needs a new step, as at any wall, is still to be tested.
+// continues as on an undivided grid. An arriving photon is on the wall through which it enters its new voxel. Whether
+// it ends at this wall or starts a new step is still to be tested.
 
 // Stores the path state of photon k, which has entered a voxel of another block, in `way`.
 static void hand_way_on(const march_arrays* arrays, const photon_lanes* lanes, int k, __global WayOnward* way)

@@ -31,11 +31,11 @@ static void put_fluence(const LightSumsInfo* info, __global float* voxel, int c,
   }
 }
 
-// Power, in fixed-point units, that is absorbed or scattered in a voxel, from the voxel's sum of deposits;
-// `coefficient` is sigma_a or sigma_s accordingly. In an optically thick voxel the sum is the power that the photons
-// lost, of which the fraction coefficient / extinction is taken.
-//   carried  with CARRIES: fraction of a unit that the previous voxel left over; receives the one that this voxel
-//            leaves
+// Power, in fixed-point units, that a voxel absorbs or scatters; `coefficient` is its sigma_a or its sigma_s. In an
+// optically thick voxel the sum of deposits is the power that the photons lost, and the fraction coefficient /
+// extinction of it is returned.
+//   carried  with CARRIES: fraction of a unit that remained from the previous voxel; receives the fraction that remains
+//            from this voxel
 static long taken_by(const LightSumsInfo* info, float sum, float coefficient, float extinction, float* carried)
 {
   const float thickness = info->diagonal * extinction;
@@ -48,8 +48,8 @@ static long taken_by(const LightSumsInfo* info, float sum, float coefficient, fl
   return (long)all;
 }
 
-// Adds up the sums of a voxel that belong to one batch, and sets them to 0. The sums are stored in info->copies copies,
-// of which copy w belongs to batch w modulo info->batches. Returns false if all were 0.
+// Adds up those sums of a voxel that belong to one batch, and sets them to 0. There are info->copies copies of the
+// sums; copy w belongs to batch w modulo info->batches. Returns false if all sums were 0.
 //   record      the voxel's RECORD sums in the first copy
 //   copyStride  distance from one copy of these sums to the next
 static bool take_batch(const LightSumsInfo* info, __global long* record, ulong copyStride, int batch, long* sum)
@@ -81,7 +81,7 @@ static bool take_batch(const LightSumsInfo* info, __global long* record, ulong c
 }
 
 #if DIRECTIONS
-// Writes the mean direction of the light, of length at most 1. Sums are whole fixed-point units, so the direction is
+// Writes the mean direction of the light, of length at most 1. It is computed from whole fixed-point units, so it is
 // coarse in a voxel whose sum is only a few units of power.
 static void put_direction(__global float* mean_direction, const long* sum, float total)
 {
@@ -95,8 +95,8 @@ static void put_direction(__global float* mean_direction, const long* sum, float
 }
 #endif
 
-// Absorbed ([0]) and scattered ([1]) power of each channel: the sum in whole fixed-point units, and the fraction of a
-// unit that is carried to the next voxel.
+// Power of each channel that is absorbed ([0]) and scattered ([1]): whole fixed-point units, and the fraction of a unit
+// that is carried to the next voxel.
 typedef struct
 {
   long units[2][CHANNELS];
@@ -114,7 +114,7 @@ static taken_power nothing_taken()
   return taken;
 }
 
-// Stores the absorbed and scattered powers of a work-item's voxels as [absorbed, scattered][CHANNELS], in fixed-point
+// Stores the power that a work-item's voxels absorb and scatter, as [absorbed, scattered][CHANNELS] in fixed-point
 // units.
 static void store_taken(const taken_power* taken, __global long* to)
 {
@@ -125,15 +125,15 @@ static void store_taken(const taken_power* taken, __global long* to)
   }
 }
 
-// Optical thickness of a voxel's diagonal, at least 1, from sigma_a + sigma_s of the medium (`extinction`, 1/length);
-// the extinction packed for the photons is limited to a finite range.
+// Optical thickness of a voxel's diagonal, at least 1. It uses sigma_a + sigma_s of the medium (`extinction`,
+// 1/length), since the extinction packed for the photons is limited to a finite range.
 static float thickness_of(const LightSumsInfo* info, float extinction)
 {
   return fmax(info->diagonal * extinction, 1.0f);
 }
 
-// Converts the sums of one record (one voxel or, if sums are stored by bricks, all voxels of an empty brick) to the
-// light of a voxel: their mean over the number `voxels` of these voxels.
+// Converts the sums of one record to the light of a voxel. If sums are stored by bricks, the record of an empty brick
+// stands for all its voxels: the light is then the mean over these `voxels` voxels.
 //   record  index of the record, also in sigma_a and sigma_s
 static void finish_record(const LightSumsInfo* info, const __global float* sigma_a, const __global float* sigma_s,
   size_t record, const long* sum, float voxels, __global float* fluence, __global float* mean_direction,
@@ -145,8 +145,8 @@ static void finish_record(const LightSumsInfo* info, const __global float* sigma
     const float a = component(sigma_a, info->absorption, record, c),
                 s = component(sigma_s, info->scattering, record, c);
     total += sum[c];
-    // Power times path in diagonals: the sum of deposits divided by b of numerics.md, Eq. (98), and by the number of
-    // voxels that share the record.
+    // Power times path length in diagonals: the sum of deposits, divided by b of numerics.md, Eq. (98), and by the
+    // number of voxels that share the record.
     put_fluence(info, fluence, c, (float)sum[c] / (thickness_of(info, a + s) * voxels));
     taken->units[0][c] += taken_by(info, sum[c], a, a + s, &taken->carried[0][c]);
     taken->units[1][c] += taken_by(info, sum[c], s, a + s, &taken->carried[1][c]);
@@ -275,8 +275,8 @@ __kernel void finish_bricks(LightSumsInfo info, const __global int* bricks, cons
 #endif
 #endif
 
-// Stores values to an aligned address, bypassing the caches: the array is far larger than caches, and its memory need
-// not be read before it is written.
+// Stores values to an aligned address, bypassing the caches. The array is far larger than the caches, and its memory
+// need not be read before it is written.
 static void store_past_caches(float4 values, __global float* to)
 {
 #ifdef STORE_PAST_CACHES
@@ -320,8 +320,8 @@ static void fill_voxels(__global float* values, size_t begin, size_t end, float3
   }
 }
 
-// Copies the light of the lowest voxel in each empty brick to the brick's other voxels, row by row along x, so that
-// memory is written sequentially.
+// Copies the light of the lowest voxel in each empty brick to the brick's other voxels. Work-items proceed row by row
+// along x, so that memory is written sequentially.
 __kernel void fill_empty(
   LightSumsInfo info, const __global int* bricks, __global float* fluence, __global float* mean_direction)
 {

@@ -1,9 +1,9 @@
 // Kernels of photon marching as published by Pfeuti 2009, section 3.1.5, after Sun et al. 2008. One work-item per
 // photon; explicit Euler (Eq. 2.10, 2.11). The line of each step is rasterised, and every voxel on it gains the
 // photon's power, regardless of the path length in it. Colour (RGBE, Ward 1991) and mean direction (10 bits per
-// component) of a voxel's light share 64 bits, replaced by compare-and-swap with at most TRIES attempts. A photon
-// marches until it leaves its block of the domain: a line that continues in another block is rasterised further
-// there. The host defines
+// component) of a voxel's light share 64 bits, which are updated by compare-and-swap with at most TRIES attempts. A
+// photon marches until it leaves its block of the domain. If a step continues in another block, the rest of its line is
+// rasterised in that block. The host defines
 //   BENDS   1: the index varies
 //   LEVELS  1: there are octree levels
 //   A_CHANNELS, S_CHANNELS  components of sigma_a and sigma_s, 0: absent
@@ -110,9 +110,9 @@ static float4 index_at(const PublishedMarchInfo* info, const __global float4* in
 }
 #endif
 
-// Computes n and its gradient, by central differences that are one-sided at the faces of the domain, in the voxels of
-// the region `known`: the block and two voxels around it. At faces of this region inside the domain the differences are
-// wrong but not used, as photons of the block need only one voxel around it.
+// Computes n and its gradient in the voxels of the region `known`: the block and two voxels around it. Differences are
+// central, and one-sided at the faces of the domain. At faces of the region inside the domain they are wrong, but not
+// used, since photons of the block need only one voxel around it.
 __kernel void published_index(PublishedMarchInfo info, const __global float* ior, __global float4* index)
 {
   const int3 v = (int3)(get_global_id(0), get_global_id(1), get_global_id(2));
@@ -182,10 +182,10 @@ static void deposit(const PublishedMarchInfo* info, int3 voxel, float3 power, fl
   vstore3(vload3(0, photon->deposited) + power, 0, photon->deposited);
 }
 
-// Deposits light in the voxels whose centres, along the axis of largest change, lie between the ends a and b of a step,
-// in the order of the path, starting with voxel number photon->done of the step. For a photon that has just arrived,
-// the first voxel is `next`, even if this device rounds differently from the device that sent it. Returns false if the
-// line continues in another block; `next` is then its first voxel there.
+// Deposits light in the voxels on the line of a step from a to b: those whose centres, along the axis of largest
+// change, lie between the two ends. Follows the path's order, starting with voxel number photon->done. For a photon
+// that has just arrived, the first voxel is `next`, even if this device rounds differently from the device that sent
+// it. Returns false if the line continues in another block; `next` is then its first voxel in that block.
 static bool rasterize(const PublishedMarchInfo* info, const published_photon* a, const published_photon* b,
   __global ulong* packed, __global PublishedPhoton* photon, bool arrives, int3* next)
 {

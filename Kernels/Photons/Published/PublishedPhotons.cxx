@@ -27,8 +27,8 @@ inline const int* WhereIs(const PublishedPhoton& photon)
 
 namespace
 {
-/// Maximum distance in voxels between successive deposits of a step. The next voxel is a neighbour, but where the line
-/// runs along an edge of voxels, rounding may select the neighbour's neighbour.
+/// Maximum distance in voxels between successive deposits of a step. The next voxel is usually a neighbour. Where the
+/// line runs along an edge of voxels, rounding may select the voxel after it.
 constexpr int VoxelsPassed = 2;
 
 constexpr std::size_t PhotonsPerLaunch = 1 << 16;
@@ -42,9 +42,8 @@ MarchSettings PackingSettings()
   return settings;
 }
 
-/// The unit, in W, in which the published method of marching photons stores their powers: the mean power of a photon in
-/// a channel, rounded to a power of two. In this unit colours are far from the smallest and the largest exponent of
-/// RGBE, the format of the voxels' light.
+/// Unit of power, W, of the published photon march: the mean power of a photon in a channel, rounded to a power of two.
+/// In this unit, powers are far from the smallest and the largest exponent of RGBE, the format of the voxels' light.
 /// @param entered  power of all photons by channel, W
 /// @param photons  number of photons
 double TypicalPower(const Rgb& entered, std::size_t photons)
@@ -53,7 +52,7 @@ double TypicalPower(const Rgb& entered, std::size_t photons)
   return mean > 0.0 ? std::exp2(std::round(std::log2(mean))) : 1.0;
 }
 
-/// Converts packed photons to the format of the published scheme, before their first step.
+/// Converts packed photons to the format of the published photon march.
 /// @param larger  ratio of the photons' new unit of power to packed.unit
 std::vector<PublishedPhoton> PhotonsOf(const PackedPhotons& packed, double larger)
 {
@@ -111,7 +110,8 @@ void AddUp(const Domain& domain, PackingLoss& loss)
 class PublishedMarch
 {
 public:
-  /// Width in voxels of the halo of the refractive index: one for interpolation, and one for differences.
+  /// Width in voxels of the halo of the refractive index: one voxel for interpolation, one for the differences that
+  /// give the gradient.
   static constexpr int Reach = 2;
 
   /// @param medium  coefficients in the block's voxels; referenced, not copied
@@ -362,8 +362,8 @@ private:
     return rounds.Traffic();
   }
 
-  /// Unpacks the light of the block, not smoothed, into `result`, and stores the power that it contains, summed over
-  /// the block's voxels, in loss.kept. Collective.
+  /// Unpacks the light of the block into `result`, without the Gaussian filter, and stores the power that it contains,
+  /// summed over the block's voxels, in loss.kept. Collective.
   void Gain(double unit, PhotonLight& result, PackingLoss& loss)
   {
     this->TheDomain.Collective([&] {

@@ -18,7 +18,7 @@ struct PublishedSettings
   bool smooth = true; ///< whether the 3x3x3 Gaussian filter is applied to the light
 };
 
-/// Losses of power by packing the light of a voxel into 64 bits.
+/// Power that is lost because the light of a voxel is packed into 64 bits.
 struct PackingLoss
 {
   Rgb deposited = {};       ///< W, sum of all deposits, including what packing loses

@@ -44,8 +44,8 @@ PhaseSampling PhaseOf(const Medium& medium)
   }
 }
 
-/// Values of SampledPhase::values: parameter of the phase function, one value or one per voxel; or table of the cosine
-/// of the scattering angle at equidistant values of its cumulative probability.
+/// Values of SampledPhase::values. They are the parameter of the phase function, one value or one per voxel, or a table
+/// of the cosine of the scattering angle at equidistant values of its cumulative probability.
 std::vector<float> PhaseValues(const Medium& medium)
 {
   const PhaseSampling phase = PhaseOf(medium);
@@ -81,7 +81,7 @@ std::vector<float> OpticalOf(const MarchMedium& through, const Medium& medium)
 
 double ScatteringStepPart(const Field& ior, const std::array<int, 3>& size)
 {
-  // Eq. (99d) of numerics.md: the fraction of the step size is Seen over the largest relative jump of n^2 between
+  // numerics.md, Eq. (99d): the fraction of the step size is Seen divided by the largest relative jump of n^2 between
   // neighbouring voxels, but at least Least.
   constexpr double Seen = 0.5, Least = 0.1;
   double jump = 0.0;
@@ -239,7 +239,7 @@ void ScatteringRun::TakeLight()
 }
 
 /// Adds the final states of photons to the powers and counts of the result, `Found`. Photons that continue in another
-/// block are not counted yet.
+/// block are counted there.
 void ScatteringRun::TakeEnds(const std::vector<ScatterEnd>& ends)
 {
   const double unit = this->Packed.unit;
@@ -344,8 +344,8 @@ ScatteredChannels::ScatteredChannels(Device& device, const Block& block)
   }
 }
 
-/// Factors by which the light of one run, in which the photons are followed in one channel, counts in red, green and
-/// blue.
+/// Photons are followed in one channel per run. Returns the factors by which the light of a run is multiplied to give
+/// red, green and blue.
 /// @param oneRun  whether the same run serves all channels
 Rgb ScatteredChannels::ColourOfRun(const PackedPhotons& packed, bool oneRun, int run)
 {
@@ -384,7 +384,7 @@ void ScatteredChannels::AddTo(
     double all = 0.0, direct = 0.0;
     for (std::size_t c = 0; c < channels; ++c)
     {
-      // Power summed over red, green and blue, for which a single channel stands.
+      // A single channel stands for three equal ones: the power summed over red, green and blue is three times its own.
       const double counts = channels == 1 ? 3.0 : 1.0;
       all += counts * light.light.fluence[i / 3 * channels + c];
       direct += counts * light.light.fluenceDirect[i / 3 * channels + c];

@@ -7,9 +7,9 @@
 //   VARIES    1: the parameter of phase functions 1 and 2 is given by voxel
 //   COSINES   number of cosines in the table, less one
 //
-// The optical depth to the next scattering is sampled and consumed along the path. Absorption is subtracted from the
-// photon's power. From the first scattering on, remaining power times path length is deposited, an unbiased estimate
-// of the fluence of scattered light for voxels of any optical thickness.
+// The optical depth to the next scattering is sampled, then reduced along the path until it is 0. Absorption is
+// subtracted from the photon's power. From the first scattering on, the photon deposits its remaining power times path
+// length. This estimates the fluence of scattered light without bias for voxels of any optical thickness.
 
 #include "Numerics/FixedPoint.cl"
 #include "Numerics/Philox.cl"
@@ -18,8 +18,8 @@
 #define RECORD (1 + 3 * GATHERS)
 #define PHOTON_FLOATS 7
 #define TINY 1e-20f
-// Russian roulette is played when the power of a photon falls below this fraction of its initial power; the power then
-// becomes twice this threshold, or 0.
+// Russian roulette is played when a photon's power falls below this fraction of its initial power. The photon then
+// either ends, or its power becomes twice this threshold.
 #define DIM 0.05f
 
 // Scattering properties of the medium in one channel.
@@ -113,8 +113,8 @@ typedef struct
 } scattered_flight;
 
 #if BLOCKS
-// Whether rounding puts the position `place` of a scattering into a voxel of another block. If so, stores position and
-// new direction as the photon's path state, with which it starts anew in that block.
+// Whether rounding puts the point `place`, at which the photon is scattered, into a voxel of another block. If so,
+// stores `place` and the new direction as the state with which the photon starts anew in that block.
 static bool sets_off_elsewhere(const march_arrays* arrays, photon_lanes* lanes, float3 place, float3 direction)
 {
   const MarchInfo* info = arrays->info;
@@ -172,7 +172,7 @@ static void take_over(const march_arrays* arrays, const ScatterInfo* how, const 
 }
 #endif
 
-// Scatters the photon at a point `way` diagonals ahead of its position.
+// Scatters the photon at a point ahead of it on its path, at a distance of `way` voxel diagonals.
 static void scatter(
   const march_arrays* arrays, const scattering* medium, photon_lanes* lanes, float way, scattered_flight* flight)
 {
@@ -193,7 +193,7 @@ static void scatter(
   begin(arrays, lanes, place, direction);
 }
 
-// Russian roulette: the power of a photon of low power is increased, or the photon ends; its expected power is
+// Russian roulette for a photon of low power: either its power is increased, or it ends. The expected power is
 // unchanged.
 static void roulette(scattered_flight* flight)
 {
@@ -207,8 +207,7 @@ static void roulette(scattered_flight* flight)
   }
 }
 
-// Moves the photon to its next voxel wall or to the end of its step, where its velocity changes; it arrives at time
-// `next`.
+// Moves the photon to its next voxel wall or to the end of its step, whichever it reaches first, at time `next`.
 static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
 {
   FOR_AXES(a)
@@ -220,8 +219,8 @@ static void move_on(const march_arrays* arrays, photon_lanes* lanes, float next)
   lanes->now[0] = next;
 }
 
-// Processes the photon at the wall or change of velocity that it has reached: ends it if it has left the grid or
-// block, and starts a new step if one is due.
+// Handles a photon that has reached a voxel wall or the end of its step. Ends the photon if it has left the grid or
+// block, and starts a new step if the old one has ended.
 static void arrive(const march_arrays* arrays, photon_lanes* lanes, ScatterEnd* end)
 {
   const float there = arrays->sigma[lanes->at[0]], now = lanes->now[0];
@@ -320,9 +319,9 @@ static void follow(const march_arrays* arrays, const scattering* medium, const S
   }
 }
 
-// Follows photon i of the photons that start or, with how->resumes, of those that arrived from other blocks.
-//   photons  position (voxels), unit direction and power (units of PackedPhotons::unit) of photons that start; else
-//            ScatteredOnItsWay
+// Follows photon i. With how->resumes, photons have arrived from other blocks; otherwise they start in this block.
+//   photons  for photons that start: position (voxels), unit direction and power (units of PackedPhotons::unit); for
+//            photons that have arrived: ScatteredOnItsWay
 //   numbers  indices of the photons that start
 static ScatterEnd end_of(const march_arrays* arrays, const scattering* medium, const ScatterInfo* how,
   const __global float* photons, const __global ulong* numbers, int i)
@@ -378,7 +377,7 @@ __kernel void scatter_photons(MarchInfo info, ScatterInfo how, const __global fl
 #endif
 #if WORKERS > 0
   const march_arrays arrays = { &info, sigma, coefficients, nodes, sums + get_global_id(0) * how.copyStride };
-  // The sums do not depend on which work-item fetches a block of photons.
+  // A work-item fetches blocks of photons from a counter. The sums do not depend on which work-item fetches a block.
   for (int block = atomic_add(counters, BLOCK); block < how.count; block = atomic_add(counters, BLOCK))
   {
     for (int i = how.first + block; i < how.first + min(block + BLOCK, how.count); ++i)

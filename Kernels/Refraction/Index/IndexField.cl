@@ -3,11 +3,10 @@
 
 #include "Numerics/Numerics.cl"
 
-// Mean of n over the 2 RADIUS + 1 voxels along an axis with the given weights; beyond the grid its last voxel is
-// repeated.
+// Weighted mean of n over the 2 RADIUS + 1 voxels along an axis. Beyond the grid its last voxel is repeated.
 //   n         n[0] is the voxel with index `place` along the axis, of `length` voxels `stride` apart
 //   weights   weights of the voxels at distances 1, 2, ..., RADIUS
-// The sum is of differences, so that a constant n is reproduced to the last bit.
+// The sum is over differences from n[0], so that a constant n is reproduced to the last bit.
 inline float smoothed(__global const float* n, int place, int length, long stride, __constant const float* weights)
 {
   const float here = n[0];
@@ -22,8 +21,8 @@ inline float smoothed(__global const float* n, int place, int length, long strid
   return here + sum;
 }
 
-// Mean of n as by `smoothed`, for each voxel of a vector of neighbouring voxels along x; if the axis is x, the filter
-// must not reach beyond the grid.
+// Function `smoothed` for a vector of neighbouring voxels along x. If the axis is x, the filter must not reach beyond
+// the grid.
 inline real smoothed_together(
   __global const float* n, int place, int length, long stride, __constant const float* weights)
 {

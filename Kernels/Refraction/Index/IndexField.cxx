@@ -98,8 +98,8 @@ void CheckLevels(const std::uint8_t* levels, const Grid& grid, const Grid& whole
 {
   const int top = PyramidLayout(whole.size).Top();
   const std::size_t count = levels ? grid.VoxelCount() : 0;
-  // This loop finds only the largest octree level, so that compilers vectorise it; its voxel is searched for below if
-  // needed.
+  // This loop computes only the largest octree level, so that compilers vectorise it. If that is too high, its voxel is
+  // searched for below.
   int highest = 0;
   for (std::size_t i = 0; i < count; ++i)
   {

@@ -10,7 +10,7 @@
 
 namespace tyndall
 {
-/// Valid range of a refractive index: squares of such values, and their differences, are representable in float.
+/// Valid range of a refractive index. Squares of such values, and differences of squares, are representable in float.
 constexpr double LeastIndex = 1e-6;
 constexpr double LargestIndex = 1e6;
 
@@ -31,17 +31,18 @@ IndexRange IndexRangeOf(const Field& ior, const Grid& grid);
 
 /// Checks octree levels.
 /// @param levels  one octree level per voxel of `part`, or null: no octree
-/// @throws InvalidInput if a level is above that of the single node that would hold the domain `whole`; names the first
-///   such voxel
+/// @throws InvalidInput if a level is higher than the level of a single node that holds the domain `whole`; names the
+/// first such voxel
 void CheckLevels(const std::uint8_t* levels, const Grid& part, const Grid& whole);
 
 /// Checks the width of the smoothing filter.
 /// @throws InvalidInput if the width, in voxels, is even or not from 1 to 65
 void CheckFilterSize(int filterSize);
 
-/// Smooths a refractive index by a Gaussian of `filterSize` voxels per edge with a standard deviation of filterSize /
-/// 6 (Pfeuti 2009, section 3.1.2: 9 and 9/6), along one axis at a time; beyond the grid, the values of its outermost
-/// voxels are repeated. Where the index is constant within the filter's reach, it is unchanged to the last bit.
+/// Smooths a refractive index by a Gaussian of `filterSize` voxels per edge with a standard deviation of filterSize / 6
+/// (Pfeuti 2009, section 3.1.2: 9 and 9/6). The filter is applied along one axis at a time. Beyond the grid, the values
+/// of its outermost voxels are repeated. Where the index is constant within the filter's reach, it is unchanged to the
+/// last bit.
 ///
 /// @param filterSize  width of the filter, valid for CheckFilterSize; 1: no smoothing
 /// @throws DeviceError  if a second array of the index does not fit into the device's memory

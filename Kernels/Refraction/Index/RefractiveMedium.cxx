@@ -88,7 +88,7 @@ void CheckSettings(const RefractiveMediumSettings& settings, const std::vector<S
   CheckPerturbation(settings.perturbation, solids);
 }
 
-/// Checks that the memory of the machine and of the device is sufficient.
+/// Checks that machine and device have enough memory.
 /// @param size          number of voxels along each axis of the box that is voxelised
 /// @param coefficients  numbers per voxel for sigma_a, sigma_s and, if it varies, g
 /// @param indexVaries   whether n varies, so that it is smoothed and differentiated
@@ -259,8 +259,8 @@ public:
     index.Fill(0.0f);
   }
 
-  /// Adds the material of one solid to the voxels of one slab (the voxels whose samples are held at a time); the
-  /// callback of CountSamplesInside.
+  /// Callback of CountSamplesInside: adds the material of one solid to the voxels of one slab, the part of the box that
+  /// is processed at a time.
   void Take(const SamplesInside& inside)
   {
     if (inside.mesh + 1 == this->Solids.size())
@@ -358,8 +358,8 @@ private:
   cl::Kernel AddObject, AddOutside;
 };
 
-/// The box `part` with the halo on which its values depend: half the width of the filter, one voxel for the gradient,
-/// and one because the counts of samples inside solids are not exact in the outermost voxels of a box.
+/// The box `part` with the halo on which its values depend. The halo is half the width of the filter, one voxel for the
+/// gradient, and one voxel because the counts of samples inside solids are not exact in the outermost voxels of a box.
 VoxelBox BoxAround(const VoxelBox& part, const RefractiveMediumSettings& settings, bool evenIndex)
 {
   return Grown(part, evenIndex ? 1 : settings.filterSize / 2 + 2, settings.grid);

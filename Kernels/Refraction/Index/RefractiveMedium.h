@@ -37,8 +37,8 @@ struct Solid
   Material material;
 };
 
-/// Gradient noise added to the materials of all solids, as on the cube of Pfeuti 2009, figure 4.9. The material
-/// outside the solids is not perturbed.
+/// Gradient noise that is added to the materials of all solids, as for the cube of Pfeuti 2009, figure 4.9. The
+/// material outside the solids is not perturbed.
 struct Perturbation
 {
   /// Amplitude of the change of n: n becomes n + index * noise, noise in [-1, 1]; n must stay above 0.
@@ -77,22 +77,22 @@ struct RefractiveMedium
   double seconds = 0.0;              ///< total duration, s
 };
 
-/// The smallest box of cubic voxels, centred on the solids, with a margin on each side of `margin` times the longest
-/// edge of the solids' bounds, plus one voxel more than the filter reaches.
+/// The smallest box of cubic voxels that is centred on the solids and leaves a margin on each side. The margin is
+/// `margin` times the longest edge of the solids' bounds, plus one voxel more than the filter reaches.
 /// @throws InvalidInput if there is no solid or none has an extent, a point is not finite (names it), a size is below
-///   1, or the margin is below 0
+/// 1, or the margin is below 0
 Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size, double margin, int filterSize);
 
-/// Voxelises solids (Pfeuti 2009, section 3.1.2): counts the samples inside, computes for each voxel the mean of its
-/// materials weighted by their volume fractions, smooths n, and computes its gradient. Where solids overlap, the
-/// material is that of the last one.
+/// Voxelises solids (Pfeuti 2009, section 3.1.2). Counts the samples of each voxel that lie inside the solids, averages
+/// the materials with their volume fractions as weights, smooths n, and computes its gradient. Where solids overlap,
+/// the last one determines the material.
 ///
-/// If scattering materials differ in their mean cosines g, a voxel's g is their mean weighted by volume fraction and
-/// sigma_s (numerics.md, Eq. (3e)).
+/// If scattering materials differ in their mean cosines g, a voxel has the mean g of its materials, weighted by volume
+/// fraction and sigma_s (numerics.md, Eq. (3e)).
 ///
-/// A mesh is voxelised by parity, with a warning, if it encloses regions more than once or inside out, its edges
-/// disagree about the outside, or it has triangles without area. Every sample is examined: a single sample at which a
-/// winding number is neither 0 nor 1 causes the warning.
+/// If a mesh encloses regions more than once or inside out, if its triangles disagree about the outside, or if it has
+/// triangles without area, there is a warning, and the parity of crossings decides what is inside. Every sample is
+/// examined: a single winding number other than 0 or 1 causes the warning.
 /// @throws InvalidInput  if a mesh is empty or open (names the number of boundary edges and the position of the
 ///   first), a number is out of range, or a voxel's edge is not 1e-18 to 1e18 lengths
 /// @throws DeviceError   before any computation, if the machine's memory is not sufficient for 12 to 56 bytes per
@@ -100,8 +100,8 @@ Grid GridAround(const std::vector<Solid>& solids, const std::array<int, 3>& size
 RefractiveMedium Voxelize(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
   const Monitor& monitor = {});
 
-/// What the voxelisation finds out about the solids in a part of the box. Warnings about them require the findings of
-/// all parts (FindingsOfAll).
+/// Facts about the solids in a part of the box that the voxelisation finds. Warnings need the facts of all parts
+/// (FindingsOfAll).
 struct VoxelFindings
 {
   std::vector<WindingNumbers> windings; ///< winding numbers of each solid's mesh at the samples
@@ -109,7 +109,7 @@ struct VoxelFindings
   double volume = 0.0;                  ///< volume inside solids, length^3
 };
 
-/// Voxels of the box that are computed on one rank; without voxels, nothing is computed.
+/// Voxels of the box that one rank computes; may be empty.
 struct PartOfBox
 {
   VoxelBox made; ///< all voxels that are computed on this rank, ghost cells included
@@ -124,17 +124,17 @@ struct VoxelizedPart
   std::vector<MeshTopology> topologies; ///< topology of each solid's mesh
 };
 
-/// First of the two steps of Voxelize, for a part of the box, which may have no voxels. Each voxel has the same
-/// values, bit for bit, as if the box were voxelised entirely: the halo of voxels on which the part depends, as wide
-/// as half the filter plus two voxels, is voxelised with it.
+/// First of the two steps of Voxelize, for a part of the box, which may have no voxels. The values of each voxel do not
+/// depend, bit for bit, on the division into parts. For this, a halo around the part is voxelised too, as wide as half
+/// the filter plus two voxels.
 /// @throws as Voxelize, for the part
 VoxelizedPart VoxelizePart(Device& device, const std::vector<Solid>& solids, const RefractiveMediumSettings& settings,
   const PartOfBox& part, const Monitor& monitor = {});
 
 /// Second step of Voxelize: returns the finished medium of a part of the box.
-/// @param all  findings of all parts together. If unknown, pass the findings of this part with `empty` false. Then no
-///   warning is given if nothing is inside solids, and the index array is left out only if n is the same in all solids
-///   and outside
+/// @param all  findings of all parts together. If these are unknown, pass the findings of this part with `empty` false.
+/// Then there is no warning if nothing is inside solids, and the index array is left out only if n is the same in all
+/// solids and outside
 RefractiveMedium Concluded(VoxelizedPart&& part, const VoxelFindings& all, const std::vector<Solid>& solids,
   const RefractiveMediumSettings& settings);
 

@@ -1,15 +1,15 @@
 // Squared refractive index n^2 between voxel centres, and its gradient. Lengths are in voxels.
 //
-// n^2 is a tricubic B-spline with the coefficients of numerics.md, Eq. (88): its gradient is continuous and exactly
-// that of the spline, as a symplectic integrator requires. A coefficient is at least 7/8 of the least and at most 9/8
-// of the largest n^2 in its stencil, so that the spline is positive where n^2 is. Beyond the grid n^2 is extrapolated
-// linearly, but never below a quarter of its value at the border. The coefficient of voxel (i, j, k) is at index
-// (i + 2, j + 2, k + 2) of an array that is longer by four than the grid along each axis.
+// n^2 is a tricubic B-spline with the coefficients of numerics.md, Eq. (88). Its gradient is continuous and exact, as a
+// symplectic integrator requires. A coefficient is at least 7/8 of the least and at most 9/8 of the largest n^2 in its
+// stencil, so that the spline is positive where n^2 is. Beyond the grid n^2 is extrapolated linearly, but never below a
+// quarter of its value at the border. The coefficient of voxel (i, j, k) is at index (i + 2, j + 2, k + 2) of an array
+// that is longer by four than the grid along each axis.
 
 #pragma once
 #include "Refraction/Index/IndexShared.h"
 
-// n^2 of a voxel inside the grid, or beyond it, where it is extrapolated from the last two voxels of the row.
+// n^2 of a voxel. Beyond the grid it is extrapolated from the last two voxels of the row.
 static float squared_index_of(const IndexGrid* grid, const __global float* ior, int i, int j, int k)
 {
   const bool inside = i >= 0 && i < grid->size[0] && j >= 0 && j < grid->size[1] && k >= 0 && k < grid->size[2];
@@ -66,7 +66,7 @@ __kernel void squared_index_coefficients(IndexGrid grid, const __global float* s
   const int x = get_global_id(0), y = get_global_id(1), z = get_global_id(2);
   const int row = grid.size[0] + 6, layer = row * (grid.size[1] + 6);
   const __global float* here = squares + ((z + 1) * layer + (y + 1) * row + x + 1);
-  // Scalars are used rather than arrays, which PoCL does not keep in registers.
+  // Scalars take the place of arrays, because PoCL does not keep arrays in registers.
   const float f = here[0], x0 = here[-1], x1 = here[1], y0 = here[-row], y1 = here[row], z0 = here[-layer],
               z1 = here[layer];
   const float low = lesser_of(f, lesser_of(lesser_of(lesser_of(x0, x1), lesser_of(y0, y1)), lesser_of(z0, z1)));
@@ -105,7 +105,7 @@ static float4 spline_slopes(float f)
 
 typedef float4 __attribute__((aligned(4))) float4_anywhere;
 
-// Four sums: of the components of a, of those of b, of c, and of d.
+// Four sums: those of the components of a, of b, of c and of d.
 static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
 {
   const float4 ab = (float4)(a.x, b.x, a.y, b.y) + (float4)(a.z, b.z, a.w, b.w);
@@ -113,13 +113,13 @@ static float4 four_sums(float4 a, float4 b, float4 c, float4 d)
   return (float4)(ab.lo, cd.lo) + (float4)(ab.hi, cd.hi);
 }
 
-// n^2 (w) and its gradient (x, y, z), from the 4^3 coefficients that start at `first`, at position f in [0, 1]
-// between the second and the third coefficient along each axis. Sums are over layers first, then over rows, so that
-// most operations have sixteen components.
+// n^2 (w) and its gradient (x, y, z), from the 4^3 coefficients that start at `first`. f is the position in [0, 1]
+// between the second and the third coefficient along each axis. Layers are summed first, then rows, so that most
+// operations have sixteen components.
 static float4 squared_index_among(const __global float* first, int row, int layer, float3 f)
 {
   const float4 z = spline_values(f.z), z_slope = spline_slopes(f.z);
-  // Sums are of differences from `middle`, so that its rounding does not cause a gradient.
+  // Differences from `middle` are summed, so that rounding of n^2 itself does not cause a gradient.
   const float middle = first[layer + row + 1];
   float16 value = 0.0f, along_z = 0.0f;
 #define ROW(k, j) (*(const __global float4_anywhere*)(first + (k)*layer + (j)*row))

@@ -87,8 +87,8 @@ __kernel void min_max_of_nodes(__global float2* nodes, ulong below, int4 childre
   nodes[first + index_of(node, size)] = range;
 }
 
-// Computes the levels of nodes: the level of the largest undivided node that contains the node or is the node; 0 if
-// there is none.
+// Computes the levels of nodes. The level of a node is that of the largest undivided node that contains it or equals
+// it; 0 if there is none.
 //
 //   ranges        (min, max) of the nodes of all levels
 //   first, size   index of the first node of the level that is computed, and number of its nodes along each axis

@@ -21,11 +21,11 @@ namespace tyndall
 {
 namespace
 {
-/// Number of octree levels that a rank builds in its block, which is extended to entire nodes of the last of these
-/// levels, 8 voxels per edge.
+/// Number of octree levels that a rank builds in its block. For this the block is extended to complete nodes of the
+/// last of these levels, which have 8 voxels per edge.
 constexpr int LevelsOfBlock = 3;
 
-/// Largest float that is at most the bound: for any float x, x <= AsBound(bound) is equivalent to x <= bound.
+/// Largest float that is at most the bound. For any float x, x <= AsBound(bound) is then equivalent to x <= bound.
 float AsBound(double bound)
 {
   const float nearest = static_cast<float>(bound);
@@ -88,13 +88,13 @@ bool IsConstant(const Domain& domain, const float* values)
   return domain.Max(largest) == -domain.Max(-least);
 }
 
-/// Pyramids of minima and maxima over a domain, and the octree levels computed from their top down (Pfeuti 2009,
-/// section 3.1.3).
+/// Pyramids of minima and maxima over a domain, and the octree levels that follow from them, computed from the top down
+/// (Pfeuti 2009, section 3.1.3).
 ///
-/// A voxel's level is the largest k for which its node, the cube of 2^k voxels per edge that begins at multiples of
-/// 2^k, has max - min <= tolerance for every quantity; 0, a single voxel, if there is none. A grid whose size is not
-/// a power of two is treated as if its last voxel were repeated, so that the range of a node is that of its voxels
-/// inside the grid.
+/// A voxel's level is the largest k for which its node satisfies max - min <= tolerance for every quantity. The node of
+/// level k is the cube of 2^k voxels per edge that begins at multiples of 2^k. The level is 0, a single voxel, if there
+/// is no such k. A grid whose size is not a power of two is treated as if its last voxel were repeated, so that the
+/// range of a node is that of its voxels inside the grid.
 class OctreePyramid
 {
 public:
@@ -123,8 +123,8 @@ public:
     });
   }
 
-  /// Divides the nodes in which a quantity varies by more than its tolerance, besides those that earlier quantities
-  /// have divided. Collective.
+  /// Divides the nodes in which a quantity varies by more than its tolerance. Nodes that earlier quantities have
+  /// divided stay divided. Collective.
   /// @param values      the quantity, one value per voxel of the block
   /// @param tolerances  tolerance for each level, which must not increase with the level; [0] is not used
   void Restrict(const float* values, const char* what, const std::vector<float>& tolerances)
@@ -154,9 +154,9 @@ public:
   }
 
 private:
-  /// Nodes of one level. The shared level is the highest one that a rank computes from its own box. `Pyramid` holds the
-  /// levels up to the shared one with the nodes of this rank's box, then the levels from the shared one on (which is
-  /// thus present twice) with the nodes of the domain.
+  /// Nodes of one level. The shared level is the highest one that a rank computes from its own box. `Pyramid` holds
+  /// first the levels up to the shared one, with the nodes of this rank's box, then the levels from the shared one on,
+  /// with the nodes of the domain. It thus holds the shared level twice.
   struct NodesOfLevel
   {
     int level;               ///< number of the level, 0 for voxels
@@ -254,7 +254,7 @@ private:
   PyramidBlocks Blocks;              ///< decomposition of the pyramid among ranks
   std::vector<NodesOfLevel> Pyramid; ///< levels of the pyramid, from the voxels up
   std::size_t NodeCount = 0;         ///< number of nodes of all levels above 0
-  /// (min, max) in each node of the quantity that is currently processed: n, or one channel's extinction.
+  /// (min, max) in each node of the quantity that is being processed: n, or the extinction of one channel.
   Buffer<cl_float2> Ranges;
   Buffer<cl_uchar> Nodes, Levels;
   bool Restricted = false; ///< whether `Levels` already holds the levels that the quantities processed before allow

@@ -8,8 +8,8 @@
 
 #include "Refraction/Voxelization/VoxelizationShared.h"
 
-// Gradient noise of Perlin (Improving noise, SIGGRAPH 2002) with a hash instead of his table, so that a seed selects
-// one of 2^32 patterns.
+// Gradient noise of Perlin (Improving noise, SIGGRAPH 2002). A hash takes the place of his table, so that a seed
+// selects one of 2^32 patterns.
 
 inline uint scrambled(uint bits)
 {
@@ -55,10 +55,10 @@ inline float gradient_noise(float3 position, uint seed)
   return clamp(mix(value[0], value[1], fade.z), -1.0f, 1.0f);
 }
 
-// The kernels have one work-item per voxel (index i in the slab); the second dimension of work-items counts the slab's
-// runs of consecutive voxels (MaterialSlab).
+// Each kernel has one work-item per voxel (index i in the slab). A slab consists of runs of consecutive voxels
+// (MaterialSlab); the second dimension of work-items counts the runs.
 
-// Adds a material to a voxel by its volume fraction `part`. The mean cosine is weighted by sigma_s (numerics.md, Eq.
+// Adds a material to a voxel with the volume fraction `part`. The mean cosine is weighted by sigma_s (numerics.md, Eq.
 // (3e)) and updated with every material, so that a voxel of a single material gets exactly the material's g.
 //   i      index of the voxel in the slab, which sigma_a, sigma_s and g cover
 //   voxel  index of the voxel in the box, which ior covers
@@ -80,8 +80,8 @@ inline void add_material(float part, const MaterialInfo* material, ulong i, ulon
   }
 }
 
-// Adds one material to the voxels of a slab, which are computed at a time. A voxel of a single material gets exactly
-// the material's values.
+// Adds one material to the voxels of a slab, the part of the box that is processed at a time. A voxel of a single
+// material gets exactly the material's values.
 //   inside    for each voxel, the number of samples inside the material (with fractions), times UnitsOfSample: 0 to
 //             slab.samples
 //   covered   sum of these numbers over all materials added so far
@@ -111,8 +111,8 @@ __kernel void add_object(MaterialSlab slab, MaterialInfo given, __global const u
   add_material(number / slab.samples, &material, i, voxel, ior, sigma_a, sigma_s, g);
 }
 
-// Adds the outside material to the fraction of each voxel that no mesh covers. `covered` holds the sums by add_object,
-// and receives the covered fractions of the voxels.
+// Adds the outside material to the fraction of each voxel that no mesh covers. `covered` holds the sums from
+// add_object, and receives the covered fractions of the voxels.
 __kernel void add_outside(MaterialSlab slab, MaterialInfo material, __global float* covered, __global float* ior,
   __global float* sigma_a, __global float* sigma_s, __global float* g)
 {

@@ -11,8 +11,8 @@ namespace tyndall
 {
 namespace
 {
-/// Maximum length of grid and meshes together, in lattice units: a sum of three products of three coordinates then fits
-/// 63 bits.
+/// Maximum length of grid and meshes together, in lattice units. A sum of three products of three coordinates then fits
+/// into 63 bits.
 constexpr double Longest = 1 << 20;
 constexpr int TileColumns = 64;
 constexpr int TileRows = 16;
@@ -30,8 +30,8 @@ struct Interval
   double low, high;
 };
 
-/// Interval that a triangle covers along the axis columns.across where its coordinate along the axis columns.up is
-/// between `low` and `high`; widened by one lattice unit for rounding.
+/// Interval along the axis columns.across that a triangle covers where its coordinate along the axis columns.up is
+/// between `low` and `high`. Widened by one lattice unit to allow for rounding.
 Interval AcrossBetween(
   const std::array<const SampleLattice::Point*, 3>& corners, const SampleColumns& columns, double low, double high)
 {
@@ -154,8 +154,8 @@ LatticeMesh::LatticeMesh(Device& device, const SampleLattice& lattice, const Tri
 std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, int firstRow, int endRow) const
 {
   SampleBox rows;
-  // An empty range along the columns sets no limit there: a crossing beyond a column's end counts as a crossing at its
-  // end.
+  // Along the columns the range of samples is empty and sets no limit: a crossing beyond a column's end counts as a
+  // crossing at its end.
   rows.first[columns.axis] = 0;
   rows.end[columns.axis] = 0;
   rows.first[columns.across] = 0;
@@ -181,7 +181,7 @@ std::vector<cl_uint4> LatticeMesh::Tiles(const SampleColumns& columns, const Sam
     {
       continue;
     }
-    // A sample exactly at the triangle's upper end (`high`) is excluded: the infinitesimal move of samples
+    // A sample exactly at the triangle's upper end (`high`) is excluded, because the infinitesimal move of samples
     // (Voxelization.cl) takes it out of the triangle.
     const auto range = [&](int axis, int limitLow, int limitHigh) {
       const auto [low, high] = std::minmax({ (*corners[0])[axis], (*corners[1])[axis], (*corners[2])[axis] });

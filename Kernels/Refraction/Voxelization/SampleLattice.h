@@ -11,10 +11,10 @@ namespace tyndall
 {
 /// The integer lattice on which meshes are voxelised exactly.
 ///
-/// Its origin is the grid's lower corner. Each voxel has `samples` fine voxels per edge, and an edge of a fine voxel
-/// is 2^k units long, with k as large as exact products of three coordinates allow: grid and meshes together are at
-/// most 2^20 units long. Rounding to the lattice moves a point of a mesh by at most half a unit per axis, which is at
-/// most a millionth of that length; coincident points stay coincident.
+/// Its origin is the grid's lower corner. Each voxel has `samples` fine voxels per edge, and an edge of a fine voxel is
+/// 2^k units long. k is the largest for which grid and meshes together are at most 2^20 units long, so that products of
+/// three coordinates are exact. Rounding to the lattice moves a point of a mesh by at most half a unit per axis, at
+/// most a millionth of the total length. Coincident points stay coincident.
 class SampleLattice
 {
 public:
@@ -77,11 +77,11 @@ public:
   const Buffer<cl_int>& Triangles() const { return this->DeviceTriangles; } ///< 3 point indices per triangle
 
   /// Divides the triangles into tiles for the kernel mark_crossings (Voxelization.cl), one work-item each. A tile is a
-  /// triangle with a rectangle of columns, in the given rows, that it may cross; it has few enough columns that a large
-  /// triangle does not keep one work-item busy while the others wait.
+  /// triangle with a rectangle of columns, in the given rows, that the triangle may cross. Its number of columns is
+  /// limited, so that a large triangle does not keep one work-item busy while the others wait.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, int firstRow, int endRow) const;
 
-  /// Divides the triangles into tiles for columns in a box of samples; otherwise as above.
+  /// Divides the triangles into tiles, as the function above, for the columns in a box of samples.
   std::vector<cl_uint4> Tiles(const SampleColumns& columns, const SampleBox& box) const;
 
 private:

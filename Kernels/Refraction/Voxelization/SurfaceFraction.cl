@@ -1,10 +1,10 @@
 // Kernels that compute the occupancy of voxels to a fraction of a sample, from the position of the surface between
 // samples (numerics.md, section 11.1).
 //
-// Along columns of samples, the crossing of a surface is known exactly, and the samples show which of them is the
-// last one before it. The interval between the crossing and the border of that sample's fine voxel is added to the
-// voxel that contains the interval, or subtracted. This removes the terraces of a plane across the columns, but not
-// of a plane along them. Therefore it is done for columns along x, y and z, with each crossing weighted by how much
+// Along a column of samples the crossing of a surface is known exactly, and so is the last sample before the crossing.
+// The interval between the crossing and the border of this sample's fine voxel is added to the voxel that contains the
+// interval, or subtracted from it. This removes the terraces of a plane across the columns, but not those of a plane
+// along them. The correction is therefore computed for columns along x, y and z. Each crossing is weighted by how much
 // the surface faces the columns, Eq. (87); the three weights of a surface add up to 1.
 //
 // Sums are in integers, and each term changes its sign if the mesh is mirrored: a rotated or mirrored mesh gives
@@ -16,8 +16,8 @@
 #include "Refraction/Voxelization/Voxelization.cl"
 
 #define SAMPLES_OF_VOXEL (SAMPLES * SAMPLES * SAMPLES)
-// Corrections of a voxel's volume are integers, in units of 1 / UNITS of a sample's volume. At 16 samples per edge the
-// corrections of 80 surfaces through a voxel fit an int; with fewer samples, those of more surfaces.
+// Corrections of a voxel's volume are integers, in units of 1 / UNITS of a sample's volume. An int holds the
+// corrections of 80 surfaces through a voxel of 16 samples per edge; with fewer samples it holds more.
 #define UNITS 65536
 // Output counts are integers, in units of 1 / UNITS_OF_COUNT of a sample; equal to UnitsOfSample in C++.
 #define UNITS_OF_COUNT (65535 / SAMPLES_OF_VOXEL)
@@ -50,15 +50,16 @@ inline float weight_along(long3 normal)
   return ALONG(n) / ((least + middle) + 1.0f);
 }
 
-// Whether a crossing is hidden: the sample before or after it lies inside a later mesh, which has claimed it.
+// Whether a crossing is hidden, because the sample before or after it lies inside a later mesh, to which the sample
+// belongs.
 inline int is_hidden(__global const uint* claimed, const SampleRows* rows, int3 before, int3 after, int first, int last)
 {
   return (!first && is_set(claimed, rows, before)) || (!last && is_set(claimed, rows, after));
 }
 
 // Returns 1 if a line along the column leaves the mesh at a crossing, -1 if it enters. If exactly one of the samples
-// before and after the crossing is inside the mesh, this decides. Otherwise two or more crossings lie between the
-// samples, a sliver too thin for them, and the orientation of the triangle decides.
+// before and after the crossing is inside the mesh, this decides. Otherwise two or more crossings lie between the two
+// samples, because the mesh is thinner there than their distance. The orientation of the triangle then decides.
 //   turned   `leaving` of the triangle, -1 or 1, times the mesh's orientation; 0 if the orientation is unknown
 //   first, last  whether the column begins after the crossing, so that there is no sample before it, or ends before
 //                it
@@ -70,10 +71,12 @@ inline int side_of(
   return inBefore == inAfter ? turned : inBefore ? 1 : -1;
 }
 
-// Samples of a slab (the voxels that are processed at a time). `bits`: one bit per sample, 1 inside the mesh that is
-// measured; `claimed`: the same, 1 inside later meshes; `taken`: for each voxel, the number of samples (x) and the
-// volume (y, in 1 / UNITS_OF_COUNT of a sample) inside later meshes. claimed and taken are read only if there are
-// several meshes.
+// Samples of a slab, the voxels that are processed at a time.
+//   bits     one bit per sample: 1 inside the mesh that is measured
+//   claimed  one bit per sample: 1 inside later meshes
+//   taken    for each voxel, the number of samples (x) and the volume (y, in 1 / UNITS_OF_COUNT of a sample) inside
+//            later meshes
+// claimed and taken are read only if there are several meshes.
 typedef struct
 {
   const SampleRows* rows;
@@ -114,7 +117,7 @@ inline int2 correction_at(
   const int index = (voxel.z * voxels.y + voxel.y) * voxels.x + voxel.x;
   const int3 before = place(number - 1, across, up, AXIS), after = place(number, across, up, AXIS);
   const int first = number == 0, last = number == mesh->samples;
-  // Hidden crossings still count in voxels all of whose samples belong to later meshes.
+  // A hidden crossing still counts if all samples of its voxel belong to later meshes.
   const int counts = !mesh->rows->several || mesh->taken[index].x == SAMPLES_OF_VOXEL ||
     !is_hidden(mesh->claimed, mesh->rows, before, after, first, last);
   const int side = counts ? side_of(mesh->bits, mesh->rows, before, after, first, last, turned) : 0;
@@ -200,10 +203,10 @@ inline long divided(long number, long by)
 
 // Converts counts of samples to units of 1 / UNITS_OF_COUNT of a sample, and adds the corrections.
 //
-// With several meshes, the units that later meshes leave in a voxel differ from those of the samples that they leave,
-// because the later meshes' counts are corrected as well. The difference is distributed: a mesh gets a share of it in
-// proportion to its fraction of the samples that are left. If later meshes have claimed all samples but not all units,
-// the mesh gets the fraction of the units left that is its fraction of all samples of the voxel, claimed ones included.
+// With several meshes, later meshes leave samples of a voxel and units of its volume to earlier ones. The units left
+// differ from those of the samples left, because the counts of later meshes are corrected too. A mesh gets a share of
+// this difference in proportion to its fraction of the samples left. If no sample is left but some units are, the share
+// is the mesh's fraction of all samples of the voxel.
 //   taken    for each voxel, the samples and the units of later meshes; read only if there are several meshes. The
 //            mesh's own are added
 //   counts   counts of the slab's voxels: in samples on input, in units on output

@@ -85,19 +85,19 @@ std::vector<int> MergedPoints(const std::vector<Point>& points)
   return merged;
 }
 
-/// An edge as one of the triangles uses it. The edge's end with the lower point index is not stored: EdgeUses groups
-/// the uses by it.
+/// An edge as one triangle uses it. Only the end with the higher point index is stored; EdgeUses groups the uses by the
+/// other end.
 struct EdgeUse
 {
   int higher;   ///< point index of the edge's other end, the higher one of the two
   bool upwards; ///< whether the triangle traverses the edge from its lower to its higher index
 };
 
-/// Uses of all edges by triangles, sorted by the lower point index of the edge's two ends.
+/// Uses of all edges by triangles, sorted by the lower of the point indices of the edge's two ends.
 struct EdgeUses
 {
-  /// Element i: index in `uses` of the first use of an edge whose lower end is point i. The element after the last
-  /// point's: number of uses.
+  /// Element i: index in `uses` of the first use of an edge whose lower end is point i. One more element at the end:
+  /// number of uses.
   std::vector<std::size_t> begin;
   std::vector<EdgeUse> uses;
 };
@@ -170,8 +170,8 @@ void CountEdges(const TriangleMesh& mesh, EdgeUses& edges, MeshTopology& topolog
   }
 }
 
-/// Computes areas of triangles and the enclosed volume, relative to a point of the mesh, so that a mesh far from the
-/// origin loses no digits.
+/// Computes areas of triangles and the enclosed volume. Coordinates are relative to a point of the mesh, so that a mesh
+/// far from the origin loses no digits.
 void MeasureTriangles(const TriangleMesh& mesh, MeshTopology& topology)
 {
   const Point centre = mesh.points[static_cast<std::size_t>(mesh.triangles[0][0])];

@@ -60,9 +60,9 @@ MeshTopology CheckClosed(const TriangleMesh& mesh, const std::string& name, cons
 /// disagree.
 int Orientation(const MeshTopology& topology);
 
-/// Describes the irregularities of a closed mesh, one sentence each: triangles without area, edges that disagree
-/// about the outside, normals that point inwards, and samples whose winding number is neither 0 nor 1, as where the
-/// mesh intersects itself.
+/// Describes the irregularities of a closed mesh, one sentence each: triangles without area, triangles that disagree
+/// about the outside, normals that point inwards, and samples whose winding number is neither 0 nor 1 (for example
+/// where the mesh intersects itself).
 std::vector<std::string> Oddities(
   const MeshTopology& topology, const WindingNumbers& windings, const std::string& name, const Grid& grid, int samples);
 }

@@ -1,6 +1,6 @@
 // Kernels that find the samples of a fine grid that lie inside a closed mesh (Eisemann and Decoret 2008; Pfeuti 2009,
-// section 3.1.2): a column of samples is a row of words, one bit per sample, and every triangle toggles all samples
-// of its columns that lie before it.
+// section 3.1.2). A column of samples is a row of words, one bit per sample. In principle every triangle toggles all
+// samples that lie before it in the columns that it crosses.
 //
 // In practice a triangle toggles only the last sample before its crossing; a final scan of each column then toggles all
 // samples before each crossing, for all triangles at once.
@@ -24,8 +24,8 @@
 #define UP(p) ((p).z)
 
 #if WINDING
-// With WINDING, marks are signed bytes per sample: the sum of the crossings between the sample and the next one, +1
-// if a line along the column leaves the mesh there, -1 if it enters.
+// With WINDING, each sample has a mark of one signed byte: the sum over the crossings between this sample and the next,
+// +1 if a line along the column leaves the mesh, -1 if it enters.
 #define CELLS 4
 #define BITS 4
 #else
@@ -48,7 +48,8 @@ inline edge edge_in_column(int3 from, int3 to, long across, long up, int pitch)
   const long above = (long)ACROSS(to) - ACROSS(from);
   edge e;
   e.value = above * (up - UP(from)) + right * (across - ACROSS(from));
-  // A column exactly on the edge is on the inner or the outer side according to the infinitesimal move of its samples.
+  // If a column lies exactly on the edge, the infinitesimal move of its samples decides whether it is on the inner
+  // side.
   e.value -= right > 0 || (right == 0 && above > 0) ? 0 : 1;
   e.across = right * pitch;
   e.up = above * pitch;
@@ -67,7 +68,7 @@ inline int samples_before(long excess, long step, int samples)
   {
     return samples;
   }
-  // The quotient in float is off by less than one, as there are fewer than 2^20 samples.
+  // The quotient in float is wrong by less than one, because there are fewer than 2^20 samples.
   const long wanted = excess - 1;
   long number = (long)((float)wanted / (float)step);
   const long rest = wanted - number * step;
@@ -105,8 +106,8 @@ inline void mark_crossing(
 #endif
 }
 
-// A triangle over the columns of a tile (a rectangle of columns that one work-item processes): the edges that bound the
-// columns it crosses, and the position of its plane along them. Coordinates are (along, across, up).
+// A triangle over the columns of a tile, the rectangle of columns that one work-item processes: the edges that bound
+// the columns it crosses, and the position of its plane along them. Coordinates are (along, across, up).
 typedef struct
 {
   edge e0, e1, e2; // edge functions of the three edges, in the first column of a row
@@ -118,8 +119,8 @@ typedef struct
   long excessAcross, excessUp; // decrements of `excess` to the next column and to the next row
 } sheet;
 
-// Prepares a triangle for the columns of a tile (a rectangle of columns that one work-item processes). Returns 0 if the
-// triangle crosses no column.
+// Prepares a triangle for the columns of a tile, the rectangle of columns that one work-item processes. Returns 0 if
+// the triangle crosses no column.
 inline int start_sheet(
   sheet* s, uint4 tile, __global const int* points, __global const int* triangles, int axis, int pitch)
 {
@@ -246,7 +247,7 @@ __kernel void find_windings(
   int4 of_column = (int4)(0, 0, 0, samples);
   for (int w = words - 1; w >= 0; --w)
   {
-    // The signed bytes of a word were summed as one integer: a negative byte has borrowed from the next byte.
+    // The four signed bytes of a word were summed as one integer, so a negative byte has borrowed from the next byte.
     int rest = (int)marks[(ulong)id * words + w];
     int counts[4];
     for (int k = 0; k < 4; ++k)
@@ -275,9 +276,9 @@ __kernel void find_windings(
 // Converts the marks of each column to bits, 1 for samples inside the mesh, and finds columns with a sample whose
 // winding number is neither 0 nor 1.
 //
-// If all winding numbers in a column are 0 or 1, lines along the column alternately leave and enter the mesh; the sum
-// of the signed weights of the crossings then equals the sum of the weights of the remaining marks with alternating
-// signs. Otherwise the two sums differ, except in one case of 2^32, as weights are random.
+// If all winding numbers in a column are 0 or 1, lines along the column alternately leave and enter the mesh. Then two
+// sums are equal: that of the signed weights of the crossings, and that of the weights of the remaining marks with
+// alternating signs. Otherwise the sums differ, except by chance in one of 2^32 cases, since weights are random.
 //   columns   number of columns per row
 //   from_above  as in mark_crossings
 //   sums      output of mark_crossings

@@ -196,8 +196,8 @@ SampleColumns Along(int axis, const Grid& grid, const SampleColumns& like)
 }
 
 /// Refines counts of samples in voxels to a fraction of a sample, from the exact position of the surface between two
-/// samples (numerics.md, section 11.1). Occupancy from samples alone has terraces where a surface is nearly parallel
-/// to layers of voxels; these are wider than the filter that smooths the index, and would bend rays.
+/// samples (numerics.md, section 11.1). Whole samples give an occupancy with terraces where a surface is nearly
+/// parallel to layers of voxels. The terraces are wider than the filter that smooths the index, and would bend rays.
 class SurfaceFraction
 {
 public:
@@ -230,8 +230,8 @@ public:
     this->ClaimSamples = kernel("claim_samples", 0);
   }
 
-  /// Prepares the measurement of a slab (the voxels that are processed at a time). Must be called once per slab, before
-  /// the meshes are measured in it, which is done from the last mesh to the first.
+  /// Prepares the measurement of a slab, the voxels that are processed at a time. Must be called once per slab. The
+  /// meshes are measured afterwards, from the last to the first.
   void Begin()
   {
     if (this->Several)
@@ -273,9 +273,9 @@ public:
     }
   }
 
-  /// Queues the conversion of the slab's counts for the mesh that was measured last, from whole samples to units of
-  /// 1 / UnitsOfSample of a sample, and the addition of the measured difference. Also marks as claimed the mesh's
-  /// samples in the rows of samples beside the slab's voxels (SampleSlab), which count_samples does not reach.
+  /// Converts (queued) the slab's counts for the mesh that was measured last from whole samples to units of 1 /
+  /// UnitsOfSample of a sample, and adds the measured difference. Also marks the mesh's samples as claimed in the rows
+  /// of samples beside the slab's voxels (SampleSlab), which count_samples does not reach.
   void Refine(const SampleSlab& slab, const Buffer<cl_uint>& bits, Buffer<cl_uint>& claimed, Buffer<cl_ushort>& counts)
   {
     const SampleRows rows = this->RowsOf(slab);
@@ -321,8 +321,8 @@ private:
   /// For each voxel of the slab, the mesh's volume less its count of samples, in 1 / UNITS of a sample
   /// (SurfaceFraction.cl).
   Buffer<cl_int> Corrections;
-  /// For each voxel of the slab, how much of it later meshes occupy: number of samples (x), and volume in 1 /
-  /// UnitsOfSample of a sample (y). Empty if there is only one mesh.
+  /// Part of each voxel of the slab that later meshes occupy: number of samples (x), and volume in 1 / UnitsOfSample of
+  /// a sample (y). Empty if there is only one mesh.
   Buffer<cl_ushort2> Taken;
 };
 
@@ -427,8 +427,8 @@ public:
   }
 
 private:
-  /// Number of rows of sample columns that a slab (the voxels that are processed at a time) needs beyond either of its
-  /// sides.
+  /// Number of rows of sample columns that a slab, the voxels that are processed at a time, needs beyond each of its
+  /// two sides.
   static int RowsAround(const VoxelizationSettings& settings) { return settings.fractions ? 1 : 0; }
 
   /// Winding numbers of a mesh at the samples of the voxels Counted.own.

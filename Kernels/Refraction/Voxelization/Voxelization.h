@@ -13,8 +13,8 @@
 
 namespace tyndall
 {
-/// Winding numbers of a mesh at samples. A sample is odd if its winding number is neither 0 nor 1: the mesh
-/// intersects itself, or has parts inside out or within each other.
+/// Winding numbers of a mesh at samples. A sample is odd if its winding number is neither 0 nor 1. The mesh then
+/// intersects itself, is partly inside out, or has parts inside each other.
 struct WindingNumbers
 {
   std::size_t oddSamples = 0;  ///< number of odd samples, whose winding number is neither 0 nor 1
@@ -37,12 +37,12 @@ struct VoxelizationSettings
   /// false, occupancy is a multiple of 1 / samples^3, as published.
   bool fractions = true;
 
-  /// Axis of the columns of samples, 0, 1 or 2. The result does not depend on it, to the last bit.
+  /// Axis of the columns of samples, 0, 1 or 2. The choice does not change a bit of the result.
   int columnAxis = 0;
   bool fromAbove = false; ///< whether a crossing toggles the samples after it and not those before it; same result
 
-  /// Maximum memory, in bytes, of the part of the fine grid (one bit per sample) that is held at a time: a slab of
-  /// voxels, of at least one layer.
+  /// Maximum memory, in bytes, of the part of the fine grid (one bit per sample) that is processed at a time, a slab. A
+  /// slab has at least one layer of voxels.
   std::size_t slabBytes = std::size_t(16) << 20;
 };
 
@@ -60,7 +60,7 @@ void Check(const VoxelizationSettings& settings);
 /// A closed mesh and the orientation of its triangles.
 struct OrientedMesh
 {
-  /// The mesh, closed, if necessary after rounding to the lattice (CheckClosed). Triangles without area have no
+  /// The mesh. It must be closed, at least after rounding to the lattice (CheckClosed). Triangles without area have no
   /// effect.
   const TriangleMesh* mesh = nullptr;
   int orientation = 1; ///< 1: counterclockwise as seen from outside; -1: clockwise; 0: triangles disagree
@@ -95,11 +95,11 @@ struct CountedVoxels
 /// Bit-slice voxelisation of Eisemann and Decoret (Single-pass GPU solid voxelization for real-time applications,
 /// Graphics Interface 2008; Pfeuti 2009, section 3.1.2): a column of samples is a row of bits, and every triangle
 /// toggles the bits before its crossing. Samples are the centres of fine voxels. Points of the mesh are rounded to a
-/// lattice of a millionth of the box (SampleLattice); all further arithmetic is exact: a crossing of a column with an
-/// edge or a corner is counted once, a closed mesh never leaks, and whether a sample is inside does not depend on the
-/// direction of its column. Then fractions of samples are added or subtracted, from the positions where the surface
-/// crosses columns along x, y and z (SurfaceFraction); a voxel that the surface does not touch is entirely inside or
-/// outside.
+/// lattice of a millionth of the box (SampleLattice); all further arithmetic is exact. A crossing of a column with an
+/// edge or a corner is therefore counted once, a closed mesh never leaks, and whether a sample is inside does not
+/// depend on the direction of its column. Fractions of samples are then added or subtracted, from the positions where
+/// the surface crosses columns along x, y and z (SurfaceFraction). A voxel that the surface does not touch is entirely
+/// inside or outside.
 ///
 /// Results for a voxel do not depend, to the last bit, on the box of the grid that is requested, with one exception:
 /// in the outermost voxels of a box that ends within the grid, whether a crossing enters or leaves the mesh is

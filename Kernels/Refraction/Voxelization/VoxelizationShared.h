@@ -9,8 +9,8 @@ SHARED_BEGIN
 typedef struct
 {
   float4 corner, spacing; ///< lower corner of the grid, and edges of a voxel, length
-  /// Index of the first voxel in the box; number of voxels in a run; number of voxels of the box from the beginning of
-  /// a run to that of the next.
+  /// Numbers of voxels of the box: those before the first voxel; those in a run; and those from the beginning of a run
+  /// to the beginning of the next.
   ulong first, length, stride;
   int nx, ny;     ///< number of voxels of the box along x and y
   int x0, y0, z0; ///< first voxel of the box in the grid
@@ -48,7 +48,8 @@ typedef struct
   int skipped;       ///< number of rows of samples in the buffer that precede those of the slab's voxels
   int claims;        ///< 1: samples that belong to later meshes are not counted
   int units;         ///< number that is added to a voxel's count for each sample: 1 or UnitsOfSample
-  /// Distance, in the array of counts, between voxels that are neighbours in a column, in a row, and in two rows.
+  /// Distance, in the array of counts, between neighbouring voxels of a column, between columns of a row, and between
+  /// rows.
   int along, across, up;
 } SampleCounts;
 SHARED_END

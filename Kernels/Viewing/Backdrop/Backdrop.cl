@@ -1,6 +1,6 @@
-// Radiance that rays receive where they leave or enter the box: environment or background colour, reflecting faces,
-// correction for light at the surface of optically thick voxels. The tables are in one array, `backdrop`, at the
-// indices ViewInfo::backdrop (Backdrop.h).
+// Radiance at both ends of a ray. Where a ray leaves the box, it receives the environment, the background colour or the
+// light of a reflecting face. Where it enters, it receives a correction for optically thick voxels at the surface. All
+// these values are in one array, `backdrop`; ViewInfo::backdrop holds the indices at which each begins (Backdrop.h).
 
 #pragma once
 #include "Viewing/Samples/Sampling.cl"
@@ -25,8 +25,8 @@ inline real angle_of(real y, real x)
   return copysign(p, y);
 }
 
-// Radiance of the environment in each direction d, which is given in the environment's axes; equals Lookup in Lights.h.
-// The picture `environment` has an additional column on either side, for periodic interpolation around z.
+// Radiance of the environment in each direction d, in the environment's axes; equals Lookup in Lights.h. The image of
+// the environment is stored with an additional column of pixels on either side, so that interpolation wraps around z.
 inline rgb look_up(__global const float4* environment, real3 d, int4 size)
 {
   const real polar = angle_of(sqrt(fma(d.x, d.x, d.y * d.y)), d.z);
@@ -62,8 +62,8 @@ inline rgb look_behind(const ViewInfo* v, real3 d, __global const float4* backdr
   return behind;
 }
 
-// Interpolation in tables with a value for each cell of the box's faces: [face][row][cell of the row], faces -x to +z,
-// each face with a border of one cell that repeats the outermost cells.
+// Interpolation of values that are given per cell of the box's faces, in an array [face][row][cell of the row] with
+// faces in the order -x to +z. Each face has a border of one cell, which repeats its outermost cells.
 
 typedef struct
 {
@@ -73,11 +73,11 @@ typedef struct
   real a, b;          // interpolation weights of the next cell along the row, and of the next row
 } face_place;
 
-// Finds the face of the box that a ray through point p, traced back against its direction, meets first, and the four
-// cells of this face around p, between whose centres tables are interpolated.
+// Finds where a ray through point p, traced backwards, first meets a face of the box, and the four cells of this face
+// around p whose values are interpolated.
 inline face_place face_behind(real3 p, real3 direction, int4 size)
 {
-  // The face is that with the shortest time since the ray crossed its plane.
+  // Traced backwards, the ray meets first the face whose plane it crossed last.
 #define SINCE(c) \
   ((direction.c > (real)0.0f ? p.c : (real)(float)size.c - p.c) / greater(fabs(direction.c), (real)1e-20f))
   const real x = SINCE(x), y = SINCE(y), z = SINCE(z);
@@ -107,10 +107,11 @@ inline face_place face_behind(real3 p, real3 direction, int4 size)
 
 // Reflecting faces of the box, seen from inside, such as matt ground or snow.
 
-// Radiance from behind the medium: for rays of the mask `leaves` that leave the box through a reflecting face, the
-// radiance of that face; for all other rays, `behind`. Through a face with incident light, the scattered light of a
-// picture of angular moments has this light added, and the unscattered light has it subtracted: their transmittances
-// differ by the light that was scattered by small angles.
+// Radiance from behind the medium. Rays of the mask `leaves` that leave the box through a reflecting face receive the
+// radiance of this face; all other rays receive `behind`.
+// Where light enters through a face, a picture made of angular moments adds this light in its pass for scattered light
+// and subtracts it in its pass for unscattered light. The transmittances of the two passes differ by the light that was
+// scattered through small angles.
 //   p     a point, in voxels, from which the ray leaves the box in a straight line
 //   size  number of voxels of the box along each axis; `backdrop` has the radiance of the cells of its faces
 inline rgb ground_or_behind(
@@ -123,8 +124,8 @@ inline rgb ground_or_behind(
   const integer emits = leaves & ((bits & (integer)64) != (integer)0);
   const rgb seen = between_four(backdrop + v->backdrop.y, to.at, to.at + to.row, to.a, to.b);
 #if SHOWN == 2
-  // A picture of angular moments is the sum of two passes, for scattered and for unscattered light. Reflecting faces
-  // are black in the latter, as the former already shows their light.
+  // This is the pass for unscattered light. Reflecting faces are black here, since the pass for scattered light shows
+  // them; the two passes are added.
   const real shown = (real)0.0f, emitted = emits ? (real)-1.0f : (real)0.0f;
 #else
   const real shown = (real)1.0f, emitted = emits ? (real)1.0f : (real)0.0f;
@@ -135,7 +136,7 @@ inline rgb ground_or_behind(
   return light;
 }
 
-// Correction for light at the surface of optically thick voxels, added where rays enter the box.
+// Correction for light at the surface of optically thick voxels, added to rays where they enter the box.
 
 // Lagrange basis polynomial at the cosine x that is 1 at the node a and 0 at b, c and d; the nodes are the cosines
 // 0.05, 0.25, 0.6 and 1 (SurfaceCosines in BoxFaces.h).

@@ -23,8 +23,8 @@ std::array<int, 2> FaceSize(const Grid& grid, int face)
 
 namespace
 {
-/// Adds a border of one cell, which repeats the outermost cells, to each face of a table that has a value for each cell
-/// of the box's faces (BoxFaces.h).
+/// Copies values given per cell of the box's faces (BoxFaces.h) and adds to each face a border of one cell, which
+/// repeats the face's outermost cells.
 std::vector<cl_float4> WithBorders(const Grid& grid, const std::vector<cl_float4>& cells)
 {
   std::vector<cl_float4> padded;
@@ -56,10 +56,10 @@ int GroundFaces(const SolvedLight& light)
   return faces;
 }
 
-constexpr int Emits = 6; ///< bit of face -x among those of the faces through which light enters
+constexpr int Emits = 6; ///< bit of face -x among the bits of the faces through which light enters
 
-/// Bit mask of the faces that pictures show: bits 0 to 5 those that reflect; bits 6 to 11, in pictures of angular
-/// moments, the others through which light enters.
+/// Bit mask of the faces that pictures show. Bits 0 to 5: reflecting faces. Bits 6 to 11: other faces through which
+/// light enters, set only in pictures made of angular moments.
 int ShownFaces(const SolvedLight& light, bool byMoments)
 {
   int faces = GroundFaces(light);
@@ -71,9 +71,9 @@ int ShownFaces(const SolvedLight& light, bool byMoments)
   return faces;
 }
 
-/// Radiance of the reflecting faces (ground), seen from inside, W / (length^2 sr): albedo / pi times the outgoing
-/// partial current in each cell (numerics.md, Eq. (111a)); on other faces, that which enters there. [face][row][cell
-/// of the row], each face with a border of one cell that repeats the outermost cells.
+/// Radiance of faces seen from inside, W / (length^2 sr), as [face][row][cell of the row] with a border of one cell
+/// around each face that repeats the outermost cells. A reflecting face (ground) has albedo / pi times the outgoing
+/// partial current of the cell (numerics.md, Eq. (111a)). Any other face has the radiance that enters through it.
 std::vector<cl_float4> FaceLight(const Grid& grid, const SolvedLight& light, int bits)
 {
   std::vector<cl_float4> cells(BoxFaceCellCount(grid));
@@ -90,9 +90,10 @@ std::vector<cl_float4> FaceLight(const Grid& grid, const SolvedLight& light, int
   return WithBorders(grid, cells);
 }
 
-/// Radiance, divided by n^2, that a white (diffuse reflectance 1) table reflects, W / (length^2 sr): irradiance by the
-/// light in the voxels at the table's face of the box, divided by pi. One value per cell of the face, with a border of
-/// one cell that repeats the outermost cells. Computed from fluence and mean direction by numerics.md, Eq. (111).
+/// Radiance, divided by n^2, that a white table would reflect, W / (length^2 sr). A table is a plane at one face of the
+/// box that reflects light; a white one has diffuse reflectance 1. The radiance is the irradiance by the light in the
+/// adjacent voxels, divided by pi (numerics.md, Eq. (111)). One value per cell of the face, with a border of one cell
+/// that repeats the outermost cells.
 /// @param ior        refractive index; null: 1
 /// @param fromBelow  whether light may enter through the table's face, because there is an environment
 std::vector<cl_float4> TableLight(
@@ -127,11 +128,11 @@ std::vector<cl_float4> TableLight(
   return lit;
 }
 
-/// The correction SurfaceLight begins where the optical thickness of a voxel at the face is the value ThickAtSurface,
-/// and is fully applied from AllOfIt times this thickness on.
+/// The correction SurfaceLight begins where a voxel at the face has the optical thickness ThickAtSurface. It is fully
+/// applied at AllOfIt times this thickness.
 constexpr double AllOfIt = 2.0;
-/// Optical thickness, in mean free paths, of the medium behind a cell of a face at which the correction SurfaceLight
-/// begins (Translucent) and from which on it is fully applied (Opaque).
+/// The correction SurfaceLight also depends on the optical thickness of the medium behind a cell of a face, in mean
+/// free paths: it begins at Translucent and is fully applied from Opaque on.
 constexpr double Translucent = 1.5, Opaque = 3.0;
 constexpr double EnoughLeft = 1e-5; ///< transmittance at which the march for the correction ends
 constexpr int MostSteps = 200;
@@ -237,7 +238,8 @@ Column ColumnBehind(const Medium& medium, const SolvedLight& light, const BoxFac
   return column;
 }
 
-/// Correction SurfaceLight of one cell and channel, for each of SurfaceCosines, W / (length^2 sr).
+/// Correction SurfaceLight of one cell and channel, for each of the cosines SurfaceCosines to the normal, W / (length^2
+/// sr).
 /// @param step  step of the march, voxels
 std::array<double, 4> Missing(
   const Medium& medium, const SolvedLight& light, const BoxFaceCell& cell, int channel, double step)
@@ -261,14 +263,14 @@ std::array<double, 4> Missing(
 
 /// Correction for rays that enter the box through optically thick voxels (numerics.md, Eq. (112)): the outgoing
 /// radiance that the solver computed there (`surface`), minus the radiance that the march computes there by
-/// interpolation of the light between the centres of thick voxels. It is applied gradually from an optical thickness
-/// ThickAtSurface of the voxel on, and fully at twice that, and only where the medium behind is some mean free paths
-/// thick: the light of a thin medium is not that of a half-space.
+/// interpolation of the light between the centres of thick voxels. The correction sets in at an optical thickness
+/// ThickAtSurface of the voxel and is complete at twice this thickness. It applies only where the medium behind is some
+/// mean free paths thick, since it assumes the light of a half-space.
 ///
 /// @param step   step of the march, voxels
-/// @param block  position of the medium in a larger grid: only its faces on the domain's boundary are corrected. Its
-///   arrays must cover VoxelsBehindSurface voxels behind them, or all of the domain. Null: the medium is the whole
-///   domain
+/// @param block  position of the medium in a larger grid: only those of its faces that lie on the domain's boundary are
+///   corrected. Its arrays must cover VoxelsBehindSurface voxels behind these faces, or the whole domain. Null: the
+///   medium is the whole domain
 /// @return W / (length^2 sr), [cosine][face][row][cell of the row], each face with a border of one cell that repeats
 ///   the outermost cells. Empty if no correction is needed
 std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& light, double step, const GridBlock* block)
@@ -301,8 +303,8 @@ std::vector<cl_float4> SurfaceLight(const Medium& medium, const SolvedLight& lig
   return table;
 }
 
-/// Number of directions, per face of a cube, of the quadrature with which Split separates the environment's peaks from
-/// its smooth part.
+/// Split separates bright peaks of the environment from its smooth part with a quadrature of this many directions per
+/// face of a cube.
 constexpr int DirectionsOfPeaks = 25;
 
 /// Pixels of the environment with an additional column on either side, for periodic interpolation.
@@ -330,8 +332,8 @@ std::vector<cl_float4> LightOnTable(
     traits.bends ? ior : Field{}, settings.tableFace, fromBelow);
 }
 
-/// Whether the correction SurfaceLight is possible and valid: `surface` (the solver's outgoing radiance at the faces)
-/// is known, and the picture shows all light, without shadow rays, mean directions or a table.
+/// Whether the correction SurfaceLight is possible and valid. The solver's outgoing radiance at the faces (`surface`)
+/// must be known, and the picture must show all light, without shadow rays, mean directions or a table.
 bool ShowsSurface(const SolvedLight& light, const ViewTraits& traits)
 {
   const bool plain = !traits.singleScatteringOnly && !traits.shadowRays && !traits.knowsFlow &&
@@ -360,8 +362,8 @@ Backdrop::Backdrop(Device& device, const Medium& medium, const SolvedLight& ligh
     std::vector<cl_float4> shown = ClosedEnvironment(environment);
     if (traits.ShowsMoments())
     {
-      // Peaks of the environment are treated as lamps: of the two passes of a picture of angular moments, that for
-      // unscattered light shows them (numerics.md, section 14.7).
+      // A picture made of angular moments has two passes, for scattered and for unscattered light. Peaks of the
+      // environment are treated as lamps: the pass for unscattered light shows them (numerics.md, section 14.7).
       std::vector<cl_float4> sharp = std::move(shown);
       shown = ClosedEnvironment(Split(environment, EquiangularDirections(DirectionsOfPeaks)).smooth);
       for (std::size_t i = 0; i < sharp.size(); ++i)

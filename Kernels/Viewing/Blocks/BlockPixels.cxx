@@ -127,7 +127,7 @@ void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels)
       pixels.pixels[number] = PixelOf(again, pixel);
       if (before <= Half)
       {
-        // Its transmittance falls below 1/2 in a block in front, which gives the depth.
+        // The transmittance falls below 1/2 in a block in front of this one, and that block gives the depth.
         pixels.pixels[number].depth = BlockPixel::FarAway;
       }
     }
@@ -144,7 +144,8 @@ std::vector<double> SaidByAll(Communicator& communicator, const std::vector<doub
 std::optional<SeenBlocks> ExchangePixels(
   const Domain& domain, const BlockPixels& own, const PixelRect& wanted, bool failed, const Camera& camera)
 {
-  // Numbers that each rank sends: corners of the rectangle that it has rendered and of the one that it wants.
+  // Each rank sends eight numbers: the corners of the rectangle that it rendered, and those of the rectangle that it
+  // wants.
   constexpr std::size_t words = 8;
   if (domain.Any(failed))
   {

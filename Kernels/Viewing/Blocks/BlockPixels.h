@@ -36,9 +36,10 @@ struct BlockPixel
 {
   std::array<float, 3> radiance = {};                        ///< accumulated radiance, W / (length^2 sr)
   std::array<float, 3> transmittance = { 1.0f, 1.0f, 1.0f }; ///< transmittance of the block for radiance from behind it
-  /// transmittance for light from behind that is not scattered at all, as Picture::sceneTransmittance
+  /// transmittance for light from behind that is not scattered at all (Picture::sceneTransmittance)
   std::array<float, 3> seen = { 1.0f, 1.0f, 1.0f };
-  /// Radiance, not in `radiance`, that reaches the eye unscattered: blocks in front attenuate it by their `seen`.
+  /// Radiance that reaches the eye without being scattered; not included in `radiance`. Blocks in front attenuate it by
+  /// their `seen`.
   std::array<float, 3> sharp = {};
   std::array<float, 3> missing = {}; ///< correction for light at the surface, as Picture::missing
   float open = 1.0f;     ///< 0 if the pixel includes the background, which hides everything behind it; else 1
@@ -72,7 +73,8 @@ struct BlockPixel
     return all;
   }
 
-  /// Opacity with which the pixel, including the background that it shows, hides what is behind it.
+  /// Fraction in [0, 1] of the light from behind that the pixel hides, by the medium or by the background that it
+  /// shows.
   float Hidden() const { return 1.0f - this->open * this->Left(); }
 
   /// Composites this pixel over `behind`, the contribution to the same pixel of the blocks behind this one.
@@ -91,7 +93,7 @@ struct BlockPixel
   }
 };
 
-/// Pixels of the rectangle in which a block contributes to a picture. Ranks exchange the values of `pixels`.
+/// Pixels of the rectangle in which a block contributes to a picture. Ranks exchange the array `pixels`.
 struct BlockPixels
 {
   PixelRect rect;
@@ -111,23 +113,23 @@ struct BlockPixels
 /// @param pixel  index of the pixel, row by row
 BlockPixel PixelOf(const Picture& picture, std::size_t pixel);
 
-/// Crops a block's picture to the smallest rectangle outside of which it is empty.
+/// Crops a block's picture to the smallest rectangle that contains all pixels to which the block contributes.
 BlockPixels SeenPart(const Picture& picture);
 
 /// Crops pixels of a block to a rectangle.
 BlockPixels PartIn(const PixelRect& rect, const BlockPixels& pixels);
 
-/// Transmittances of the blocks in front of a block, for the pixels that this block must render again: pixels whose
-/// transmittance, accumulated over all blocks, falls below 1/2 in this block (its own depth is then wrong), and pixels
-/// whose transmittance falls below `minimum` in this block or in front of it.
+/// Transmittances of the blocks in front of a block, for those pixels that the block must render again. There are two
+/// kinds. In some pixels the transmittance, accumulated over all blocks, falls below 1/2 in this block, whose own depth
+/// is then wrong. In others it falls below `minimum` in this block or in front of it.
 /// @param own      index of the block in `frontToBack`
 /// @param size     width and height of the picture, pixels
 /// @param minimum  transmittance at which rays end
 Starts StartsBehind(
   const std::vector<BlockPixels>& frontToBack, std::size_t own, const std::array<int, 2>& size, double minimum);
 
-/// Replaces the pixels that `starts` selects (those with a transmittance above 0) by those of the picture `again`,
-/// which the block rendered with these starts.
+/// Replaces pixels of a block by those of the picture `again`, which the block rendered with the transmittances
+/// `starts` of the blocks in front. Only pixels where `starts` is above 0 are replaced.
 void TakeFrom(const Picture& again, const Starts& starts, BlockPixels& pixels);
 
 /// Pixels of all blocks in view of the camera, from the front block to the rearmost.

@@ -37,8 +37,8 @@ Picture Nothing(const std::array<int, 2>& size)
 }
 
 /// Adds the radiance of a ray that has ended to the picture.
-/// @param tells  whether a primary ray also sets the picture's alpha, depth and transmittance; for a picture of angular
-///   moments only in the pass for unscattered light
+/// @param tells  whether a primary ray also sets the picture's alpha, depth and transmittance. In a picture made of
+/// angular moments only the pass for unscattered light does so
 void Add(const RayOnItsWay& ray, bool tells, Picture& picture)
 {
   const auto pixel = static_cast<std::size_t>(ray.pixel);
@@ -89,8 +89,8 @@ std::vector<VoxelBox> PortionsOf(const VoxelBox& box, std::size_t voxels)
   return portions;
 }
 
-/// Whether shadow rays from the centres of the voxels `from` to a light can cross a block: tests whether the box around
-/// all of these rays overlaps the block.
+/// Whether shadow rays from the centres of the voxels `from` to a light can cross a block. Tests whether the smallest
+/// box around all these rays overlaps the block, so that the answer may be true although no ray crosses it.
 /// @param grid  grid of the whole domain, to which the indices of both boxes refer
 /// @param from, block  boxes of voxels; the result is false if one is empty
 bool MayLeadThrough(const SmallLight& light, const Grid& grid, const VoxelBox& from, const VoxelBox& block)
@@ -130,8 +130,8 @@ std::vector<SmallLight> LightsOfAll(const Domain& domain, const std::vector<Smal
   require(counts[0] == Unknown || counts[0] == -counts[1]);
   std::vector<SmallLight> lights(counts[0] > Unknown ? static_cast<std::size_t>(counts[0]) : 0);
   const std::size_t numbers = NumbersOfLight * lights.size();
-  // Maxima over the ranks of the numbers that describe the lights, then maxima of these numbers' negatives, which give
-  // the minima.
+  // The minimum and maximum over the ranks of each number that describes the lights. Minima are computed as maxima of
+  // the negated numbers.
   std::vector<double> most(2 * numbers, Unknown);
   for (std::size_t i = 0; own && i < numbers; ++i)
   {
@@ -184,8 +184,8 @@ PictureInBlocks::PictureInBlocks(
   this->Between.emplace(domain.Comm(), domain.Partition(), 1 + static_cast<int>(std::ceil(any[2])));
 }
 
-/// Computes the light of one lamp in a portion of each rank's voxels: every rank computes the optical length, within
-/// its block, of the shadow rays from all these voxels; the rank that owns the voxels sums the lengths in rank order.
+/// Computes the light of one lamp in a portion of each rank's voxels. Every rank computes the optical length within its
+/// block of the shadow rays from all these voxels. The rank that owns a voxel sums these lengths in rank order.
 /// Collective.
 /// @param light     index of the lamp
 /// @param portions  by rank, the portion of its voxels; empty: all voxels of the rank are done
@@ -232,7 +232,7 @@ void PictureInBlocks::Follow(
   });
 }
 
-/// Computes the lamps' light in the voxels of all blocks; shadow rays also cross the blocks of other ranks. Collective.
+/// Computes the lamps' light in the voxels of all blocks. Shadow rays cross the blocks of all ranks. Collective.
 void PictureInBlocks::FindShadows(const Camera& camera, const Monitor& monitor)
 {
   this->Over.Collective([&] {
@@ -250,7 +250,7 @@ void PictureInBlocks::FindShadows(const Camera& camera, const Monitor& monitor)
     portions.push_back(PortionsOf(empty ? VoxelBox() : this->Held[rank], this->AtOnce.voxels / ranks));
     steps = std::max(steps, portions.back().size());
   }
-  // A rank without voxels may not know the other ranks' boxes, and hence their number of portions.
+  // The number of portions is found from all ranks' boxes, which a rank without voxels may not know.
   steps = static_cast<std::size_t>(this->Over.Max(static_cast<double>(steps)));
   const auto all = static_cast<double>(this->Lights.size() * steps);
   double done = 0.0;
@@ -287,7 +287,7 @@ void PictureInBlocks::FindSources(const Camera& camera, const Monitor& monitor)
 }
 
 /// Marches rays until they end or leave this rank's block.
-/// @param sharp  whether this is the pass for unscattered light, of the two passes of a picture of angular moments
+/// @param sharp  whether this is the pass for unscattered light of a picture made of angular moments
 /// @param picture  receives the radiance of rays that have ended
 /// @return the rays that continue in other blocks
 std::vector<RayOnItsWay> PictureInBlocks::Follow(
@@ -303,7 +303,7 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(
     std::vector<RayOnItsWay> here;
     for (RayOnItsWay& ray : rays)
     {
-      // A ray on the upper face of the domain lies in the last voxel.
+      // A ray on the upper face of the domain has an index beyond the last voxel: it is assigned to the last voxel.
       for (int axis = 0; axis < 3; ++axis)
       {
         ray.where[axis] = std::clamp(ray.where[axis], 0, this->Over.Whole().size[axis] - 1);
@@ -322,8 +322,9 @@ std::vector<RayOnItsWay> PictureInBlocks::Follow(
   return gone;
 }
 
-/// Renders the picture in groups of pixel rows; only the rays of one group travel between ranks at a time. Collective.
-/// @param sharp  whether this is the pass for unscattered light, of the two passes of a picture of angular moments
+/// Renders the picture in groups of pixel rows, so that only the rays of one group travel between ranks at a time.
+/// Collective.
+/// @param sharp  whether this is the pass for unscattered light of a picture made of angular moments
 void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& picture, const Monitor& monitor)
 {
   RayPass pass = {};
@@ -355,8 +356,8 @@ void PictureInBlocks::CastInRounds(const Camera& camera, bool sharp, Picture& pi
   }
 }
 
-/// Renders this rank's contribution to the picture: pixels of its block for straight rays, else pixels of the rays that
-/// end on this rank. Collective.
+/// Renders this rank's contribution to the picture. For straight rays these are the pixels of its block, otherwise the
+/// pixels of the rays that end on this rank. Collective.
 /// @param size  width and height of the picture, pixels
 Picture PictureInBlocks::CastOwn(const Camera& camera, const std::array<int, 2>& size, const Monitor& monitor)
 {

@@ -15,27 +15,27 @@
 
 namespace tyndall
 {
-/// Upper limits of a rank's work in progress, in addition to its block: the memory for this work does not grow with the
-/// medium, the picture or the number of ranks.
+/// Upper limits of a rank's work in progress. They bound the memory that a rank needs in addition to its block,
+/// whatever the size of the medium, the picture or the number of ranks.
 struct WorkAtOnce
 {
   /// Voxels for which shadow rays are traced at a time, summed over all ranks, 12 bytes each; at least one row of
   /// voxels per rank.
   std::size_t voxels = 65536;
-  /// Primary rays that travel between ranks at a time, summed over all ranks, 140 bytes each: at least those of four
-  /// rows of pixels, fewer than this number if a device has too little memory. Rays split off from them are not
-  /// counted.
+  /// Primary rays that travel between ranks at a time, summed over all ranks, 140 bytes each. At least four rows of
+  /// pixels travel together; fewer rays than this limit do if a device has too little memory. Rays split off from
+  /// primary rays are not counted.
   std::size_t rays = 131072;
 };
 
 /// Picture of a domain of which each rank holds its own block with halo (numerics.md, section 14.9). On one rank it is
 /// the picture that MediumRayCaster renders.
 ///
-///  - Straight rays: each rank renders its block, and the pictures are composited (BlockPixels.h). Rays that depend on
-///    the transmittance of the blocks in front are cast again.
-///  - Rays that bend, or meet a table: they travel from rank to rank in rounds, as photons do, a few rows of pixels at
-///    a time. The rank whose block contains the midpoint of a step computes the step; entry into and exit from the grid
-///    are computed with the coordinates of the whole domain, so that the rays do not depend on the decomposition.
+///  - Straight rays: each rank renders its block, and the pictures are composited (BlockPixels.h). A ray is cast again
+///    if its result depends on the transmittance of the blocks in front.
+///  - Rays that bend or meet a table: they travel from rank to rank in rounds, a few rows of pixels at a time. The rank
+///    whose block contains the midpoint of a step computes the step. Entry into and exit from the grid are computed in
+///    coordinates of the whole domain, so that the rays do not depend on the decomposition.
 ///  - Shadow rays: each rank computes the optical length, within its block, of the paths from other blocks' voxels to a
 ///    light; these lengths are summed.
 ///
@@ -48,11 +48,11 @@ public:
   /// @param own  properties of this rank's block; null: it has no voxels
   static SharedScene Shared(const Domain& domain, const SharedScene* own);
 
-  /// Prepares pictures of a domain; the lights of all ranks are compared. Collective.
+  /// Prepares pictures of a domain and checks that the ranks agree on the lights. Collective.
   /// @param domain, held  must outlive this object
   /// @param held  by rank, the voxels that the rank's arrays cover, ghost cells included
-  /// @param own   caster of this rank's block, for the medium in the box held[rank]; null: it has no voxels. On one
-  ///   rank: a caster of the whole domain, without a block
+  /// @param own   caster of this rank's block, for the medium in the box held[rank]; null: the rank has no voxels. On
+  /// one rank: a caster of the whole domain, without a block
   /// @param atOnce  limits of the work in progress, the same on all ranks
   /// @throws InvalidInput  on all ranks, if the lights differ between ranks
   PictureInBlocks(

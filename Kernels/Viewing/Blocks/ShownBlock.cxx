@@ -12,7 +12,7 @@ namespace
 {
 /// Smallest number of picture rows per thread.
 constexpr std::size_t RowsOfThread = 16;
-/// Rounding error, in units of 1/255, of dividing and multiplying integers as floats.
+/// Rounding error of a division followed by a multiplication of integers held as floats, in units of 1/255.
 constexpr float RoundingOfByte = 1e-3f;
 
 using Shown = std::array<float, 3>; ///< display value of red, green, blue, [0, 255]
@@ -54,8 +54,7 @@ struct Screen
 };
 }
 
-/// The blocks at one pixel: display value of the first k blocks for k = 0, 1, ..., and transmittance of the first k
-/// blocks.
+/// The blocks at one pixel, for k = 0, 1, ...: display value of the first k blocks together, and their transmittance.
 struct ShownBlock::Column
 {
   std::vector<Shown> shown;
@@ -94,7 +93,7 @@ ShownBlock::ShownBlock(
 }
 
 /// RGBA that this block must contribute to one pixel.
-/// @param ended  pixel of this block up to an opaque surface that ends the ray in it; null: no surface does
+/// @param ended  contribution of this block if an opaque surface ends the ray inside it; null: no surface does
 std::array<std::uint8_t, 4> ShownBlock::Share(Column& blocks, int column, int row, const BlockPixel* ended) const
 {
   blocks.Find(this->Blocks, column, row, this->Tones);

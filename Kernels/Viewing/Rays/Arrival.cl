@@ -13,8 +13,8 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// Largest distance in voxels between a ray's exit point and the table's face, due to rounding, at which the ray meets
-// the table.
+// Distance in voxels between a ray's exit point and the table's face up to which the ray meets the table: allows for
+// rounding. The table is a plane at one face of the box that reflects light.
 #define REACH_OF_TABLE 2e-3f
 
 // Radiance, divided by n^2, of a white table (diffuse reflectance 1) at points of its face, interpolated between voxel
@@ -35,7 +35,7 @@ inline rgb table_light(const surroundings* s, __global const float4* backdrop, r
   return between_four(backdrop + s->v->backdrop.w, first, first + row, across, up);
 }
 
-// Of the rays `left_box`, which leave the box, the mask of those that leave it through the face on which the table is.
+// Mask of those rays of `left_box` that leave the box through the face on which the table is.
 inline integer meet_table(const surroundings* s, const ray_packets* t, integer left_box)
 {
   const int axis = s->o->face.x;

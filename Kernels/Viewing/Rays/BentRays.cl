@@ -23,18 +23,19 @@ inline real fresnel(real n1, real n2, real across)
   return (real)0.5f * fma(s, s, p * p);
 }
 
-// A leapfrog step that crosses the surface: its midpoint, the velocity in its first half, half its duration, and the
-// time since the midpoint of the previous step.
+// A leapfrog step that crosses the reflecting surface (where n rises through surfaceIndex): its midpoint, the velocity
+// in its first half, half its duration, and the time since the midpoint of the previous step.
 typedef struct
 {
   real3 middle, velocity;
   real halfTime, since;
 } met_step;
 
-// Time that has passed at the step's midpoint since the rays met the surface, found by bisection.
+// Time between the moment at which the rays meet the reflecting surface and the step's midpoint, found by bisection.
 inline real time_since_surface(const surroundings* s, const met_step* step)
 {
-  // At `outer` the index is below that of the surface, at `inner` it is not.
+  // Bisection bounds: the refractive index is below that of the surface at `outer`, and at least that of the surface at
+  // `inner`.
   real outer = step->halfTime + step->since;
   real inner = (real)0.0f;
   real3 bend;
@@ -69,9 +70,9 @@ inline real reflectance(const surroundings* s, real3 at, real3 t, real3 normal, 
   return fresnel(lesser(n1, (real)s->o->surface.x), greater(n2, (real)s->o->surface.x), across);
 }
 
-// Splits the rays `meets`, which meet the surface in this step, into a transmitted and a reflected part. The
-// transmittance is known at the step's start, but the surface lies somewhat before or behind that point: the medium in
-// between acts on both parts or on one of them.
+// Splits the rays `meets`, which meet the reflecting surface in this step, into a transmitted and a reflected part. The
+// transmittance is known at the step's start only, and the surface lies somewhat before or behind this point. The
+// medium in between attenuates both parts or one of them.
 inline void split_at_surface(
   const surroundings* s, const met_step* step, integer meets, light* l, crossed* half_way, waiting* reflected)
 {
@@ -94,8 +95,7 @@ inline void split_at_surface(
   reflected->at = chosen(meets, at, reflected->at);
   reflected->velocity = chosen(meets, stretched(back, s->v->inverseSpacing), reflected->velocity);
 
-  // Accounts for the medium between the step's start and the surface: adds its light to the radiance, and includes its
-  // transmittance in that of the reflected ray.
+  // The medium between the step's start and the surface adds light to the radiance and attenuates the reflected ray.
   corners around;
   corners_of_samples(s, at, &around);
   const real speed = sqrt(product(t, t));
@@ -129,8 +129,8 @@ inline void split_at_surface(
   lose_half(meets & (whole > (real)0.5f) & (mean_left(*l) <= (real)0.5f), depth_of(at, s->v, spacing), half_way);
 }
 
-// Samples n^2 at the current points of rays that come from straight steps or have just started: for them n^2 at the
-// midpoint of a previous bent step is not known.
+// Samples n^2 at the current points of rays that have just started or come from straight steps, since no bent step
+// before has sampled it.
 //   moves  rays that take the next step; other lanes are not changed
 __attribute__((always_inline)) inline void sample_unknown_index(
   const surroundings* s, const ray_packets* t, integer moves, watch* w)
@@ -146,8 +146,8 @@ __attribute__((always_inline)) inline void sample_unknown_index(
   }
 }
 
-// Splits the rays that meet the surface in a bent step, those whose n^2 has risen through the surface's value since the
-// previous sample (split_at_surface). Records n^2 for the next step.
+// Splits the rays that meet the reflecting surface in a bent step (split_at_surface): since the previous sample, their
+// n^2 has risen through the value of the surface. Records n^2 for the next step.
 //   middle, half_time  the step's midpoint, and half its duration t
 //   square             n^2 at the midpoint
 //   moves              rays that take the step
@@ -175,7 +175,7 @@ inline real room_around(real3 p, int4 size)
 #undef ROOM
 }
 
-// Marks rays as outside the box that have reached one of its faces at the end of their step.
+// Marks rays that have reached a face of the box at the end of their step as outside the box.
 //   last     rays whose step ends at a face
 //   returns  the rays that have left
 inline integer leave(ray_packets* t, integer last, int4 size)
@@ -221,7 +221,7 @@ __attribute__((always_inline)) inline integer shorten_step(
   return stops;
 }
 
-// Marks the rays whose path ends with a bent step: at a face of the box (leave), or at an opaque surface.
+// Marks the rays that end with this bent step, at a face of the box (leave) or at an opaque surface.
 //   last, stops  rays whose step ends at a face, and at an opaque surface, see shorten_step
 //   returns      those of the rays `moves` that take another step
 __attribute__((always_inline)) inline integer end_step(
@@ -250,7 +250,7 @@ __attribute__((always_inline)) inline void bend(
   const float stride = s->v->marching.x;
   const int steps = s->o->limits.y;
   integer moves = done == 0;
-  // Checks for faces of the box are needed only if a ray can reach one within these steps; usually none can.
+  // Rays are tested against the faces of the box only if one of them can reach a face within these steps.
   const int may_leave = any_lane(moves & (room_around(t->at, size) < (real)(stride * (float)(steps + 1) + 1.0f)));
   if (SURFACE(s))
   {

@@ -6,7 +6,7 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// Starts the march of reflected or mirrored rays `next`, which have waited for the end of an earlier march. Returns
+// Starts the march of the reflected or mirrored rays `next`, which were stored until an earlier march ended. Returns
 // false if there are none.
 inline int send_off(const waiting* next, ray_packets* t, light* l)
 {
@@ -14,7 +14,7 @@ inline int send_off(const waiting* next, ray_packets* t, light* l)
   t->at = next->at;
   t->velocity = next->velocity;
   t->inside = most_left(*l) > (real)0.0f;
-  // The depths at which opaque surfaces end rays are given for camera rays only.
+  // Opaque surfaces end camera rays only: their depths are not known along reflected and mirrored rays.
   t->end = (real)ENDLESS;
   t->stopped = (integer)0;
   return any_lane(t->inside);

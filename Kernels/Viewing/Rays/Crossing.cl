@@ -98,8 +98,8 @@ inline rgb passed_of(light l)
 }
 
 #if BLOCK
-// Transmittance of the blocks in front of this one, per pixel; 1 if there are none.
-//   limits  depths at which rays end, one per pixel if v->has.x; then these transmittances, three per pixel if v->has.y
+// Transmittance of the blocks in front of this one at a pixel; 1 if there are none.
+//   limits  array: one depth per pixel at which rays end, if v->has.x; then three transmittances per pixel, if v->has.y
 inline rgb starts_of(const ViewInfo* v, __global const float* limits, int column, int row)
 {
   rgb part = { (real)1.0f, (real)1.0f, (real)1.0f };
@@ -206,8 +206,8 @@ inline real cross_length(real sigma, real length, int thin, real* remains)
   return length * fraction;
 }
 
-// The step in which a ray's transmittance falls below 1/2: its start and length along the ray or along the view axis,
-// and the transmittance before and after it.
+// The step in which a ray's transmittance falls below 1/2: where it starts and how long it is, along the ray or along
+// the view axis, and the transmittance before and after it.
 typedef struct
 {
   real start, length, before, after;
@@ -257,8 +257,8 @@ __attribute__((always_inline)) inline rgb scattered_towards_eye(
 #else
 #define SIGMA_OF(c) s->sigma
 #endif
-// Multiplies the ratios of source to extinction, which samples hold with SHOWN, by the interpolated extinction: `s`
-// then holds sources.
+// With SHOWN, samples hold ratios of source to extinction. Multiplies them by the interpolated extinction, so that `s`
+// holds sources.
 __attribute__((always_inline)) inline void multiply_by_extinction(
   const scenery* scene, const corners* at, int4 size, sample* s)
 {
@@ -328,8 +328,8 @@ __attribute__((always_inline)) inline sample take_sample(const scenery* scene, c
 }
 
 #if MANY_STEPS
-// Subtracts from the transmittance `left` the fraction `part` of it that a step removes. Multiplying by the remaining
-// fraction is less exact: in single precision 1 - 1e-9 is 1.
+// Subtracts the fraction `part` from the transmittance `left`. To multiply by 1 - part would be less exact: in single
+// precision 1 - 1e-9 is 1.
 //   rest  compensation of rounding errors (Kahan summation), which add_to updates
 inline void lose(real* left, real* rest, real part)
 {
@@ -338,9 +338,9 @@ inline void lose(real* left, real* rest, real part)
 }
 #endif
 
-// Crosses one step with the coefficients s: accumulates radiance, reduces the transmittance, and records in half_way
-// the step in which it falls below 1/2. Only the last product depends on the transmittance before the step, so that
-// successive steps overlap in the processor.
+// Crosses one step with the coefficients s: adds radiance, reduces the transmittance, and records in half_way the step
+// in which it falls below 1/2. Only the last product depends on the transmittance before the step, so the processor can
+// overlap successive steps.
 //   length  path length of the step
 //   start, gain  position of the step and its extent, along the ray or along the view axis
 __attribute__((always_inline)) inline void cross_sample(
@@ -408,8 +408,8 @@ __attribute__((always_inline)) inline void cross_sample(
   half_way->after = crossing ? after : half_way->after;
 }
 
-// Records that the surface or the table, at the depth `place`, makes the transmittance of the rays `where` fall to 1/2
-// or less at once; stored as a fall from 1 to 0.
+// Records that the transmittance of the rays `where` falls to 1/2 or less at the depth `place` of the surface or table.
+// The record is a step in which it falls from 1 to 0.
 inline void lose_half(integer where, real place, crossed* half_way)
 {
   half_way->start = where ? place : half_way->start;

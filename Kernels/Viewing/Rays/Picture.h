@@ -10,8 +10,8 @@ struct Picture
   int width = 0;
   int height = 0;
   std::vector<float> radiance; ///< radiance, 3 per pixel, W / (length^2 sr)
-  /// Opacity for what is behind the medium, one per pixel: 1 - transmittance of the medium and of a surface's
-  /// reflection, averaged over the channels. 1 where the table is seen.
+  /// Opacity, one per pixel, for what is behind the medium: 1 - transmittance, averaged over the channels, of the
+  /// medium and of the reflecting surface. 1 where the table is seen.
   std::vector<float> alpha;
   /// Distance from the camera along the view axis at which the mean transmittance falls to 1/2, one per pixel, also for
   /// bent rays; `farDepth` if it does not.
@@ -22,12 +22,12 @@ struct Picture
   double relativeError = 0.0; ///< root mean square of `error`, relative to that of the radiance
   /// Only for a block of a larger grid, 3 per pixel: transmittance of the block for radiance from behind it.
   std::vector<float> transmittance;
-  /// Only for a block, 3 per pixel: transmittance for light from behind that is not scattered at all. Differs from
+  /// Only for a block, 3 per pixel: transmittance for light from behind that is not scattered at all. It differs from
   /// `transmittance` only if the light is given by angular moments. Its mean over the channels is 1 - alpha, except
-  /// where the block shows the background and alpha is therefore 1.
+  /// where the block shows the background, which has alpha 1.
   std::vector<float> sceneTransmittance;
-  /// Only for a block, 3 per pixel, may be empty: radiance that passes the blocks in front unscattered, so that they
-  /// attenuate it by their sceneTransmittance. Not included in `radiance`.
+  /// Only for a block, 3 per pixel, may be empty: radiance that is not in `radiance` because blocks in front attenuate
+  /// it by their sceneTransmittance; it passes them unscattered.
   std::vector<float> sharp;
   /// Only for a block, 3 per pixel: correction for light at the surface of thick voxels (SurfaceLight in Backdrop.cxx)
   /// where the ray enters the domain. It is added to the radiance, multiplied by 1 - transmittance of all blocks along
@@ -35,8 +35,8 @@ struct Picture
   std::vector<float> missing;
 };
 
-/// Transmittance of the blocks in front of a block that is rendered again, 3 per pixel of the picture; 0 for pixels
-/// that are not rendered again. Empty: there are no blocks in front.
+/// Transmittance of the blocks in front of a block that is rendered again, 3 per pixel of the picture. 0 marks pixels
+/// that are not rendered again. Empty: no blocks are in front.
 struct Starts
 {
   /// Transmittances of the blocks in front: `transmittance` for radiance (Picture::transmittance), `seen` for

@@ -21,7 +21,7 @@ namespace tyndall
 namespace
 {
 constexpr int RoundsAtMost = 16; ///< limit of a ray's path length: this many times the sum of the box's edges
-/// Distance in voxels that rays march between two checks whether the index is constant around them.
+/// Length, in voxels, of the piece of a bent ray between two checks whether the refractive index around it is constant.
 constexpr double BentStretch = 4.0;
 constexpr double SurfacePrecision = 1.0e-3; ///< accuracy, in voxels, of the point at which the surface splits a ray
 /// Number of rays that are created in one launch, 140 bytes each.
@@ -84,7 +84,7 @@ ViewInfo RayCasting::ViewOf(const Camera& camera, const GridBlock* block) const
   {
     view.block = BlockInfoOf(*block);
   }
-  // Bent rays travel between blocks: their positions refer to the whole grid.
+  // Bent rays travel from block to block, so their positions refer to the whole grid.
   if (block && !traits.OnlyStraight())
   {
     view.held = view.size;
@@ -132,14 +132,14 @@ RayPass RayCasting::PassOf(const Camera& camera, const GridBlock* block, bool sh
   this->Behind.Describe(this->Settings, sharp, pass.view);
   if (this->Traits.ShowsMoments() && sharp == this->Behind.IsSky())
   {
-    // Of the two passes of a picture of angular moments, only that for scattered light shows a sky, and only that for
-    // unscattered light shows a background colour.
+    // A picture made of angular moments has two passes. Only the pass for scattered light shows a sky, and only the
+    // pass for unscattered light shows a background colour.
     pass.view.background = { { 0.0f, 0.0f, 0.0f, pass.view.background.s[3] } };
   }
   if (sharp)
   {
-    // This is the pass for unscattered light; the pass for scattered light already includes the light that the table (a
-    // face of the box) reflects diffusely.
+    // This is the pass for unscattered light. The light that the table reflects diffusely is already in the pass for
+    // scattered light.
     pass.optics.table.s[0] = pass.optics.table.s[1] = pass.optics.table.s[2] = 0.0f;
   }
   return pass;
@@ -225,8 +225,8 @@ Picture RayCasting::Cast(RayPass pass, const std::vector<float>& ends, const std
   const PackedSamples& s = this->Samples;
   const std::array<int, 2> packet = PacketPixels(this->Traits.packetWidth);
   cl::Kernel cast = this->Kernel(ofBlock);
-  // Each batch consists of complete work-groups of 4 x 4 packets; an incomplete group would be filled up with rows that
-  // the next batch renders again.
+  // Batches consist of complete work-groups of 4 x 4 packets. Otherwise the device would fill up the last work-group
+  // with rows that the next batch renders again.
   const int group = 4;
   const std::size_t across = RoundUp<std::size_t>(view.picture.s[0], group * packet[0]) / (group * packet[0]);
   const std::size_t rows = RoundUp<std::size_t>(view.picture.s[1], group * packet[1]) / (group * packet[1]);
@@ -262,8 +262,8 @@ std::size_t RayCasting::MostSplitOff() const
 std::size_t RayCasting::CountThatFits() const
 {
   const std::size_t limit = this->TheDevice.MemoryLimit(), taken = this->TheDevice.BytesInUse();
-  // Largest number of rays per pixel: the primary one and those split off it. Each of them, when it is marched, also
-  // needs space for as many rays that may be split off it: so memory per pixel is `kinds` squared.
+  // Rays per pixel: the primary ray and those split off it. While one of them is marched, it needs space for as many
+  // more that may be split off, so the memory per pixel is proportional to kinds^2.
   const std::size_t kinds = 1 + this->MostSplitOff();
   return std::max<std::size_t>((limit - std::min(taken, limit)) / (4 * kinds * kinds * sizeof(RayOnItsWay)), 1);
 }

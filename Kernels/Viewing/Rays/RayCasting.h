@@ -47,8 +47,8 @@ public:
   /// Kernel parameters of a picture.
   /// @param camera  camera of the picture
   /// @param block  block of a larger grid that the picture shows; null: the picture shows the whole domain
-  /// @param sharp  for a picture of angular moments, which has two passes: true for the pass for unscattered light,
-  ///   which shows the environment's peaks and determines the picture's alpha and depth (numerics.md, section 14.7)
+  /// @param sharp  whether this is the pass for unscattered light of a picture made of angular moments. This pass shows
+  /// the environment's peaks and determines the picture's alpha and depth (numerics.md, section 14.7)
   /// @throws InvalidInput for a degenerate camera or one too far away
   RayPass PassOf(const Camera& camera, const GridBlock* block, bool sharp) const;
 
@@ -74,8 +74,7 @@ public:
   std::vector<RayOnItsWay> Start(RayPass pass, const PixelRows& rows) const;
   /// Marches each ray to the block's boundary or to its end.
   /// @param rays  rays in this block; receive their new states
-  /// @return reflected and refracted rays that were split off at the glass surface, at the table on which the object
-  /// stands, or at both
+  /// @return rays that were split off in this block: reflected by the surface, or mirrored by the table
   /// @throws Aborted
   std::vector<RayOnItsWay> March(RayPass pass, std::vector<RayOnItsWay>& rays, const Monitor& monitor) const;
 

@@ -23,16 +23,16 @@ typedef struct
   integer stopped; // whether the rays have reached the depth `end`
 } ray_packets;
 
-// Reflected or mirrored rays of a packet, which are marched after the current ones. Zero transmittance: there is no
-// such ray.
+// Reflected or mirrored rays of a packet, which are marched after the current rays. A transmittance of zero marks a
+// lane without such a ray.
 typedef struct
 {
   real3 at, velocity;
   spectrum left;
 } waiting;
 
-// Detection of the surface, where n rises through a given value: n^2 along primary rays, and the rays that the surface
-// has reflected.
+// State by which primary rays detect the reflecting surface, where n rises through a given value, and the rays that the
+// surface has reflected.
 typedef struct
 {
   integer met;       // whether the ray has met the surface already, or is not to be split by it
@@ -43,7 +43,7 @@ typedef struct
 } watch;
 
 // Inputs of a march: parameters of the picture (v) and of the optics (o), packed samples (scene), the field that bends
-// rays, and signed distances of bricks, by which rays skip empty ones (Sampling.cl).
+// rays, and a distance per brick by which rays skip empty bricks (Sampling.cl).
 typedef struct
 {
   const ViewInfo* v;
@@ -65,8 +65,8 @@ inline real3 kept_within(real3 p, int4 size)
   return q;
 }
 
-// Number of voxels in the arrays of samples and of the bending field, and the voxel of the whole grid at which each
-// array begins.
+// Two arrays, the samples and the bending field, each cover a box of the whole grid: its number of voxels (SIZE) and
+// its first voxel (FIRST).
 #if ROUNDS
 #define SAMPLES_SIZE(s) (s)->v->held
 #define SAMPLES_FIRST(s) (s)->v->block.first
@@ -152,7 +152,7 @@ inline real time_to_face(real3 p, real3 velocity, int4 size)
 }
 
 #if ROUNDS
-// Midpoint of each ray's next step; the block that contains it computes the step. Bent and straight steps have equal
+// Midpoint of each ray's next step, which decides the block that computes this step. Bent and straight steps have equal
 // length.
 inline real3 middle_of_next(const surroundings* s, const ray_packets* t)
 {
@@ -161,7 +161,7 @@ inline real3 middle_of_next(const surroundings* s, const ray_packets* t)
   return kept_within(further(t->at, (real)0.5f * time, t->velocity), s->v->size);
 }
 
-// Length of the next straight steps whose midpoints lie in the block's own voxels; at least one step.
+// Length of the straight steps that can follow while their midpoints lie in the block's own voxels; at least one step.
 inline real own_stretch(const surroundings* s, real3 p, real3 direction, real step)
 {
   const BlockInfo* b = &s->v->block;
@@ -189,7 +189,7 @@ inline real depth_of(real3 p, const ViewInfo* v, float4 spacing)
   return product(from_eye, forward);
 }
 
-// Time t until each ray, continued in a straight line, reaches the depth `t->end`.
+// Time t until each ray, continued in a straight line, reaches `t->end`, the depth of an opaque surface.
 inline real time_to_end(const ray_packets* t, real3 velocity, const surroundings* s)
 {
   const real3 forward = { (real)s->v->forward.x, (real)s->v->forward.y, (real)s->v->forward.z };

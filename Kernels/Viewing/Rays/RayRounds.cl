@@ -1,7 +1,7 @@
-// Marches rays that bend, are reflected by a surface or mirrored by a table through one block of a larger grid, each to
-// the block's boundary. The entry into the domain, each step and the exit are computed by the block that contains the
-// entry point, the step's midpoint or the exit point. Positions are in voxels of the whole grid, so that the results
-// equal those of a serial run.
+// Marches rays through one block of a larger grid, each to the block's boundary. The rays may bend, be reflected by a
+// surface or be mirrored by a table. A ray's entry into the domain is computed by the block that contains the entry
+// point, its exit by the block that contains the exit point, and each step by the block that contains the step's
+// midpoint. Positions are in voxels of the whole grid, so that the results equal those of a serial run.
 //
 // Macros set by the host:
 //   ROUNDS  1
@@ -11,7 +11,7 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// Largest number of rays that are split off one ray: by the surface and by the table.
+// Largest number of rays that one ray splits off: one by the surface, one by the table.
 #define BORN(s) ((SURFACE(s) > 0) + (s)->o->face.w)
 
 // Initialises the state of a ray that is created in this block; the caller sets `pixel`, `where`, `at`, `velocity` and
@@ -104,7 +104,8 @@ typedef struct
 #define STORE_SPECTRUM(s, n) ray->left[0] = ray->left[1] = ray->left[2] = LANE(s, n);
 #endif
 
-// Loads a packet of rays from index `first` on. The packet's rays beyond the last of `count` rays count as ended.
+// Loads a packet of rays from index `first` on. If the packet extends beyond the `count` rays of the array, its excess
+// rays count as ended.
 inline arrivals load(__global const RayOnItsWay* rays, int first, int count)
 {
   arrivals a;
@@ -177,7 +178,7 @@ inline void store(const arrivals* a, real3 middle, __global RayOnItsWay* rays, i
 #undef STORE
 }
 
-// Stores the rays that were split off the rays of a packet; `pixel` is -1 where a split-off ray has zero transmittance.
+// Stores the rays that the rays of a packet have split off. `pixel` is -1 if there is none.
 //   slot  index among the BORN(s) rays that may be split off each ray
 inline void store_born(const surroundings* s, const arrivals* a, const waiting* born, int kind, int slot,
   __global RayOnItsWay* rays, int first, int count)

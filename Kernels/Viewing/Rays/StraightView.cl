@@ -9,9 +9,8 @@
 #include "Viewing/Rays/View.cl"
 #include "Viewing/Samples/Sampling.cl"
 
-// Marches a packet of straight rays through the medium in steps of v->marching.x voxels: accumulates radiance in `l`,
-// and reduces its transmittance. Empty bricks are skipped. The march ends once no ray's transmittance exceeds
-// v->marching.y.
+// Marches a packet of straight rays through the medium in steps of v->marching.x voxels. `l` accumulates radiance and
+// loses transmittance. Empty bricks are skipped. The march ends once no ray's transmittance exceeds v->marching.y.
 //   bricks    distances between bricks of different classes, see Sampling.cl
 //   records   index of the first sample of each brick's record, with BRICKED
 //   packet    section of the rays in the medium
@@ -49,7 +48,8 @@ __attribute__((always_inline)) inline void march_straight(const ViewInfo* v, con
     stop = min(stop, steps);
     for (; n < stop; ++n)
     {
-      // Sampling does not depend on the transmittance, so that it overlaps the previous step in the processor.
+      // The sample is read before the transmittance is needed, so that reading overlaps the previous step in the
+      // processor.
       const real start = step * (real)(float)n;
       const real length = lesser(greater(packet.length - start, (real)0.0f), step);
       corners at;
@@ -131,8 +131,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   if (v.has.z)
   {
 #if BLOCK
-    // The factor of the surface light, 1 - transmittance, depends on all blocks along the ray and is applied when
-    // blocks are composited.
+    // This correction is multiplied by 1 - transmittance of all blocks along the ray, when the blocks are composited.
     paint_triple(&v, picture + MISSING_LIGHT(&v), column, row,
       surface_light(&v, backdrop, packet, seen.d, enters ? before : (real)0.0f, v.size));
 #else
@@ -142,7 +141,7 @@ __kernel void cast_rays(ViewInfo v, __global const float4* restrict samples,
   add_light_behind(&v, backdrop, packet, seen.d, sees_behind, &l);
   const real where = left > (real)0.5f ? (real)v.marching.z : (distance_to_half(half_way) + before) * seen.cosine;
 #if BLOCK
-  // Transmittance of the background: 0 where a block shows it, which hides all that is behind, so that alpha is 1.
+  // A block that shows the background hides everything behind it, so that alpha is 1.
   const real kept = sees_behind ? (real)(1.0f - v.background.w) : (real)1.0f;
   paint_triple(&v, picture + PASSED_PART(&v), column, row, passed_of(l));
   paint(&v, picture, column, row, l.radiance, (real)1.0f - left * kept, where);

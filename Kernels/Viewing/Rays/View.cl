@@ -60,8 +60,8 @@ inline camera_rays rays_through(const ViewInfo* v, int column, int row)
 
 #define ENDLESS 1e30f // depth larger than any other: no opaque surface ends the ray
 
-// Indices in the picture of the pixels of a packet whose first pixel is (column, row); pixels outside are replaced by
-// the nearest pixels of the picture.
+// Indices in the picture of the pixels of a packet whose first pixel is (column, row). Packet positions outside the
+// picture are given the index of the nearest pixel inside.
 inline integer nearest_pixels(const ViewInfo* v, int column, int row)
 {
   const integer i = to_integer(lesser(ACROSS + (real)(float)column, (real)(float)(v->picture.x - 1)));
@@ -94,11 +94,11 @@ inline integer in_picture(const ViewInfo* v, int column, int row)
   return (to_integer(ACROSS) + column < (integer)v->picture.x) & (to_integer(UPWARDS) + row < (integer)v->picture.y);
 }
 
-// A picture is one array that consists of several images, each with one or three values per pixel:
+// A picture is one array that consists of several images one after the other, each with one or three values per pixel:
 //   radiance  3, W / (length^2 sr)
 //   alpha     1, 1 - mean transmittance
 //   depth     1, along the view axis, where the mean transmittance falls to 1/2
-//   for a block of a larger grid: 3, its transmittance; with surface light 3, that light
+//   for a block of a larger grid: 3, its transmittance; then, if present, 3, the correction for light at the surface
 #define PIXELS(v) ((size_t)(v)->picture.x * (v)->picture.y)
 #define PASSED_PART(v) (5 * PIXELS(v))
 #define MISSING_LIGHT(v) (8 * PIXELS(v))

@@ -1,12 +1,13 @@
-// Packs the field that bends rays, n the refractive index: half the gradient of n^2, and n^2, of the tricubic spline
-// that photons also follow, at voxel centres with a border of one voxel that repeats the outermost voxels.
+// Packs the field that bends rays: half the gradient of n^2, and n^2 itself, n the refractive index. Both are taken
+// from the tricubic spline that photons also follow, at voxel centres with a border of one voxel that repeats the
+// outermost voxels.
 //
-// Between voxel centres, gradient and n^2 are interpolated linearly; rays through a plane layer then leave it according
+// Between voxel centres, gradient and n^2 are interpolated linearly. Rays through a plane layer then leave it according
 // to Snell's law, for any gradient (numerics.md, section 14.3).
 
 #include "Refraction/Index/SquaredIndex.cl"
 
-// Gradients of n^2 up to this fraction of n^2 are rounding errors of a constant index.
+// A gradient of n^2 up to this fraction of n^2 is the rounding error of a constant index.
 #define FLAT 2e-6f
 
 // Value and slope of a cubic B-spline at the middle of three adjacent coefficients.

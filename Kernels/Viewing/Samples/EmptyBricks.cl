@@ -1,4 +1,5 @@
-// Finds empty bricks, which rays may skip. One program for all scenes: what samples hold is an argument (SampleTraits).
+// Finds empty bricks, which rays may skip. One program serves all scenes: the argument SampleTraits describes what the
+// samples hold.
 
 #include "Viewing/Samples/SampleLayout.cl"
 #include "Viewing/Scene/ViewShared.h"
@@ -45,8 +46,8 @@ static int place_of(const SampleTraits* of, int x, int y, int z, int4 size, __gl
   return first == 0 ? -1 : first + row * SampleEdge + x - i * BrickEdge;
 }
 
-// Classifies each brick of voxels: 1 if it is empty, -1 if a sample that is interpolated inside it has extinction or a
-// source, 0 if rays bend in it. Bricks that are not in SeenBricks::seen (ViewTraits.h) are empty.
+// Classifies each brick of voxels. 0: rays bend in it; 1: it is empty; -1: some sample that is interpolated inside it
+// has extinction or a source. Bricks that SeenBricks::seen (ViewTraits.h) does not mark count as empty.
 __kernel void find_empty_bricks(PackInfo info, SampleTraits of, __global const float4* restrict samples,
   __global const float4* restrict extinctions, __global const float4* restrict glow,
   __global const float4* restrict bending, __global const uchar* restrict seen, __global const int* restrict records,
@@ -67,7 +68,7 @@ __kernel void find_empty_bricks(PackInfo info, SampleTraits of, __global const f
   const int x0 = i * BrickEdge, x1 = min(x0 + BrickEdge + 1, size.x + 1);
   const int y0 = j * BrickEdge, y1 = min(y0 + BrickEdge + 1, size.y + 1);
   const int z0 = k * BrickEdge, z1 = min(z0 + BrickEdge + 1, size.z + 1);
-  int filled = 0, bends = of.bends ? 0 : 1; // 1 also if there is nothing to look for
+  int filled = 0, bends = of.bends ? 0 : 1; // `bends` is 1 also if the scene bends no rays: the search ends
   for (int z = z0; z <= z1 && !(filled && bends); ++z)
   {
     for (int y = y0; y <= y1 && !(filled && bends); ++y)

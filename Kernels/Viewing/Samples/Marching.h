@@ -26,13 +26,13 @@ inline std::string StepOption(double longestSteps)
   return Define("MANY_STEPS", longestSteps > ManySteps);
 }
 
-/// Splits the work of a kernel on a 2D grid, `rows` rows of `cells` cells, into batches: complete rows, or sections of
-/// a row where an entire row would run too long to be aborted.
+/// Splits the work of a kernel on a 2D grid of `rows` rows of `cells` cells into batches. A batch has complete rows;
+/// where an entire row would run too long to be aborted, it has a section of one row.
 /// @param samples  largest number of samples of the medium that the kernel takes per cell
 /// @param from, to  progress that is reported at the start and at the end, in [0, 1]
 inline Batches BatchesOfRows(std::size_t rows, std::size_t cells, double samples, double from, double to)
 {
-  // Samples between two progress reports: under a second on one old core.
+  // Samples between two progress reports; take less than a second on one old CPU core.
   constexpr double SamplesAtOnce = 3.2e7;
   const double atOnce = std::max(SamplesAtOnce / std::max(samples, 1.0), 1.0);
   Batches batches;

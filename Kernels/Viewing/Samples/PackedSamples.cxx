@@ -14,8 +14,9 @@ namespace tyndall
 {
 namespace
 {
-/// Whether the record of a brick (the samples at the corners of its cells) holds the sample of any filled voxel: the
-/// border shifts samples by one voxel, so that a record also holds the last voxels of the preceding bricks.
+/// Whether any sample in the record of a brick belongs to a filled voxel. A record has the samples at the corners of
+/// the brick's cells. Since the border shifts samples by one voxel, these include the last voxels of the preceding
+/// bricks.
 /// @param cells  indices of the brick of cells along each axis
 bool IsFilled(const FilledBricks& filled, const std::array<int, 3>& cells)
 {
@@ -62,8 +63,8 @@ SampleBricks SampleBricksOf(const FilledBricks& filled, const Grid& grid, bool p
 namespace
 {
 /// Multiplies the class of each brick (1 empty, -1 filled, 0 where rays bend) by the Chebyshev distance, in bricks, to
-/// the nearest brick of another class, at most 127. Two passes that propagate distances from neighbours, the second
-/// backwards, are exact.
+/// the nearest brick of another class, at most 127. Distances are propagated from neighbours in two passes, forwards
+/// and backwards, which gives exact values.
 void FindDistances(std::vector<cl_char>& bricks, const std::array<int, 3>& count)
 {
   const auto total = static_cast<std::ptrdiff_t>(bricks.size());
@@ -75,7 +76,7 @@ void FindDistances(std::vector<cl_char>& bricks, const std::array<int, 3>& count
     {
       const std::ptrdiff_t here = side > 0 ? n : total - 1 - n;
       const std::ptrdiff_t i = here % row, j = here / row % count[1], k = here / slice;
-      // the neighbours that precede the brick in memory in the first pass, and those that follow it in the second
+      // Neighbours that precede the brick in memory (first pass), or follow it (second pass).
       for (int neighbour = 0; neighbour < 13; ++neighbour)
       {
         const int x = side * (neighbour % 3 - 1), y = side * (neighbour / 3 % 3 - 1), z = side * (neighbour / 9 - 1);
@@ -98,8 +99,8 @@ std::size_t PaddedCount(const Grid& grid)
 
 constexpr int PackedAlong = 64; ///< number of voxels of a row that a work-group packs
 
-/// Flags of the work-groups that pack samples, along x for each row of bricks: 1 if rays see any of the group's voxels,
-/// else 0. The first sample of a row belongs to the border.
+/// Flags of the work-groups that pack samples, along x for each row of bricks: 1 if any ray samples a voxel of the
+/// group, else 0. The first sample of a row belongs to the border.
 std::vector<cl_uchar> SeenGroups(const SeenBricks& bricks, const Grid& grid)
 {
   const int along = PartsOf(grid.size[0] + 2, PackedAlong);
@@ -158,8 +159,8 @@ PackedSamples::PackedSamples(Device& device, const FilledBricks& filled, const S
   }
 }
 
-/// Launches a packing kernel over all voxels with their border, or, with bricks, over all samples of the records.
-/// Work-groups have a fixed shape, because PoCL compiles a kernel anew for every shape.
+/// Launches a packing kernel over all voxels with their border or, if samples are stored in bricks, over all samples of
+/// the records. Work-groups have a fixed shape, because PoCL compiles a kernel anew for every shape.
 void PackedSamples::Launch(cl::Kernel& kernel, const std::array<int, 3>& size)
 {
   if (this->Traits.bricked)

@@ -17,10 +17,10 @@ namespace tyndall
 {
 /// Memory layout of samples in bricks, for a medium that is mostly empty.
 ///
-/// A cell is the cube between eight neighbouring samples: cell (i, j, k) has sample (i, j, k) of the grid with its
-/// border of one voxel as its lower corner, so an axis of n voxels has n + 1 cells. A brick of 8^3 cells has a record:
-/// all samples at its cells' corners, x fastest, including those on its upper faces, which the next brick's record
-/// repeats, so that interpolation reads one record only. All empty bricks have record 0, which is zero.
+/// A cell is the cube between eight neighbouring samples. The grid has a border of one voxel; cell (i, j, k) has its
+/// sample (i, j, k) as lower corner, so an axis of n voxels has n + 1 cells. A brick is a cube of 8^3 cells. It has a
+/// record: all samples at its cells' corners, x fastest. Samples on the upper faces of a brick are also in the next
+/// brick's record, so that interpolation reads one record only. All empty bricks have record 0, which is zero.
 struct SampleBricks
 {
   std::array<int, 3> count = { 0, 0, 0 }; ///< number of bricks of 8^3 cells along each axis
@@ -40,8 +40,8 @@ struct SampleBricks
 };
 
 /// Layout for the filled bricks of a medium.
-/// @param paired  whether each sample also holds the next one along y, so that records omit the samples on the upper y
-///   faces
+/// @param paired  whether each sample also holds the next sample along y; records then omit the samples on the upper y
+/// faces
 SampleBricks SampleBricksOf(const FilledBricks& filled, const Grid& grid, bool paired);
 
 /// Purpose for which samples are packed.
@@ -52,10 +52,10 @@ enum class Packing
   Unscattered ///< camera rays through the unlit medium: transmittance for light that is not scattered at all
 };
 
-/// Source and extinction of every voxel, in the layout that the marching kernels read, with a border of one voxel; and
-/// the map of empty bricks. Arrays that the scene does not need are empty. Voxels that no ray can see are not packed:
-/// their samples are zero, and on a CPU they use no memory. (Rays of a packet that see nothing read them, because the
-/// packet advances as long as one of its rays sees something.)
+/// Source and extinction of every voxel with a border of one voxel, in the layout that the marching kernels read, and
+/// the map of empty bricks. Arrays that the scene does not need are empty. Voxels that no ray samples are not packed:
+/// their samples are zero, and on a CPU they use no memory. (A packet advances as long as one of its rays has not
+/// ended, so other rays of the packet may read such zeros.)
 class PackedSamples
 {
 public:
@@ -76,13 +76,13 @@ public:
   std::string ShownOptions() const;
   bool HasEmptyBricks() const { return this->EmptyBricks; }
 
-  /// Source and grey extinction of each sample; layout: ScatteredLight.cl, or ShownSamples.cl with angular moments.
+  /// Source and grey extinction of each sample. Layout: ScatteredLight.cl; for angular moments ShownSamples.cl.
   const cl::Buffer& Samples() const { return this->Sources.Handle(); }
   const cl::Buffer& Extinctions() const { return this->ColouredExtinctions.Handle(); }
   /// The array of samples that holds the extinction: coloured extinctions, or sources with grey extinction.
   const cl::Buffer& Sigma() const { return this->Traits.coloured ? this->Extinctions() : this->Samples(); }
-  /// The light's mean direction, times g if ViewTraits::FlowHasG; with angular moments (ShownSamples.cl) the lamps'
-  /// light.
+  /// Per sample: the light's mean direction, multiplied by g if ViewTraits::FlowHasG; with angular moments the lamps'
+  /// light instead (ShownSamples.cl).
   const cl::Buffer& Flow() const { return this->Directions.Handle(); }
   const cl::Buffer& Glow() const { return this->Emission.Handle(); } ///< emission, if ViewTraits::GlowsApart
   /// mean cosine g by voxel for red, green, blue
@@ -109,7 +109,7 @@ private:
   const ViewTraits& Traits;
   std::array<int, 3> Count;
   std::array<int, 3> KnownSize; ///< number of voxels along each axis whose gradient of n^2 is stored
-  /// Number of these voxels that precede the voxels of the medium's arrays, along each axis.
+  /// Along each axis, how many of the KnownSize voxels precede the first voxel of the medium's arrays.
   std::array<int, 3> KnownBefore = {};
   SampleBricks InBricks; ///< layout in bricks, if ViewTraits::bricked
   Packing For = Packing::ForShadowRays;

@@ -9,8 +9,8 @@
 #include "Viewing/Samples/Sampling.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Interpolates linearly in the table `rows` at `place`, clamped to [0, last]; the table has one more entry after the
-// last.
+// Interpolates linearly in the table `rows` at `place`, which is clamped to [0, last]. The table has an additional
+// entry after index `last`.
 inline real between_rows(__global const float* rows, real place, int last)
 {
   const real at = lesser(greater(place, (real)0.0f), (real)(float)last);

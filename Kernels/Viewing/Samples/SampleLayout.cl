@@ -3,7 +3,8 @@
 #pragma once
 #include "Viewing/Scene/ViewShared.h"
 
-// Number of rows of samples in a slice of a brick; a grey sample also holds the sample of the next row
+// Number of rows of samples in a slice of a brick; one fewer if samples are grey, since a grey sample also holds its
+// neighbour in the next row
 #define SAMPLE_ROWS_OF(grey) ((grey) ? BrickEdge : SampleEdge)
 
 #if BRICKED
@@ -15,8 +16,8 @@
 #define SLICE_LENGTH(size) (((size).x + 2) * ((size).y + 2))
 #endif
 
-// Indices of samples, which have a border of one voxel that repeats the outermost voxels: padded_index is the index of
-// a work-item's sample, voxel_of that of the voxel whose values a sample holds.
+// Indices of samples. The samples have a border of one voxel that repeats the outermost voxels. padded_index is the
+// index of a work-item's sample; voxel_of is the index of the voxel whose values this sample holds.
 
 inline int padded_index(int4 size)
 {
@@ -39,9 +40,9 @@ inline int voxel_index(int4 size)
 {
   return voxel_of(sample_of_item(), size);
 }
-// Whether rays see any voxel of this work-group, which packs PackedAlong voxels of a row.
+// Whether any ray samples a voxel of this work-group, which packs PackedAlong voxels of a row.
 // @param seen  one flag per work-group along x and per 8 x 8 rows, the cross-section of a brick (SeenGroups in
-//   PackedSamples.cxx)
+// PackedSamples.cxx)
 inline int is_seen(__global const uchar* seen, int4 size)
 {
   const int j = clamp((int)get_global_id(1) - 1, 0, size.y - 1) >> BrickBits;
@@ -51,8 +52,9 @@ inline int is_seen(__global const uchar* seen, int4 size)
 }
 
 #if BRICKED
-// Index of a work-item's sample among the samples of all records (a record has the samples of one brick): work-items
-// have x along a row of SampleEdge samples, y over the rows of a slice, z over the slices of all records.
+// Index of a work-item's sample among the samples of all records, where a record has the samples of one brick.
+// Work-items are numbered x along a row of SampleEdge samples, y over the rows of a slice, z over the slices of all
+// records.
 inline int place_in_records()
 {
   return ((int)get_global_id(2) * SAMPLE_ROWS + (int)get_global_id(1)) * SampleEdge + (int)get_global_id(0);

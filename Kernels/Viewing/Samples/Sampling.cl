@@ -7,8 +7,8 @@
 //   BRICKED     1: samples are stored in bricks (SampleBricks); 0: in the order of voxels
 //   MANY_STEPS  1: rays take so many steps that rounding errors accumulate noticeably
 //
-// Floating-point contraction is off: the compiler would fuse multiply and add in some expressions only, and two
-// variants of a kernel (with or without skipping of bricks) would render pictures that differ in the last bit.
+// Floating-point contraction is off. Otherwise the compiler would fuse multiply and add in some expressions only, and
+// pictures rendered with and without skipping of bricks would differ in the last bit.
 //
 // Positions are in voxels from the box's lower corner: voxel (i, j, k) covers [i, i+1] x [j, j+1] x [k, k+1]. Arrays
 // named `samples` and `extinctions` have a border of one voxel that repeats the outermost voxels: interpolation needs
@@ -40,7 +40,7 @@
 #define lesser(a, b) ((a) < (b) ? (a) : (b))
 #define greater(a, b) ((a) > (b) ? (a) : (b))
 
-// Combines the upper and the lower half of a vector by `operation` until four lanes are left.
+// Combines the upper and the lower half of a vector by `operation`, repeatedly until four lanes are left.
 #if REAL_WIDTH == 16
 #define REDUCED_TO_FOUR(type, v, operation)    \
   const type##8 eight = operation(v.lo, v.hi); \
@@ -155,7 +155,7 @@ inline real step_length(real3 direction, float step)
 
 inline real3 along(rays packet, real distance)
 {
-  // A ray that has left the box remains at its exit point.
+  // Beyond the box, the point stays at the ray's exit.
   const real d = lesser(distance, packet.length);
   real3 p;
   p.x = fma(d, packet.direction.x, packet.entry.x);
@@ -176,8 +176,8 @@ typedef struct
 #endif
 } corners;
 
-// Computes the interpolation weights at points p, and the indices of the lower voxel centre: first_i, and j and k as
-// integers stored as real.
+// Computes the interpolation weights at points p, and the indices of the lower of the two voxel centres along each
+// axis: first_i along x as integers; j and k along y and z as integers stored in reals.
 __attribute__((always_inline)) inline void weigh_corners(real3 p, corners* at, integer* first_i, real* j, real* k)
 {
   // Conversion to integer truncates, which equals floor here, because points in the box are at least half a voxel above
@@ -246,8 +246,8 @@ __attribute__((always_inline)) inline void find_corners_in_bricks(
 #endif
 
 #if REAL_WIDTH > 1
-// Prefetches the rows of samples around a point p that the packet will reach. Any address is allowed, also outside the
-// array.
+// Prefetches the rows of samples around a point p that the packet will reach. The point may lie outside the array,
+// since a prefetch accepts any address.
 inline void fetch_ahead(__global const float4* samples, real3 p, int4 size)
 {
   const int row = size.x + 2;
@@ -281,9 +281,9 @@ inline float8 neighbours(__global const float2* row, uint twice_first)
 }
 
 #if REAL_WIDTH == 16
-// Interpolates along x for four rays. Each argument v holds four values at the lower x and four at the upper x of one
-// ray; the weights of the rays are lanes 0, 4, 8, c of x. Returns 16 lanes: the four values of the first ray, those of
-// the second, ...
+// Interpolates along x for four rays. Each argument v belongs to one ray and holds four values at the lower x, then
+// four at the upper x. The weights of the rays are in lanes 0, 4, 8 and c of x. Returns 16 lanes: the four interpolated
+// values of the first ray, then those of the second, third and fourth.
 inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 x)
 {
   const float16 left = (float16)(v0, v4);
@@ -299,7 +299,7 @@ inline float16 four_between(float8 v0, float8 v4, float8 v8, float8 vc, float16 
 __attribute__((always_inline)) inline void transpose_quarters(
   float16 a, float16 b, float16 c, float16 d, rgb* colour, real* w)
 {
-  // All permutations stay within quarters of a register, which is fast.
+  // Only permutations within quarters of a register are used, which are fast.
   const float16 ab_low =
     (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd);
   const float16 cd_low =
@@ -326,7 +326,7 @@ __attribute__((always_inline)) inline void transpose_quarters(
 
 // Interpolates values trilinearly at each ray's point: their xyz to `colour`, their w to `w`. Neighbours along x are
 // adjacent in memory, so four loads of eight floats read all corners of a ray. If `paired` (a compile-time constant),
-// each element holds two numbers of a voxel and two of the next voxel along y; then two loads suffice, and the caller
+// an element holds two numbers of a voxel and two of the next voxel along y. Then two loads suffice, and the caller
 // interpolates along y. size.w is 0, which the compiler cannot know: this keeps `at` in memory, from which a CPU
 // broadcasts single lanes at no cost.
 __attribute__((always_inline)) inline void gather_values(
@@ -410,8 +410,8 @@ inline void gather_samples(__global const float4* samples, const corners* at, in
 #endif
 }
 
-// Interpolates bilinearly in a table for each ray: between two adjacent values from index `lower` on and two from
-// `upper` on; x is the weight of the second value of a pair, y that of the upper pair.
+// Interpolates bilinearly in a table for each ray. The table values are two adjacent ones from index `lower` on, and
+// two from `upper` on. x is the weight of the second value of a pair, y the weight of the upper pair.
 inline rgb between_four(__global const float4* values, integer lower, integer upper, real x, real y)
 {
   rgb seen;
@@ -431,13 +431,15 @@ inline rgb between_four(__global const float4* values, integer lower, integer up
   return seen;
 }
 
-// `bricks` holds a signed distance per brick: its absolute value is the Chebyshev distance, in bricks, to the nearest
-// brick of another class. It is positive for empty bricks, negative for bricks with extinction or emission, and 0 where
-// rays bend (FindDistances in PackedSamples.cxx).
+// `bricks` holds a signed distance per brick (FindDistances in PackedSamples.cxx). Its absolute value is the Chebyshev
+// distance, in bricks, to the nearest brick of another class. The sign is positive for empty bricks and negative for
+// bricks with extinction or emission; the value is 0 where rays bend.
 
-// The bricks ahead of a packet at p. `steps`: number of steps that every ray can take before one of them leaves the
-// surrounding bricks of its class (empty, filled, or with bending rays); `empty`: whether all these steps are in empty
-// bricks; `bends`: whether a ray bends. Finished rays are ignored.
+// Describes the bricks ahead of a packet of rays. Finished rays are ignored.
+//   steps  number of steps that every ray can take before one of them leaves the surrounding bricks of its class
+//          (empty, filled, or with bending rays)
+//   empty  whether all these steps are in empty bricks
+//   bends  whether a ray bends
 typedef struct
 {
   int steps, empty, bends;
@@ -501,9 +503,9 @@ inline real steps_before(real distance, real step, real steps, real last_middle)
 //   from    start of the rays, voxels of the whole grid
 //   stride  length of a step, voxels
 //   before  receives the length of the ray in front of the block
-//   enters  whether the ray enters the whole grid in this block
-//   leaves  whether it leaves the whole grid from this block, or misses the grid while this block shows the background
-//           to such rays
+//   enters  receives whether the ray enters the whole grid in this block
+//   leaves  receives whether the ray leaves the whole grid from this block; also set for rays that miss the grid, if
+//           this block shows them the background
 inline rays clip_to_block(real3 from, real3 direction, real farthest, const BlockInfo* b, float stride, real* before,
   integer* enters, integer* leaves)
 {
@@ -512,7 +514,8 @@ inline rays clip_to_block(real3 from, real3 direction, real farthest, const Bloc
   const real steps = ceil(whole.length / step);
   const real last_middle = (real)0.5f * (whole.length + (steps - (real)1.0f) * step);
 
-  // Distances from the entry to the planes between blocks: bitwise equal in both adjacent blocks.
+  // Distances from the entry into the whole grid to the planes between blocks, computed so that adjacent blocks obtain
+  // bitwise equal values.
   real in = (real)-BEYOND, out = (real)BEYOND;
 #define CLIP(c)                                                                                            \
   {                                                                                                        \

@@ -2,8 +2,8 @@
 // arrays and from light that a solver or shadow rays computed.
 //
 // Macros set by the host:
-//   FLOW     what is packed of the light's mean direction: 0 nothing; 1 the direction; 2 the direction times g, length
-//            at most LARGEST_FLOW; 3 the direction, and g by voxel in a separate array
+//   FLOW     how the light's mean direction is packed: 0 not at all; 1 as it is; 2 multiplied by g, with a length of at
+//            most LARGEST_FLOW; 3 as it is, with g by voxel in a separate array
 //   GLOW     1: emission is packed separately
 //   BENDS    1: the refractive index varies
 //   BRICKED  1: samples are stored in bricks
@@ -28,9 +28,9 @@ typedef struct
   const PackInfo* info;
 } ingredients;
 
-// In-scattered radiance of one channel, W / (length^2 sr): isotropic except for the lamps' light, which shadow rays
-// computed for the direction to the eye (`direct`). The fluence that this light accounts for is subtracted from the
-// total fluence, so that it does not count twice.
+// In-scattered radiance of one channel, W / (length^2 sr). The lamps' light (`direct`), which shadow rays computed, is
+// scattered towards the eye with the phase function; all other light is scattered isotropically. The lamps' part of the
+// fluence is subtracted from the total fluence, so that it does not count twice.
 inline float in_scattered(const ingredients* from, int voxel, int channel)
 {
   const int single = from->info->single;
@@ -77,8 +77,8 @@ inline float4 source_of(const ingredients* from, int voxel, float4* sigma_t, flo
 }
 
 #if BRICKED
-// Prefetches the voxels of the brick's next slice, at both ends of each row, because rows of a brick are far apart in
-// memory.
+// Prefetches the voxels of the brick's next slice at both ends of each row, because the rows of a brick are far apart
+// in memory.
 static void ask_for_next_slice(const ingredients* from, int4 size, int voxel)
 {
   if (get_local_id(0) == 0 || get_local_id(0) == BrickEdge)
@@ -111,7 +111,7 @@ __kernel void pack_samples(PackInfo info, __global const float* restrict absorpt
 #if BRICKED
   int3 sample;
   const int place = place_in_records();
-  // 0 for record 0, which all empty bricks share: its samples are zero
+  // record 0, which all empty bricks share, has zeros only: the factor is 0
   const float there = find_sample_in_brick(bricks, size, &sample) ? 1.0f : 0.0f;
 #else
   if (get_global_id(0) >= size.x + 2 || !is_seen(seen, size))

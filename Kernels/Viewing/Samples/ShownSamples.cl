@@ -1,6 +1,6 @@
-// Packs the samples for camera rays if scattered light is known by direction (angular moments): instead of a source,
+// Packs the samples for camera rays if scattered light is given by angular moments. A sample is then not a source but
 // the ratio of source to extinction. The ratio varies slowly where source and extinction decay steeply, as behind the
-// surface of a cloud; the march multiplies it by the interpolated extinction (numerics.md, section 14.7).
+// surface of a cloud. The march multiplies it by the interpolated extinction (numerics.md, section 14.7).
 //
 // Macros set by the host:
 //   SHOWN    0 no source; 1 diffuse light and first-scattered light of lamps; 2 repeated forward scattering of lamps'
@@ -15,7 +15,7 @@
 
 #define DARKEST 80.0f
 
-// Extinction of a voxel, and ratio of its scattering to its extinction.
+// Extinction of a voxel, and its albedo (scattering over extinction).
 typedef struct
 {
   float4 sigma_t, albedo;
@@ -46,8 +46,8 @@ inline float4 triple(__global const float* values, int voxel)
 }
 
 #if SHOWN
-// Mean albedo of the scattering voxels in the 3 x 3 x 3 neighbourhood of a voxel and, with SHOWN 1, their mean diffuse
-// light, W / (length^2 sr); 0 if none of them scatters.
+// Averages over the scattering voxels in the 3 x 3 x 3 neighbourhood of a voxel: albedo and, with SHOWN 1, diffuse
+// light, W / (length^2 sr). Both are 0 if none of these voxels scatters.
 typedef struct
 {
   float4 albedo, light;
@@ -70,13 +70,13 @@ inline neighbour_means means_around(__global const float* absorption, __global c
 #endif
 
 // Packs the samples from the light of each voxel, W / (length^2 sr): `diffuse` with 3 values per voxel and `direct`
-// with 6 (ShadowRays.cl). A voxel without scattering receives the mean light of its scattering neighbours, and their
-// mean albedo if it does not absorb either.
-//   samples  SHOWN 1: diffuse light times albedo; SHOWN 2: ratio of lamps' light scattered more than once to that
+// with 6 (ShadowRays.cl). A voxel that does not scatter receives the mean light of its scattering neighbours. If it
+// does not absorb either, it also receives their mean albedo.
+//   samples  SHOWN 1: diffuse light times albedo; SHOWN 2: lamps' light scattered more than once, divided by that
 //            scattered once; w: grey extinction
 //   beams    -ln of (lamps' light times albedo)
-//   info     if its components.straightOn is 0, straight_on is not read, and the extinction includes all scattering;
-//            else it omits the fraction straight_on that the solver treated as unscattered
+//   info     components.straightOn is 0: the extinction includes all scattering, and straight_on is not read. Otherwise
+//            the extinction omits the fraction straight_on of scattering, which the solver treated as unscattered
 __kernel void pack_shown(PackInfo info, __global const float* restrict absorption,
   __global const float* restrict scattering, __global const float* restrict emission,
   __global const float* restrict straight_on, __global const float* restrict diffuse,

@@ -13,8 +13,9 @@ namespace tyndall
 {
 namespace
 {
-/// Distance in voxels, back along the ray from the midpoint of a step, up to which samples are read when the surface
-/// splits the ray: the surface lies between this midpoint and that of the previous step. 0 without a surface.
+/// Distance in voxels, measured back from the midpoint of a step, within which samples are read when the reflecting
+/// surface splits a ray. The surface lies between the midpoints of this step and of the previous one. 0 without a
+/// surface.
 double ReachOfSplit(const ViewSettings& settings)
 {
   return settings.surfaceReflection == SurfaceReflection::None ? 0.0 : settings.stepSize;
@@ -54,9 +55,9 @@ std::vector<float> HeldIndex(const Field& known, const BlockOfScene& block, cons
 VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& settings, bool moments, bool surface)
 {
   constexpr int Between = 1; // layers of ghost cells for interpolation at any point of the block
-  // The layer `Between` allows interpolation up to half a voxel beyond the block's own voxels.
+  // One layer of ghost cells (Between) allows interpolation up to half a voxel beyond the block's own voxels.
   const int split = static_cast<int>(std::ceil(ReachOfSplit(settings) - 0.5));
-  // A voxel that does not scatter shows the mean light of its neighbours if light is shown by angular moments.
+  // If light is shown by angular moments, a voxel that does not scatter shows the mean light of its neighbours.
   VoxelBox held = Grown(own, Between + std::max(split, moments ? 1 : 0), whole);
   for (int axis = 0; surface && axis < 3; ++axis)
   {
@@ -72,8 +73,9 @@ VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& set
 
 VoxelBox KnownBox(const VoxelBox& own, const VoxelBox& held, const Grid& whole, const ViewSettings& settings)
 {
-  // Layers of ghost cells for the gradient of n^2 at a point: one for interpolation between voxel centres, one because
-  // the spline at a centre needs its neighbours' coefficients, and one because a coefficient needs their neighbours' n.
+  // Three layers of ghost cells for the gradient of n^2 at a point. One is for interpolation between voxel centres, one
+  // for the neighbouring spline coefficients at a centre, and one for the neighbouring values of n on which each
+  // coefficient depends.
   constexpr int OfSpline = 3;
   const double reach = ReachOfSplit(settings);
   const int layers = OfSpline + static_cast<int>(std::ceil(reach > 0.0 ? reach + VoxelsBesideSurface : 0.0));
@@ -128,8 +130,8 @@ std::vector<float> FacesOfBlock(
 
 namespace
 {
-/// Whether a camera ray can pass from block b into block a: for each axis along which a plane separates the blocks,
-/// tests whether rays can cross the plane from b to a.
+/// Whether a camera ray can pass from block b into block a. Tests, for each axis along which a plane separates the
+/// blocks, whether rays can cross this plane from b's side to a's side.
 bool CanHide(const GridBlock& b, const GridBlock& a, const Camera& camera)
 {
   for (int axis = 0; axis < 3; ++axis)

@@ -16,10 +16,10 @@
 
 namespace tyndall
 {
-/// A block of a domain that is decomposed over several ranks, each of which renders its own block.
+/// One rank's block of a decomposed domain, as this rank renders it.
 ///
-/// The block's arrays hold its own voxels and, towards neighbouring blocks, ghost cells: between the centres of two
-/// voxels of different blocks, light is interpolated from both.
+/// The block's arrays hold its own voxels and ghost cells of the neighbouring blocks, since light between voxel centres
+/// is interpolated from both sides.
 struct GridBlock
 {
   Grid whole;
@@ -69,7 +69,8 @@ struct SharedScene
   std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
 };
 
-/// SharedScene of one block. Reduced over the blocks by minimum, maximum and logical or, it is that of the domain.
+/// SharedScene of one block. The reduction over all blocks by minimum, maximum and logical or gives the SharedScene of
+/// the domain.
 /// @param ior  refractive index of the block's voxels, one component; null: 1
 SharedScene SharedSceneOf(
   const Medium& medium, const SolvedLight& light, const Field& ior, const ViewSettings& settings);
@@ -78,7 +79,7 @@ SharedScene SharedSceneOf(
 /// a channel; 1 if none does or if straightOn is not known.
 double LeastStraightOn(const Medium& medium, const SolvedLight& light, int channel);
 
-/// A block as it is rendered: the composite of all blocks' pictures equals the picture of the whole domain, to
+/// A block as it is rendered. The composite of all blocks' pictures equals the picture of the whole domain up to
 /// rounding.
 struct BlockOfScene
 {
@@ -91,8 +92,8 @@ struct BlockOfScene
 /// @param size  voxels of the block's arrays along each axis
 std::vector<float> HeldIndex(const Field& known, const BlockOfScene& block, const std::array<int, 3>& size);
 
-/// The box of voxels that the arrays of a block must cover: its own voxels and a halo; at a face of the domain also
-/// VoxelsBehindSurface voxels inwards, if light at the surface is shown.
+/// The box of voxels that the arrays of a block must cover: its own voxels and a halo. If the correction for light at
+/// the surface is shown, it extends VoxelsBehindSurface voxels inwards from a face of the domain.
 /// @param own      the block's own voxels, not empty
 /// @param moments  whether light is shown by angular moments
 /// @param surface  whether outgoing radiance at the surface (SolvedLight::surface) may be shown
@@ -103,8 +104,8 @@ VoxelBox HeldBox(const VoxelBox& own, const Grid& whole, const ViewSettings& set
 /// @param held  the block's HeldBox
 VoxelBox KnownBox(const VoxelBox& own, const VoxelBox& held, const Grid& whole, const ViewSettings& settings);
 
-/// Number of voxels behind a face of the box on which the light at the surface depends: enough if one voxel reaches the
-/// optical thickness ThickAtSurface.
+/// Number of voxels behind a face of the box on which the correction for light at the surface depends. Sufficient if a
+/// voxel's optical thickness reaches ThickAtSurface.
 constexpr int VoxelsBehindSurface = 6;
 
 /// Kernel parameters that describe a block.

@@ -27,7 +27,7 @@ bool Finite(const std::array<double, 3>& v)
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-/// The vector scaled so that its largest component is 1, which keeps the square of its length finite; 0 for 0.
+/// The vector, scaled so that its largest component is 1: the square of its length cannot overflow. 0 for 0.
 glm::dvec3 Scaled(const glm::dvec3& v)
 {
   const double largest = std::max({ std::abs(v.x), std::abs(v.y), std::abs(v.z) });
@@ -94,8 +94,8 @@ Camera FrameGrid(const Grid& grid, double aspect, double viewAngle, const std::a
   camera.position = Array(centre + glm::length(half) * out);
   const auto axes = Axes(camera);
 
-  // Smallest distance of the camera at which every corner of the box is inside the picture; then enlarged by the
-  // margin.
+  // Smallest distance of the camera at which every corner of the box is inside the picture. The margin is applied
+  // afterwards.
   const double margin = 1.05;
   const double upperEdge = TangentOfHalf(viewAngle);
   double distance = 0.0;

@@ -23,8 +23,8 @@ struct Camera
   bool mirrored = false; ///< whether the picture is flipped left to right
 };
 
-/// The direction towards the camera of the default view: three-quarter view from the front and slightly from above,
-/// with the axis nearest to `viewUp` upwards; for z the sides -y and +x and the top are visible.
+/// The direction towards the camera in the default view, a three-quarter view from the front and slightly from above.
+/// The axis nearest to `viewUp` points upwards; if it is z, the sides -y and +x and the top are visible.
 std::array<double, 3> ThreeQuarterView(const std::array<double, 3>& viewUp);
 
 /// A camera that looks at the grid's centre and shows the whole box with a margin of 5% of the picture.

@@ -37,18 +37,19 @@ private:
 struct SceneOnDevice
 {
   /// Makes the arrays of medium and light available to kernels. If samples are packed only once
-  /// (ViewTraits::PacksOnce), no copies are made: medium and light must then outlive the call of GiveBackWhatIsPacked.
+  /// (ViewTraits::PacksOnce), the caller's arrays are read without a copy: medium and light must then outlive the call
+  /// of GiveBackWhatIsPacked.
   /// @param block  position of the medium in a larger grid, with `ior` covering BlockOfScene::known; null: the medium
-  ///   is the whole domain
+  /// is the whole domain
   /// @throws DeviceError if the arrays do not fit the device
   SceneOnDevice(Device& device, const Medium& medium, const SolvedLight& light, const Field& ior,
     const ViewTraits& traits, const BlockOfScene* block);
 
-  /// Frees the arrays that only the packing of samples reads.
+  /// Frees the arrays that are needed only to pack the samples.
   void GiveBackWhatIsPacked();
 
-  /// Angular moments, and fraction of scattering that their solver treated as unscattered (SolvedLight); empty if
-  /// moments are not shown.
+  /// Angular moments of scattered light, and the fraction of scattering that the solver of these moments treated as
+  /// unscattered (SolvedLight). Empty if moments are not shown.
   Buffer<float> moments, straightOn;
   std::array<ViewedArray, 5> arrays; ///< sigma_a, sigma_s, emission, fluence and fluenceDirect (ViewedFields)
   ViewedArray meanDirection;

@@ -20,17 +20,18 @@ struct SolvedLight
   /// Outgoing radiance, W / (length^2 sr), in each cell of the box's faces (BoxFaces.h): 4 components, at the cosines
   /// SurfaceCosines, or 12 (for each cosine red, green, blue). Null: not known.
   Field surface = {};
-  /// Angular moments of scattered light, LightField::scatteredMoments, with (degree + 1)^2 components or 3 times as
-  /// many; LightField::straightOn, the fraction of scattering that their solver treated as unscattered; and
-  /// LightField::lampsApart, the lamps whose first scattering they lack. Null: not known.
+  /// Null: not known. scatteredMoments: angular moments of scattered light, LightField::scatteredMoments, with (degree
+  /// + 1)^2 components or 3 times as many. straightOn: the fraction of scattering that their solver treated as
+  /// unscattered, LightField::straightOn. lampsApart: the lamps whose first scattering is not in the moments,
+  /// LightField::lampsApart.
   Field scatteredMoments = {}, straightOn = {};
   std::vector<Light> lampsApart = {};
   /// Outgoing partial current in the cells of the box's faces, W / length^2, LightField::facePower, with 1 or 3
   /// components (null: not known), and albedo of the faces, LightField::faceAlbedo.
   Field facePower = {};
   std::array<Rgb, 6> faceAlbedo = {};
-  /// Radiance that enters through the faces, W / (length^2 sr) (Illumination::faces): pictures of scatteredMoments show
-  /// its part that was scattered by small angles.
+  /// Radiance that enters through the faces, W / (length^2 sr) (Illumination::faces). Pictures made of scatteredMoments
+  /// show the part of it that was scattered through small angles.
   std::array<Rgb, 6> faceRadiance = {};
   /// Standard error of `fluence`, W / length^2, with 1 or 3 components, for PictureError.h; null: not known.
   Field fluenceError = {};

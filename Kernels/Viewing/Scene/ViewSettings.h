@@ -17,8 +17,8 @@ enum class SurfaceReflection
   Fixed = 2,
 };
 
-/// Distance in voxels from the surface at which Fresnel's equations read the indices: outside the range over which the
-/// surface is smoothed, 9 voxels wide by default.
+/// Distance in voxels from the surface at which Fresnel's equations read the refractive index on either side. It lies
+/// outside the smoothed surface layer, which is 9 voxels wide by default.
 constexpr double VoxelsBesideSurface = 5.0;
 
 /// Settings of the ray caster, named as the filter's properties.
@@ -32,11 +32,11 @@ struct ViewSettings
   bool shadowRays = false;
   int rectangleSamples = 3;   ///< samples along each edge of a rectangular light, for shadow rays
   bool showBackground = true; ///< whether the background is shown, also in reflections by surface and table
-  /// Radiance behind the medium where there is no environment, W / (length^2 sr), [0, 1e37].
+  /// Radiance behind the medium if there is no environment, W / (length^2 sr), [0, 1e37].
   Rgb backgroundColor = { 0.0, 0.0, 0.0 };
   bool skipEmptyBricks = true; ///< whether rays skip empty bricks; changes only the run time
-  /// Whether to omit features that the scene does not need. false: always three channels, rays that may bend, and no
-  /// skipping of bricks, to measure the savings.
+  /// Whether to leave out work that the scene does not need. False, to measure the savings: always three channels, rays
+  /// that may bend, and no skipping of bricks.
   bool leaveOut = true;
   double minimumTransmittance = 1e-3; ///< transmittance below which rays stop; 0: they do not stop
   SurfaceReflection surfaceReflection = SurfaceReflection::None;
@@ -58,10 +58,10 @@ struct ViewSettings
 /// @throws InvalidInput for a setting that is invalid in every scene
 void Check(const ViewSettings& settings);
 
-/// Settings with the step size, the samples of rectangular lights and the transmittance at which rays stop chosen by a
-/// quality, unless `settings` has other values than the defaults for them.
+/// Settings that a quality level chooses: step size, samples of rectangular lights, and transmittance at which rays
+/// stop. A setting that differs from its default in `settings` is kept.
 ViewSettings AtQuality(Quality quality, ViewSettings settings);
 
-/// Text "Name = value" for each setting that a quality (AtQuality) may choose.
+/// Text "Name = value" for each setting that AtQuality may choose.
 std::vector<std::string> Words(const ViewSettings& settings);
 }

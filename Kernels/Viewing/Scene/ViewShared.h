@@ -7,13 +7,13 @@
 SHARED_BEGIN
 enum
 {
-  // Number of rows of the tables of the phase function; each table has one more row after its last.
+  // Number of rows of the tables of the phase function. Each table has one more row than this.
   SchlickRows = 1024,
   CosineRows = 2048,
   SpreadRows = 128,
-  // An aureole table holds the light of a beam that was scattered forwards more than once (AureoleTable in
-  // SeenSources.h) as a function of the cosine of the scattering angle (columns) and of the square root of the optical
-  // length of scattering along the beam (rows); AureoleDepth is the largest optical length.
+  // Size of an aureole table (AureoleTable in SeenSources.h), which holds the light of a beam that was scattered
+  // forwards more than once. Columns: cosine of the scattering angle. Rows: square root of the optical length of
+  // scattering along the beam, whose largest value is AureoleDepth.
   AureoleColumns = 1024,
   AureoleRows = 64,
   AureoleDepth = 40,
@@ -68,16 +68,16 @@ typedef struct
 {
   float4 eye;     ///< position of the camera, voxels; w = 0: perspective, 1: parallel projection
   float4 forward; ///< view axis, unit vector in world coordinates
-  /// vector from the picture's centre to its right edge, in world coordinates: at unit distance from the eye, or, in a
-  /// parallel projection, in lengths; w: shift of the picture's centre (Camera::shift), in units of this vector
+  /// vector from the picture's centre to its right edge, in world coordinates. Perspective: at unit distance from the
+  /// eye. Parallel projection: in lengths. w: shift of the picture's centre (Camera::shift), in units of this vector
   float4 right;
   /// vector from the picture's centre to its upper edge, as `right`; w: shift upwards
   float4 up;
   float4 inverseSpacing; ///< voxels per length along each axis
-  /// radiance of the background, W / (length^2 sr), added to the environment; w = 0: no background is shown
+  /// radiance of the background, W / (length^2 sr), added to that of the environment; w = 0: no background is shown
   float4 background;
   /// x: step of the march in voxels; y: transmittance at which rays stop; z: depth of pixels whose transmittance stays
-  /// above 1/2; w: 1 if the optical length of every step is at most 2, for which there is a faster formula, else 0
+  /// above 1/2; w: 1 if the optical length of every step is at most 2, so that a faster formula applies, else 0
   float4 marching;
   /// x, y: width and height in pixels; z, w: first row and first column of a launch, in packets of rays (z in pixels
   /// for start_rays of RayRounds.cl)
@@ -88,15 +88,14 @@ typedef struct
   int4 bricks; ///< number of bricks, cubes of 8^3 voxels, along each axis
   /// x, y: width and height of the environment in pixels, 0: no environment; z: bit mask of faces (Backdrop::FaceBits)
   int4 environment;
-  /// indices, in the array of lookup tables of the Backdrop, at which environment (x), reflecting faces (y), light at
-  /// the surface (z) and the table (w), a face of the box, begin
+  /// indices in the array Backdrop::Tables at which the tables begin: x environment, y reflecting faces, z correction
+  /// for light at the surface, w irradiance of the scene's table
   int4 backdrop;
   /// x, y: first ray of a launch and the one after its last, for rays that travel between blocks
   int4 range;
   float4 toPicture[3]; ///< rows of the matrix from world axes to the environment's axes
-  /// Flags, 1 if: x, rays end at a depth given for each pixel; y, the transmittance of the blocks in front is given for
-  /// each pixel; z, there is a correction for light at the surface of optically thick voxels; w, rays skip empty
-  /// bricks.
+  /// Flags. x: rays end at a depth given for each pixel. y: the transmittance of the blocks in front is given for each
+  /// pixel. z: there is a correction for light at the surface of optically thick voxels. w: rays skip empty bricks.
   int4 has;
   BlockInfo block;
   PhaseInfo phase;
@@ -106,25 +105,26 @@ typedef struct
 typedef struct
 {
   float4 spacing; ///< edges of a voxel, length
-  /// x: n^2 at the surface; y: its reflectance, if it is constant; z: distance in voxels from the surface at which the
-  /// indices on both sides are read
+  /// x: n^2 at the reflecting surface; y: its reflectance, if constant; z: distance in voxels from the surface at which
+  /// the indices on both sides are read
   float4 surface;
-  /// The table, a face of the box: diffuse reflectance of red, green, blue (x, y, z); specular reflectance (w).
+  /// The scene's table, a plane at a face of the box: diffuse reflectance of red, green, blue (x, y, z); specular
+  /// reflectance (w).
   float4 table;
-  /// The table's face of the box. x: axis of its normal; y: 1 on the upper and 0 on the lower face along this axis; z:
-  /// voxels along the rows of the face; w: 1 if there is a table.
+  /// The face of the box at which the scene's table lies. x: axis of its normal; y: 1 for the upper and 0 for the lower
+  /// face along this axis; z: voxels along the rows of the face; w: 1 if there is a table.
   int4 face;
   float4 flip; ///< factors by which reflection at the table multiplies the components of a direction
   /// x: largest number of steps of a ray; y: number of leapfrog steps between two checks of the index; z: number of
-  /// bisections that locate the surface; w: reflectance of the surface where the index rises through a given value, at
-  /// which primary rays are split: 0 no surface, 1 by Fresnel's equations, 2 constant
+  /// bisections that locate the reflecting surface, where the index rises through a given value; w: its reflectance: 0
+  /// no surface, 1 by Fresnel's equations, 2 constant
   int4 limits;
   // For a block whose rays travel between blocks: the voxels of the whole grid whose gradient of n^2 is stored.
   int4 knownFirst, knownSize;
 } OpticsInfo;
 
-/// Kernel parameters of a picture, or of one of the two passes (scattered and unscattered light) of a picture of
-/// angular moments.
+/// Kernel parameters of a picture. A picture made of angular moments has two passes, one for scattered and one for
+/// unscattered light; each has its own parameters.
 typedef struct
 {
   ViewInfo view;
@@ -133,7 +133,7 @@ typedef struct
 
 enum
 {
-  // Values of RayOnItsWay::state (RayGoesOn to RayHasEnded) and of RayOnItsWay::kind (RayIsPrimary to RayIsMirrored).
+  // Values of RayOnItsWay::state (RayGoesOn to RayHasEnded), and of RayOnItsWay::kind (RayIsPrimary to RayIsMirrored).
   RayGoesOn = 0,
   RayIsOut = 1,  // the ray has left the domain and has not yet received the background
   RayMisses = 2, // the ray misses the domain, and has not yet received the background
@@ -151,14 +151,15 @@ typedef struct
   int kind;  ///< RayIsPrimary, RayIsReflected or RayIsMirrored
   int state; ///< RayGoesOn, RayIsOut, RayMisses or RayHasEnded
   int steps; ///< number of steps since the ray's entry into the domain
-  /// Indices of the voxel that contains the midpoint of the next step or, once the ray has left the box, its position.
+  /// Indices of the voxel that contains the midpoint of the next step. If the ray has left the box: the voxel of its
+  /// position.
   int where[3];
-  /// Nonzero if the ray has already met the surface, or must not be split by it.
+  /// Nonzero if the surface must not split the ray, for example because it has already met the surface.
   int met;
   float at[3], velocity[3];
   float left[3];     ///< transmittance from the eye to the current point
   float radiance[3]; ///< accumulated radiance, divided by n^2
-  /// Step in which the transmittance fell below 1/2: start, length, transmittance before and after.
+  /// The step in which the transmittance fell below 1/2: start, length, transmittance before and after.
   float halfWay[4];
   float square;      ///< n^2 at the midpoint of the last bent step
   float since;       ///< time t since that midpoint (RayPackets.cl); negative: n^2 is unknown and must be sampled first
@@ -197,8 +198,8 @@ typedef struct
   PhaseInfo phase;             ///< phase function, if it is equal in all voxels
   ViewedComponents components; ///< number of components of the medium's arrays
   float step;                  ///< step of the march, voxels
-  /// Smallest squared distance used in 1/r^2: keeps a voxel that contains a light finite, at 3/R^2, the mean of 1/r^2
-  /// in a ball (radius R) of the voxel's volume.
+  /// Lower bound of r^2 in the inverse-square law 1 / r^2, so that a voxel that contains a light stays finite. The
+  /// largest 1 / r^2 is then 3 / R^2, the mean of 1 / r^2 over a ball of radius R with the voxel's volume.
   float nearestSquare;
   int firstLight, lights;   ///< lights of this launch, [firstLight, lights)
   int firstSlice, firstRow; ///< first slice and first row of voxels of this launch

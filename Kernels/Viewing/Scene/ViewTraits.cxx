@@ -12,7 +12,7 @@ namespace tyndall
 {
 namespace
 {
-/// Dilates a set of bricks by one brick, up and down one axis.
+/// Dilates a set of bricks by one brick in both directions of one axis.
 std::vector<unsigned char> Widened(const std::vector<unsigned char>& bricks, const std::array<int, 3>& count, int axis)
 {
   const std::size_t stride = axis == 0 ? 1
@@ -54,10 +54,10 @@ using Functions = std::array<PhaseFunction, 3>;
 
 /// Number of Legendre moments of phase functions without a formula; resolves 0.2 degrees.
 constexpr int MomentCount = 1024;
-/// Terms of Eq. (108a) of numerics.md are dropped where a^l, a the length of the light's mean direction, falls below
-/// this.
+/// Terms of numerics.md, Eq. (108a), are proportional to a^l, where a is the length of the light's mean direction. They
+/// are dropped where a^l falls below this value.
 constexpr double NoMore = 1e-7;
-/// Fraction of the scattered light that the quadrature of the moments may miss.
+/// Fraction of the scattered light that the quadrature for the Legendre moments may miss.
 constexpr double Resolved = 1e-6;
 constexpr int RowLength = CosineRows + 2;
 
@@ -103,8 +103,8 @@ double CosineOfRow(int row)
   return 2 * row < CosineRows ? 1.0 - aside * aside : aside * aside - 1.0;
 }
 
-/// (2 l + 1) times the Legendre moments of a phase function, by a quadrature that resolves all that the tables can
-/// show. The fraction of a narrow peak that the quadrature misses is added as a beam in the forward direction.
+/// (2 l + 1) times the Legendre moments of a phase function. The quadrature resolves all that the tables can show. The
+/// part of a narrow peak that the quadrature misses is added as a beam in the forward direction.
 std::vector<double> WeightedMoments(const PhaseFunction& function)
 {
   static const GaussLegendre rule(MomentCount);
@@ -132,8 +132,8 @@ std::vector<double> WeightedMoments(const PhaseFunction& function)
   return moments;
 }
 
-/// Appends to `rows` a table of 4 pi times the phase function, averaged over light that is spread about its mean
-/// direction: sum of (2 l + 1) chi_l a^l P_l(c), numerics.md, Eq. (108a).
+/// Appends a table to `rows`: 4 pi times the phase function, averaged over light that is spread about its mean
+/// direction. This is the sum of (2 l + 1) chi_l a^l P_l(c), numerics.md, Eq. (108a).
 void AddSpreadRows(const PhaseFunction& function, std::vector<float>& rows)
 {
   const std::vector<double> moments = WeightedMoments(function);
@@ -205,8 +205,8 @@ std::vector<float> RowsOf(const ViewedPhase& viewed, const PhaseOfMedium& phase)
 
 namespace
 {
-/// Largest fraction of filled bricks for storage in bricks; above it the duplicated samples at brick faces cost more
-/// memory than bricks save.
+/// Samples are stored in bricks if at most this fraction of bricks is filled. Otherwise the samples duplicated at brick
+/// faces would cost more memory than empty bricks save.
 constexpr double FilledAtMost = 0.25;
 
 void FindMoments(const PhaseOfMedium& phase, const SolvedLight& light, ViewTraits& traits)

@@ -64,9 +64,8 @@ struct ShownMoments
   std::array<double, 3> straightOn = { 1.0, 1.0, 1.0 };
 };
 
-/// Features of a scene on which kernels depend: whether properties vary, differ between the channels or depend on the
-/// camera. Determined once; kernels are compiled for them. Independent of the settings that MediumRayCaster::Adopt
-/// changes.
+/// Features of a scene for which kernels are compiled: whether properties vary, differ between the channels or depend
+/// on the camera. Determined once per scene; independent of the settings that MediumRayCaster::Adopt changes.
 struct ViewTraits
 {
   Grid grid;
@@ -95,7 +94,8 @@ struct ViewTraits
 
   bool ShowsMoments() const { return this->moments.degree >= 0; }
   bool ShowsBeams() const { return this->ShowsMoments() && this->shadowRays; }
-  /// Whether emission is packed separately from scattered light, because the phase function does not multiply it.
+  /// Whether emission is packed separately from scattered light. It must be where scattered light is multiplied by the
+  /// phase function, since emission is not.
   bool GlowsApart() const { return (this->knowsFlow || this->ShowsMoments()) && this->components[2] > 0; }
   /// Whether the light's mean direction is packed multiplied by the mean cosine g; g is then equal for all channels.
   bool FlowHasG() const
@@ -104,7 +104,7 @@ struct ViewTraits
       (this->phase.formula == ViewedPhase::HenyeyGreenstein || this->phase.formula == ViewedPhase::Schlick);
   }
   bool PacksCosines() const { return this->knowsFlow && this->phase.varies && !this->FlowHasG(); }
-  /// Value of the kernels' macro FLOW: what is packed of the light's mean direction, see ScatteredLight.cl.
+  /// Value of the kernels' macro FLOW, which says how the light's mean direction is packed, see ScatteredLight.cl.
   int Flow() const { return !this->knowsFlow ? 0 : this->FlowHasG() ? 2 : this->PacksCosines() ? 3 : 1; }
   /// Whether the phase function is evaluated, for light whose mean direction is known or for lamps.
   bool ReadsPhase() const { return this->knowsFlow || this->shadowRays; }
@@ -123,7 +123,7 @@ struct ViewTraits
   bool Reflects(const ViewSettings& settings) const;
   bool SkipsBricks(const ViewSettings& settings) const { return settings.skipEmptyBricks && this->leaveOut; }
 
-  // Compiler options, as "-DNAME=value", of the kernels.
+  // Compiler options for kernels, in the form "-DNAME=value".
   std::string PacketOptions() const;
   std::string SampleOptions() const; ///< options of the kernels that pack samples
   /// Options that define PHASE and PHASE_CHANNELS (PhaseFunction.cl) and FLOW (ScatteredLight.cl).

@@ -24,7 +24,7 @@ __kernel void see_moments(ShadowInfo info, __global const float* restrict moment
   const int4 first = info.block.first;
   const float3 place = (float3)((i + first.x + 0.5f) * info.spacing.x, (j + first.y + 0.5f) * info.spacing.y,
     (k + first.z + 0.5f) * info.spacing.z);
-  // Direction towards the eye; opposite to the view axis in a parallel projection.
+  // Direction towards the eye. In a parallel projection it is opposite to the view axis.
   const float3 out = (1.0f - info.eye.w) * (info.eye.xyz - place) - info.eye.w * info.forward.xyz;
   float harmonics[HARMONICS];
   find_harmonics(out / sqrt(fmax(dot(out, out), 1e-30f)), harmonics);

@@ -24,9 +24,9 @@ struct RectangleSample
   double share;     ///< fraction of the light's power that the sample stands for
 };
 
-/// Appends samples of a rectangular light: `perEdge` along each edge, at the centres of equal parts. A rectangle longer
-/// than the box and than its distance from the box is divided into quarters recursively, so that parts near the box get
-/// more samples.
+/// Appends sample points of a rectangular light: `perEdge` along each edge, at the centres of equal parts. A rectangle
+/// is first divided into quarters, recursively, while it is longer than the box and than its distance from the box.
+/// Parts near the box thus get more samples.
 /// @param middle  centre of the rectangle relative to the grid's lower corner, length
 /// @param share   fraction of the light's power
 /// @param whole   true for the light, false for a quarter of it
@@ -53,7 +53,8 @@ void AddSamples(const Grid& grid, const glm::dvec3& middle, const std::array<glm
   }
 }
 
-/// Point lights and parallel beams of which the lights are composed for shadow rays; lights of zero power are left out.
+/// Replaces lights by the point lights and parallel beams to which shadow rays are traced. Lights of zero power are
+/// omitted.
 std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid& grid, int rectangleSamples)
 {
   std::vector<SmallLight> small;
@@ -98,11 +99,11 @@ std::vector<SmallLight> SmallLights(const std::vector<Light>& lights, const Grid
 }
 
 constexpr int MostMoments = 1024;
-/// Trailing Legendre moments with smaller absolute value are dropped.
+/// Legendre moments at the end of the series are dropped while their absolute value is below this.
 constexpr double Negligible = 1e-5;
 
-/// The highest degree of the angular moments that the solver computed: straightOn, the fraction of scattering that it
-/// treated as unscattered, is the Legendre moment of the next degree.
+/// The highest degree of the angular moments that the solver computed. It is found from straightOn, the fraction of
+/// scattering that the solver treated as unscattered, which equals the Legendre moment of the next degree.
 /// @param moments    Legendre moments of the phase function
 /// @param otherwise  returned if straightOn equals no moment, as for functions that scatter backwards
 int DegreeOf(const std::vector<double>& moments, double straightOn, int otherwise)
@@ -176,9 +177,9 @@ std::vector<float> AureoleTable(const PhaseFunction& function, double straightOn
 
 namespace
 {
-/// Tables of the light that repeated forward scattering adds (AureoleTable), one per channel. Computed for the smallest
-/// fraction straightOn of scattering that is treated as unscattered, over the voxels that scatter; voxels with other
-/// fractions contribute little.
+/// Tables of the light that repeated forward scattering adds (AureoleTable), one per channel. They are computed for the
+/// smallest straightOn, the fraction of scattering treated as unscattered, among the scattering voxels. Voxels with
+/// other fractions contribute little.
 std::vector<float> TablesOfAureole(const Medium& medium, const ViewTraits& traits)
 {
   std::vector<float> tables;
@@ -249,7 +250,8 @@ cl::Kernel SeenSources::Kernel(const char* name) const
       Define("AUREOLE", traits.moments.aureoleChannels));
 }
 
-/// Launches a kernel over a box of voxels, one work-item per packet of voxels of a row, in batches that can be aborted.
+/// Launches a kernel over a box of voxels in batches that can be aborted. One work-item computes a packet of adjacent
+/// voxels of a row.
 /// @param size     voxels of the box along each axis
 /// @param samples  number of samples that the kernel reads for a row of voxels; determines the size of batches
 /// @param to       progress that is reported at the end, in [0, 1]

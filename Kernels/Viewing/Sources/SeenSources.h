@@ -21,8 +21,8 @@
 
 namespace tyndall
 {
-/// Light that each voxel scatters towards the eye: the lamps' direct light, computed by shadow rays, and scattered
-/// light from angular moments. Arrays that the scene does not need are empty.
+/// Light that each voxel sends towards the eye: the lamps' direct light, scattered once and computed by shadow rays,
+/// and scattered light from angular moments. Arrays that the scene does not need are empty.
 class SeenSources
 {
 public:
@@ -39,9 +39,9 @@ public:
   void SeeLights(const Camera& camera, const Monitor& monitor);
   void SeeMoments(const Camera& camera);
 
-  // The following functions are the steps of SeeLights, by light and by part of the block, for a medium that is one of
-  // several blocks: each block computes the optical length of its own section of each shadow ray, and the caller sums
-  // the sections over the blocks.
+  // The following functions are the steps of SeeLights for a medium that is one of several blocks. They work light by
+  // light and on parts of the block. Each block computes the optical length of its own section of each shadow ray; the
+  // caller sums the sections over the blocks.
   const std::vector<SmallLight>& LightsOfBlock() const { return this->Small; }
   /// Optical length, within this block, of the paths from the centres of the voxels `asked` to a light, 3 per voxel.
   /// @param asked  box of voxels, in indices of the whole grid
@@ -53,9 +53,9 @@ public:
   /// @param depths  total optical length from each of these voxels to the light, 3 per voxel
   void SeeLight(int light, const Camera& camera, const VoxelBox& part, const std::vector<float>& depths);
 
-  /// Six values per voxel: light of the lamps scattered towards the eye, W / (length^2 sr) (3), and irradiance by the
-  /// lamps, W / length^2, or, if there are AureoleTables, radiance added by repeated forward scattering (3), see
-  /// ShadowRays.cl.
+  /// Six values per voxel, see ShadowRays.cl. Three are the light of the lamps scattered towards the eye, W / (length^2
+  /// sr). The other three are the irradiance by the lamps, W / length^2, or, if there are AureoleTables, the radiance
+  /// that repeated forward scattering adds.
   const Buffer<float>& Direct() const { return this->OfLights; }
   /// Three values per voxel: radiance scattered towards the eye, from the angular moments, W / (length^2 sr).
   const Buffer<float>& Diffuse() const { return this->OfMoments; }
@@ -75,18 +75,18 @@ private:
   const PackedSamples& Samples;
   const BlockOfScene* Block;
   std::vector<SmallLight> Small;
-  /// Tables of the light that repeated forward scattering adds (AureoleTable), one per channel; empty unless light is
-  /// shown by angular moments and g does not vary.
+  /// Tables of the light that repeated forward scattering adds (AureoleTable), one per channel. Empty unless light is
+  /// shown by angular moments and g is the same in all voxels.
   Buffer<float> AureoleTables;
   Buffer<float> OfLights, OfMoments;
   Buffer<SmallLight> Lights;
 };
 
-/// Table of the light that repeated forward scattering adds to the first scattering of a parallel beam (with the whole
-/// phase function), where the solver treats a fraction of scattering as unscattered (numerics.md, Eq. (112c)). Values
-/// are per steradian, per unit of beam irradiance and per optical length of scattering along the beam's path, tabulated
-/// by scattering angle and optical length. They are negative near the beam, because the light treated as unscattered is
-/// in fact spread in angle.
+/// Table of the light that repeated forward scattering adds to the first scattering of a parallel beam. It is needed
+/// where the solver treats a fraction of scattering as unscattered (numerics.md, Eq. (112c)); first scattering uses the
+/// whole phase function. Values are per steradian, per unit of beam irradiance and per optical length of scattering
+/// along the beam's path, tabulated by scattering angle and optical length. They are negative near the beam, because
+/// the light treated as unscattered is in fact spread in angle.
 ///
 /// The table has AureoleRows + 2 rows of AureoleColumns + 2 numbers, see aureole_at in ShadowRays.cl.
 /// @param straightOn  fraction of scattering that is treated as unscattered

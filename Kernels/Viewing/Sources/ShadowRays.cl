@@ -9,8 +9,8 @@
 #include "Viewing/Samples/VoxelChannels.cl"
 #include "Viewing/Scene/ViewShared.h"
 
-// Shadow rays of a packet: unit vectors to the light and distances to it (world coordinates), and irradiance without
-// attenuation per unit of SmallLight::power.
+// Shadow rays of a packet of voxels: unit vectors to the light, distances to it (world coordinates), and its
+// unattenuated irradiance per unit of SmallLight::power.
 typedef struct
 {
   real3 d;
@@ -30,8 +30,8 @@ inline way_to_light towards(const SmallLight* light, real3 place, real scatters,
   const real to_axis = -fma(d.x, (real)light->axis.x, fma(d.y, (real)light->axis.y, d.z * (real)light->axis.z));
   real arriving = point > (real)0.0f ? (real)1.0f / greater(square, (real)nearest_square) : (real)1.0f;
   arriving *= light->power.w > 0.0f ? greater(to_axis, (real)0.0f) : (real)1.0f;
-  // The cone's boundary is tested with tan(angle / 2) = sine / (1 + cosine): the cosine alone does not resolve small
-  // angles.
+  // Whether a direction lies in the cone is tested with tan(angle / 2) = sine / (1 + cosine), because the cosine alone
+  // does not resolve small angles.
   const real3 across = { fma(d.y, (real)light->axis.z, -d.z * light->axis.y),
     fma(d.z, (real)light->axis.x, -d.x * light->axis.z), fma(d.x, (real)light->axis.y, -d.y * light->axis.x) };
   const real sine = sqrt(fma(across.x, across.x, fma(across.y, across.y, across.z * across.z)));
@@ -55,8 +55,8 @@ inline real3 direction_of(const ShadowInfo* info, const way_to_light* way)
   return direction;
 }
 
-// Optical length along the shadow rays, by channel with COLOURED, else in `r`; the march stops above 30, where the
-// transmittance is negligible.
+// Optical length along the shadow rays: three channels with COLOURED, else `r` only. The march stops above 30, where
+// the transmittance is negligible.
 //   packet  section of the rays to march through
 //   sigma   packed samples: coloured extinctions with COLOURED, else sources and extinctions
 inline rgb depths_on_the_way(const ShadowInfo* info, const way_to_light* way, rays packet, __global const float4* sigma,
@@ -154,16 +154,16 @@ inline rgb phase_at(real cosine, phase_parameters p, __global const float* rows)
 }
 
 #if AUREOLE
-// Product of `depth`, the optical length of scattering along the beam, and the value of a table by AureoleTable at that
-// optical length and at a cosine of the scattering angle.
+// Value of a table by AureoleTable at a cosine of the scattering angle and at the optical length `depth` of scattering
+// along the beam, multiplied by `depth`.
 inline real aureole_at(real cosine, real depth, __global const float* rows)
 {
   const real deep = sqrt(lesser(depth * (real)(1.0f / AureoleDepth), (real)1.0f)) * (real)(float)AureoleRows;
   return depth * between_cosines(rows, deep, cosine, AureoleColumns);
 }
 
-// Ratio of the optical length of all scattering (including the fraction treated as unscattered) to the optical length
-// of the extinction with which rays are marched; the voxel's own ratio is used along the whole ray.
+// Converts the optical length of a ray as it is marched to the optical length of all its scattering, including the
+// fraction treated as unscattered. The factor is the voxel's own ratio and is used along the whole ray.
 inline real scattering_over_depth(__global const float* absorption, __global const float* scattering,
   __global const float* straight_on, const ViewedComponents* of, integer voxel, int channel)
 {
@@ -295,7 +295,7 @@ __kernel void find_depths(ShadowInfo info, __global const SmallLight* restrict l
 }
 
 // Scattering coefficients of a packet's voxels, 1/length, summed over the channels. With info->beside, a voxel that
-// does not scatter but has a scattering neighbour receives 1, because rays interpolate between the two.
+// does not scatter but has a scattering neighbour receives 1, because rays interpolate between such voxels.
 inline real scattering_of_voxels(const ShadowInfo* info, __global const float* scattering, integer voxel)
 {
   real scatters = (real)0.0f;
@@ -331,7 +331,7 @@ inline real3 way_to_eye(const ShadowInfo* info, real3 place)
 
 // Optical lengths between a packet's voxels and a light, see depths_on_the_way.
 //   centre  centres of the voxels, in voxels of the whole grid
-//   given   if info->isGiven: these lengths, as see_lights receives them; else they are computed
+//   given   the lengths that see_lights receives, returned if info->isGiven; otherwise the lengths are computed
 inline rgb depths_to_light(const ShadowInfo* info, const way_to_light* way, real3 centre, integer voxel,
   __global const float* given, __global const float4* sigma, __global const char* bricks)
 {
